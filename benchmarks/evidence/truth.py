@@ -41,7 +41,7 @@ def true_geometry(folder: Path, work: Path) -> dict[str, Any]:
     options: dict[str, Any] = {"textures": TEXTURES, "density": DENSITY, "hold_out": "odd", "fit": "none"}
     scenes = {
         "true": (ef.encode(exact, folder / "proxy.ply", **options), exact),
-        "estimated": (ef.encode(made.light_field, made.mesh, **options), made.light_field),
+        "estimated": (ef.encode(made.light_field, made.proxy, **options), made.light_field),
     }
     first = scenes["true"][0]
     parts = {"encoded": first.rig.encoded.tolist(), "held_out": np.flatnonzero(first.rig.held_out).tolist()}

@@ -3,7 +3,7 @@
     import eigenfield as ef
 
     made = ef.reconstruct(ef.open_any("photos/"))
-    scene = ef.encode(made.light_field, made.mesh)
+    scene = ef.encode(made.light_field, made.proxy)
     ef.save(scene, "scene.glb")
     picture = ef.render(ef.load("scene.glb"), at=(0.3, -0.2))
 

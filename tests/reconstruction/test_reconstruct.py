@@ -32,24 +32,24 @@ def photos(tmp_path_factory):
 @pytest.fixture(scope="module")
 def made(photos, tmp_path_factory):
     work = tmp_path_factory.mktemp("work")
-    return work, reconstruct(open_any(photos), work=work)
+    return work, reconstruct(open_any(photos), layers=1, work=work)
 
 
 def test_cameras_and_mesh_of_bare_photographs(made):
     _, result = made
     assert len(result.light_field) == 16
-    assert atlas_fault(result.mesh) is None
+    assert atlas_fault(result.proxy.mesh) is None
     for camera in result.light_field.cameras:
-        assert (rasterise_view(result.mesh, camera).face >= 0).all()
+        assert (rasterise_view(result.proxy.mesh, camera).face >= 0).all()
     assert list(result.seconds) == ["array", "relief"]
     assert looks_one_way(result.light_field.cameras)
 
 
 def test_finished_stages_are_taken_up(photos, made):
     work, first = made
-    again = reconstruct(open_any(photos), work=work)
+    again = reconstruct(open_any(photos), layers=1, work=work)
     assert set(again.seconds.values()) == {0.0}
-    assert np.array_equal(again.mesh.vertices, first.mesh.vertices)
+    assert np.array_equal(again.proxy.mesh.vertices, first.proxy.mesh.vertices)
     for before, after in zip(first.light_field.cameras, again.light_field.cameras, strict=True):
         assert np.array_equal(before.matrix, after.matrix)
 
@@ -75,7 +75,7 @@ def test_blind_views_only_register_their_own_camera(photos, made, tmp_path):
         other = picture.transpose(Image.Transpose.FLIP_TOP_BOTTOM)
     other.save(changed / held)
     without = reconstruct(open_any(changed), blind="every:5")
-    assert np.array_equal(without.mesh.vertices, blind.mesh.vertices)
+    assert np.array_equal(without.proxy.mesh.vertices, blind.proxy.mesh.vertices)
 
 
 def test_a_photograph_of_another_scene_is_named_and_left_out(photos, tmp_path):
@@ -136,7 +136,7 @@ def test_the_proxy_verb_writes_mesh_and_cameras(photos, made, tmp_path, run):
     assert code == 0, err
     assert "taken up" in err
     mesh = read_mesh(tmp_path / "mesh.glb")
-    assert np.array_equal(np.sort(mesh.vertices, axis=0), np.sort(result.mesh.vertices, axis=0))
+    assert np.array_equal(np.sort(mesh.vertices, axis=0), np.sort(result.proxy.mesh.vertices, axis=0))
     poses = json.loads((tmp_path / "mesh.cameras" / "transforms.json").read_text())["frames"]
     assert len(poses) == 16
     assert run("proxy", photos, "-o", tmp_path / "mesh.obj")[0] == 2
@@ -179,13 +179,13 @@ def test_masks_restrict_the_relief(photos, tmp_path):
         Image.fromarray(shown).save(masks / path.name)
     work = tmp_path / "work"
     result = reconstruct(open_any(photos, masks=masks), work=work)
-    covered = [(rasterise_view(result.mesh, camera).face >= 0) for camera in result.light_field.cameras]
+    covered = [(rasterise_view(result.proxy.mesh, camera).face >= 0) for camera in result.light_field.cameras]
     assert np.mean([part[:, :36].mean() for part in covered]) > 0.97
     assert np.mean([part[:, 66:].mean() for part in covered]) < 0.05
     closed = reconstruct(open_any(photos, masks=masks), background=True, work=work)
     assert closed.seconds["array"] == 0 < closed.seconds["relief"]
     for camera in closed.light_field.cameras:
-        assert (rasterise_view(closed.mesh, camera).face >= 0).all()
+        assert (rasterise_view(closed.proxy.mesh, camera).face >= 0).all()
     black = tmp_path / "black"
     black.mkdir()
     for path in photos.iterdir():

@@ -134,13 +134,14 @@ def test_the_gradient_of_the_error_agrees_with_differences():
         assert difference == pytest.approx(float(np.vdot(gradient.astype(float), direction)), rel=2e-3, abs=1e-2)
 
 
-def test_priors_are_the_gradient_of_variation_and_price():
+def test_priors_are_the_gradient_of_variation_and_prices():
     layer, width = random_layers(7)[0].reshape(FRAME[0], -1), 0.05
     variation = np.tile(np.array([0.3, 0.3, 0.3, 0.7], np.float32), FRAME[1])
     price = np.tile(np.array([0, 0, 0, 0.2], np.float32), FRAME[1])
+    doubt = np.tile(np.array([0, 0, 0, 0.4], np.float32), FRAME[1])
 
     def cost(x):
-        total = float((price * x).sum())
+        total = float((price * x + doubt * x * (1 - x)).sum())
         for a, b, weight in ((x[1:], x[:-1], variation), (x[:, 4:], x[:, :-4], variation[4:])):
             d = np.abs(a - b)
             total += float((weight * np.where(d < width, d * d / (2 * width), d - width / 2)).sum())
@@ -148,7 +149,7 @@ def test_priors_are_the_gradient_of_variation_and_price():
 
     given = np.random.default_rng(8).random(layer.shape).astype(np.float32)
     gradient = given.copy()
-    add_priors(layer, 4, np.float32(0.5), variation, price, np.float32(1 / width), gradient)
+    add_priors(layer, 4, np.float32(0.5), variation, price, doubt, np.float32(1 / width), gradient)
     direction = np.random.default_rng(9).standard_normal(layer.shape)
     exact = layer.astype(float)
     difference = (cost(exact + 1e-5 * direction) - cost(exact - 1e-5 * direction)) / 2e-5

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from support import coded_scenes, composed, viewer_scenes
+from support import coded_scenes, composed, sheet_scenes, viewer_scenes
 
 WEB = Path(__file__).parents[2] / "web"
 CHROMIUM = os.environ.get("EIGENFIELD_CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
@@ -47,6 +47,7 @@ def folder(tmp_path_factory):
     viewer_scenes.write(made)
     composed.write(made)
     coded_scenes.write(made)
+    sheet_scenes.write(made)
     return made
 
 

@@ -65,6 +65,7 @@ async function measure(url: string, width: number, height: number, seconds: numb
   mean.needsUpdate = true;
   field.mesh.material = new THREE.MeshBasicMaterial({ map: mean, side: THREE.DoubleSide });
   field.mesh.onBeforeRender = () => undefined; // nothing is to be composed
+  field.mesh.clear(); // nor sheets to be drawn
   figures.plain = frames(0);
   return figures;
 }

@@ -80,7 +80,7 @@ function assertAlike(found, expected, name) {
 
 test("what Python codes decodes to the same numbers", async () => {
   const whole = names.filter((name) => !name.includes("damaged"));
-  assert.equal(whole.length, 11);
+  assert.equal(whole.length, 12);
   for (const name of whole) {
     const { expected, decode } = await vector(name);
     assert.notEqual(expected, null, name);
@@ -89,7 +89,8 @@ test("what Python codes decodes to the same numbers", async () => {
 });
 
 test("a mesh decodes to the same bits", async () => {
-  for (const name of ["mesh-relief", "mesh-coarse", "mesh-fine", "mesh-ball", "mesh-soup", "mesh-before"]) {
+  const meshes = ["mesh-relief", "mesh-coarse", "mesh-fine", "mesh-ball", "mesh-soup", "mesh-before", "mesh-sheets"];
+  for (const name of meshes) {
     const { expected, decode } = await vector(name);
     const found = decode();
     for (const part of ["positions", "uv", "indices"]) assert.deepEqual([...found[part]], expected[part], name);

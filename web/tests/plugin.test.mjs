@@ -100,8 +100,9 @@ for (const name of [...new Set(references.map(({ scene }) => scene))]) {
       assert.ok(mean <= 0.5, `${reference.file}: mean ${mean}`);
       assert.equal(drawn.ray, reference.free !== null, `${reference.file}: weights by the ray`);
       assert.deepEqual(drawn.frame, { left: 0, top: 0, width: 1, height: 1 });
-      if (reference.free) {
-        // a fold seen at a grazing angle is minified, and read from the mips; the reference has none
+      if (reference.free || reference.scene === "folded.glb") {
+        // a fold seen at a grazing angle is minified, and read from the mips; the reference has none. Where a sheet is
+        // bent over itself a pixel may show one side or the other.
         const share = within(picture, expected);
         assert.ok(share > 0.99, `${reference.file}: only ${share} of the pixels within two grey levels`);
       } else {

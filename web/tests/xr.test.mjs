@@ -39,6 +39,26 @@ const frames = (page) => page.evaluate(async () => {
   for (let i = 0; i < 4; i++) await new Promise((done) => headset.activeSession.requestAnimationFrame(done));
 });
 
+/** How many colours each eye sees. */
+const colours = (page) =>
+  page.evaluate(async () => {
+    await new Promise((done) => headset.activeSession.requestAnimationFrame(done));
+    const gl = document.querySelector("canvas.view").getContext("webgl2");
+    const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
+    const data = new Uint8Array(4 * width * height);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, data);
+    const half = (from) => {
+      const seen = new Set();
+      for (let y = 0; y < height; y++)
+        for (let x = from; x < from + width / 2; x++) {
+          const at = 4 * (y * width + x);
+          seen.add(data.slice(at, at + 3).join());
+        }
+      return seen.size;
+    };
+    return { left: half(0), right: half(width / 2) };
+  });
+
 /** Of each eye: the weights it was drawn with, its X, Y, and the weights that belong there. */
 const eyes = (page) =>
   page.evaluate(() => {
@@ -75,29 +95,20 @@ test("both eyes are drawn, each with the weights of its own place, around the ar
   near(right.x, 0.063 / 2 / 0.25, 1e-3);
   assert.ok(left.drawn.some((weight, j) => Math.abs(weight - right.drawn[j]) > 1e-3), "the weights differ");
 
-  const shot = await page.evaluate(async () => {
-    await new Promise((done) => headset.activeSession.requestAnimationFrame(done));
-    const gl = document.querySelector("canvas.view").getContext("webgl2");
-    const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
-    const data = new Uint8Array(4 * width * height);
-    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, data);
-    const half = (from) => {
-      const seen = new Set();
-      for (let y = 0; y < height; y++)
-        for (let x = from; x < from + width / 2; x++) {
-          const at = 4 * (y * width + x);
-          seen.add(data.slice(at, at + 3).join());
-        }
-      return seen.size;
-    };
-    return { left: half(0), right: half(width / 2) };
-  });
+  const shot = await colours(page);
   assert.ok(shot.left > 500 && shot.right > 500, `colours: ${JSON.stringify(shot)}`);
 
   await page.evaluate(() => headset.activeSession.end());
   const now = await state(page);
   assert.deepEqual([now.x, now.y, now.mode], [before.x, before.y, before.mode]);
   assert.ok(apart(free, await picture(page)) < 0.01, "the view before");
+  await close();
+});
+
+test("sheets are drawn for both eyes", async () => {
+  const { page, close } = await present("sheets.glb");
+  const shot = await colours(page);
+  assert.ok(shot.left > 500 && shot.right > 500, `colours: ${JSON.stringify(shot)}`);
   await close();
 });
 

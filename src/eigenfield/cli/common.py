@@ -60,6 +60,14 @@ def _parse_grid(context: click.Context, parameter: click.Parameter, value: str |
     return int(match[1]), int(match[2])
 
 
+def _parse_layers(context: click.Context, parameter: click.Parameter, value: str) -> int | None:
+    if value == "auto":
+        return None
+    if not re.fullmatch(r"-?[0-9]{1,9}", value):
+        raise click.BadParameter("a number, or auto")
+    return int(value)
+
+
 def _set_threads(context: click.Context, parameter: click.Parameter, value: int | None) -> None:
     if value is not None:
         from eigenfield.runtime.parallel import set_threads
@@ -103,9 +111,14 @@ _place_options = together(
                       "positions, hci, stanford, grid, numbered, video or folder."),
     grid_options,
 )  # fmt: skip
-reconstruction_options = together(  # the arguments of `reconstruct`
-    click.option("--surface", type=click.Choice(["auto", "relief", "poisson"]), default="auto", show_default=True,
-                 help="relief: two layers seen from the array's centre; poisson: a surface from all sides."),
+
+
+def _surface_option(kinds: str, words: str) -> Decorator:
+    return click.option("--surface", type=click.Choice(kinds.split()), default="auto", show_default=True, help=words)
+
+
+MESH_KINDS = "relief: two layers seen from the array's centre; poisson: a surface from all sides"
+_mesh_options = together(  # the arguments of `reconstruct` about a mesh
     click.option("--refine/--no-refine", default=None,
                  help="Correct an array's cameras together with its depth.  "
                  "[default: where none are given, or 25 or more]"),
@@ -115,6 +128,13 @@ reconstruction_options = together(  # the arguments of `reconstruct`
                  help="Put a shape in by hand: sphere:CX,CY,CZ,R or plane:PX,PY,PZ,NX,NY,NZ,EXTENT."),
     click.option("--fit-sphere", "fit_spheres", multiple=True, metavar="VIEW:X,Y,W,H",
                  help="Fit a sphere to the outline in a region of a photograph, and put it in."),
+)  # fmt: skip
+mesh_options = together(_surface_option("auto relief poisson", f"{MESH_KINDS}."), _mesh_options)
+reconstruction_options = together(  # the arguments of `reconstruct`
+    _surface_option("auto relief layers poisson", f"{MESH_KINDS}; layers: soft sheets with an opacity."),
+    click.option("--layers", metavar="N", default="auto", show_default=True, callback=_parse_layers,
+                 help="Number of soft sheets; 1: none."),
+    _mesh_options,
 )  # fmt: skip
 
 

@@ -124,7 +124,7 @@ def command(
             settings["blind"] = options.hold_out if blind else None
             check = partial(check_selection, options=options)
             made = reconstruct_capture(capture, place, scratch, progress, quiet, check, **settings)
-            scene = encode(made.light_field, made.mesh, options, triangles=None, work=scratch, progress=progress)
+            scene = encode(made.light_field, made.proxy, options, triangles=None, work=scratch, progress=progress)
         save(scene, output, **options.for_save, overwrite=overwrite, progress=progress)
     sizes = parts(output)
     width, height = scene.settings["atlas"]

@@ -12,10 +12,10 @@ from eigenfield.cli.common import (
     PATH,
     capture_options,
     common_options,
+    mesh_options,
     note,
     progress_bars,
     reconstruct_capture,
-    reconstruction_options,
 )
 
 
@@ -31,7 +31,7 @@ Examples:
 @click.argument("capture", type=PATH)
 @click.option("--output", "-o", required=True, type=PATH, metavar="FILE", help="The .glb or .ply to write.")
 @capture_options
-@reconstruction_options
+@mesh_options
 @click.option(
     "--triangles", type=int, default=30_000, show_default=True, metavar="N", help="Triangles of the mesh, at most."
 )
@@ -65,13 +65,14 @@ def command(
     refuse_existing(output, overwrite)
     work = work if work is not None else output.with_suffix(".work")
     with progress_bars(quiet) as progress:
-        made = reconstruct_capture(capture, place, work, progress, quiet, **settings)
+        made = reconstruct_capture(capture, place, work, progress, quiet, layers=1, **settings)  # a file holds none
     if made.calibration is not None:
         cameras = output.with_suffix(".cameras")
         save_calibration(made.light_field, cameras, overwrite=True)
         note(f"cameras: {cameras}", quiet)
-    write_mesh(made.mesh, output, overwrite=overwrite)
+    mesh = made.proxy.mesh
+    write_mesh(mesh, output, overwrite=overwrite)
     click.echo(
-        f"{output}: {len(made.mesh.vertices)} vertices, {len(made.mesh.faces)} triangles for {len(made.light_field)} "
+        f"{output}: {len(mesh.vertices)} vertices, {len(mesh.faces)} triangles for {len(made.light_field)} "
         f"photographs, {time.monotonic() - started:.0f} s"
     )

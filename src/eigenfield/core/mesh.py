@@ -63,7 +63,9 @@ def signed_areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2)
 
 
-def barycentric_coordinates(corners: NDArray[np.int64], points: NDArray[np.int64]) -> NDArray[np.float64]:
+def barycentric_coordinates(
+    corners: NDArray[np.int64] | NDArray[np.float64], points: NDArray[np.int64]
+) -> NDArray[np.float64]:
     """(n, 3) barycentric coordinates of points (n, 2) in triangles of the plane with area, corners (n, 3, 2)."""
     p = corners - points[:, None]
     one, other = np.roll(p, -1, axis=1), np.roll(p, -2, axis=1)

@@ -9,6 +9,7 @@ from eigenfield.proxy.primitives.shapes import Primitive, insert_primitive, pars
 from eigenfield.proxy.primitives.sphere_fit import find_view, fit_sphere, parse_region
 from eigenfield.proxy.relief.layers import estimate_second_layer
 from eigenfield.proxy.relief.make import relief_mesh
+from eigenfield.proxy.relief.soft import soft_relief
 from eigenfield.proxy.surface.multiview import surface_from_views
 
 __all__ = [
@@ -29,6 +30,7 @@ __all__ = [
     "read_mesh",
     "relief_mesh",
     "simplify_mesh",
+    "soft_relief",
     "surface_from_views",
     "unwrap_mesh",
     "weld_vertices",

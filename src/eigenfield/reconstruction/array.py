@@ -6,6 +6,7 @@ import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -54,6 +55,8 @@ class ArrayTuning:
         range_views: Views around the central one in which a range of depths is searched.
         min_points: Points of structure from motion that determine a range of depths.
         range_margin_fraction: Added to that range on both sides.
+        depth_percentiles: Of a depth map, that are its range.
+        min_inverse_ratio: Of the farthest inverse depth to the nearest.
         outlier_ratio: A photograph whose error is this many times the typical one shows another scene.
         outlier_min_levels: Grey levels by which its error is larger, at least.
         dense_views: Number of given views from which cameras are refined by default.
@@ -70,6 +73,8 @@ class ArrayTuning:
     range_views: int = 25
     min_points: int = 30
     range_margin_fraction: float = 0.15
+    depth_percentiles: tuple[float, float] = (1.0, 99.0)
+    min_inverse_ratio: float = 0.02
     outlier_ratio: float = 2.0
     outlier_min_levels: float = 8.0
     dense_views: int = 25
@@ -104,18 +109,42 @@ def looks_one_way(cameras: Sequence[Camera]) -> bool:
     )
 
 
-def relief_of_array(
-    run: StageRunner, capture: Capture, points: NDArray[np.float64] | None
-) -> tuple[LightField, Mesh, Path | None]:
-    """Cameras and depth of an array, then the layered relief.
+@dataclass(frozen=True, eq=False)
+class AlignedArray:
+    """Cameras and depth of an array.
+
+    Attributes:
+        light_field: Photographs and cameras, without outliers.
+        shown: Indices in the capture of the photographs that take part.
+        folder: Of the stage, with the depth map and the calibration.
+        inputs: What the stage depends on.
+    """
+
+    light_field: LightField
+    shown: NDArray[np.int64]
+    folder: Path
+    inputs: list[Any]
+
+    def depth(self) -> ArrayDepth:
+        """The depth map."""
+        return read_planar(self.folder / STAGE_DEPTH_FILE)
+
+    def taking_part(self, capture: Capture) -> LightField:
+        """The photographs that take part, with their cameras.
+
+        Args:
+            capture: That was aligned.
+        """
+        return self.light_field.subset([self.light_field.names.index(capture.names[i]) for i in self.shown])
+
+
+def align_array(run: StageRunner, capture: Capture, points: NDArray[np.float64] | None) -> AlignedArray:
+    """Cameras and depth of an array.
 
     Args:
         run: The stages.
         capture: Photographs with cameras or a layout.
         points: (n, 3) points of structure from motion, if any.
-
-    Returns:
-        The light field, the relief with an atlas, and the folder of the calibration.
     """
     refine = _must_refine(capture, run.settings)
     known = np.flatnonzero(~held_out_cameras(run.settings.blind, capture.names, _positions(capture)))
@@ -131,7 +160,7 @@ def relief_of_array(
             new = np.setdiff1d(np.arange(len(pictures)), known)
             bases = None if capture.light_field is None else resized_cameras(capture)
             positions = _positions(capture)[:, ::-1] if start.exchanged else _positions(capture)
-            planar = register_views(planar, known, pictures[new], new, positions, bases)
+            planar = register_views(planar, known, pictures[new], new, positions, bases, exact=not refine)
         light_field = _light_field(capture, planar)
         save_calibration(light_field, folder / "calibration")
         write_cameras(folder / STAGE_CAMERAS_FILE, capture, light_field, np.zeros((0, 3)))
@@ -139,22 +168,46 @@ def relief_of_array(
 
     folder = run.stage("array", inputs, build)
     light_field, _ = read_cameras(folder / STAGE_CAMERAS_FILE, capture)
+    shown = np.intersect1d(known, [capture.names.index(name) for name in light_field.names])
+    return AlignedArray(light_field, shown, folder, inputs)
 
-    def mesh(place: Path) -> None:
+
+def relief_of_array(run: StageRunner, capture: Capture, array: AlignedArray) -> Mesh:
+    """The layered relief of an array, with an atlas.
+
+    Args:
+        run: The stages.
+        capture: The photographs.
+        array: Their cameras and depth.
+    """
+
+    def build(folder: Path) -> None:
         pictures = read_pictures(capture)
         masks = read_masks(capture)
-        depth = read_planar(folder / STAGE_DEPTH_FILE)
-        keep = np.intersect1d(known, [capture.names.index(name) for name in light_field.names])
+        depth, keep = array.depth(), array.shown
         shown = None if masks is None else masks[keep]
         background = run.settings.background
         closed: list[Camera] = []
         if masks is None if background is None else background:
-            closed = resized_cameras(light_field.subset([light_field.names.index(capture.names[i]) for i in keep]))
+            closed = resized_cameras(array.taking_part(capture))
         layers = _layered_relief(run, depth, pictures[keep], shown, depth.matrices[keep], closed)
-        write_ply(layers, place / STAGE_MESH_FILE)
+        write_ply(layers, folder / STAGE_MESH_FILE)
 
-    relief = run.stage("relief", [inputs, run.settings.triangles, run.settings.background], mesh)
-    return light_field, read_mesh(relief / STAGE_MESH_FILE), folder / "calibration"
+    relief = run.stage("relief", [array.inputs, run.settings.triangles, run.settings.background], build)
+    return read_mesh(relief / STAGE_MESH_FILE)
+
+
+def array_depths(array: AlignedArray) -> tuple[float, float]:
+    """The range of inverse depths of an array, seen from its reference view, 1 / world unit.
+
+    Args:
+        array: Its cameras and depth.
+    """
+    depth = array.depth()
+    low, high = np.percentile(depth.d[depth.count > 0], ARRAY_TUNING.depth_percentiles)
+    room = ARRAY_TUNING.range_margin_fraction * (high - low)
+    far, near = (depth.reference.offset + depth.reference.scale * label for label in (low - room, high + room))
+    return max(far, ARRAY_TUNING.min_inverse_ratio * near), near
 
 
 def _layered_relief(
@@ -218,7 +271,7 @@ def _start_array(capture: Capture, pictures: NDArray[np.uint8], points: NDArray[
         except CaptureError as error:  # it does not know the path
             raise CaptureError(error.code, error.message, path=capture.root, remedy=error.remedy) from None
     cameras = resized_cameras(capture)
-    low, high = _inverse_depths(capture, cameras, pictures, points)
+    low, high = inverse_depths(capture, cameras, pictures, points)
     return start_given(cameras, low, high)
 
 
@@ -251,10 +304,17 @@ def _light_field(capture: Capture, planar: PlanarArray) -> LightField:
     return capture.subset(keep).with_cameras(full_size, problems=problems)
 
 
-def _inverse_depths(
+def inverse_depths(
     capture: LightField, cameras: Sequence[Camera], pictures: NDArray[np.uint8], points: NDArray[np.float64] | None
 ) -> tuple[float, float]:
-    """The range of inverse depths seen from the central camera, 1 / world unit."""
+    """The range of inverse depths seen from the central camera, 1 / world unit.
+
+    Args:
+        capture: The photographs.
+        cameras: Their cameras, at the size of the pictures.
+        pictures: (n, H, W, 3) the photographs.
+        points: (n, 3) points of structure from motion, if any.
+    """
     plane = fit_view_plane(cameras)
     middle = cameras[int(np.argmin(np.linalg.norm(plane.coordinates([c.centre for c in cameras]), axis=1)))]
     if points is not None and len(points) >= ARRAY_TUNING.min_points:
@@ -276,4 +336,6 @@ def _inverse_depths(
             path=capture.root,
             remedy="look at the calibration (eigenfield inspect), or let it be estimated: eigenfield calibrate",
         )
-    return max(label_range[0], 0.02 * label_range[1]) * reference.scale, label_range[1] * reference.scale
+    return max(label_range[0], ARRAY_TUNING.min_inverse_ratio * label_range[1]) * reference.scale, label_range[
+        1
+    ] * reference.scale

@@ -8,6 +8,7 @@ from typing import Any
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt
 
 from eigenfield.capture import Capture, LightField
 from eigenfield.core.camera import Camera
@@ -50,6 +51,26 @@ def read_pictures(capture: Capture) -> NDArray[np.uint8]:
 
     def fill(index: int) -> None:
         result[index] = _fit_to_frame(np.rint(capture.photograph(index).pixels * 255).astype(np.uint8), whole, small)
+
+    parallel_map(fill, range(len(capture)))
+    return result
+
+
+def filled_pictures(capture: Capture) -> NDArray[np.uint8]:
+    """As `read_pictures`, with the nearest pixel in the border that the removal of a lens leaves empty.
+
+    Args:
+        capture: The photographs.
+    """
+    whole, small = common_frame(capture)
+    result = read_pictures(capture)
+
+    def fill(index: int) -> None:
+        mask = capture.photograph(index).mask if capture.sources[index].lens is not None else None
+        if mask is not None:
+            empty = _fit_to_frame(np.rint(mask * 255).astype(np.uint8), whole, small) < 255
+            row, column = distance_transform_edt(empty, return_distances=False, return_indices=True)
+            result[index] = result[index][row, column]
 
     parallel_map(fill, range(len(capture)))
     return result

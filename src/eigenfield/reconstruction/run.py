@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from eigenfield.coding.limits import MAX_SHEETS
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress
 from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES, parse_primitive, parse_region
@@ -17,7 +18,8 @@ from eigenfield.runtime.stages import Stages, stage_key
 
 log = logging.getLogger("eigenfield.reconstruction")
 
-SURFACE_KINDS = ("auto", "relief", "poisson")
+
+SURFACE_KINDS = ("auto", "relief", "layers", "poisson")
 
 
 @dataclass(frozen=True)
@@ -26,6 +28,7 @@ class ReconstructionSettings:
 
     Attributes:
         surface: Kind of surface, one of SURFACE_KINDS.
+        layers: Number of soft sheets; 1: none; None: as many as usual.
         refine: Whether the cameras of an array are corrected.
         triangles: Most triangles of the proxy.
         background: Whether the frustum is closed behind the surface.
@@ -34,10 +37,11 @@ class ReconstructionSettings:
         blind: Rule of the views that take no part.
 
     Raises:
-        OptionError: `surface`, `triangles`, `primitive` or `fit-sphere`.
+        OptionError: `surface`, `layers`, `triangles`, `primitive` or `fit-sphere`.
     """
 
     surface: str = "auto"
+    layers: int | None = None
     refine: bool | None = None
     triangles: int = PROXY_DEFAULT_TRIANGLES
     background: bool | None = None
@@ -50,6 +54,7 @@ class ReconstructionSettings:
             raise OptionError(
                 "surface", f"no surface is called {self.surface}", remedy=f"use {', '.join(SURFACE_KINDS)}"
             )
+        self._check_layers()
         if self.triangles < UNWRAP_MIN_TRIANGLES:
             raise OptionError(
                 "triangles",
@@ -60,6 +65,29 @@ class ReconstructionSettings:
             parse_primitive(text)
         for text in self.fit_spheres:
             parse_region(text)
+
+    @property
+    def by_hand(self) -> str | None:
+        """The option by which the surface is made by hand, which soft sheets do not allow; None: there is none."""
+        if self.background is not None:
+            return "fill-background" if self.background else "no-fill-background"
+        return "primitive" if self.primitives else "fit-sphere" if self.fit_spheres else None
+
+    def _check_layers(self) -> None:
+        if self.layers is not None and not 1 <= self.layers <= MAX_SHEETS:
+            raise OptionError(
+                "layers", f"{self.layers} layers were asked for", remedy=f"ask for 2 to {MAX_SHEETS}, or 1 for none"
+            )
+        if self.layers is not None and self.layers > 1 and self.surface not in ("auto", "layers"):
+            raise OptionError(
+                "layers", f"a {self.surface} surface has no {self.layers} layers", remedy="use --surface layers"
+            )
+        if self.surface == "layers" and self.layers == 1:
+            raise OptionError("layers", "one layer is an opaque surface", remedy="leave out --surface layers")
+        if self.surface == "layers" and self.by_hand is not None:
+            raise OptionError(
+                "surface", f"layers do not go together with --{self.by_hand}", remedy="leave out one of the two"
+            )
 
 
 @dataclass(frozen=True)

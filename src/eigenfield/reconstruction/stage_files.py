@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,10 +13,14 @@ from numpy.typing import NDArray
 from eigenfield.calibrate import PlanarArray
 from eigenfield.capture import Capture, Lens, LightField
 from eigenfield.core.camera import Camera
+from eigenfield.core.lattice import Lattice
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.proxy import Proxy, Sheets
 from eigenfield.stereo import ReferenceView
 
 STAGE_MESH_FILE, STAGE_ERROR_FILE = "mesh.ply", "error.json"
 STAGE_CAMERAS_FILE, STAGE_DEPTH_FILE = "cameras.npz", "depth.npz"
+STAGE_PROXY_FILE, STAGE_TRIAL_FILE = "proxy.npz", "trial.json"
 
 
 def write_cameras(path: Path, capture: Capture, light_field: LightField, points: NDArray[np.float64]) -> None:
@@ -104,3 +109,39 @@ def read_planar(path: Path) -> ArrayDepth:
         margin, offset, scale = data["reference"].tolist()
         camera = Camera(data["K"], data["R"], data["t"], d.shape[1], d.shape[0])
         return ArrayDepth(ReferenceView(camera, int(margin), offset, scale), d, data["count"], data["matrices"])
+
+
+def write_proxy(path: Path, proxy: Proxy) -> None:
+    """Write a proxy with sheets.
+
+    Args:
+        path: The .npz file.
+        proxy: With an atlas; with or without a lattice.
+    """
+    mesh, lattice, sheets = proxy.mesh, proxy.lattice, proxy.sheets
+    assert mesh.uv is not None and sheets is not None
+    arrays: dict[str, NDArray[Any]] = {
+        "vertices": mesh.vertices,
+        "faces": mesh.faces,
+        "uv": mesh.uv,
+        "opacity": sheets.opacity,
+    }
+    arrays["sheets"] = np.array(sheets.faces)
+    if lattice is not None:
+        arrays |= {"matrix": lattice.matrix, "flat": np.array(lattice.flat), "fine": np.array(lattice.fine)}
+    with path.open("wb") as file:
+        np.savez_compressed(file, allow_pickle=False, **arrays)
+
+
+def read_proxy(path: Path) -> Proxy:
+    """The proxy that `write_proxy` wrote.
+
+    Args:
+        path: The .npz file.
+    """
+    with np.load(path) as data:
+        lattice = None
+        if "matrix" in data:
+            lattice = Lattice(data["matrix"], bool(data["flat"]), int(data["fine"]))
+        sheets = Sheets(tuple(data["sheets"].tolist()), data["opacity"])
+        return Proxy(Mesh(data["vertices"], data["faces"], data["uv"]), lattice, sheets)

@@ -20,6 +20,7 @@ from eigenfield.capture.writers.save import save_calibration
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress
+from eigenfield.core.proxy import Proxy
 from eigenfield.proxy import (
     PROXY_DEFAULT_TRIANGLES,
     Primitive,
@@ -34,7 +35,8 @@ from eigenfield.proxy import (
     write_ply,
 )
 from eigenfield.proxy.surface.trim import SurfaceError
-from eigenfield.reconstruction.array import looks_one_way, relief_of_array
+from eigenfield.reconstruction.array import align_array, looks_one_way, relief_of_array
+from eigenfield.reconstruction.layered import SheetSource, sheets_are_better, sheets_of_capture
 from eigenfield.reconstruction.report import ProxyReport, measure_proxy
 from eigenfield.reconstruction.run import ReconstructionSettings, StageRunner
 from eigenfield.reconstruction.stage_files import (
@@ -56,14 +58,14 @@ class Reconstruction:
 
     Attributes:
         light_field: The photographs with their cameras; `problems` lists those that were left out.
-        mesh: With an atlas, in the cameras' world.
+        proxy: With an atlas, in the cameras' world.
         calibration: The folder with a transforms.json and a COLMAP model, if cameras were estimated or refined.
         seconds: Time of each stage, in order; 0 for stages of an earlier run.
-        report: Quality measures of the mesh.
+        report: Quality measures of the proxy's mesh.
     """
 
     light_field: LightField
-    mesh: Mesh
+    proxy: Proxy
     calibration: Path | None
     seconds: dict[str, float]
     report: ProxyReport
@@ -73,6 +75,7 @@ def reconstruct(
     capture: Capture,
     *,
     surface: str = "auto",
+    layers: int | None = None,
     refine: bool | None = None,
     triangles: int = PROXY_DEFAULT_TRIANGLES,
     background: bool | None = None,
@@ -82,12 +85,14 @@ def reconstruct(
     work: Path | None = None,
     progress: Progress | None = None,
 ) -> Reconstruction:
-    """Estimate what a capture lacks: cameras if it has none, and a proxy mesh.
+    """Estimate what a capture lacks: cameras if it has none, and a proxy.
 
     Args:
         capture: Photographs, with or without cameras.
         surface: "relief" for arrays with one viewing direction (two layers seen from the centre), "poisson" for
-            everything else, "auto" to choose.
+            everything else, "layers" for soft sheets, if all cameras look about one way. "auto" takes the relief where
+            it fits, else the Poisson surface; or layers where few views are given and layers draw left-out ones better.
+        layers: Number of soft sheets, 2 to MAX_SHEETS; 1: none. None: as many as usual.
         refine: Correct the cameras of an array together with its depth. None: if no calibration is given or there are
             25 views or more, unless they are exact.
         triangles: Most triangles of the proxy, approximately.
@@ -106,29 +111,45 @@ def reconstruct(
         OutputError: `work` cannot be written.
     """
     settings = ReconstructionSettings(
-        surface, refine, triangles, background, tuple(primitives), tuple(fit_spheres), blind
+        surface, layers, refine, triangles, background, tuple(primitives), tuple(fit_spheres), blind
     )
     for text in fit_spheres:  # before the long stages
         find_view(parse_region(text), capture.names)
     with Stages(work) as stages:
         run = StageRunner(stages, settings, _identity(capture), progress, {})
-        points = calibration = error = None
+        points = calibration = array = None
         if capture.light_field is None and capture.layout is None:  # nothing is known about the cameras
             capture, points, calibration = _estimate_cameras(run, capture)
-        if _is_relief(capture, settings) or capture.light_field is None:
-            light_field, mesh, folder = relief_of_array(run, capture, points)
-            calibration = folder or calibration
+        if _is_array(capture, settings):
+            array = align_array(run, capture, points)
+            light_field, calibration = array.light_field, array.folder / "calibration"
         else:
-            light_field = capture
+            assert capture.light_field is not None
+            light_field = capture.light_field
             if settings.blind is not None:
                 raise OptionError(
                     "blind", "only arrays that look one way can be reconstructed blind",
                     remedy="leave out --blind: held-out views then help to find cameras and proxy",
                 )  # fmt: skip
-            mesh, error = _poisson(run, light_field, points)
-        mesh = _add_atlas(run, light_field, mesh)
-        report = measure_proxy(mesh, light_field.cameras, error)
-        return Reconstruction(light_field, mesh, calibration if work is not None else None, run.seconds, report)
+        source = SheetSource(capture, light_field, array, points)
+        if settings.surface == "layers":
+            proxy, error = sheets_of_capture(run, source), None
+        else:
+            mesh, error = _opaque_surface(run, source)
+            proxy = Proxy(mesh)
+            if settings.surface == "auto" and sheets_are_better(run, source, mesh):
+                proxy, error = sheets_of_capture(run, source), None
+        report = measure_proxy(proxy.mesh, light_field.cameras, error)
+        return Reconstruction(light_field, proxy, calibration if work is not None else None, run.seconds, report)
+
+
+def _opaque_surface(run: StageRunner, source: SheetSource) -> tuple[Mesh, SurfaceError | None]:
+    """A relief, or a surface from all sides, with an atlas."""
+    if source.array is not None:
+        mesh, error = relief_of_array(run, source.capture, source.array), None
+    else:
+        mesh, error = _poisson(run, source.light_field, source.points)
+    return _add_atlas(run, source.light_field, mesh), error
 
 
 def _identity(capture: Capture) -> list[Any]:
@@ -163,8 +184,11 @@ def _estimate_cameras(run: StageRunner, photos: PhotoSet) -> tuple[LightField, N
     return light_field, points, folder / "calibration"
 
 
-def _is_relief(capture: Capture, settings: ReconstructionSettings) -> bool:
-    """Whether the surface is a relief; always for a grid with unknown cameras. Raises OptionError `surface`."""
+def _is_array(capture: Capture, settings: ReconstructionSettings) -> bool:
+    """Whether cameras and depth are found as an array's; always for a grid with unknown cameras.
+
+    Raises OptionError `surface`.
+    """
     if capture.light_field is None:
         if settings.surface == "poisson":
             raise OptionError(
@@ -172,9 +196,9 @@ def _is_relief(capture: Capture, settings: ReconstructionSettings) -> bool:
                 remedy="leave out --surface, or calibrate first",
             )  # fmt: skip
         return True
-    if settings.surface != "auto":
-        return settings.surface == "relief"
-    return looks_one_way(capture.cameras)
+    if settings.surface in ("auto", "layers"):
+        return looks_one_way(capture.cameras)
+    return settings.surface == "relief"
 
 
 def _poisson(

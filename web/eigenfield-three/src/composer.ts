@@ -14,18 +14,30 @@ import {
 import type { ViewPlane } from "./info.js";
 import { gridsOf, smaller } from "./memory.js";
 import type { Part } from "./parts.js";
-import { FINER, LAYERS, SUM, makePlacing, makeQuad, makeTarget } from "./passes.js";
+import { FINER, FINER_OPACITY, LAYERS, SUM, makePlacing, makeQuad, makeTarget } from "./passes.js";
 
 /** What is summed: everything that makes a difference to it. */
 export interface Recipe {
   version: number; // of what is there
   mean: boolean;
+  opacity: boolean; // of sheets: it is there
   only: number | null; // one eigen texture of each basis, as it is; else the first `count`, weighted
   count: number;
   weights: Float64Array; // of all textures of all bases
   eye: [number, number, number] | null; // X, Y, height: each texel looks its weights up in `maps`
   maps: DataArrayTexture | null;
 }
+
+const STILL: Recipe = {
+  version: 0,
+  mean: true,
+  opacity: true,
+  only: null,
+  count: 0,
+  weights: new Float64Array(0),
+  eye: null,
+  maps: null,
+};
 
 type Quad = Mesh<BufferGeometry, RawShaderMaterial>;
 
@@ -48,13 +60,15 @@ interface Grid {
 export class Composer {
   private readonly grids: Grid[]; // that of the whole atlas last
   private composed: Recipe | null = null;
+  private opacityDrawn = false;
   private readonly camera = new Camera();
 
-  /** `down`: what is composed has the atlas's side over this. */
+  /** `opacity`: of sheets; `down`: what is composed has the atlas's side over this. */
   constructor(
     atlas: [number, number],
     parts: Part[],
-    down: number,
+    private readonly opacity: Part | null,
+    private readonly down: number,
     private readonly mesh: Mesh,
     private readonly plane: ViewPlane,
   ) {
@@ -76,7 +90,7 @@ export class Composer {
     this.grids.push(whole);
   }
 
-  /** R, G, B of half-floats with mips, v = 0 in row 0. */
+  /** R, G, B and the opacity of sheets, as half-floats with mips, v = 0 in row 0. */
   get texture(): Texture | null {
     return this.grids.at(-1)?.target.texture ?? null;
   }
@@ -86,10 +100,11 @@ export class Composer {
     if (this.composed && isSame(this.composed, recipe)) return;
     this.composed = recipe;
     within(renderer, camera, () => {
+      if (recipe.opacity && !this.opacityDrawn) this.drawOpacity(renderer);
       for (const grid of this.grids) {
         if (recipe.eye && !grid.places && grid.steps.some(({ part }) => part.basis)) this.findPlaces(renderer, grid);
-        for (const step of grid.steps) setStep(step, grid, recipe);
-        this.draw(renderer, grid.scene, grid.target);
+        for (const step of grid.steps) setStep(step, grid.places?.texture ?? null, recipe);
+        this.draw(renderer, grid.scene, grid.target, this.opacityDrawn && grid === this.grids.at(-1));
       }
     });
   }
@@ -98,11 +113,25 @@ export class Composer {
     for (const { target, places, scene } of this.grids) {
       target.dispose();
       places?.dispose();
-      for (const quad of scene.children as Quad[]) {
-        quad.geometry.dispose();
-        quad.material.dispose();
-      }
+      freeQuads(scene);
     }
+  }
+
+  /** Opacity does not change from view to view: it is drawn once, and stays in the alpha of what is composed. */
+  private drawOpacity(renderer: WebGLRenderer): void {
+    const whole = this.grids.at(-1);
+    if (!this.opacity || !whole) return;
+    const own = makeTarget(smaller(this.opacity.grid, this.down), false);
+    const steps = stepsOf(this.opacity);
+    for (const step of steps) setStep(step, null, STILL);
+    const [sum, finer] = [new Scene(), new Scene()];
+    sum.add(...steps.map(({ quad }) => quad));
+    finer.add(makeQuad(FINER_OPACITY, [0, 0, 1, 1], { coarse: { value: own.texture } }));
+    this.draw(renderer, sum, own);
+    this.draw(renderer, finer, whole.target);
+    for (const scene of [sum, finer]) freeQuads(scene);
+    own.dispose();
+    this.opacityDrawn = true;
   }
 
   private findPlaces(renderer: WebGLRenderer, grid: Grid): void {
@@ -112,11 +141,22 @@ export class Composer {
     free();
   }
 
-  private draw(renderer: WebGLRenderer, scene: Scene, target: WebGLRenderTarget): void {
+  /** `keep`: what the target has in its alpha stays there. */
+  private draw(renderer: WebGLRenderer, scene: Scene, target: WebGLRenderTarget, keep = false): void {
     renderer.setRenderTarget(target);
     renderer.state.buffers.color.setMask(true); // whatever the material before had
+    const gl = renderer.getContext();
+    if (keep) gl.colorMask(true, true, true, false);
     renderer.clear(true, false, false);
+    if (keep) gl.colorMask(true, true, true, true);
     renderer.render(scene, this.camera);
+  }
+}
+
+function freeQuads(scene: Scene): void {
+  for (const { geometry, material } of scene.children as Quad[]) {
+    geometry.dispose();
+    material.dispose();
   }
 }
 
@@ -148,7 +188,7 @@ function stepsOf(part: Part): Step[] {
 }
 
 /** Gives a step the numbers of what is to be summed; those of other textures are zero. */
-function setStep({ part, first, groups, quad }: Step, { places }: Grid, recipe: Recipe): void {
+function setStep({ part, first, groups, quad }: Step, places: Texture | null, recipe: Recipe): void {
   const { basis, colours } = part;
   const { uniforms } = quad.material;
   const set = (name: string, value: unknown): void => {
@@ -168,7 +208,7 @@ function setStep({ part, first, groups, quad }: Step, { places }: Grid, recipe: 
   set("entries", channels * used);
   set("rayWeights", rays);
   set("weightMaps", rays ? recipe.maps : null);
-  set("places", rays ? (places?.texture ?? null) : null);
+  set("places", rays ? places : null);
   if (recipe.eye) (uniforms["eye"]?.value as Vector3).set(...recipe.eye);
   quad.visible = used > 0;
   quad.material.uniformsNeedUpdate = true;
@@ -196,7 +236,7 @@ const black = new Color(0);
 const clearColour = new Color();
 
 /** Calls `work`, which draws into targets, within a draw of `camera`, and puts back what three.js has set. */
-function within(renderer: WebGLRenderer, camera: Camera, work: () => void): void {
+export function within(renderer: WebGLRenderer, camera: Camera, work: () => void): void {
   const target = renderer.getRenderTarget();
   const [face, level] = [renderer.getActiveCubeFace(), renderer.getActiveMipmapLevel()];
   const { autoClear, info } = renderer;

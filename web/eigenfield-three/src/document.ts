@@ -19,8 +19,9 @@ import { CODECS } from "./codecs.js";
 import { SceneError, damaged } from "./errors.js";
 import { Value, type Json, type JsonObject } from "./json.js";
 import * as limits from "./limits.js";
-import { readColours, readPlanes, type Plane } from "./planes.js";
+import { readColours, readPlanes, type Plane, type Still } from "./planes.js";
 import type { CamerasJson, Feature, PatternJson, SceneJson, ViewPlaneJson } from "./schema.js";
+import { readSheets, type Sheets } from "./sheets.js";
 
 export interface SceneDocument {
   version: string;
@@ -42,13 +43,23 @@ export interface SceneDocument {
   scores: JsonObject;
   views: View[];
   mesh: Stream<"mesh"> | null; // the proxy, of which what follows is then a coarse form for other viewers
+  sheets: Sheets | null; // null: one opaque surface
   position: Accessor;
   uv: Accessor;
   indices: Accessor;
   preview: number | null; // buffer view of `images[0]`
 }
 
-const LAYOUT_FEATURES: Feature[] = ["namePattern", "packed", "precision", "regions", "sharedPicture", "stacks", "toRGB"];
+const LAYOUT_FEATURES: Feature[] = [
+  "namePattern",
+  "packed",
+  "precision",
+  "regions",
+  "sharedPicture",
+  "sheets",
+  "stacks",
+  "toRGB",
+];
 const CODEC_FEATURES = Object.values(CODECS).flatMap(({ needs }) => needs ?? []);
 export const KNOWN_NEEDS: ReadonlySet<string> = new Set([...LAYOUT_FEATURES, ...CODEC_FEATURES]);
 
@@ -115,11 +126,17 @@ export function readDocument(json: Json): SceneDocument {
     scores: freeForm(extension.key("scores")),
     views,
     mesh: mesh.exists ? streamOf("mesh", mesh, viewOf) : null,
+    sheets: readSheets(extension.key("sheets"), viewOf),
     position: limited(accessor(attributes.key("POSITION"), "VEC3", [FLOAT], null), limits.MAX_VERTICES),
     uv: limited(accessor(attributes.key("TEXCOORD_0"), "VEC2", [FLOAT], null), limits.MAX_VERTICES),
     indices: trianglesOf(accessor(indices, "SCALAR", [UINT8, UINT16, UINT32], null), limits.MAX_TRIANGLES),
     preview,
   };
+}
+
+/** Means of all planes, and after them the opacity of sheets. */
+export function stillsOf({ planes, sheets }: SceneDocument): Still[] {
+  return sheets ? [...planes, sheets.opacity] : planes;
 }
 
 /** Raises SceneError: `version`, `needs`. */

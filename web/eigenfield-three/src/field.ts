@@ -16,8 +16,9 @@ import { basesOf, planeCoordinates, ranksOf, type SceneInfo, type Vector } from 
 import { makeMaps } from "./maps.js";
 import { FILTERS, VIEWS, makeMaterial, type Filter, type SurfaceMaterial } from "./material.js";
 import type { EigenfieldOptions } from "./options.js";
-import { partsOf } from "./parts.js";
+import { opacityPart, partsOf } from "./parts.js";
 import { onPlane } from "./passes.js";
+import { SheetStack } from "./sheet-stack.js";
 import { eigenGain } from "./strength.js";
 import { Textures, type TextureParts } from "./textures.js";
 import type { Blend, Mixing, ViewWeights } from "./weights.js";
@@ -69,6 +70,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
   readonly complete: Promise<void>;
 
   private readonly material: SurfaceMaterial;
+  private readonly stack: SheetStack | null; // null: one opaque surface
   private readonly textures: Textures;
   private readonly counts: number[]; // eigen textures of each basis
   private readonly composers = new Map<number, Composer>(); // by `coarser`, each when it is first asked for
@@ -97,7 +99,8 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     this.rowOf = Int32Array.from(scene.heldOut, (out) => (out ? -1 : row++));
     this.textures = new Textures(parts, geometryBytes(mesh), options);
     const doubleSided = [mesh.material].flat().some((material) => material.side !== FrontSide);
-    this.material = makeMaterial(doubleSided);
+    this.material = makeMaterial(doubleSided, scene.sheets !== null);
+    this.stack = scene.sheets && new SheetStack(scene.sheets.faces, mesh.geometry, this.material);
     this.complete = new Promise((resolve, reject) => {
       this.addEventListener("complete", () => resolve());
       this.addEventListener("error", ({ error }) => reject(error));
@@ -107,8 +110,12 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     this.detail = reference ? medianFootprint(mesh.geometry, reference, [1, 1]) : 0;
     this.listen();
     for (const each of meshes) {
-      each.material = this.material;
-      each.onBeforeRender = (renderer, _scene, camera) => this.prepare(renderer, camera, each);
+      const prepare = (renderer: WebGLRenderer, camera: Camera): void => this.prepare(renderer, camera, each);
+      if (this.stack) this.stack.attach(each, prepare);
+      else {
+        each.material = this.material;
+        each.onBeforeRender = (renderer, _scene, camera) => prepare(renderer, camera);
+      }
     }
     if (options.renderer) this.textures.attach(options.renderer);
   }
@@ -133,9 +140,9 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     return this.textures.plan?.limitation ?? null;
   }
 
-  /** Bytes on the GPU: textures, what is composed of them, maps of weights, geometry. */
+  /** Bytes on the GPU: textures, what is composed of them, maps of weights, geometry, what sheets are drawn into. */
   get gpuBytes(): number {
-    return this.textures.plan?.bytes ?? 0;
+    return (this.textures.plan?.bytes ?? 0) + (this.stack?.bytes ?? 0);
   }
 
   /** Weights over the encoded cameras at view-plane coordinates; they sum to 1. */
@@ -170,6 +177,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
   dispose(): void {
     this.textures.dispose();
     this.freeComposers();
+    this.stack?.dispose();
     this.maps?.texture.dispose();
     this.material.dispose();
     this.mesh.geometry.dispose();
@@ -238,7 +246,9 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     const down = plan.meanDown * this.coarser;
     let composer = this.composers.get(down);
     if (!composer) {
-      composer = new Composer(size, partsOf(this.parts.scene, this.textures, plan), down, this.mesh, viewPlane);
+      const { scene } = this.parts;
+      const opacity = opacityPart(scene, this.textures);
+      composer = new Composer(size, partsOf(scene, this.textures, plan), opacity, down, this.mesh, viewPlane);
       this.composers.set(down, composer);
     }
     composer.compose(renderer, camera, recipe);
@@ -258,6 +268,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     return {
       version: this.textures.version,
       mean: this.textures.hasMeans && one === null,
+      opacity: this.textures.hasMeans && this.stack !== null,
       only: one,
       count: shown === VIEWS.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
       weights,

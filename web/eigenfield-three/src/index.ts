@@ -14,4 +14,5 @@ export type { Filter } from "./material.js";
 export { defaultMemory } from "./memory.js";
 export type { ByteStream, EigenfieldOptions } from "./options.js";
 export { EigenfieldPlugin } from "./plugin.js";
+export { SHEETS } from "./sheet-stack.js";
 export type { Mixing } from "./weights.js";

@@ -47,11 +47,20 @@ export interface SceneInfo {
   settings: JsonObject;
   scores: JsonObject;
   metresPerUnit: number | null;
-  bytes: { total: number; mesh: number; mean: number; weights: number; other: number; textures: number[] }; // by rank
+  bytes: {
+    total: number;
+    mesh: number;
+    opacity: number;
+    mean: number;
+    weights: number;
+    other: number;
+    textures: number[]; // by rank
+  };
   size: [number, number]; // of the atlas that is drawn
   planes: PlaneInfo[];
   vertices: number;
   triangles: number;
+  sheets: number; // that are drawn one over the other; 0: the mesh is one opaque surface
   facesPlane: boolean; // the cameras look across the view plane; else weights by the ray make no sense
 }
 
@@ -190,9 +199,9 @@ export function ranksOf(scene: SceneDocument): number {
   return Math.max(0, ...basesOf(scene).map(({ count }) => count));
 }
 
-/** Columns and rows of the texture that is drawn: the most of any mean and any grid. */
+/** Columns and rows of the texture that is drawn: the most of any mean and any grid; opacity is made as fine. */
 export function atlasOf(scene: SceneDocument, means: [number, number][]): [number, number] {
-  const sizes = [...means, ...basesOf(scene).map(({ grid }) => grid)];
+  const sizes = [...means.slice(0, scene.planes.length), ...basesOf(scene).map(({ grid }) => grid)];
   return [Math.max(...sizes.map(([width]) => width)), Math.max(...sizes.map(([, height]) => height))];
 }
 
@@ -252,6 +261,7 @@ export function sceneInfo(
       bases: bases.map(({ count, size, grid }) => ({ textures: count, size, grid })),
     })),
     ...mesh,
+    sheets: scene.sheets?.faces.length ?? 0,
     facesPlane: Math.abs(dot(forward, normal)) > 0.7,
   };
 }
@@ -280,8 +290,9 @@ function countBytes(scene: SceneDocument, total: number): SceneInfo["bytes"] {
   const weights = sum(basesOf(scene).flatMap((basis) => (basis.weights ? [basis.weights.view] : [])));
   const { position, uv, indices } = scene;
   const mesh = sum([position, uv, indices, ...(scene.mesh ? [scene.mesh] : [])].map(({ view }) => view));
-  const other = total - mean - weights - mesh - textures.reduce((a, b) => a + b, 0);
-  return { total, mesh, mean, weights, other, textures };
+  const opacity = scene.sheets ? lengthOf(scene.sheets.opacity.mean.view) : 0;
+  const other = total - mean - weights - mesh - opacity - textures.reduce((a, b) => a + b, 0);
+  return { total, mesh, opacity, mean, weights, other, textures };
 }
 
 /** X, Y of a world point, dropped onto the view plane. */

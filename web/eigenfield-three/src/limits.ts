@@ -22,6 +22,7 @@ export const MAX_NAME = 1_024;
 export const MAX_NAMES = 2 ** 25; // bytes of coded names, inflated
 export const MAX_VERTICES = 2 ** 26;
 export const MAX_TRIANGLES = 2 ** 27;
+export const MAX_SHEETS = 32;
 export const MAX_WEIGHTS = 2 ** 28;
 export const MAX_GAIN = 1_000;
 export const MAX_OFFSET = 1_000;

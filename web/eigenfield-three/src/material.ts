@@ -1,6 +1,16 @@
 // The material: surface.glsl between a vertex shader of four lines and the viewer's views.
 
-import { DoubleSide, FrontSide, GLSL3, Matrix4, RawShaderMaterial, Vector3 } from "three";
+import {
+  CustomBlending,
+  DoubleSide,
+  FrontSide,
+  GLSL3,
+  Matrix4,
+  OneFactor,
+  OneMinusSrcAlphaFactor,
+  RawShaderMaterial,
+  Vector3,
+} from "three";
 import type { IUniform, Texture } from "three";
 import cubic from "../../../src/eigenfield/rendering/shaders/cubic.glsl?raw";
 import surface from "../../../src/eigenfield/rendering/shaders/surface.glsl?raw";
@@ -26,38 +36,67 @@ void main() {
 }
 `;
 
-const FRAGMENT = `
+/** As VERTEX, to the same bits in every program: sheets are drawn twice. */
+const SHEET_VERTEX = VERTEX.replace("void main", "invariant gl_Position;\nvoid main");
+
+export const PRECISIONS = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
-${cubic}${surface}
 uniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error
-uniform float shownGain;       // of the eigen texture around mid grey
+`;
+
+export const ERROR = `
 uniform sampler2D photograph;  // row 0 on top
 uniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w
-
-in vec2 surfaceUv;
-in vec3 surfacePlace;
-out vec4 fragment;
 
 vec3 heat(float t) {
   return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);
 }
 
-vec3 errorColour(vec3 drawn) {
-  vec4 at = toPhotograph * vec4(surfacePlace, 1.0);
+vec3 errorColour(vec3 drawn, vec3 place) {
+  vec4 at = toPhotograph * vec4(place, 1.0);
   vec2 uv = at.xy / at.w;
   if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);
   vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);
   return heat(5.0 * (off.r + off.g + off.b) / 3.0);
 }
+`;
 
+const SURFACE = `${PRECISIONS}
+${cubic}${surface}
+uniform float shownGain;       // of the eigen texture around mid grey
+in vec2 surfaceUv;
+vec3 eigenColour(vec3 value) { return clamp(0.5 + shownGain * value, 0.0, 1.0); }
+`;
+
+const FRAGMENT = `${SURFACE}${ERROR}
+in vec3 surfacePlace;
+out vec4 fragment;
 void main() {
   vec3 colour;
-  if (shown == 2) colour = clamp(0.5 + shownGain * surfaceValue(surfaceUv).rgb, 0.0, 1.0);
+  if (shown == 2) colour = eigenColour(surfaceValue(surfaceUv).rgb);
   else colour = surfaceColour(surfaceUv);
-  if (shown == 3) colour = errorColour(colour);
+  if (shown == 3) colour = errorColour(colour, surfacePlace);
   fragment = vec4(colour, 1.0);
+}
+`;
+
+// `solid` has the depth of the nearest sheet that is at least half opaque, in three bytes: what is not takes part in it
+// with alpha 0, and so leaves it as it is.
+const SHEET_FRAGMENT = `${SURFACE}
+layout(location = 0) out vec4 fragment;
+layout(location = 1) out vec4 solid;
+vec3 threeBytes(float depth) {
+  uint code = uint(clamp(depth, 0.0, 1.0) * 16777215.0);
+  return vec3(uvec3(code >> 16, code >> 8, code) & 255u) / 255.0;
+}
+void main() {
+  vec4 colour = sheetColour(surfaceUv);
+  if (shown == 2) colour.rgb = eigenColour(surfaceValue(surfaceUv).rgb) * colour.a;
+  fragment = colour;
+  float depth = (gl_FragCoord.z - gl_DepthRange.near) / gl_DepthRange.diff;
+  solid = colour.a < 0.5 ? vec4(0.0) : vec4(threeBytes(depth), 1.0);
 }
 `;
 
@@ -78,8 +117,18 @@ export interface SurfaceMaterial extends RawShaderMaterial {
   defines: { BICUBIC: 0 | 1 };
 }
 
-/** The material, before anything is composed. */
-export function makeMaterial(doubleSided: boolean): SurfaceMaterial {
+const DEPTH_FRAGMENT = `
+precision highp float;
+layout(location = 0) out vec4 fragment;
+layout(location = 1) out vec4 solid;
+void main() { fragment = solid = vec4(0.0); }
+`;
+
+/** Colours times coverage, over what is there. */
+export const OVER = { blending: CustomBlending, blendSrc: OneFactor, blendDst: OneMinusSrcAlphaFactor } as const;
+
+/** The material of a surface, or of the sheets of one, before anything is composed. */
+export function makeMaterial(doubleSided: boolean, sheets: boolean): SurfaceMaterial {
   const uniforms: SurfaceUniforms = {
     composed: { value: null },
     finest: { value: 1 },
@@ -92,12 +141,26 @@ export function makeMaterial(doubleSided: boolean): SurfaceMaterial {
   };
   const material = new RawShaderMaterial({
     glslVersion: GLSL3,
-    vertexShader: VERTEX,
-    fragmentShader: FRAGMENT,
+    vertexShader: sheets ? SHEET_VERTEX : VERTEX,
+    fragmentShader: sheets ? SHEET_FRAGMENT : FRAGMENT,
     uniforms,
     defines: { BICUBIC: FILTERS.bicubic },
     side: doubleSided ? DoubleSide : FrontSide,
+    ...(sheets ? { ...OVER, depthWrite: false } : {}), // sheets have their depth before
   });
   material.name = "eigen textures";
   return material as SurfaceMaterial;
+}
+
+/** The material that gives a sheet its depth before `sheets`, its own, shows it. */
+export function makeDepthMaterial(sheets: SurfaceMaterial): RawShaderMaterial {
+  const { side } = sheets;
+  return new RawShaderMaterial({
+    name: "depth of sheets",
+    glslVersion: GLSL3,
+    vertexShader: SHEET_VERTEX,
+    fragmentShader: DEPTH_FRAGMENT,
+    colorWrite: false,
+    side,
+  });
 }

@@ -1,10 +1,10 @@
-// The mean of a plane, and the picture of its precision.
+// The mean of a plane, and the picture of its precision; the opacity of sheets in the same way.
 
 import type { ViewBytes } from "./accessors.js";
 import { damaged } from "./errors.js";
 import { readHeader } from "./headers.js";
 import { closePieces, type Piece } from "./pieces.js";
-import type { Plane, Precision } from "./planes.js";
+import type { Precision, Still } from "./planes.js";
 
 /** A mean, and where it has one the picture of its precision. */
 export interface Mean {
@@ -12,10 +12,10 @@ export interface Mean {
   precision: ImageBitmap | null;
 }
 
-/** Decodes the mean of a plane. Whoever takes it closes it. */
-export async function decodeMean(plane: Plane, bytes: ViewBytes, down = 1): Promise<Mean> {
-  const { mean, meanSize } = plane;
-  const precision = plane.precision && (await decodePrecision(await bytes(plane.precision.view), plane.precision));
+/** Decodes a mean or an opacity. Whoever takes it closes it. */
+export async function decodeMean(still: Still, bytes: ViewBytes, down = 1): Promise<Mean> {
+  const { mean, meanSize } = still;
+  const precision = still.precision && (await decodePrecision(await bytes(still.precision.view), still.precision));
   return { pieces: await mean.codec.decode(await bytes(mean.view), mean, meanSize, down), precision };
 }
 

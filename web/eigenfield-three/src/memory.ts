@@ -17,7 +17,8 @@ export interface DeviceLimits {
 
 export interface Needs {
   atlas: Size;
-  means: { size: Size; channels: number; pieces: number; tenBits: boolean }[]; // pieces: pictures one below the other
+  // of planes, and of the opacity; pieces: pictures one below the other
+  means: { size: Size; channels: number; pieces: number; tenBits: boolean }[];
   bases: { size: Size; grid: Size; channels: number; count: number; tenBits: boolean }[]; // codes of 10 bits
   rays: boolean; // weights may be looked up texel by texel
   geometry: number; // bytes
@@ -97,7 +98,7 @@ export function makePlan(needs: Needs, limits: DeviceLimits): Plan {
   return { ...plan, limitation: sentence(plan, total, needs, limits) };
 }
 
-/** Bytes of the means and of what is composed: the atlas with its mips, sums that are coarser, where texels lie. */
+/** Bytes of means and opacity and of what is composed: the atlas with its mips, sums at other sizes, where texels lie. */
 function composing(needs: Needs, down: number): number {
   const means = needs.means.map((mean) => bytesOf(mean) * meanLayers(mean.channels) * texels(mean.size, down));
   const sums = gridsOf(needs).map((size) => {

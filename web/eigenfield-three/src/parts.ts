@@ -4,7 +4,7 @@ import type { Texture } from "three";
 import type { SceneDocument } from "./document.js";
 import { groupsOf, type Plan } from "./memory.js";
 import { FINE } from "./packing.js";
-import { hasTenBits, type Picture, type Plane } from "./planes.js";
+import { hasTenBits, type Picture, type Still } from "./planes.js";
 import type { Textures } from "./textures.js";
 
 /** A mean, or the textures of a basis. */
@@ -60,10 +60,19 @@ export function partsOf(scene: SceneDocument, textures: Textures, plan: Plan): P
   return parts;
 }
 
+/** The opacity of sheets, as a mean whose only channel is R. */
+export function opacityPart({ planes, sheets }: SceneDocument, { means, needs }: Textures): Part | null {
+  const stored = means[planes.length];
+  const grid = needs.means[planes.length]?.size;
+  if (!sheets || !stored || !grid) return null;
+  const numbers = meanNumbers(sheets.opacity);
+  return { stored, grid, rectangle: [0, 0, 1, 1], colours: [[1, 0, 0]], ...numbers, basis: null };
+}
+
 type Numbers = Pick<Part, "scale" | "bias">;
 
 /** Of a mean channel c is component c % 4, so that three of four scales are zero; grey pictures are the first. */
-function meanNumbers({ mean, channels, precision }: Plane): Numbers {
+function meanNumbers({ mean, channels, precision }: Still): Numbers {
   const { scale, zero } = mean;
   const unit = precision ? FINE : unitOf([mean]);
   const numbers = { scale: new Float32Array(4 * channels), bias: new Float32Array(4 * channels) };

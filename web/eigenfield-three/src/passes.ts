@@ -64,10 +64,11 @@ void main() { place = placeOf(point); }
 `;
 export const SUM = "sumTextures";
 export const FINER = "finerValue";
+export const FINER_OPACITY = "finerOpacity";
 
 /** A quad over a rectangle of what is drawn into; it adds `value`, a function of compose.glsl, of its coordinates. */
 export function makeQuad(
-  value: typeof SUM | typeof FINER,
+  value: typeof SUM | typeof FINER | typeof FINER_OPACITY,
   rectangle: [number, number, number, number],
   uniforms: Record<string, IUniform>,
 ): Mesh<BufferGeometry, RawShaderMaterial> {

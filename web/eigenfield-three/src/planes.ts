@@ -6,7 +6,7 @@ import { SceneError } from "./errors.js";
 import { Value } from "./json.js";
 import * as limits from "./limits.js";
 import type { PictureFile } from "./pieces.js";
-import type { BasisJson, MeanJson, PlaneJson, PrecisionJson, SceneJson, TextureJson } from "./schema.js";
+import type * as schema from "./schema.js";
 
 const EIGHT = 8; // bits of a code unless a picture says otherwise
 const MOST_BITS = 16;
@@ -24,6 +24,14 @@ export interface Precision extends PictureFile {
   size: [number, number];
 }
 
+/** What has one picture for all views: a plane's mean, the opacity of sheets. */
+export interface Still {
+  channels: number;
+  mean: Picture;
+  meanSize: [number, number] | null; // null: `images[0]`, whose header says it
+  precision: Precision | null; // of the mean; null: 1 everywhere
+}
+
 /** Eigen textures of one plane and size, and the cameras' weights of them. */
 export interface Basis {
   size: [number, number]; // of each texture
@@ -35,11 +43,7 @@ export interface Basis {
   where: string;
 }
 
-export interface Plane {
-  channels: number;
-  mean: Picture;
-  meanSize: [number, number] | null; // null: `images[0]`, whose header says it
-  precision: Precision | null; // of the mean; null: 1 everywhere
+export interface Plane extends Still {
   bases: Basis[];
 }
 
@@ -56,7 +60,7 @@ function readSize(value: Value, most = limits.MAX_SIDE): [number, number] {
 }
 
 export function readPlanes(
-  extension: Value<SceneJson>,
+  extension: Value<schema.SceneJson>,
   encoded: number,
   preview: number | null,
   accessor: AccessorReader,
@@ -68,7 +72,7 @@ export function readPlanes(
     const channels = plane.key("channels").integer(1, limits.MAX_CHANNELS);
     const mean = readMean(plane, channels, i === 0 ? preview : null, viewOf);
     const bases = plane.key("bases").items(limits.MAX_BASES);
-    const read = (basis: Value<BasisJson>): Basis => readBasis(basis, channels, encoded, accessor, viewOf);
+    const read = (basis: Value<schema.BasisJson>): Basis => readBasis(basis, channels, encoded, accessor, viewOf);
     return { channels, ...mean, bases: bases.map(read) };
   });
   let [decoded, textures] = [0, 0];
@@ -88,7 +92,7 @@ export function readPlanes(
 }
 
 /** What makes R, G and B of the channels; one plane of one or three channels needs nothing for it. */
-export function readColours(extension: Value<SceneJson>, planes: Plane[]): [number, number, number][] {
+export function readColours(extension: Value<schema.SceneJson>, planes: Plane[]): [number, number, number][] {
   const total = planes.reduce((sum, { channels }) => sum + channels, 0);
   const matrix = extension.key("toRGB");
   if (matrix.exists) {
@@ -104,7 +108,7 @@ export function readColours(extension: Value<SceneJson>, planes: Plane[]): [numb
 
 /** A picture of one or `textures` textures of `size`, if that is known. `plain`: code / 255 unless it says more. */
 function readPicture(
-  value: Value<MeanJson | TextureJson>,
+  value: Value<schema.MeanJson | schema.TextureJson>,
   channels: number,
   textures: number,
   size: [number, number] | null,
@@ -121,7 +125,7 @@ function readPicture(
 }
 
 /** What a picture's type and bits say it is, and its codec if it names one. */
-function formatOf(value: Value<MeanJson | TextureJson>): Codec<"picture"> {
+function formatOf(value: Value<schema.MeanJson | schema.TextureJson | schema.OpacityJson>): Codec<"picture"> {
   const mimeType = value.key("mimeType").text(limits.MAX_NAME);
   if (!pictureCodec(mimeType)) throw value.key("mimeType").wrong("an unknown type");
   const depth = value.key("bits");
@@ -157,11 +161,11 @@ function numbersOf(value: Value, channels: number, textures: number): number[] {
 }
 
 function readMean(
-  plane: Value<PlaneJson>,
+  plane: Value<schema.PlaneJson>,
   channels: number,
   preview: number | null,
   viewOf: ViewReader,
-): Pick<Plane, "mean" | "meanSize" | "precision"> {
+): Omit<Still, "channels"> {
   const own = plane.key("mean");
   if (!own.exists) {
     if (preview === null || (channels !== 1 && channels !== 3)) throw own.wrong("no mean");
@@ -173,7 +177,17 @@ function readMean(
   return { mean, meanSize, precision: readPrecision(own.key("precision"), mean, viewOf) };
 }
 
-function readPrecision(value: Value<PrecisionJson>, mean: Picture, viewOf: ViewReader): Precision | null {
+/** The opacity of sheets: its largest code is opaque. */
+export function readOpacity(value: Value<schema.OpacityJson>, viewOf: ViewReader): Still {
+  const size = readSize(value.key("size"));
+  const codec = formatOf(value);
+  checkRows(value, 1, size);
+  const made = { view: viewOf(value.key("bufferView")), codec, textures: 1, pieces: 1, where: value.where };
+  const mean = { ...made, scale: [1 / (2 ** codec.bits - 1)], zero: [0] };
+  return { channels: 1, mean, meanSize: size, precision: null };
+}
+
+function readPrecision(value: Value<schema.PrecisionJson>, mean: Picture, viewOf: ViewReader): Precision | null {
   if (!value.exists) return null;
   if (mean.codec.bits === EIGHT) throw value.wrong(`of a mean of ${EIGHT} bits`);
   const size = readSize(value.key("size"), limits.MAX_PRECISION_SIDE);
@@ -183,7 +197,7 @@ function readPrecision(value: Value<PrecisionJson>, mean: Picture, viewOf: ViewR
 }
 
 function readBasis(
-  basis: Value<BasisJson>,
+  basis: Value<schema.BasisJson>,
   channels: number,
   encoded: number,
   accessor: AccessorReader,
@@ -199,7 +213,7 @@ function readBasis(
   const common = basis.key("picture");
   const shared = common.exists ? common.object() : {};
   const pictures = basis.key("textures").items(limits.MAX_COMPONENTS).map((own) => {
-    const picture = new Value<TextureJson>({ ...shared, ...own.object() }, own.where);
+    const picture = new Value<schema.TextureJson>({ ...shared, ...own.object() }, own.where);
     const several = picture.key("count");
     const textures = several.exists ? several.integer(1, limits.MAX_COMPONENTS) : 1;
     count += textures;

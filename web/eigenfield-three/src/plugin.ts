@@ -1,7 +1,7 @@
 import { MeshBasicMaterial, type Material, type Mesh, type Object3D } from "three";
 import type { GLTF, GLTFLoaderPlugin, GLTFParser } from "three/addons/loaders/GLTFLoader.js";
 import type { ViewBytes } from "./accessors.js";
-import { isScene, readDocument, type SceneDocument } from "./document.js";
+import { isScene, readDocument, stillsOf, type SceneDocument } from "./document.js";
 import { cutOff, damaged } from "./errors.js";
 import { EigenField } from "./field.js";
 import { planeCoordinates, readCameras, readTriangles, readWeights, sceneInfo } from "./info.js";
@@ -10,6 +10,7 @@ import { decodeMean, type Mean } from "./means.js";
 import type { EigenfieldOptions } from "./options.js";
 import { unpacked } from "./packed.js";
 import { checkGeometry, countsOf, readCodedMesh } from "./proxy.js";
+import { checkSheets } from "./sheets.js";
 import { ViewWeights } from "./weights.js";
 
 /**
@@ -77,8 +78,9 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
       mesh.geometry.dispose();
       for (const each of meshes) each.geometry = proxy;
     }
+    if (scene.sheets) checkSheets(scene.sheets, mesh.geometry);
     const [means, cameras, omega, triangles] = await Promise.all([
-      Promise.all(scene.planes.map((plane) => decodeMean(plane, bytes))),
+      Promise.all(stillsOf(scene).map((still) => decodeMean(still, bytes))),
       readCameras(scene, bytes),
       readWeights(scene, bytes),
       readTriangles(scene, bytes),

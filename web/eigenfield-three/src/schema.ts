@@ -11,6 +11,8 @@ export interface SceneJson {
   needs?: Feature[];
   /** The proxy, coded. */
   mesh?: CodedMeshJson;
+  /** Parts of the proxy that are drawn one over the other, and their opacity. */
+  sheets?: SheetsJson;
   /** Channels that share a mean and bases. */
   planes: PlaneJson[];
   /** The matrix from the channels of all planes to R, G and B, row by row. */
@@ -58,6 +60,7 @@ export type Feature =
   | "precision"
   | "regions"
   | "sharedPicture"
+  | "sheets"
   | "stacks"
   | "times"
   | "toRGB";
@@ -89,6 +92,28 @@ export interface CodedMeshJson {
   bufferView: number;
   /** Codecs of a mesh. */
   codec?: MeshCodec;
+}
+
+/** Parts of the proxy that are drawn one over the other, and their opacity. */
+export interface SheetsJson {
+  /** Triangles of each sheet, back to front; the proxy has them in this order. */
+  faces: number[];
+  /** A picture of one channel over the whole atlas, whose largest code is opaque. */
+  opacity: OpacityJson;
+}
+
+/** A picture of one channel over the whole atlas, whose largest code is opaque. */
+export interface OpacityJson {
+  /** Index of a buffer view. */
+  bufferView: number;
+  /** Codecs of pictures. */
+  codec?: PictureCodec;
+  /** Type of a picture. */
+  mimeType: MimeType;
+  /** Width and height in texels. */
+  size: [number, number];
+  /** Bits of a sample. */
+  bits?: Bits;
 }
 
 /** Channels that share a mean and bases. */

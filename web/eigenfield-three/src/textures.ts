@@ -1,6 +1,6 @@
 import { ExternalTexture, type WebGLRenderer } from "three";
 import type { ViewBytes } from "./accessors.js";
-import type { SceneDocument } from "./document.js";
+import { stillsOf, type SceneDocument } from "./document.js";
 import { SceneError } from "./errors.js";
 import * as gpu from "./gpu.js";
 import { atlasOf } from "./info.js";
@@ -17,7 +17,7 @@ const AHEAD = 3; // pictures decoded at a time
 export interface TextureParts {
   scene: SceneDocument;
   bytes: ViewBytes;
-  means: Mean[]; // of each plane
+  means: Mean[]; // of each plane, and of the opacity
   meanSizes: [number, number][];
   rays: boolean; // weights may be looked up texel by texel
 }
@@ -36,7 +36,7 @@ interface Entry {
  * in memory, decoded ones do not, and are decoded again when a lost context comes back.
  */
 export class Textures {
-  readonly means: ExternalTexture[]; // of each plane
+  readonly means: ExternalTexture[]; // of each plane, and of the opacity
   readonly bases: ExternalTexture[]; // of all planes
   readonly ready: boolean[][]; // each texture of each basis
   plan: memory.Plan | null = null;
@@ -67,7 +67,7 @@ export class Textures {
     const bases = scene.planes.flatMap(({ channels, bases }) =>
       bases.map((basis) => ({ ...basis, channels, tenBits: hasTenBits(basis.pictures) })),
     );
-    const means = scene.planes.map(({ channels, mean }, i): memory.Needs["means"][number] => {
+    const means = stillsOf(scene).map(({ channels, mean }, i): memory.Needs["means"][number] => {
       return { size: meanSizes[i] ?? [1, 1], channels, pieces: mean.pieces, tenBits: hasTenBits([mean]) };
     });
     this.needs = { atlas: atlasOf(scene, meanSizes), means, bases, rays, geometry };
@@ -243,15 +243,16 @@ export class Textures {
   /** At once if they are decoded and need no resizing: the first draw shows them. */
   private async loadMeans(gl: WebGL2RenderingContext, turn: number, down: number): Promise<void> {
     const { scene, bytes } = this.parts;
+    const stills = stillsOf(scene);
     let { decoded } = this;
     this.decoded = null;
     if (!decoded || down > 1) {
       decoded?.forEach(closeMean);
-      decoded = await Promise.all(scene.planes.map((plane) => decodeMean(plane, bytes, down)));
+      decoded = await Promise.all(stills.map((still) => decodeMean(still, bytes, down)));
     }
     decoded.forEach((made, i) => {
       const array = this.means[i]?.sourceTexture;
-      const mean = scene.planes[i]?.mean;
+      const mean = stills[i]?.mean;
       if (turn === this.turn && mean && array instanceof WebGLTexture) this.putMean(gl, made, mean, array);
       closeMean(made);
     });

@@ -80,6 +80,7 @@ function sizes({ bytes: parts }: SceneInfo): Rows {
   return [
     ["file", bytes(parts.total)],
     ["mesh", bytes(parts.mesh)],
+    ...(parts.opacity ? [["opacity", bytes(parts.opacity)] as [string, string]] : []),
     ["mean", bytes(parts.mean)],
     [`${parts.textures.length} eigen textures`, bytes(textures)],
     ["weights", bytes(parts.weights)],
@@ -98,6 +99,7 @@ function facts(info: SceneInfo): Rows {
     ...(info.planes.length > 1 ? info.planes.map(plane) : []),
     ["vertices", whole(info.vertices)],
     ["triangles", whole(info.triangles)],
+    ...(info.sheets ? [["sheets", `${info.sheets}, one over the other`] as [string, string]] : []),
     ["format", info.version],
     ...(info.generator === "" ? [] : [["made by", info.generator] as [string, string]]),
   ];

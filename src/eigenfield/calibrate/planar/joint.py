@@ -319,6 +319,7 @@ def register_views(
     new: NDArray[np.int64],
     positions: NDArray[np.float64],
     bases: Sequence[Camera] | None = None,
+    exact: bool = False,
 ) -> PlanarArray:
     """The array with further views, each fitted to the array's texture and depth by its own photograph alone.
 
@@ -329,6 +330,7 @@ def register_views(
         new: (v,) their indices among all n.
         positions: (n, 2) of all views in any unit: new cameras start on the affine grid of the known ones.
         bases: Of all n, if cameras were given.
+        exact: Cameras stay where they start; only the photographs' errors are measured.
     """
     before, after = (np.hstack([positions[i], np.ones((len(i), 1))]) for i in (known, new))
     parameters = np.zeros((len(positions), ARRAY_PARAMETERS))
@@ -351,7 +353,8 @@ def register_views(
             matrices = model.matrices(planar.reference, new, parameters[new])
             buffers = depth_buffers(matrices, planar.d, pictures.shape[1:3])
             target = PhotometricTarget(planar.reference, pictures, buffers, *points, bias)
-            parameters[new], error[new] = gauss_newton_step(model, new, parameters[new], target, count, tau)
+            moved, error[new] = gauss_newton_step(model, new, parameters[new], target, count, tau)
+            parameters[new] = parameters[new] if exact else moved
     return replace(planar, model=model, parameters=parameters, error=error)
 
 

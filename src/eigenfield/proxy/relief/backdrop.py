@@ -60,7 +60,7 @@ def make_backdrop(
         limit: Most triangles, approximately.
         progress: Called for each view.
     """
-    views = [*cameras, *(_cameras_between(cameras) if len(cameras) < BACKDROP_SPARSE_CAMERAS else [])]
+    views = [*cameras, *(cameras_between(cameras) if len(cameras) < BACKDROP_SPARSE_CAMERAS else [])]
     meshes = [height_field_to_world(reference, layer) for layer in layers]
     mesh = height_field_to_world(reference, join_height_fields(layers))
 
@@ -92,8 +92,12 @@ def make_backdrop(
     return replace(part, x=part.x - shift, y=part.y - shift)
 
 
-def _cameras_between(cameras: Sequence[Camera]) -> list[Camera]:
-    """Cameras halfway from each to its nearest neighbours, with its direction."""
+def cameras_between(cameras: Sequence[Camera]) -> list[Camera]:
+    """Cameras halfway from each to its nearest neighbours, with its direction.
+
+    Args:
+        cameras: At least two.
+    """
     centres = np.array([camera.centre for camera in cameras])
     apart = np.linalg.norm(centres[:, None] - centres[None], axis=2)
     np.fill_diagonal(apart, np.inf)

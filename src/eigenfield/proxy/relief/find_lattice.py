@@ -97,11 +97,36 @@ def relief_lattice(mesh: Mesh, cameras: Sequence[Camera], depth_error: float) ->
     drawn = found[:, :2] / found[:, 2:]
     if not _is_affine_by_chart(drawn, mesh.uv.astype(np.float64), label, chart):
         return None
-    origin = _phase(drawn)
-    fine = 0 if _whole_fraction(drawn - origin) > 0.999 else LATTICE_TUNING.contour_digits
+    fine = 0 if _whole_fraction(drawn - _phase(drawn)) > 0.999 else LATTICE_TUNING.contour_digits
+    return _lattice(matrix, mesh, cameras, depth_error, _phase(drawn), fine)
+
+
+def lattice_of_camera(
+    matrix: NDArray[np.float64], mesh: Mesh, cameras: Sequence[Camera], depth_error: float
+) -> Lattice | None:
+    """The lattice of a relief whose camera is known; None if rounding to it would move vertices.
+
+    Args:
+        matrix: (3, 4) of that camera, whose pixels' centres most vertices stand on.
+        mesh: The relief.
+        cameras: See `relief_lattice`.
+        depth_error: See `relief_lattice`.
+    """
+    return _lattice(matrix, mesh, cameras, depth_error, np.array([0.5, 0.5]), LATTICE_TUNING.contour_digits)
+
+
+def _lattice(
+    matrix: NDArray[np.float64],
+    mesh: Mesh,
+    cameras: Sequence[Camera],
+    depth_error: float,
+    origin: NDArray[np.float64],
+    fine: int,
+) -> Lattice | None:
+    nearest = (mesh.vertices.astype(np.float64) @ matrix[2, :3] + matrix[2, 3]).min()
     centre = -np.linalg.inv(matrix[:, :3]) @ matrix[:, 3]
     moved = np.linalg.norm([(matrix[:, :3] @ (centre - camera.centre))[:2] for camera in cameras], axis=1).max()
-    step = max(2 * depth_error / max(float(moved), 1e-9), float(1 / found[:, 2].min() / 2**19))
+    step = max(2 * depth_error / max(float(moved), 1e-9), float(1 / nearest / 2**19))
     lattice = camera_lattice(matrix, 2.0**-fine, step, (float(origin[0]), float(origin[1])))
     return replace(lattice, fine=fine) if _rounding_is_harmless(lattice, mesh, cameras) else None
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,10 +18,12 @@ from eigenfield.proxy.topology import face_components
 PACK_MIN_BOX_FILL = 0.6  # fraction of its box that a piece should fill
 PACK_MIN_BOX_PIXELS = 24.0  # longer side of a box that is not divided further
 PACK_STRIP_WIDTHS = (0.05, 0.1, 0.2, 0.4)  # of the strips beside the first layer, in units of its longer side
+PACK_SHEET_WIDTHS = (0.4, 1.0)  # of the pieces of sheets, in units of the longest sheet
 PACK_GUTTER_PIXELS = 4.0  # of the reference view, between charts: six texels at density 1.5
 PACK_MAX_DIVISION_AREA_RATIO = 0.9  # area of the boxes of a division relative to the whole box, at most
 PACK_DIVISION_TRIALS = 9  # places along each axis
 PACK_RASTER_CELLS = 320  # along a side, approximately
+PACK_SHEET_RASTER_CELLS = 160  # the same for sheets, whose charts are large
 PACK_SIDE_GROWTH = 1.01  # from a side that is too small to the next
 
 
@@ -49,6 +52,64 @@ def pack_layers(
         parts = [first, *sorted(pieces, key=lambda piece: -_area(_corners(piece)))]
         trials.append((parts, *_pack_charts(parts)))
     return min(trials, key=lambda trial: trial[2])
+
+
+def pack_sheets(
+    meshes: Sequence[HeightFieldMesh],
+) -> tuple[list[HeightFieldMesh], list[int], list[NDArray[np.float64]], float]:
+    """Several layers, each in pieces, packed into a square.
+
+    Args:
+        meshes: The layers.
+
+    Returns:
+        The parts, the layer of each, (2,) by how much each moves, and the side of the square.
+    """
+    longer = max(float(max(np.ptp(mesh.x), np.ptp(mesh.y))) for mesh in meshes)
+    trials = []
+    for width in PACK_SHEET_WIDTHS:
+        room = max(PACK_MIN_BOX_PIXELS, width * longer)
+        pieces = [(piece, k) for k, mesh in enumerate(meshes) for piece in _divide_into_pieces(mesh, room)]
+        pieces.sort(key=lambda piece: -_area(_corners(piece[0])))
+        parts, owners = [part for part, _ in pieces], [owner for _, owner in pieces]
+        trials.append((parts, owners, *_pack_charts(parts, PACK_SHEET_RASTER_CELLS)))
+    return min(trials, key=lambda trial: trial[3])
+
+
+@dataclass(frozen=True, eq=False)
+class ChartPixels:
+    """The pixels of the reference view that a packed part keeps for itself, half its gutter included.
+
+    Attributes:
+        mask: (h, w) those pixels.
+        owner: (h, w) the triangle on each, -1 beside them.
+        first: (2,) column and row of the top left pixel in the reference view.
+    """
+
+    mask: NDArray[np.bool_]
+    owner: NDArray[np.int32]
+    first: NDArray[np.int64]
+
+
+def chart_pixels(part: HeightFieldMesh) -> ChartPixels:
+    """The pixels of a part.
+
+    Args:
+        part: As it was packed.
+    """
+    reach = int(np.ceil(PACK_GUTTER_PIXELS / 2)) + 1  # half the gutter to the border
+    low = np.floor([part.x.min(), part.y.min()]) - reach - 1
+    high = np.ceil([part.x.max(), part.y.max()]) + reach + 1
+    width, height = (high - low).astype(int) + 1
+    xy = np.stack([part.x, part.y], axis=1) - low
+    owner = np.empty((height, width), np.int32)
+    steps = np.rint(xy * DELAUNAY_STEPS_PER_PIXEL).astype(np.int64)
+    label_pixels(steps, part.faces.astype(np.int64), len(part.faces), owner)
+    mask = owner >= 0
+    column, row = np.rint(xy).astype(int).T
+    mask[row, column] = True
+    y, x = np.mgrid[-reach : reach + 1, -reach : reach + 1]
+    return ChartPixels(binary_dilation(mask, x * x + y * y <= reach * reach), owner, low.astype(np.int64))
 
 
 def _divide_into_pieces(mesh: HeightFieldMesh, room: float) -> list[HeightFieldMesh]:
@@ -102,12 +163,17 @@ def _find_division(corners: NDArray[np.float64], room: float) -> NDArray[np.bool
     return found
 
 
-def _pack_charts(parts: Sequence[HeightFieldMesh]) -> tuple[list[NDArray[np.float64]], float]:
-    """(2,) by how much each part moves to lie in a square, packed in the given order, and the side of the square."""
-    reach = int(np.ceil(PACK_GUTTER_PIXELS / 2)) + 1  # half the gutter to the border
-    masks, corners = zip(*(_mask(part, reach) for part in parts), strict=True)
+def _pack_charts(
+    parts: Sequence[HeightFieldMesh], cells: int = PACK_RASTER_CELLS
+) -> tuple[list[NDArray[np.float64]], float]:
+    """(2,) by how much each part moves to lie in a square, packed in the given order, and the side of the square.
+
+    cells: along a side of the raster, approximately.
+    """
+    charts = [chart_pixels(part) for part in parts]
+    masks, corners = [chart.mask for chart in charts], [chart.first - 0.5 for chart in charts]
     filled = sum(int(mask.sum()) for mask in masks)
-    cell = max(1, round(np.sqrt(filled) / PACK_RASTER_CELLS))
+    cell = max(1, round(np.sqrt(filled) / cells))
     coarse = [_max_pool(mask, cell) for mask in masks]
     side = max(int(np.sqrt(sum(int(mask.sum()) for mask in coarse))), *(max(mask.shape) for mask in coarse), 1)
     while True:
@@ -118,22 +184,6 @@ def _pack_charts(parts: Sequence[HeightFieldMesh]) -> tuple[list[NDArray[np.floa
         side = int(np.ceil(side * PACK_SIDE_GROWTH))
     offsets = [place[::-1] * cell - corner for place, corner in zip(places, corners, strict=True)]
     return [np.asarray(offset, np.float64) for offset in offsets], float(side * cell)
-
-
-def _mask(part: HeightFieldMesh, reach: int) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
-    """The pixels within about `reach` of a part, and the corner of the raster's top left pixel."""
-    low = np.floor([part.x.min(), part.y.min()]) - reach - 1
-    high = np.ceil([part.x.max(), part.y.max()]) + reach + 1
-    width, height = (high - low).astype(int) + 1
-    xy = np.stack([part.x, part.y], axis=1) - low
-    owner = np.empty((height, width), np.int32)
-    steps = np.rint(xy * DELAUNAY_STEPS_PER_PIXEL).astype(np.int64)
-    label_pixels(steps, part.faces.astype(np.int64), len(part.faces), owner)
-    mask = owner >= 0
-    column, row = np.rint(xy).astype(int).T
-    mask[row, column] = True
-    y, x = np.mgrid[-reach : reach + 1, -reach : reach + 1]
-    return binary_dilation(mask, x * x + y * y <= reach * reach), low - 0.5
 
 
 def _max_pool(mask: NDArray[np.bool_], cell: int) -> NDArray[np.bool_]:

@@ -304,6 +304,10 @@ def cover_line(near, per_pixel, coverage):
         per_pixel: Samples of a row that belong to one pixel.
         coverage: (pixels,), written.
     """
+    if near.shape[0] * per_pixel == 1:
+        for pixel in range(coverage.shape[0]):
+            coverage[pixel] = np.float32(1) if near[0, pixel] > 0 else np.float32(0)
+        return
     for pixel in range(coverage.shape[0]):
         hits = 0
         for row in range(near.shape[0]):

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from eigenfield.imaging.texels import TEXEL_LANES
 from eigenfield.rendering.software.kernels import (
     LAYER_CHANNELS,
     PREFETCH_SAMPLES,
@@ -15,57 +16,71 @@ from eigenfield.rendering.software.kernels import (
     locate,
     store_layer,
 )
-from eigenfield.rendering.software.simd import blend_texels, fetch_early
+from eigenfield.rendering.software.simd import add_texel, blend_texels, fetch_early
 from eigenfield.runtime.jit import kernel
 
 OPACITY_LANE = 3  # of the first layer: the number of a texel that holds its opacity
-SKIP_SAMPLES = 16  # of a line that are looked through at a time
+RUN_SAMPLES = 16  # of a line that are looked at or passed over together
 LEAST_TRANSMITTANCE = np.float32(1 / 4096)  # where less of what is behind shows through, nothing does
 
 
-@kernel()
-def find_samples(near, column, row, first, last, through, places, nears, columns, rows):
-    """List the samples of a line that show a sheet and are not hidden; returns how many these are.
+@kernel(fastmath=True)
+def shows_any(near, through, first, last):
+    """Whether any of the samples [first, last) of a line shows a sheet and is not hidden.
 
     Args:
-        near, column, row: (n,) of `draw_texels`.
-        first, last: Range of samples.
+        near: (n,) 1 / depth; 0: the sheet is not there.
         through: (n,) what sheets in front let through, 0..1.
-        places: (n,) the samples found, written.
-        nears, columns, rows: (n,) their numbers of `near`, `column` and `row`, written.
+        first, last: Range of samples.
     """
-    found = 0
-    for start in range(first, last, SKIP_SAMPLES):
-        end, most = min(start + SKIP_SAMPLES, last), np.float32(0)
-        for i in range(start, end):
-            most = max(most, near[i] * through[i])
-        if most > 0:
-            for i in range(start, end):
-                places[found], nears[found], columns[found], rows[found] = i, near[i], column[i], row[i]
-                found += (near[i] > 0) & (through[i] > 0)
-    return found
+    most = np.float32(0)
+    for i in range(first, last):
+        most = max(most, near[i] * through[i])
+    return most > 0
+
+
+@kernel()
+def find_run(near, through, first, last):
+    """The next samples of a line that have to be looked at, as [start, end); empty at the end of the line.
+
+    Args:
+        near, through: As of `shows_any`.
+        first, last: Range of samples.
+    """
+    start = first
+    while start < last and not shows_any(near, through, start, min(start + RUN_SAMPLES, last)):
+        start += RUN_SAMPLES
+    end = start
+    while end < last and shows_any(near, through, end, min(end + RUN_SAMPLES, last)):
+        end += RUN_SAMPLES
+    return min(start, last), min(end, last)
 
 
 @kernel(fastmath=True, inline=True)
-def blend_line(taps, texture, layer, count, places, rows, columns, down, across, through, parts, sums):
+def blend_line(taps, texture, layer, near, rows, columns, down, across, through, parts, sums):
     """Composite one layer of a sheet's samples under what is in front of them; returns how many hide what is behind.
 
     Args:
         taps: 2 or 4.
         texture: Flat.
         layer: Number of the layer; the first finds how much of each sample is seen.
-        count: Number of samples.
-        places: Of `find_samples`.
+        near: (n,) 1 / depth; 0: the sheet is not there.
         rows, columns: (taps, n) addresses of the taps (`locate`).
         down, across: (taps, n) their weights.
-        through: Of `find_samples`, changed by the first layer.
+        through: (n,) what sheets in front let through, 0..1, changed by the first layer.
         parts: (n,) how much of each sample is seen, written by the first layer.
-        sums: (n, LAYER_CHANNELS) what the sheets show, added to.
+        sums: (n * TEXEL_LANES,) what the sheets show, added to.
     """
     ahead, opaque = np.uintp(PREFETCH_SAMPLES), 0
-    for sample in range(count):
+    for sample in range(near.shape[0]):
         i = np.uintp(sample)
         fetch_early(texture, rows[taps - 1, i + ahead] + columns[0, i + ahead])
+        if layer == 0:
+            parts[i] = 0
+            if not ((near[i] > 0) & (through[i] > 0)):
+                continue
+        elif parts[i] == 0:
+            continue
         if taps == 2:
             texel = blend_texels(
                 texture,
@@ -82,18 +97,14 @@ def blend_line(taps, texture, layer, count, places, rows, columns, down, across,
                 (down[0, i], down[1, i], down[2, i], down[3, i]),
                 (across[0, i], across[1, i], across[2, i], across[3, i]),
             )
-        place = np.uintp(places[i])
         if layer == 0:
-            opacity, light = min(max(texel[OPACITY_LANE], np.float32(0)), np.float32(1)), through[place]
+            opacity, light = min(max(texel[OPACITY_LANE], np.float32(0)), np.float32(1)), through[i]
             rest = light * (np.float32(1) - opacity)
             hidden = rest < LEAST_TRANSMITTANCE
-            through[place] = np.float32(0) if hidden else rest
+            through[i] = np.float32(0) if hidden else rest
             parts[i] = light if hidden else light * opacity
             opaque += hidden
-        part = parts[i]
-        sums[place, 0] += part * texel[0]
-        sums[place, 1] += part * texel[1]
-        sums[place, 2] += part * texel[2]
+        add_texel(sums, np.int64(sample) * TEXEL_LANES, parts[i], texel)
     return opaque
 
 
@@ -124,7 +135,7 @@ def add_background(through, samples, background, sums, line):
         through: (pixels * samples,) what the sheets let through.
         samples: Of a row that belong to one pixel.
         background: (LAYER_CHANNELS,).
-        sums: (pixels * samples, LAYER_CHANNELS) what the sheets show.
+        sums: (pixels * samples, TEXEL_LANES) what the sheets show.
         line: (pixels * LAYER_CHANNELS,), added to.
     """
     red, green, blue = background[0], background[1], background[2]
@@ -149,11 +160,10 @@ def draw_sheet(
         layers: (L, tiles, TILE_AREA, 4) the texture; the first layer's `OPACITY_LANE` is the opacity.
         size: (H, W) of the texture, in texels.
         bicubic: Whether the filter has 4 x 4 taps, not 2 x 2.
-        room: Memory of a line: `places`, the other results of `find_samples`, `parts`, `rows`, `columns`, `down` and
-            `across` of `blend_line`.
+        room: Memory of a line: `parts`, `rows`, `columns`, `down` and `across` of `blend_line`.
         through: (last - first, n) what sheets in front let through, 0..1, changed.
         waiting: (last - first,) how many samples of each line let something through, changed.
-        sums: (L, last - first, n, LAYER_CHANNELS) what these show, added to.
+        sums: (L, last - first, n, TEXEL_LANES) what these show, added to.
     """
     top, bottom, left, right = last, first, through.shape[1], 0
     for f in listing:
@@ -170,28 +180,28 @@ def draw_sheet(
     draw_texels(faces, texels, edges, bounds, listing, top, bottom, slack, near, column_of, row_of, seen)
     height, width = size
     tile_row = -(-width // TILE_TEXELS) * TILE_AREA * 4
-    places, found, parts, rows, columns, down, across = room
+    parts, rows, columns, down, across = room
     for line in range(top, bottom):
-        light = through[line - first]
-        count = find_samples(
-            near[line], column_of[line], row_of[line], left, right, light, places, found[0], found[1], found[2]
-        )
-        if count == 0:
-            continue
-        inverse, u, v = found[0, :count], found[1, :count], found[2, :count]
-        if bicubic:
-            locate(4, inverse, u, width, TILE_AREA * 4, 4, columns, across)
-            locate(4, inverse, v, height, tile_row, TILE_TEXELS * 4, rows, down)
-        else:
-            locate(2, inverse, u, width, TILE_AREA * 4, 4, columns, across)
-            locate(2, inverse, v, height, tile_row, TILE_TEXELS * 4, rows, down)
-        for layer in range(layers.shape[0]):
-            texture, total = layers[layer].reshape(-1), sums[layer, line - first]
+        start = left
+        while start < right:
+            start, end = find_run(near[line], through[line - first], start, right)
+            run = slice(start, end)
+            inverse, u, v = near[line, run], column_of[line, run], row_of[line, run]
+            light, values = through[line - first, run], slice(start * TEXEL_LANES, end * TEXEL_LANES)
             if bicubic:
-                opaque = blend_line(4, texture, layer, count, places, rows, columns, down, across, light, parts, total)
+                locate(4, inverse, u, width, TILE_AREA * 4, 4, columns, across)
+                locate(4, inverse, v, height, tile_row, TILE_TEXELS * 4, rows, down)
             else:
-                opaque = blend_line(2, texture, layer, count, places, rows, columns, down, across, light, parts, total)
-            waiting[line - first] -= opaque
+                locate(2, inverse, u, width, TILE_AREA * 4, 4, columns, across)
+                locate(2, inverse, v, height, tile_row, TILE_TEXELS * 4, rows, down)
+            for layer in range(layers.shape[0]):
+                texture, total = layers[layer].reshape(-1), sums[layer, line - first].reshape(-1)[values]
+                if bicubic:
+                    opaque = blend_line(4, texture, layer, inverse, rows, columns, down, across, light, parts, total)
+                else:
+                    opaque = blend_line(2, texture, layer, inverse, rows, columns, down, across, light, parts, total)
+                waiting[line - first] -= opaque
+            start = end
 
 
 @kernel(fastmath=True)
@@ -218,11 +228,10 @@ def draw_sheets(
     pixels, depth = picture.shape[1], layers.shape[0]
     lines, n = (last - first) * samples, pixels * samples
     through, waiting = np.ones((lines, n), np.float32), np.full(lines, n)
-    sums = np.zeros((depth, lines, n, LAYER_CHANNELS), np.float32)
+    sums = np.zeros((depth, lines, n, TEXEL_LANES), np.float32)
     rows, columns = np.zeros((4, n + PREFETCH_SAMPLES), np.int32), np.zeros((4, n + PREFETCH_SAMPLES), np.int32)
     down, across = np.empty((4, n), np.float32), np.empty((4, n), np.float32)
-    places, found = np.empty(n, np.int32), np.empty((3, n), np.float32)
-    room = places, found, np.empty(n, np.float32), rows, columns, down, across
+    room = np.empty(n, np.float32), rows, columns, down, across
     ends = np.searchsorted(listing, starts)
     for sheet in range(len(starts) - 2, -1, -1):
         some = listing[ends[sheet] : ends[sheet + 1]]

@@ -53,16 +53,42 @@ def blend_texels(typing_context, texture, rows, columns, down, across):
             return total
 
         def texel(row, column):
-            pointer = builder.gep(data, [builder.zext(builder.add(row, column), whole)])
+            pointer = builder.gep(row, [builder.zext(column, whole)])
             return builder.load(builder.bitcast(pointer, vector.as_pointer()), align=4)
 
         horizontal, vertical = ([splat(builder, weight, vector) for weight in of] for of in (across, down))
-        lines = [weighted_sum([texel(row, column) for column in columns], horizontal) for row in rows]
+        starts = [builder.gep(data, [builder.zext(row, whole)]) for row in rows]  # so that no texel's address is summed
+        lines = [weighted_sum([texel(row, column) for column in columns], horizontal) for row in starts]
         total = weighted_sum(lines, vertical)
         lanes = [builder.extract_element(total, ir.Constant(ir.IntType(32), i)) for i in range(TEXEL_LANES)]
         return context.make_tuple(builder, signature.return_type, lanes)
 
     return result(texture, rows, columns, down, across), generate
+
+
+@intrinsic
+def add_texel(typing_context, sums, at, part, texel):
+    """sums[at: at + 4] += part * texel.
+
+    Args:
+        sums: Flat float32 array.
+        at: Address, int64.
+        part: float32.
+        texel: Tuple of four float32.
+    """
+
+    def generate(context, builder, signature, arguments):
+        vector, index = ir.VectorType(ir.FloatType(), TEXEL_LANES), ir.IntType(32)
+        data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
+        place = builder.bitcast(builder.gep(data, [arguments[1]]), vector.as_pointer())
+        values = ir.Constant(vector, ir.Undefined)
+        for i in range(TEXEL_LANES):
+            values = builder.insert_element(values, builder.extract_value(arguments[3], i), ir.Constant(index, i))
+        share = builder.fmul(splat(builder, arguments[2], vector), values, flags=FASTMATH_FLAGS)
+        builder.store(builder.fadd(builder.load(place, align=4), share, flags=FASTMATH_FLAGS), place, align=4)
+        return context.get_dummy_value()
+
+    return types.none(sums, types.int64, part, texel), generate
 
 
 def _square_of_taps(context, builder, signature, arguments):

@@ -38,7 +38,8 @@ class DescentTuning:
         last_rate_ratio: Of the last step to the first; it falls exponentially.
         colour_variation: Weight of the mean difference of neighbouring colours in a layer, summed over layers.
         opacity_variation: The same of opacities.
-        opacity_price: Weight of a layer's mean opacity, summed over layers.
+        opacity_price: Weight of a layer's mean opacity a, summed over layers.
+        doubt_price: Weight of the mean of a (1 - a) in the last step, summed over layers; it grows from 0.
         huber_width: Difference of neighbours up to which its cost is quadratic.
         colour_margin: By which colours may leave 0..1.
     """
@@ -51,6 +52,7 @@ class DescentTuning:
     colour_variation: float = 0.0006
     opacity_variation: float = 0.0019
     opacity_price: float = 0.00006
+    doubt_price: float = 0.0
     huber_width: float = 0.01
     colour_margin: float = 0.2
 
@@ -77,7 +79,7 @@ class Descent:
         self._pyramids = [Pyramid((height, width), channels, tuning.levels) for _ in layers]
         texels = height * width
         self._variation = _columns(tuning.colour_variation / (3 * texels), tuning.opacity_variation / texels, width)
-        self._price = _columns(0, tuning.opacity_price / texels, width)
+        self._price, self._doubt = (_columns(0, x / texels, width) for x in (tuning.opacity_price, tuning.doubt_price))
         low, high = -tuning.colour_margin, 1 + tuning.colour_margin
         self._low, self._opaque, self._high = (_columns(*pair, width) for pair in ((low, 0), (low, 1), (high, 1)))
         layers[0, ..., 3] = 1
@@ -138,7 +140,8 @@ class Descent:
         layer, pyramid = self.layers[index].reshape(-1, CHANNELS * width), self._pyramids[index]
         step = pyramid.gradient.reshape(layer.shape)
         narrow = np.float32(1 / tuning.huber_width)
-        add_priors(layer, CHANNELS, scale, self._variation, self._price, narrow, step)
+        doubt = self._doubt * np.float32(number / tuning.steps)
+        add_priors(layer, CHANNELS, scale, self._variation, self._price, doubt, narrow, step)
         pyramid.step(number)
         rate = tuning.rate * falling
         rates = _columns(rate, rate * tuning.opacity_rate_ratio, width)

@@ -1,4 +1,4 @@
-"""Fitted to photographs: a multiplane image, and soft sheets, which start from one of half the size."""
+"""Fitted to photographs: a multiplane image, and soft sheets, which start from one of a smaller size."""
 
 from __future__ import annotations
 
@@ -62,6 +62,7 @@ class SheetTuning(DescentTuning):
     steps: int = 240
     levels: int = 5
     rate: float = 0.01
+    doubt_price: float = 0.001
     label_rate: float = 0.05
     label_variation: float = 0.01
     label_huber_width: float = 0.2
@@ -111,11 +112,12 @@ def fit_sheets(
     labels: NDArray[np.float64],
     count: int,
     *,
+    halvings: int = 1,
     planes: MultiplaneTuning = MULTIPLANE_TUNING,
     tuning: SheetTuning = SHEET_TUNING,
     progress: Progress | None = None,
 ) -> SoftSheets:
-    """The soft sheets that draw V photographs best: first planes at half the size, then sheets at full size.
+    """The soft sheets that draw V photographs best: first planes at a small size, then sheets at each larger one.
 
     Args:
         pictures: As of `fit_multiplane`.
@@ -123,24 +125,29 @@ def fit_sheets(
         shape: As of `fit_multiplane`.
         labels: As of `fit_multiplane`, at about equal distances.
         count: Number of sheets, at most that of labels.
+        halvings: How often the size is halved for the planes; with 0 sheets are fitted at the planes' size.
         planes: Constants of the planes.
         tuning: Constants of the sheets.
-        progress: Reports the steps of both.
+        progress: Reports the steps.
 
     Raises:
         ValueError: As `fit_multiplane`; or `count` is not from 1 to the number of labels.
     """
-    packed = pack_pictures(pictures)
-    matrices = check_matrices(matrices, len(packed))
     if not 1 <= count <= np.size(labels):
         raise ValueError(f"{count} sheets of {np.size(labels)} planes")
-    half = (shape[0] + 1) // 2, (shape[1] + 1) // 2
-    image = fit_multiplane(
-        halve_pictures(packed), halved_matrices(matrices), half, labels, tuning=planes, progress=progress
-    )
-    sheets = enlarged(sheets_of(image, count), shape)
+    sizes = [(pack_pictures(pictures), check_matrices(matrices, len(pictures)), shape)]
+    for _ in range(halvings):
+        packed, views, (height, width) = sizes[-1]
+        half = (height + 1) // 2, (width + 1) // 2
+        sizes.append((halve_pictures(packed), halved_matrices(views), half))
+    image = fit_multiplane(*sizes[-1], labels, tuning=planes, progress=progress)
     spacing = float(np.ptp(image.labels)) / (len(image.labels) - 1)
-    _SheetDescent(sheets, spacing, tuning).run(packed, matrices, _ticker(progress, "sheets", tuning.steps))
+    sheets = sheets_of(image, count)
+    rounds = sizes[: max(1, halvings)][::-1]
+    for number, (packed, views, size) in enumerate(rounds):
+        sheets = enlarged(sheets, size)
+        ticker = _ticker(progress, "sheets", len(rounds) * tuning.steps, number * tuning.steps)
+        _SheetDescent(sheets, spacing, tuning).run(packed, views, ticker)
     return sheets
 
 
@@ -157,8 +164,8 @@ def enlarged(sheets: SoftSheets, shape: tuple[int, int]) -> SoftSheets:
     return SoftSheets(labels, layers)
 
 
-def _ticker(progress: Progress | None, stage: str, total: int) -> Callable[[int], None] | None:
-    return None if progress is None else lambda done: progress(stage, done, total)
+def _ticker(progress: Progress | None, stage: str, total: int, before: int = 0) -> Callable[[int], None] | None:
+    return None if progress is None else lambda done: progress(stage, before + done, total)
 
 
 class _SheetDescent(Descent):
@@ -196,7 +203,7 @@ class _SheetDescent(Descent):
         add_label_gradient(drawn[index], places[index], self.layers[index], *rays, step)  # of the layer as it was drawn
         super()._move(number, falling, scale, rays, places, drawn, index)
         narrow = np.float32(1 / (tuning.label_huber_width * self._spacing))
-        add_priors(labels, 1, scale, self._label_variation, self._nothing, narrow, step)
+        add_priors(labels, 1, scale, self._label_variation, self._nothing, self._nothing, narrow, step)
         pyramid.step(number)
         rate = np.full(labels.shape[1], tuning.label_rate * self._spacing * falling, np.float32)
         move(labels, step, rate, -self._anything, self._anything)

@@ -188,15 +188,16 @@ def slope(difference, inverse_width):
 
 
 @kernel()
-def add_priors(layer, channels, scale, variation, price, inverse_width, gradient):
-    """gradient = scale gradient + that of the total variation and of a price for each number.
+def add_priors(layer, channels, scale, variation, price, doubt, inverse_width, gradient):
+    """gradient = scale gradient + that of the total variation and of two prices for each number.
 
     Args:
         layer: (h, w C) float32, texels of C numbers.
         channels: C.
         scale: Of the gradient so far.
         variation: (w C) of each column: weight of the difference of neighbours.
-        price: (w C) of each column: cost of the number itself.
+        price: (w C) of each column: cost of the number x itself.
+        doubt: (w C) of each column: cost of x (1 - x).
         inverse_width: Of `slope`.
         gradient: (h, w C) float32, changed.
     """
@@ -206,7 +207,8 @@ def add_priors(layer, channels, scale, variation, price, inverse_width, gradient
         above, below = layer[max(row - 1, 0)], layer[min(row + 1, rows - 1)]
         for i in range(columns):
             vertical = slope(here[i] - above[i], inverse_width) + slope(here[i] - below[i], inverse_width)
-            out[i] = scale * out[i] + variation[i] * vertical + price[i]
+            own = price[i] + doubt[i] * (np.float32(1) - np.float32(2) * here[i])
+            out[i] = scale * out[i] + variation[i] * vertical + own
         for i in range(channels, columns):
             out[i] += variation[i] * slope(here[i] - here[i - channels], inverse_width)
         for i in range(columns - channels):
@@ -290,3 +292,16 @@ def move(layer, step, rate, low, high):
         here, there = layer[row], step[row]
         for i in range(layer.shape[1]):
             here[i] = min(max(here[i] + rate[i] * there[i], low[i]), high[i])
+
+
+@kernel()
+def raise_texels(values, places, texels):
+    """Raise texels (h, w) to the largest of the values (H, W) of the pixels that read them at `places` (H, W, 2)."""
+    for row in range(values.shape[0]):
+        for column in range(values.shape[1]):
+            u, v = places[row, column, 0], places[row, column, 1]
+            if u >= 0:
+                left, top = np.int64(u), np.int64(v)
+                for below in range(top, top + 2):
+                    for beside in range(left, left + 2):
+                        texels[below, beside] = max(texels[below, beside], values[row, column])

@@ -1,7 +1,7 @@
-import { BufferAttribute as e, BufferGeometry as t, Camera as n, ClampToEdgeWrapping as r, Color as i, CustomBlending as a, DataArrayTexture as o, DataUtils as s, DoubleSide as c, EventDispatcher as l, ExternalTexture as u, FrontSide as d, GLSL3 as f, HalfFloatType as p, InstancedBufferGeometry as m, LinearFilter as h, LinearMipmapLinearFilter as g, Matrix4 as _, Mesh as v, MeshBasicMaterial as y, NearestFilter as b, NoBlending as x, OneFactor as S, RGBAFormat as C, RawShaderMaterial as w, Scene as T, Sphere as E, Vector2 as D, Vector3 as O, Vector4 as ee, WebGLRenderTarget as k } from "three";
-import { GLTFLoader as te } from "three/addons/loaders/GLTFLoader.js";
+import { BufferAttribute as e, BufferGeometry as t, Camera as n, ClampToEdgeWrapping as r, Color as i, CustomBlending as a, DataArrayTexture as o, DataUtils as s, DepthTexture as c, DoubleSide as l, EventDispatcher as u, ExternalTexture as d, FrontSide as f, GLSL3 as p, HalfFloatType as m, InstancedBufferGeometry as h, LinearFilter as g, LinearMipmapLinearFilter as _, Matrix4 as v, Mesh as y, MeshBasicMaterial as b, NearestFilter as x, NoBlending as S, OneFactor as C, OneMinusSrcAlphaFactor as w, RGBAFormat as T, RawShaderMaterial as E, Scene as D, Sphere as O, UnsignedByteType as ee, Vector2 as k, Vector3 as A, Vector4 as te, WebGLRenderTarget as ne } from "three";
+import { GLTFLoader as re } from "three/addons/loaders/GLTFLoader.js";
 // eigenfield-three/src/errors.ts
-var A = class extends Error {
+var j = class extends Error {
 	code;
 	where;
 	name = "SceneError";
@@ -9,42 +9,42 @@ var A = class extends Error {
 		super(t, r), this.code = e, this.where = n;
 	}
 };
-function j(e, t) {
-	return new A("damaged", `The file is damaged (${e}: ${t}); make or download it again.`, e);
+function M(e, t) {
+	return new j("damaged", `The file is damaged (${e}: ${t}); make or download it again.`, e);
 }
-function ne(e, t) {
-	return new A("truncated", `The file is cut off after ${e} of ${t} bytes; download or copy it again.`, String(e));
+function ie(e, t) {
+	return new j("truncated", `The file is cut off after ${e} of ${t} bytes; download or copy it again.`, String(e));
 }
-function re(e) {
-	return new A("truncated", `The file is cut off (${e}); download or copy it again.`, e);
+function ae(e) {
+	return new j("truncated", `The file is cut off (${e}); download or copy it again.`, e);
 }
-function ie(e, t = "") {
-	return e instanceof A ? e : new A("damaged", `The file cannot be read (${(e instanceof Error ? e.message : String(e)).replace(/^THREE\.GLTFLoader: /, "")}); make or download it again.`, t, { cause: e });
+function oe(e, t = "") {
+	return e instanceof j ? e : new j("damaged", `The file cannot be read (${(e instanceof Error ? e.message : String(e)).replace(/^THREE\.GLTFLoader: /, "")}); make or download it again.`, t, { cause: e });
 }
 // eigenfield-three/src/av1-picture.ts
-var ae = 1, oe = 7;
-function se(e, t) {
-	let { level: n, tier: r, width: i, height: a } = ce(new Uint8Array(e), t), o = r << 7 | 76, s = M("ipco", [
-		...M("ispe", [
-			...N(0),
-			...N(i),
-			...N(a)
+var se = 1, ce = 7;
+function le(e, t) {
+	let { level: n, tier: r, width: i, height: a } = ue(new Uint8Array(e), t), o = r << 7 | 76, s = N("ipco", [
+		...N("ispe", [
+			...P(0),
+			...P(i),
+			...P(a)
 		]),
-		...M("pixi", [
-			...N(0),
+		...N("pixi", [
+			...P(0),
 			3,
 			10,
 			10,
 			10
 		]),
-		...M("av1C", [
+		...N("av1C", [
 			129,
 			n,
 			o,
 			0
 		]),
-		...M("colr", [
-			...P("nclx"),
+		...N("colr", [
+			...F("nclx"),
 			0,
 			2,
 			0,
@@ -53,25 +53,25 @@ function se(e, t) {
 			2,
 			128
 		])
-	]), c = M("ftyp", [
-		...P("avif"),
-		...N(0),
-		...P("avifmif1miafMA1B")
-	]), l = (t) => M("meta", [
-		...N(0),
-		...M("hdlr", [
-			...N(0),
-			...N(0),
-			...P("pict"),
+	]), c = N("ftyp", [
+		...F("avif"),
+		...P(0),
+		...F("avifmif1miafMA1B")
+	]), l = (t) => N("meta", [
+		...P(0),
+		...N("hdlr", [
+			...P(0),
+			...P(0),
+			...F("pict"),
 			...Array(13).fill(0)
 		]),
-		...M("pitm", [
-			...N(0),
+		...N("pitm", [
+			...P(0),
 			0,
 			1
 		]),
-		...M("iloc", [
-			...N(0),
+		...N("iloc", [
+			...P(0),
 			68,
 			0,
 			0,
@@ -82,14 +82,14 @@ function se(e, t) {
 			0,
 			0,
 			1,
-			...N(t),
-			...N(e.byteLength)
+			...P(t),
+			...P(e.byteLength)
 		]),
-		...M("iinf", [
-			...N(0),
+		...N("iinf", [
+			...P(0),
 			0,
 			1,
-			...M("infe", [
+			...N("infe", [
 				2,
 				0,
 				0,
@@ -98,13 +98,13 @@ function se(e, t) {
 				1,
 				0,
 				0,
-				...P("av01"),
+				...F("av01"),
 				0
 			])
 		]),
-		...M("iprp", [...s, ...M("ipma", [
-			...N(0),
-			...N(1),
+		...N("iprp", [...s, ...N("ipma", [
+			...P(0),
+			...P(1),
 			0,
 			1,
 			4,
@@ -116,12 +116,12 @@ function se(e, t) {
 	]), u = c.length + l(0).length + 8, d = [
 		...c,
 		...l(u),
-		...N(8 + e.byteLength),
-		...P("mdat")
+		...P(8 + e.byteLength),
+		...F("mdat")
 	], f = new Uint8Array(u + e.byteLength);
 	return f.set(d), f.set(new Uint8Array(e), u), f.buffer;
 }
-function ce(e, t) {
+function ue(e, t) {
 	let n = e[0] ?? 0, r = 8 * (1 + (n >> 2 & 1) + (n >> 1 & 1)), i = (t) => {
 		let n = 0;
 		for (let i = r + t; r < i; r++) n = 2 * n + ((e[r >> 3] ?? 0) >> 7 - (r & 7) & 1);
@@ -130,8 +130,8 @@ function ce(e, t) {
 	i(4);
 	let a = i(1) === 1, o = !a && i(7) !== 0;
 	a || i(12);
-	let s = i(5), c = !a && s > oe ? i(1) : 0, [l, u] = [i(4) + 1, i(4) + 1], [d, f] = [i(l) + 1, i(u) + 1];
-	if (n >> 3 !== ae || o || r > 8 * e.length) throw j(t, "no AV1 sequence header");
+	let s = i(5), c = !a && s > ce ? i(1) : 0, [l, u] = [i(4) + 1, i(4) + 1], [d, f] = [i(l) + 1, i(u) + 1];
+	if (n >> 3 !== se || o || r > 8 * e.length) throw M(t, "no AV1 sequence header");
 	return {
 		level: s,
 		tier: c,
@@ -139,14 +139,14 @@ function ce(e, t) {
 		height: f
 	};
 }
-function M(e, t) {
+function N(e, t) {
 	return [
-		...N(8 + t.length),
-		...P(e),
+		...P(8 + t.length),
+		...F(e),
 		...t
 	];
 }
-function N(e) {
+function P(e) {
 	return [
 		24,
 		16,
@@ -154,28 +154,28 @@ function N(e) {
 		0
 	].map((t) => e >>> t & 255);
 }
-function P(e) {
+function F(e) {
 	return Array.from(e, (e) => e.charCodeAt(0));
 }
 // eigenfield-three/src/inflate.ts
-async function le(e, t, n, r) {
+async function de(e, t, n, r) {
 	let i = [], a = 0, o = new Blob([e]).stream().pipeThrough(new DecompressionStream(t)).getReader();
 	try {
 		for (let e = await o.read(); !e.done && a <= n; e = await o.read()) i.push(e.value), a += e.value.length;
 	} catch {
-		throw j(r, "it does not inflate");
+		throw M(r, "it does not inflate");
 	}
-	if (a > n) throw await o.cancel(), j(r, `more than ${n} bytes`);
+	if (a > n) throw await o.cancel(), M(r, `more than ${n} bytes`);
 	let s = new Uint8Array(a), c = 0;
 	for (let e of i) s.set(e, c), c += e.length;
 	return s;
 }
 // eigenfield-three/src/limits.ts
-var ue = "EIGENFIELD_eigen_textures", de = 64 * 2 ** 20, F = 16384, fe = 16384, pe = 1024, me = 2 ** 27, he = 4096, ge = 8 * 2 ** 30, I = 1e5, _e = 65535, ve = 2 ** 29, L = 1024, ye = 2 ** 25, be = 2 ** 26, xe = 2 ** 27, Se = 2 ** 28, Ce = 1e30, R = 65536, we = 126, z = 64, Te = 0, Ee = 1, De = 2, Oe = 24, ke = 44, Ae = 21, je = 26214, Me = 4, Ne = Float64Array.from({ length: 4095 }, (e, t) => Math.round(R / (1 + Math.exp((2047 - t) / 256)))), Pe = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), Fe = Float64Array.from({ length: 127 }, (e, t) => Math.round(R / (t + 1.5)));
-function B(e) {
-	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + B(Math.floor(e / 4294967296));
+var fe = "EIGENFIELD_eigen_textures", pe = 64 * 2 ** 20, I = 16384, me = 16384, he = 1024, ge = 2 ** 27, _e = 4096, ve = 8 * 2 ** 30, L = 1e5, ye = 65535, be = 2 ** 29, R = 1024, xe = 2 ** 25, Se = 2 ** 26, Ce = 2 ** 27, we = 2 ** 28, Te = 1e30, z = 65536, Ee = 126, B = 64, De = 0, Oe = 1, ke = 2, Ae = 24, je = 44, Me = 21, Ne = 26214, Pe = 4, Fe = Float64Array.from({ length: 4095 }, (e, t) => Math.round(z / (1 + Math.exp((2047 - t) / 256)))), Ie = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), Le = Float64Array.from({ length: 127 }, (e, t) => Math.round(z / (t + 1.5)));
+function V(e) {
+	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + V(Math.floor(e / 4294967296));
 }
-var Ie = class {
+var Re = class {
 	bytes;
 	low = 0;
 	high = 4294967295;
@@ -185,49 +185,49 @@ var Ie = class {
 	seen;
 	weights;
 	constructor(e, t, n) {
-		this.bytes = e, this.probability = new Uint16Array(t * z).fill(R / 2), this.seen = new Uint8Array(t * z), this.weights = new Float64Array(n * z * 3).fill(je);
-		for (let e = 0; e < Me; e++) this.code = this.code * 256 + this.next();
+		this.bytes = e, this.probability = new Uint16Array(t * B).fill(z / 2), this.seen = new Uint8Array(t * B), this.weights = new Float64Array(n * B * 3).fill(Ne);
+		for (let e = 0; e < Pe; e++) this.code = this.code * 256 + this.next();
 	}
 	checkEnd(e) {
-		if (this.at > this.bytes.length + Me) throw re(e);
+		if (this.at > this.bytes.length + Pe) throw ae(e);
 	}
 	flag(e, t, n, r) {
 		return this.node(e, t, n, r, 0) === 1;
 	}
 	raw(e) {
 		let t = 0;
-		for (let n = 0; n < e; n++) t = t * 2 + this.split(R / 2);
+		for (let n = 0; n < e; n++) t = t * 2 + this.split(z / 2);
 		return t;
 	}
 	integer(e, t, n, r) {
 		let i = this.magnitude(e, t, n, r);
-		return i === 0 ? 0 : this.node(e, t, n, r, Ee) ? -i : i;
+		return i === 0 ? 0 : this.node(e, t, n, r, Oe) ? -i : i;
 	}
 	magnitude(e, t, n, r) {
-		if (!this.node(e, t, n, r, Te)) return 0;
+		if (!this.node(e, t, n, r, De)) return 0;
 		let i = 0;
-		for (; i < Ae && this.node(e, t, n, r, De + i);) i += 1;
+		for (; i < Me && this.node(e, t, n, r, ke + i);) i += 1;
 		if (i < 2) return i + 1;
 		let a = 1;
 		for (let o = i - 2; o >= 0; o--) {
 			let s;
-			s = o === i - 2 ? this.node(e, t, n, r, Oe + i) : o === i - 3 ? this.node(e, t, n, r, ke + 2 * Math.min(i, 9) + (a & 1)) : this.split(R / 2), a = a * 2 + s;
+			s = o === i - 2 ? this.node(e, t, n, r, Ae + i) : o === i - 3 ? this.node(e, t, n, r, je + 2 * Math.min(i, 9) + (a & 1)) : this.split(z / 2), a = a * 2 + s;
 		}
 		return a + 1;
 	}
 	node(e, t, n, r, i) {
-		return this.bit(e * z + i, t * z + i, n * z + i, (r * z + i) * 3);
+		return this.bit(e * B + i, t * B + i, n * B + i, (r * B + i) * 3);
 	}
 	bit(e, t, n, r) {
-		let { probability: i, weights: a } = this, o = Pe[i[e] >> 4], s = Pe[i[t] >> 4], c = Pe[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / R), u = Ne[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? R - u : -u;
+		let { probability: i, weights: a } = this, o = Ie[i[e] >> 4], s = Ie[i[t] >> 4], c = Ie[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / z), u = Fe[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? z - u : -u;
 		return a[r] += o * f >> 14, a[r + 1] += s * f >> 14, a[r + 2] += c * f >> 14, this.learn(e, d), this.learn(t, d), this.learn(n, d), d;
 	}
 	learn(e, t) {
 		let [n, r] = [this.probability[e], this.seen[e]];
-		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * Fe[r] / R), r < we && (this.seen[e] = r + 1);
+		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * Le[r] / z), r < Ee && (this.seen[e] = r + 1);
 	}
 	split(e) {
-		let t = this.low + Math.floor((this.high - this.low) * e / R), n = +(this.code <= t);
+		let t = this.low + Math.floor((this.high - this.low) * e / z), n = +(this.code <= t);
 		for (n ? this.high = t : this.low = t + 1; !((this.low ^ this.high) >>> 24);) this.low = this.low << 8 >>> 0, this.high = (this.high << 8 | 255) >>> 0, this.code = (this.code << 8 | this.next()) >>> 0;
 		return n;
 	}
@@ -235,26 +235,26 @@ var Ie = class {
 		return this.bytes[this.at++] ?? 0;
 	}
 };
-function V(e, t, n, r = 1) {
-	if (e.length < t) throw re(n);
-	if (e[0] !== r) throw j(n, `coded numbers of version ${e[0]}`);
+function ze(e, t, n, r = 1) {
+	if (e.length < t) throw ae(n);
+	if (e[0] !== r) throw M(n, `coded numbers of version ${e[0]}`);
 	return new DataView(e.buffer, e.byteOffset, e.byteLength);
 }
-function Le(e, t, n, r) {
-	if (t > n || t > 16 * e.length + 1024) throw j(r, `${t} numbers announced`);
+function Be(e, t, n, r) {
+	if (t > n || t > 16 * e.length + 1024) throw M(r, `${t} numbers announced`);
 }
 // eigenfield-three/src/table-decoder.ts
-var Re = 12, ze = 3, Be = 312, Ve = ze * Be, He = 938, Ue = 24, We = 16, Ge = 1722, Ke = 1726, qe = 4, Je = 5;
-function Ye(e) {
-	return new Ie(e, Ke, 21);
+var Ve = 12, He = 3, Ue = 312, We = He * Ue, Ge = 938, Ke = 24, qe = 16, Je = 1722, Ye = 1726, Xe = 4, Ze = 5;
+function Qe(e) {
+	return new Re(e, Ye, 21);
 }
-function Xe(e) {
-	return e.flag(Ve, Ve, Ve, ze) ? 2 : +!!e.flag(937, 937, 937, ze);
+function $e(e) {
+	return e.flag(We, We, We, He) ? 2 : +!!e.flag(937, 937, 937, He);
 }
-function Ze(e) {
-	return Math.min(B(e), 11);
+function et(e) {
+	return Math.min(V(e), 11);
 }
-function Qe(e, t, n, r) {
+function tt(e, t, n, r) {
 	let i = new Float64Array(n.length), a = n.length / t, o = (e, n, r) => n < 0 || r < 0 || r >= t ? 0 : e[n * t + r], s = 0;
 	for (let c = 0; c < a; c++) for (let a = 0; a < t; a++) {
 		let [l, u] = [o(i, c, a - 1), o(i, c - 1, a)], [d, f] = [o(i, c - 1, a - 1), o(i, c - 1, a + 1)], [p, m, h] = [
@@ -263,52 +263,52 @@ function Qe(e, t, n, r) {
 			s
 		];
 		r === 1 ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
-		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * Be, y = e.integer(v + Ze(m) * Re + Ze(g), v + 144 + Ze(m + h), v + 144 + 24 + _ * Re + Ze(g + Math.abs(l)), r);
+		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * Ue, y = e.integer(v + et(m) * Ve + et(g), v + 144 + et(m + h), v + 144 + 24 + _ * Ve + et(g + Math.abs(l)), r);
 		i[c * t + a] = p + y, s = Math.abs(y);
 	}
 	return i;
 }
-function $e(e, t, n, r) {
+function nt(e, t, n, r) {
 	let i = new Float64Array(t * n), a = new Float64Array(n);
 	for (let o = 0; o < t; o++) {
 		let t = 0;
 		for (let s = 0; s < n; s++) {
-			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(B(a[s]), 23), d = Math.min(B(t), 23), f = e.integer(He + l * Ue + u, He + (We + l) * Ue + d, 1706 + l, Je + l);
+			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(V(a[s]), 23), d = Math.min(V(t), 23), f = e.integer(Ge + l * Ke + u, Ge + (qe + l) * Ke + d, 1706 + l, Ze + l);
 			i[o * n + s] = c + f, t = Math.abs(f), a[s] = Math.floor((a[s] + t + 1) / 2);
 		}
 	}
 	return i;
 }
-function et(e, t, n, r) {
+function rt(e, t, n, r) {
 	let i = new Float64Array(t).fill(-1), a = new Uint8Array(n), [o, s, c] = [
 		0,
 		1,
 		0
 	];
 	for (let l = 0; l < t; l++) {
-		if (s = +!!e.flag(Ge + s, Ge + s, 1724, qe), !s) continue;
-		let t = o + e.integer(1725, 1725, 1725, qe);
-		if (!(t >= 0 && t < n) || a[t]) throw j(r, "a grid with a camera out of place");
+		if (s = +!!e.flag(Je + s, Je + s, 1724, Xe), !s) continue;
+		let t = o + e.integer(1725, 1725, 1725, Xe);
+		if (!(t >= 0 && t < n) || a[t]) throw M(r, "a grid with a camera out of place");
 		a[t] = 1, i[l] = t, o = t + 1, c += 1;
 	}
-	if (c !== n) throw j(r, "a grid without all cameras");
+	if (c !== n) throw M(r, "a grid without all cameras");
 	return i;
 }
 // eigenfield-three/src/camera-decoder.ts
-var tt = 130, H = 11, nt = 1, rt = 2, it = 2, at = 44 * I + 1024;
-async function ot(e, t) {
-	if (e[0] !== it) throw j(t, `version ${e[0]}`);
-	let n = await le(Uint8Array.from(e.subarray(1)), "deflate-raw", at, t);
-	return st(Uint8Array.from([1, ...n]), t);
+var it = 130, H = 11, at = 1, ot = 2, st = 2, ct = 44 * L + 1024;
+async function lt(e, t) {
+	if (e[0] !== st) throw M(t, `version ${e[0]}`);
+	let n = await de(Uint8Array.from(e.subarray(1)), "deflate-raw", ct, t);
+	return ut(Uint8Array.from([1, ...n]), t);
 }
-function st(e, t) {
-	let n = V(e, tt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & nt) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
-	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw j(t, "cameras that cannot be");
-	if (i > 1e5 || a && o * s < i) throw j(t, `${i} cameras`);
-	Le(e, Math.max(H * i, o * s), H * I, t);
-	let l = tt + (a ? 132 : 0);
-	V(e, l, t);
-	let u = (e, t) => a ? n.getFloat32(tt + 4 * (e * H + t), !0) : 0, d = Ye(e.subarray(l)), f = a ? et(d, o * s, i, t) : null, p = $e(d, i, H, (r & rt) !== 0);
+function ut(e, t) {
+	let n = ze(e, it, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & at) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
+	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw M(t, "cameras that cannot be");
+	if (i > 1e5 || a && o * s < i) throw M(t, `${i} cameras`);
+	Be(e, Math.max(H * i, o * s), H * L, t);
+	let l = it + (a ? 132 : 0);
+	ze(e, l, t);
+	let u = (e, t) => a ? n.getFloat32(it + 4 * (e * H + t), !0) : 0, d = Qe(e.subarray(l)), f = a ? rt(d, o * s, i, t) : null, p = nt(d, i, H, (r & ot) !== 0);
 	d.checkEnd(t);
 	let m = {
 		intrinsics: new Float32Array(5 * i),
@@ -319,7 +319,7 @@ function st(e, t) {
 		0,
 		0,
 		...c.subarray(12)
-	], g = lt(c[3], c[4], c[5], c[6]), _ = new Float64Array(H), v = 0;
+	], g = ft(c[3], c[4], c[5], c[6]), _ = new Float64Array(H), v = 0;
 	for (let e = 0; e < (f ? f.length : i); e++) {
 		let t = f ? f[e] : e;
 		if (t < 0) continue;
@@ -328,18 +328,18 @@ function st(e, t) {
 			let t = c[e < 5 ? 0 : e < 8 ? 1 : 2], i = u(0, e) + u(1, e) * n + u(2, e) * r;
 			_[e] = p[v * H + e] * t + h[e] + i;
 		}
-		ct(_, g, m, t), v += 1;
+		dt(_, g, m, t), v += 1;
 	}
-	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw j(t, "cameras that are not finite");
+	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw M(t, "cameras that are not finite");
 	return m;
 }
-function ct(e, t, n, r) {
+function dt(e, t, n, r) {
 	n.intrinsics.set(e.subarray(0, 5), 5 * r);
 	let [i, a, o] = [
 		e[5],
 		e[6],
 		e[7]
-	], s = i * i + a * a + o * o, c = 1 + s, l = lt(2 * i / c, 2 * a / c, 2 * o / c, (1 - s) / c);
+	], s = i * i + a * a + o * o, c = 1 + s, l = ft(2 * i / c, 2 * a / c, 2 * o / c, (1 - s) / c);
 	for (let i = 0; i < 3; i++) {
 		let a = 0;
 		for (let o = 0; o < 3; o++) {
@@ -350,7 +350,7 @@ function ct(e, t, n, r) {
 		n.poses[12 * r + 4 * i + 3] = a;
 	}
 }
-function lt(e, t, n, r) {
+function ft(e, t, n, r) {
 	return [
 		[
 			1 - 2 * (t * t + n * n),
@@ -369,7 +369,7 @@ function lt(e, t, n, r) {
 		]
 	].flat();
 }
-var ut = 2 ** 24, dt = class {
+var pt = 2 ** 24, mt = class {
 	points;
 	start;
 	end;
@@ -436,7 +436,7 @@ var ut = 2 ** 24, dt = class {
 	add(e, t, n) {
 		let { heap: r, key: i, points: a } = this, o = this.gates++;
 		this.start[o] = e, this.end[o] = t, this.opposite[o] = n, this.status[o] = 1, this.into[t] = o;
-		let s = (a[3 * e] + a[3 * t]) * ut + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
+		let s = (a[3 * e] + a[3 * t]) * pt + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
 		for (; c > 0;) {
 			let e = c - 1 >> 1;
 			if (i[e] <= s) break;
@@ -444,57 +444,57 @@ var ut = 2 ** 24, dt = class {
 		}
 		return r[c] = o, i[c] = s, o;
 	}
-}, ft = 2 ** 20, pt = .8, mt = 44, ht = 385, gt = 897, _t = 1086, vt = 1095, [yt, bt, xt, St, Ct] = [
+}, ht = 2 ** 20, gt = .8, _t = 44, vt = 385, yt = 897, bt = 1086, xt = 1095, [St, Ct, wt, Tt, Et] = [
 	0,
 	1,
 	2,
 	3,
 	15
 ];
-function wt(e) {
-	return Math.floor(Math.min(Math.max(e, -ft), ft) + .5);
+function Dt(e) {
+	return Math.floor(Math.min(Math.max(e, -ht), ht) + .5);
 }
-function Tt(e, t, n) {
+function Ot(e, t, n) {
 	let r = Math.max((1 << n) - 1, 1);
 	return (e[3 * t] & r ? 1 : 0) + (e[3 * t + 1] & r ? 2 : 0);
 }
-function Et(e, t, n, r, i) {
-	i.flat ? Dt(e, t, n, r, i.fine) : Ot(e, t, n, r);
+function kt(e, t, n, r, i) {
+	i.flat ? At(e, t, n, r, i.fine) : jt(e, t, n, r);
 }
-function Dt(e, t, n, r, i) {
+function At(e, t, n, r, i) {
 	let { a, b: o, o: s, pair: c } = r, [l, u, d, f] = [
 		t[3 * a],
 		t[3 * a + 1],
 		t[3 * o],
 		t[3 * o + 1]
-	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? pt : -.8, _ = 1 << i >> 1, v = wt((l + d) * .5 + g * m) + _ >> i, y = wt((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(B(Math.floor((p * p + m * m) / b)), 23), S = Math.min(B(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, yt), T = Math.min(B(Math.abs(w)), 7), [E, D] = [577, 705], O = T * 2 + +(w > 0), ee = e.integer(ht + x * 8 + C, E + O * 8 + C, D + S * 8 + T, bt);
+	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? gt : -.8, _ = 1 << i >> 1, v = Dt((l + d) * .5 + g * m) + _ >> i, y = Dt((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(V(Math.floor((p * p + m * m) / b)), 23), S = Math.min(V(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, St), T = Math.min(V(Math.abs(w)), 7), [E, D] = [577, 705], O = T * 2 + +(w > 0), ee = e.integer(vt + x * 8 + C, E + O * 8 + C, D + S * 8 + T, Ct);
 	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + ee << i, i === 0) return;
-	let k = Tt(t, a, i) + 4 * Tt(t, o, i);
-	if (e.flag(gt + k, 913 + Tt(t, s, i), 917 + c, Ct)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
+	let k = Ot(t, a, i) + 4 * Ot(t, o, i);
+	if (e.flag(yt + k, 913 + Ot(t, s, i), 917 + c, Et)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
 }
-function Ot(e, t, n, { a: r, b: i, o: a }) {
+function jt(e, t, n, { a: r, b: i, o: a }) {
 	let o = 0;
 	for (let e = 0; e < 3; e++) o += (t[3 * i + e] - t[3 * r + e]) ** 2;
-	let s = Math.min(B(o), 43), c = 0;
+	let s = Math.min(V(o), 43), c = 0;
 	for (let o = 0; o < 3; o++) {
-		let l = wt(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, mt + o * 24 + c, 116 + o * mt + s, xt);
-		t[3 * n + o] = l + u, c = Math.min(B(Math.abs(u)), 23);
+		let l = Dt(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, _t + o * 24 + c, 116 + o * _t + s, wt);
+		t[3 * n + o] = l + u, c = Math.min(V(Math.abs(u)), 23);
 	}
 }
-function kt(e, t, n, r, i) {
+function Mt(e, t, n, r, i) {
 	for (let a = 0; a < (i ? 2 : 3); a++) {
-		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -ft), ft) : 0, o = _t + a;
-		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, St);
+		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -ht), ht) : 0, o = bt + a;
+		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, Tt);
 	}
 }
 // eigenfield-three/src/mesh-faces.ts
-var At = 13, jt = 11, Mt = 12, U = 169, Nt = 8, Pt = vt, Ft = Pt + U + 104 + 26, It = Ft + U + 104 + At, Lt = It + 64 + 64 + U, Rt = Lt + U + 4 + 1, zt = Rt + 6, [Bt, Vt, Ht, Ut, Wt] = [
+var Nt = 13, Pt = 11, Ft = 12, U = 169, It = 8, Lt = xt, Rt = Lt + U + 104 + 26, zt = Rt + U + 104 + Nt, Bt = zt + 64 + 64 + U, Vt = Bt + U + 4 + 1, Ht = Vt + 6, [Ut, Wt, Gt, Kt, qt] = [
 	4,
 	5,
 	6,
 	7,
 	8
-], Gt = [
+], Jt = [
 	-1,
 	-.4,
 	0,
@@ -505,12 +505,12 @@ var At = 13, jt = 11, Mt = 12, U = 169, Nt = 8, Pt = vt, Ft = Pt + U + 104 + 26,
 	2,
 	4
 ];
-function Kt(e, t, n, r, i) {
+function Yt(e, t, n, r, i) {
 	let a = new Int32Array(3 * t), o = {
 		points: a,
 		faces: new Int32Array(3 * n),
 		parents: new Int32Array(3 * t).fill(-1)
-	}, s = new Int32Array(t), c = new dt(a, n), [l, u] = [0, 0], d = (e, t, n) => {
+	}, s = new Int32Array(t), c = new mt(a, n), [l, u] = [0, 0], d = (e, t, n) => {
 		o.faces.set([
 			e,
 			t,
@@ -522,11 +522,11 @@ function Kt(e, t, n, r, i) {
 			n
 		]) s[r] += 1;
 	}, f = () => {
-		if (l >= t) throw j(i, "more places than announced");
+		if (l >= t) throw M(i, "more places than announced");
 		return l++;
 	}, p = () => {
-		let t = e.raw(B(l - 1));
-		if (t >= l) throw j(i, "a place that is not there yet");
+		let t = e.raw(V(l - 1));
+		if (t >= l) throw M(i, "a place that is not there yet");
 		return t;
 	}, m = () => {
 		let t = [
@@ -534,56 +534,56 @@ function Kt(e, t, n, r, i) {
 			-1,
 			-1
 		];
-		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(Rt + n, Rt + 3 + n, Rt + n, Wt)) t[n] = p();
+		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(Vt + n, Vt + 3 + n, Vt + n, qt)) t[n] = p();
 		else {
 			let i = t[n] = f();
-			kt(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
+			Mt(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
 		}
 		let [n, o, s] = t;
-		if (n === o || o === s || s === n) throw j(i, "a face of two corners");
+		if (n === o || o === s || s === n) throw M(i, "a face of two corners");
 		d(n, o, s), c.seed(t);
-	}, h = (e, t, n, i) => c.status[t] === 2 ? Mt : c.status[t] !== 1 || n === i || t === e ? jt : qt(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
+	}, h = (e, t, n, i) => c.status[t] === 2 ? Ft : c.status[t] !== 1 || n === i || t === e ? Pt : Xt(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
 	for (; u < n;) {
 		let t = c.next();
 		if (t < 0) {
 			m();
 			continue;
 		}
-		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * At + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = Pt + U + 104 + 2 * y + +(_ === v);
-		if (y < jt && e.flag(Pt + x, Pt + U + y * Nt + S, w, Bt)) {
+		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * Nt + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = Lt + U + 104 + 2 * y + +(_ === v);
+		if (y < Pt && e.flag(Lt + x, Lt + U + y * It + S, w, Ut)) {
 			d(l, n, _), c.closeLeft(t);
 			continue;
 		}
-		if (b < jt && (v !== _ || y >= jt) && e.flag(Ft + x, Ft + U + b * Nt + C, Ft + U + 104 + b, Vt)) {
+		if (b < Pt && (v !== _ || y >= Pt) && e.flag(Rt + x, Rt + U + b * It + C, Rt + U + 104 + b, Wt)) {
 			d(l, n, v), c.closeRight(t);
 			continue;
 		}
-		let T = +(y === Mt) + (b === Mt ? 2 : 0), E = Tt(a, n, r.fine) + 4 * Tt(a, l, r.fine), D = It + 64 + S * Nt + C;
-		if (e.flag(It + T * 16 + E, D, It + 64 + 64 + x, Ht)) {
+		let T = +(y === Ft) + (b === Ft ? 2 : 0), E = Ot(a, n, r.fine) + 4 * Ot(a, l, r.fine), D = zt + 64 + S * It + C;
+		if (e.flag(zt + T * 16 + E, D, zt + 64 + 64 + x, Gt)) {
 			c.status[t] = 2;
 			continue;
 		}
 		let O;
-		if (e.flag(Lt + x, Lt + U + T, Lt + U + 4, Ut)) {
+		if (e.flag(Bt + x, Bt + U + T, Bt + U + 4, Kt)) {
 			O = f();
 			let i = c.opposite[t];
 			o.parents.set([
 				n,
 				l,
 				i
-			], 3 * O), Et(e, a, O, {
+			], 3 * O), kt(e, a, O, {
 				a: n,
 				b: l,
 				o: i,
 				pair: x
 			}, r);
-		} else if (O = p(), O === n || O === l) throw j(i, "a face of two corners");
+		} else if (O = p(), O === n || O === l) throw M(i, "a face of two corners");
 		d(l, n, O), c.openOut(t, O);
 	}
-	if (l !== t) throw j(i, "fewer places than announced");
+	if (l !== t) throw M(i, "fewer places than announced");
 	return o;
 }
-function qt(e, t, n, r, i, a) {
+function Xt(e, t, n, r, i, a) {
 	let o = (n, r) => a && r === 2 ? 0 : e[3 * n + r] - e[3 * t + r], [s, c, l] = [
 		o(n, 0),
 		o(n, 1),
@@ -606,21 +606,21 @@ function qt(e, t, n, r, i, a) {
 		s * m - c * p
 	], S = Math.sqrt(g * g + _ * _ + v * v);
 	if (S === 0 || g * y + _ * b + v * x > 0) return 0;
-	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = Gt.findIndex((e) => C < e);
+	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = Jt.findIndex((e) => C < e);
 	return w < 0 ? 10 : w + 1;
 }
 // eigenfield-three/src/mesh-corners.ts
-var Jt = 32, Yt = 4, [Xt, Zt, Qt, $t] = [
+var Zt = 32, Qt = 4, [$t, en, tn, nn] = [
 	0,
 	1,
 	2,
 	3
-], en = zt, tn = en + 64 + 12 + 16, W = tn + Yt + 1, nn = W + 4, [rn, an, on] = [
+], rn = Ht, an = rn + 64 + 12 + 16, W = an + Qt + 1, on = W + 4, [sn, cn, ln] = [
 	9,
 	10,
 	11
 ];
-function sn(e, t) {
+function un(e, t) {
 	let n = new Int32Array(t + 1);
 	for (let t of e) n[t + 1] += 1;
 	for (let e = 0; e < t; e++) n[e + 1] += n[e];
@@ -630,7 +630,7 @@ function sn(e, t) {
 		corners: i
 	};
 }
-function cn(e, t, n, r, i, a, o) {
+function dn(e, t, n, r, i, a, o) {
 	let s = t.faces.length / 3, c = Math.min(s, Math.floor(n / 3)), l = {
 		faces: new Int32Array(3 * s),
 		place: new Int32Array(n),
@@ -645,7 +645,7 @@ function cn(e, t, n, r, i, a, o) {
 		0,
 		0,
 		0
-	], m = new Int32Array(Yt), h = /* @__PURE__ */ new Int32Array(8), [g, _, v] = [
+	], m = new Int32Array(Qt), h = /* @__PURE__ */ new Int32Array(8), [g, _, v] = [
 		0,
 		0,
 		-1
@@ -654,7 +654,7 @@ function cn(e, t, n, r, i, a, o) {
 		return -1;
 	}, b = (e, n) => {
 		let [a, o] = [t.faces[3 * e + n], t.faces[3 * e + (n + 1) % 3]];
-		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + Jt); t++) {
+		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + Zt); t++) {
 			let n = Math.floor(i[t] / 3);
 			if (n >= e) break;
 			if (y(n, o) >= 0) return n;
@@ -663,48 +663,48 @@ function cn(e, t, n, r, i, a, o) {
 	}, x = (e, t) => l.faces[3 * e + y(e, t)], S = (n, r) => {
 		let i = t.faces[3 * n + r], a = u[i];
 		if (a < 0) return -1;
-		h.fill($t);
+		h.fill(nn);
 		let s = 0;
 		for (let e of [r, (r + 2) % 3]) {
 			if (f[e] < 0) continue;
 			let t = x(f[e], i);
 			s === 1 && m[0] === t ? h[1] = p[e] : (m[s] = t, h[2 * s] = p[e], s += 1);
 		}
-		for (let e = 0; e < Jt && s < Yt && a >= 0; e++) (s < 1 || a !== m[0]) && (s < 2 || a !== m[1]) && (m[s++] = a), a = d[a];
+		for (let e = 0; e < Zt && s < Qt && a >= 0; e++) (s < 1 || a !== m[0]) && (s < 2 || a !== m[1]) && (m[s++] = a), a = d[a];
 		let c = -1;
 		for (let t = 0; t < s && c < 0; t++) {
-			let [n, i] = [h[2 * t], h[2 * t + 1]], a = en + 76 + Math.min(s, 3) * 4 + n;
-			e.flag(en + t * 16 + n * 4 + i, en + 64 + t * 3 + r, a, rn) && (c = m[t]);
+			let [n, i] = [h[2 * t], h[2 * t + 1]], a = rn + 76 + Math.min(s, 3) * 4 + n;
+			e.flag(rn + t * 16 + n * 4 + i, rn + 64 + t * 3 + r, a, sn) && (c = m[t]);
 		}
 		if (c < 0) {
-			if (e.flag(tn + s, tn + s, tn + Yt, an)) return -1;
-			if (c = e.raw(B(g - 1)), c >= g || l.place[c] !== i) throw j(o, "a corner that is elsewhere");
+			if (e.flag(an + s, an + s, an + Qt, cn)) return -1;
+			if (c = e.raw(V(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
 		}
-		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? Zt : Qt);
+		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? en : tn);
 		return c;
 	}, C = () => {
 		let t = _++;
-		if (!e.flag(W, W, W, on)) return l.kinds[t] = e.flag(W + 1, W + 1, W + 1, on) ? 2 : 0, t;
+		if (!e.flag(W, W, W, ln)) return l.kinds[t] = e.flag(W + 1, W + 1, W + 1, ln) ? 2 : 0, t;
 		l.kinds[t] = 1;
 		let n = v;
-		if (v = t, n >= 0 && e.flag(W + 2, W + 2, W + 2, on)) {
-			let n = e.raw(B(t - 1));
-			if (n >= t || l.kinds[n] !== 1) throw j(o, "a map that is not there");
+		if (v = t, n >= 0 && e.flag(W + 2, W + 2, W + 2, ln)) {
+			let n = e.raw(V(t - 1));
+			if (n >= t || l.kinds[n] !== 1) throw M(o, "a map that is not there");
 			return l.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
 		}
-		let r = n >= 0 && e.flag(W + 3, W + 3, W + 3, on);
+		let r = n >= 0 && e.flag(W + 3, W + 3, W + 3, ln);
 		for (let i = 0; i < 4; i++) l.maps[6 * t + i] = r ? l.maps[6 * n + i] : e.raw(32);
 		for (let n = 4; n < 6; n++) l.maps[6 * t + n] = e.raw(a);
 		return t;
 	};
 	for (let e = 0; e < s; e++) {
-		for (let t = 0; t < 3; t++) f[t] = b(e, t), p[t] = Xt;
+		for (let t = 0; t < 3; t++) f[t] = b(e, t), p[t] = $t;
 		let r = -1, i = [];
 		for (let a = 0; a < 3; a++) {
 			let s = S(e, a);
 			if (s >= 0) r = l.chart[s];
 			else {
-				if (g >= n) throw j(o, "more vertices than announced");
+				if (g >= n) throw M(o, "more vertices than announced");
 				s = g++;
 				let r = t.faces[3 * e + a];
 				l.place[s] = r, d[s] = u[r], u[r] = s, i.push(s);
@@ -714,11 +714,11 @@ function cn(e, t, n, r, i, a, o) {
 		r < 0 && (r = C());
 		for (let e of i) l.chart[e] = r;
 	}
-	if (g !== n) throw j(o, "fewer vertices than announced");
+	if (g !== n) throw M(o, "fewer vertices than announced");
 	return l;
 }
 // eigenfield-three/src/mesh-values.ts
-var ln = 16, un = 6, dn = 13, fn = 14, pn = 20, mn = nn, hn = mn + 169 + 280 + 182, gn = hn + 144 + 576 + 48, [_n, vn] = [12, 13], yn = [
+var fn = 16, pn = 6, mn = 13, hn = 14, gn = 20, _n = on, vn = _n + 169 + 280 + 182, yn = vn + 144 + 576 + 48, [bn, xn] = [12, 13], Sn = [
 	.5,
 	1.5,
 	3,
@@ -726,14 +726,14 @@ var ln = 16, un = 6, dn = 13, fn = 14, pn = 20, mn = nn, hn = mn + 169 + 280 + 1
 	12,
 	30
 ];
-function bn(e, t) {
-	return wt(Number.isNaN(e) ? t : e);
+function Cn(e, t) {
+	return Dt(Number.isNaN(e) ? t : e);
 }
-function xn(e) {
-	let t = yn.filter((t) => Math.abs(e) >= t).length;
-	return e < 0 ? un - t : un + t;
+function wn(e) {
+	let t = Sn.filter((t) => Math.abs(e) >= t).length;
+	return e < 0 ? pn - t : pn + t;
 }
-function Sn(e, t, n, r) {
+function Tn(e, t, n, r) {
 	let { points: i, faces: a, parents: o } = t, s = /* @__PURE__ */ new Float64Array(9), c = (e) => i[3 * e], l = (e) => i[3 * e + 1], u = (e) => i[3 * e + 2], d = (e, t) => {
 		let [n, r, i] = [
 			c(t) - c(e),
@@ -754,18 +754,18 @@ function Sn(e, t, n, r) {
 			Infinity,
 			-Infinity
 		];
-		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + ln); e++) for (let i = 1; i < 3; i++) {
-			let o = Cn(a, r[e], i);
+		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + fn); e++) for (let i = 1; i < 3; i++) {
+			let o = En(a, r[e], i);
 			if (o >= t) continue;
 			let s = d(t, o);
 			h += s * u(o), g += s, _ = Math.min(_, u(o)), v = Math.max(v, u(o));
-			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + ln); e++) for (let n = 1; n < 3; n++) {
-				let i = Cn(a, r[e], n);
+			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + fn); e++) for (let n = 1; n < 3; n++) {
+				let i = En(a, r[e], n);
 				i < t && d(t, i);
 			}
 		}
 		let y = 13, b = t > 0 ? u(t - 1) : 0, x = b;
-		g > 0 && (y = Math.min(B(v - _), 12), b = h / g, x = Math.min(Math.max(wn(s), p), m));
+		g > 0 && (y = Math.min(V(v - _), 12), b = h / g, x = Math.min(Math.max(Dn(s), p), m));
 		let S = b, [C, w, T] = [
 			o[3 * t],
 			o[3 * t + 1],
@@ -783,15 +783,15 @@ function Sn(e, t, n, r) {
 				S = Math.min(Math.max(u(C) + t * (u(w) - u(C)) + c * (u(T) - u(C)), p), m);
 			}
 		}
-		let E = bn(x, b), [D, O] = [xn(S - E), xn(b - E)], ee = e.integer(mn + D * dn + O, mn + 169 + y * pn + f, mn + 169 + 280 + D * fn + y, _n), k = E + ee;
-		i[3 * t + 2] = k, f = Math.min(B(Math.abs(ee)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
+		let E = Cn(x, b), [D, O] = [wn(S - E), wn(b - E)], ee = e.integer(_n + D * mn + O, _n + 169 + y * gn + f, _n + 169 + 280 + D * hn + y, bn), k = E + ee;
+		i[3 * t + 2] = k, f = Math.min(V(Math.abs(ee)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
 	}
 }
-function Cn(e, t, n) {
+function En(e, t, n) {
 	let r = t % 3;
 	return e[t - r + (r + n) % 3];
 }
-function wn(e) {
+function Dn(e) {
 	let [t, n, r] = [
 		e[0],
 		e[1],
@@ -811,7 +811,7 @@ function wn(e) {
 	];
 	return (s * u - c * d + l * f) / (t * u - n * d + r * f);
 }
-function Tn(e, t, n, r, i) {
+function On(e, t, n, r, i) {
 	let { faces: a, chart: o, kinds: s, place: c } = t, l = new Int32Array(2 * c.length), u = [0, 0], d = -1;
 	for (let t = 0; t < c.length; t++) {
 		let f = s[o[t]];
@@ -823,25 +823,25 @@ function Tn(e, t, n, r, i) {
 			-1,
 			0
 		];
-		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + ln); e++) {
-			let [r, s] = [Cn(a, i[e], 1), Cn(a, i[e], 2)];
+		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + fn); e++) {
+			let [r, s] = [En(a, i[e], 1), En(a, i[e], 2)];
 			if (r < t && o[r] === o[t] && (g = Math.max(g, r)), s < t && o[s] === o[t] && (g = Math.max(g, s)), r >= t || s >= t) continue;
-			let [u, d] = En(n, c, l, t, r, s, f === 2);
+			let [u, d] = kn(n, c, l, t, r, s, f === 2);
 			if (!Number.isFinite(u) || !Number.isFinite(d)) continue;
 			p += u, m += d, h += 1;
 			let v = Math.abs(l[2 * r] - l[2 * s]) + Math.abs(l[2 * r + 1] - l[2 * s + 1]);
-			_ = Math.max(_, B(v));
+			_ = Math.max(_, V(v));
 		}
 		g < 0 && (g = d), d = t;
-		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = hn + 144;
+		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = vn + 144;
 		for (let n = 0; n < 2; n++) {
-			let r = e.integer(hn + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], vn + n);
-			l[2 * t + n] = bn(y[n], 0) + r, u[n] = Math.min(B(Math.abs(r)), 23);
+			let r = e.integer(vn + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], xn + n);
+			l[2 * t + n] = Cn(y[n], 0) + r, u[n] = Math.min(V(Math.abs(r)), 23);
 		}
 	}
 	return l;
 }
-function En(e, t, n, r, i, a, o) {
+function kn(e, t, n, r, i, a, o) {
 	let [s, c, l] = [
 		0,
 		0,
@@ -855,15 +855,15 @@ function En(e, t, n, r, i, a, o) {
 	return [n[2 * i] + f * u - m * d, n[2 * i + 1] + f * d + m * u];
 }
 // eigenfield-three/src/mesh-decoder.ts
-var Dn = 144, On = 2, kn = 3, An = 18, jn = 8;
-function Mn(e, t) {
-	return Pn(e, t, 1);
+var An = 144, jn = 2, Mn = 3, Nn = 18, Pn = 8;
+function Fn(e, t) {
+	return Ln(e, t, 1);
 }
-function Nn(e, t) {
-	return Pn(e, t, On);
+function In(e, t) {
+	return Ln(e, t, jn);
 }
-function Pn(e, t, n) {
-	let r = V(e, Dn, t, n), [i, a, o] = [
+function Ln(e, t, n) {
+	let r = ze(e, An, t, n), [i, a, o] = [
 		r.getUint8(1),
 		r.getUint8(2),
 		r.getUint8(3)
@@ -872,21 +872,21 @@ function Pn(e, t, n) {
 		8,
 		12
 	].map((e) => r.getUint32(e, !0)), u = Float64Array.from({ length: 16 }, (e, t) => r.getFloat64(16 + 8 * t, !0));
-	if (s > be || l > be || c > xe) throw j(t, `${l} vertices and ${c} faces`);
-	if (Le(e, Math.max(s, c, l), xe, t), i > 1 || o > jn * i || a < 1 || a > An || !u.every(Number.isFinite)) throw j(t, "a lattice that cannot be");
-	let d = new Ie(e.subarray(Dn), gn, 16), f = Kt(d, s, c, {
+	if (s > Se || l > Se || c > Ce) throw M(t, `${l} vertices and ${c} faces`);
+	if (Be(e, Math.max(s, c, l), Ce, t), i > 1 || o > Pn * i || a < 1 || a > Nn || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
+	let d = new Re(e.subarray(An), yn, 16), f = Yt(d, s, c, {
 		flat: i === 1,
 		fine: o
 	}, t);
 	d.checkEnd(t);
-	let p = sn(f.faces, s);
-	i && Sn(d, f, p.first, p.corners);
-	let m = n === On ? a + kn : 32, h = cn(d, f, l, p.first, p.corners, m, t), g = Fn(f.points, u), _ = sn(h.faces, l), v = Tn(d, h, g, _.first, _.corners);
+	let p = un(f.faces, s);
+	i && Tn(d, f, p.first, p.corners);
+	let m = n === jn ? a + Mn : 32, h = dn(d, f, l, p.first, p.corners, m, t), g = Rn(f.points, u), _ = un(h.faces, l), v = On(d, h, g, _.first, _.corners);
 	d.checkEnd(t);
 	let y = new Float32Array(h.maps.buffer);
-	return Ln(In(f, h, g, v, 2 ** a, (e) => n === On ? h.maps[e] / 2 ** (a + 1) - 2 : y[e]), t);
+	return Bn(zn(f, h, g, v, 2 ** a, (e) => n === jn ? h.maps[e] / 2 ** (a + 1) - 2 : y[e]), t);
 }
-function Fn(e, t) {
+function Rn(e, t) {
 	let n = new Float64Array(e.length);
 	for (let r = 0; r < e.length; r += 3) {
 		let i = (n) => t[4 * n] * e[r] + t[4 * n + 1] * e[r + 1] + t[4 * n + 2] * e[r + 2] + t[4 * n + 3], a = i(3);
@@ -894,7 +894,7 @@ function Fn(e, t) {
 	}
 	return n;
 }
-function In(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) {
+function zn(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) {
 	let u = new Float32Array(3 * n.length), d = new Float32Array(2 * n.length), f = new Float32Array(a.buffer);
 	return n.forEach((t, n) => {
 		u.set(o.subarray(3 * t, 3 * t + 3), 3 * n);
@@ -909,16 +909,16 @@ function In(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) 
 		indices: new Uint32Array(t)
 	};
 }
-function Ln(e, t) {
-	let n = (e) => Math.abs(e) <= Ce;
-	if (!e.positions.every(n) || !e.uv.every(n)) throw j(t, "positions or texture coordinates that are not finite");
+function Bn(e, t) {
+	let n = (e) => Math.abs(e) <= Te;
+	if (!e.positions.every(n) || !e.uv.every(n)) throw M(t, "positions or texture coordinates that are not finite");
 	return e;
 }
 // eigenfield-three/src/name-decoder.ts
-var Rn = 4 * L;
-async function zn(e, t, n) {
-	let r = Math.min(ye, Rn * t), i = await le(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
-	if (a === 0 || !Number.isInteger(a)) throw j(n, `${i.length} bytes of ${t} names`);
+var Vn = 4 * R;
+async function Hn(e, t, n) {
+	let r = Math.min(xe, Vn * t), i = await de(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
+	if (a === 0 || !Number.isInteger(a)) throw M(n, `${i.length} bytes of ${t} names`);
 	let o = new TextDecoder("utf-8", {
 		fatal: !0,
 		ignoreBOM: !0
@@ -930,22 +930,22 @@ async function zn(e, t, n) {
 		try {
 			c.push(o.decode(s.subarray(0, r)));
 		} catch {
-			throw j(n, "names that are not UTF-8");
+			throw M(n, "names that are not UTF-8");
 		}
 	}
 	return c;
 }
 // eigenfield-three/src/headers.ts
-function Bn(e) {
+function Un(e) {
 	let t = new DataView(e);
 	try {
-		return Hn(t) ?? Un(t) ?? Wn(t) ?? Gn(t);
+		return Gn(t) ?? Kn(t) ?? qn(t) ?? Jn(t);
 	} catch (e) {
 		if (e instanceof RangeError) return null;
 		throw e;
 	}
 }
-function Vn(e, t) {
+function Wn(e, t) {
 	return String.fromCharCode(...[
 		0,
 		1,
@@ -953,15 +953,15 @@ function Vn(e, t) {
 		3
 	].map((n) => e.getUint8(t + n)));
 }
-function Hn(e) {
-	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || Vn(e, 12) !== "IHDR" ? null : {
+function Gn(e) {
+	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || Wn(e, 12) !== "IHDR" ? null : {
 		type: "image/png",
 		width: e.getUint32(16),
 		height: e.getUint32(20),
 		bits: null
 	};
 }
-function Un(e) {
+function Kn(e) {
 	if (e.getUint16(0) !== 65496) return null;
 	for (let t = 2;;) {
 		let n = e.getUint16(t);
@@ -984,12 +984,12 @@ function Un(e) {
 		t += 2 + e.getUint16(t + 2);
 	}
 }
-function Wn(e) {
-	if (Vn(e, 0) !== "RIFF" || Vn(e, 8) !== "WEBP") return null;
+function qn(e) {
+	if (Wn(e, 0) !== "RIFF" || Wn(e, 8) !== "WEBP") return null;
 	let t = {
 		type: "image/webp",
 		bits: null
-	}, n = Vn(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
+	}, n = Wn(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
 	if (n === "VP8X") return {
 		...t,
 		width: 1 + r(24),
@@ -1009,11 +1009,11 @@ function Wn(e) {
 		height: e.getUint16(28, !0) & 16383
 	} : null;
 }
-function Gn(e) {
-	if (Vn(e, 4) !== "ftyp") return null;
+function Jn(e) {
+	if (Wn(e, 4) !== "ftyp") return null;
 	let t = null, n = null, r = (i, a) => {
 		for (let o = i; o + 8 <= a;) {
-			let i = e.getUint32(o), s = Vn(e, o + 4), c = i === 0 ? a : o + i;
+			let i = e.getUint32(o), s = Wn(e, o + 4), c = i === 0 ? a : o + i;
 			if (i === 1 || c < o + 8 || c > a) return;
 			if (s === "meta" && r(o + 12, c), (s === "iprp" || s === "ipco") && r(o + 8, c), s === "ispe") {
 				let [n, r] = [e.getUint32(o + 12), e.getUint32(o + 16)];
@@ -1036,42 +1036,42 @@ function Gn(e) {
 	};
 }
 // eigenfield-three/src/pictures-8bit.ts
-var Kn = {
+var Yn = {
 	colorSpaceConversion: "none",
 	premultiplyAlpha: "none"
-}, qn = {
+}, Xn = {
 	"image/avif": "AAAAHGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZgAAAOltZXRhAAAAAAAAACFoZGxyAAAAAAAAAABwaWN0AAAAAAAAAAAAAAAAAAAAAA5waXRtAAAAAAABAAAAHmlsb2MAAAAARAAAAQABAAAAAQAAAQ0AAAAZAAAAKGlpbmYAAAAAAAEAAAAaaW5mZQIAAAAAAQAAYXYwMUNvbG9yAAAAAGhpcHJwAAAASWlwY28AAAAUaXNwZQAAAAAAAAAIAAAACAAAAA5waXhpAAAAAAEIAAAADGF2MUOBABwAAAAAE2NvbHJuY2x4AAEADQAGgAAAABdpcG1hAAAAAAAAAAEAAQQBAoMEAAAAIW1kYXQSAAoIGAi/aYCGg1AyCxlGIYeeaACQQNmg",
 	"image/webp": "UklGRh4AAABXRUJQVlA4TBEAAAAvAAAAAAdQwAIWsP+BiOh/AAA="
 };
-function Jn(e, t, n) {
-	let r = Bn(e);
-	if (!r) throw j(t.where, "no picture");
+function Zn(e, t, n) {
+	let r = Un(e);
+	if (!r) throw M(t.where, "no picture");
 	let { width: i, height: a, bits: o } = r;
-	if (n && (i !== n[0] || a !== n[1])) throw j(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
-	if (t.codec.bits !== 8 && t.codec.bits !== o) throw j(t.where, `no picture of ${t.codec.bits} bits`);
+	if (n && (i !== n[0] || a !== n[1])) throw M(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
+	if (t.codec.bits !== 8 && t.codec.bits !== o) throw M(t.where, `no picture of ${t.codec.bits} bits`);
 	let s = i * a;
-	if (!s || i > 16384 || a > 32768 || s > me) throw j(t.where, `a picture of ${i} x ${a}`);
+	if (!s || i > 16384 || a > 32768 || s > ge) throw M(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
-async function Yn(e, t, n, r) {
-	let [i, a] = Jn(e, t, n), [o, s] = [Math.ceil(i / r), Math.ceil(a / r)], c = r === 1 ? {} : {
+async function Qn(e, t, n, r) {
+	let [i, a] = Zn(e, t, n), [o, s] = [Math.ceil(i / r), Math.ceil(a / r)], c = r === 1 ? {} : {
 		resizeWidth: o,
 		resizeHeight: s,
 		resizeQuality: "high"
-	}, l = Bn(e)?.type ?? t.codec.mimeType, u;
+	}, l = Un(e)?.type ?? t.codec.mimeType, u;
 	try {
 		u = await createImageBitmap(new Blob([e], { type: l }), {
-			...Kn,
+			...Yn,
 			...c
 		});
 	} catch (e) {
-		throw await Zn(l) ? j(t.where, "it cannot be decoded") : Qn(l, t, e);
+		throw await er(l) ? M(t.where, "it cannot be decoded") : tr(l, t, e);
 	}
 	if (u.width === o && u.height === s) return u;
-	throw u.close(), j(t.where, `decoded to ${u.width} x ${u.height}, not to ${o} x ${s}`);
+	throw u.close(), M(t.where, `decoded to ${u.width} x ${u.height}, not to ${o} x ${s}`);
 }
-var Xn = async (e, t, n, r = 1) => {
-	let i = t.pieces * t.textures, [a, o] = Jn(e, t, n && [n[0], i * n[1]]), s = await Yn(e, t, [a, o], i === 1 ? r : 1);
+var $n = async (e, t, n, r = 1) => {
+	let i = t.pieces * t.textures, [a, o] = Zn(e, t, n && [n[0], i * n[1]]), s = await Qn(e, t, [a, o], i === 1 ? r : 1);
 	if (i === 1) return [{
 		picture: s,
 		row: 0,
@@ -1084,7 +1084,7 @@ var Xn = async (e, t, n, r = 1) => {
 	}));
 	if (r === 1) return l;
 	let [u, d] = [Math.ceil(a / r), Math.ceil(c / r)], f = {
-		...Kn,
+		...Yn,
 		resizeWidth: u,
 		resizeHeight: d,
 		resizeQuality: "high"
@@ -1095,8 +1095,8 @@ var Xn = async (e, t, n, r = 1) => {
 		rows: d
 	}));
 };
-async function Zn(e) {
-	let t = qn[e];
+async function er(e) {
+	let t = Xn[e];
 	if (!t) return !0;
 	let n = Uint8Array.from(atob(t), (e) => e.charCodeAt(0));
 	try {
@@ -1105,17 +1105,17 @@ async function Zn(e) {
 		return !1;
 	}
 }
-function Qn(e, t, n) {
-	return new A("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
+function tr(e, t, n) {
+	return new j("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
 }
 // eigenfield-three/src/pictures-10bit.ts
-var $n = /* @__PURE__ */ new Set([
+var nr = /* @__PURE__ */ new Set([
 	"I420P10",
 	"I422P10",
 	"I444P10"
-]), er = async (e, t, n, r = 1) => {
-	let i = t.pieces * t.textures, [a, o] = Jn(e, t, n && [n[0], i * n[1]]), s = await tr(e, a, o);
-	if (!s) return Xn(e, t, n, r);
+]), rr = async (e, t, n, r = 1) => {
+	let i = t.pieces * t.textures, [a, o] = Zn(e, t, n && [n[0], i * n[1]]), s = await ir(e, a, o);
+	if (!s) return $n(e, t, n, r);
 	let c = o / i;
 	return Array.from({ length: i }, (e, t) => {
 		if (r === 1) return {
@@ -1123,7 +1123,7 @@ var $n = /* @__PURE__ */ new Set([
 			row: t * c,
 			rows: c
 		};
-		let n = nr(s, t * c, c, r);
+		let n = ar(s, t * c, c, r);
 		return {
 			picture: n,
 			row: 0,
@@ -1131,7 +1131,7 @@ var $n = /* @__PURE__ */ new Set([
 		};
 	});
 };
-async function tr(e, t, n) {
+async function ir(e, t, n) {
 	if (typeof ImageDecoder > "u") return null;
 	let r = null, i = null;
 	try {
@@ -1140,7 +1140,7 @@ async function tr(e, t, n) {
 			type: "image/avif"
 		}), i = (await r.decode()).image;
 		let a = i.visibleRect;
-		if (!$n.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
+		if (!nr.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
 		let o = new Uint8Array(i.allocationSize()), [s] = await i.copyTo(o);
 		return s ? {
 			data: o.subarray(s.offset),
@@ -1154,7 +1154,7 @@ async function tr(e, t, n) {
 		i?.close(), r?.close();
 	}
 }
-function nr(e, t, n, r) {
+function ar(e, t, n, r) {
 	let [i, a] = [Math.ceil(e.width / r), Math.ceil(n / r)], o = new Uint8Array(2 * i * a);
 	for (let s = 0; s < a; s++) for (let a = 0; a < i; a++) {
 		let [c, l] = [0, 0];
@@ -1173,57 +1173,57 @@ function nr(e, t, n, r) {
 	};
 }
 // eigenfield-three/src/triangle-decoder.ts
-var rr = 5;
-function ir(e, t) {
-	let n = V(e, rr, t).getUint32(1, !0);
-	Le(e, 3 * n, 6 * I, t);
-	let r = Ye(e.subarray(rr)), i = $e(r, n, 3, !0);
+var or = 5;
+function sr(e, t) {
+	let n = ze(e, or, t).getUint32(1, !0);
+	Be(e, 3 * n, 6 * L, t);
+	let r = Qe(e.subarray(or)), i = nt(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
-	if (!a.every((e) => e >= 0 && e < 1e5)) throw j(t, "triangles of cameras that there cannot be");
+	if (!a.every((e) => e >= 0 && e < 1e5)) throw M(t, "triangles of cameras that there cannot be");
 	return { corners: Uint32Array.from(a) };
 }
 // eigenfield-three/src/weight-decoder.ts
-var ar = 14, or = 2 ** 20;
-function sr(e, t) {
-	let n = V(e, ar, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
-	if (n.getUint8(1) > 1 || i === 0) throw j(t, "weights of no camera, or of an unknown kind");
-	Le(e, o * s * Math.max(a, 1), Se, t), V(e, ar + 4 * a, t);
+var cr = 14, lr = 2 ** 20;
+function ur(e, t) {
+	let n = ze(e, cr, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
+	if (n.getUint8(1) > 1 || i === 0) throw M(t, "weights of no camera, or of an unknown kind");
+	Be(e, o * s * Math.max(a, 1), we, t), ze(e, cr + 4 * a, t);
 	let c = o * s;
-	if (c < i) throw j(t, "a grid with too few cells");
-	let l = Ye(e.subarray(ar + 4 * a)), u = r ? et(l, c, i, t) : null, d = u !== null && i === c, f = [
+	if (c < i) throw M(t, "a grid with too few cells");
+	let l = Qe(e.subarray(cr + 4 * a)), u = r ? rt(l, c, i, t) : null, d = u !== null && i === c, f = [
 		0,
 		1,
 		2
-	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * or * Math.max(o, s);
+	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * lr * Math.max(o, s);
 	for (let e = 0; e < a; e++) {
-		let r = n.getFloat32(ar + 4 * e, !0);
-		if (!(r > 0 && r < Infinity)) throw j(t, "a step that is not positive");
-		let i = Xe(l), h = Qe(l, s, f[i], i);
-		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw j(t, `numbers of component ${e} that cannot be`);
+		let r = n.getFloat32(cr + 4 * e, !0);
+		if (!(r > 0 && r < Infinity)) throw M(t, "a step that is not positive");
+		let i = $e(l), h = tt(l, s, f[i], i);
+		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw M(t, `numbers of component ${e} that cannot be`);
 		f[i] = h;
-		let g = i === 2 ? cr(h, o, s) : h;
+		let g = i === 2 ? dr(h, o, s) : h;
 		for (let t = 0; t < c; t++) {
 			let n = u ? u[t] : t;
 			n >= 0 && (p[n * a + e] = g[t] * r);
 		}
 		l.checkEnd(t);
 	}
-	if (!p.every(Number.isFinite)) throw j(t, "weights that are not finite");
+	if (!p.every(Number.isFinite)) throw M(t, "weights that are not finite");
 	return {
 		cameras: i,
 		components: a,
 		values: p
 	};
 }
-function cr(e, t, n) {
-	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = lr(n);
+function dr(e, t, n) {
+	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = fr(n);
 	for (let i = 0; i < t; i++) for (let t = 0; t < n; t++) {
 		let o = 0;
 		for (let r = 0; r < n; r++) o += a(r, t) * e[i * n + r];
 		r[i * n + t] = o;
 	}
-	let o = lr(t);
+	let o = fr(t);
 	for (let e = 0; e < t; e++) for (let a = 0; a < n; a++) {
 		let s = 0;
 		for (let i = 0; i < t; i++) s += o(i, e) * r[i * n + a];
@@ -1231,13 +1231,13 @@ function cr(e, t, n) {
 	}
 	return i;
 }
-function lr(e) {
+function fr(e) {
 	let [t, n] = [Math.sqrt(1 / e), Math.sqrt(2 / e)], r = Float64Array.from({ length: 4 * e }, (t, r) => n * Math.cos(Math.PI * r / (2 * e)));
 	return (n, i) => n === 0 ? t : r[(2 * i + 1) * n % (4 * e)];
 }
 // eigenfield-three/src/codecs.ts
-function ur(e) {
-	let [t, n] = [Xn, Xn];
+function pr(e) {
+	let [t, n] = [$n, $n];
 	return {
 		kind: "picture",
 		decode: t,
@@ -1255,76 +1255,76 @@ function ur(e) {
 var G = {
 	"mesh-1": {
 		kind: "mesh",
-		decode: Mn,
+		decode: Fn,
 		needs: "codedMesh",
 		limits: ["MAX_VERTICES", "MAX_TRIANGLES"]
 	},
 	"mesh-2": {
 		kind: "mesh",
-		decode: Nn,
+		decode: In,
 		needs: "mesh-2",
 		limits: ["MAX_VERTICES", "MAX_TRIANGLES"]
 	},
 	"cameras-1": {
 		kind: "cameras",
-		decode: st,
+		decode: ut,
 		needs: "codedCameras",
 		limits: ["MAX_CAMERAS"]
 	},
 	"cameras-2": {
 		kind: "cameras",
-		decode: ot,
+		decode: lt,
 		needs: "cameras-2",
 		limits: ["MAX_CAMERAS"]
 	},
 	"names-1": {
 		kind: "names",
-		decode: zn,
+		decode: Hn,
 		needs: "codedNames",
 		limits: ["MAX_NAMES", "MAX_CAMERAS"]
 	},
 	"triangles-1": {
 		kind: "triangles",
-		decode: ir,
+		decode: sr,
 		needs: "codedTriangles",
 		limits: ["MAX_CAMERAS"]
 	},
 	"weights-1": {
 		kind: "weights",
-		decode: sr,
+		decode: ur,
 		needs: "codedWeights",
 		limits: ["MAX_WEIGHTS"]
 	},
-	png: ur("image/png"),
-	webp: ur("image/webp"),
-	avif: ur("image/avif"),
-	jpeg: ur("image/jpeg"),
+	png: pr("image/png"),
+	webp: pr("image/webp"),
+	avif: pr("image/avif"),
+	jpeg: pr("image/jpeg"),
 	"av1-10bit-1": {
-		...ur("image/avif"),
+		...pr("image/avif"),
 		bits: 10,
-		decode: er,
+		decode: rr,
 		needs: "bits"
 	},
 	"av1-10bit-2": {
-		...ur("video/AV1"),
+		...pr("video/AV1"),
 		bits: 10,
-		decode: (e, t, n, r) => er(se(e, t.where), t, n, r),
-		bitmaps: (e, t, n, r) => Xn(se(e, t.where), t, n, r),
+		decode: (e, t, n, r) => rr(le(e, t.where), t, n, r),
+		bitmaps: (e, t, n, r) => $n(le(e, t.where), t, n, r),
 		needs: "av1-10bit-2"
 	}
-}, dr = {
+}, mr = {
 	mesh: "mesh-1",
 	cameras: "cameras-1",
 	names: "names-1",
 	triangles: "triangles-1",
 	weights: "weights-1"
 };
-function fr(e, t, n) {
-	let r = t.exists ? t.text(L) : n, i = Object.hasOwn(G, r) ? G[r] : null;
+function hr(e, t, n) {
+	let r = t.exists ? t.text(R) : n, i = Object.hasOwn(G, r) ? G[r] : null;
 	if (i?.kind === e) return i;
-	throw new A("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
+	throw new j("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
 }
-function pr(e, t) {
+function gr(e, t) {
 	return Object.keys(G).find((n) => {
 		let r = G[n];
 		return r.kind === "picture" && r.mimeType === e && (t ?? r.bits) === r.bits;
@@ -1362,7 +1362,7 @@ var K = class e {
 		if (this.raw.length > e) throw this.wrong(`longer than ${e} characters`);
 		return this.raw;
 	}
-	number(e = -Ce, t = Ce) {
+	number(e = -Te, t = Te) {
 		if (typeof this.raw != "number") throw this.wrong("no number");
 		if (!(this.raw >= e && this.raw <= t)) throw this.wrong(`${this.raw} is not in ${e}..${t}`);
 		return this.raw;
@@ -1372,7 +1372,7 @@ var K = class e {
 		if (!Number.isInteger(n)) throw this.wrong(`${n} is no whole number`);
 		return n;
 	}
-	numbers(e, t = -Ce, n = Ce) {
+	numbers(e, t = -Te, n = Te) {
 		let r = this.items(e);
 		if (r.length !== e) throw this.wrong(`${e} numbers are needed`);
 		return r.map((e) => e.number(t, n));
@@ -1386,27 +1386,27 @@ var K = class e {
 		];
 	}
 	wrong(e) {
-		return j(this.where || "/", this.exists ? e : "missing");
+		return M(this.where || "/", this.exists ? e : "missing");
 	}
-}, mr = 5121, hr = 5123, gr = 5125, q = 5126, _r = {
-	[mr]: 1,
-	[hr]: 2,
-	[gr]: 4,
+}, _r = 5121, vr = 5123, yr = 5125, q = 5126, br = {
+	[_r]: 1,
+	[vr]: 2,
+	[yr]: 4,
 	[q]: 4
-}, vr = /* @__PURE__ */ new Set([
+}, xr = /* @__PURE__ */ new Set([
 	"cameras",
 	"triangles",
 	"weights"
-]), yr = {
+]), Sr = {
 	SCALAR: 1,
 	VEC2: 2,
 	VEC3: 3
 };
-function br(e) {
+function Cr(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
-	return e.key("bufferViews").items(F).map((e) => {
+	return e.key("bufferViews").items(I).map((e) => {
 		let t = e.key("byteOffset"), r = e.key("byteStride");
 		e.key("buffer").integer(0, 0);
 		let i = {
@@ -1418,11 +1418,11 @@ function br(e) {
 		return i;
 	});
 }
-function xr(e) {
+function wr(e) {
 	return (t) => t.integer(0, e.length - 1);
 }
-function Sr(e, t) {
-	let n = e.key("accessors").items(F);
+function Tr(e, t) {
+	let n = e.key("accessors").items(I);
 	return (e, r, i, a) => {
 		let o = n[e.integer(0, n.length - 1)];
 		if (!o) throw e.wrong("no such accessor");
@@ -1432,14 +1432,14 @@ function Sr(e, t) {
 		if (o.key("sparse").exists) throw o.wrong("sparse");
 		let c = o.key("normalized");
 		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = yr[r] ?? 1, u = o.key("count").integer(1, Se);
+		let l = Sr[r] ?? 1, u = o.key("count").integer(1, we);
 		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
 		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
 		if (!f) throw o.wrong("no such buffer view");
-		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = _r[s] * l;
+		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = br[s] * l;
 		if (f.stride && (f.stride < h || r === "SCALAR")) throw o.wrong("a stride that cannot be");
 		if (m + (u - 1) * (f.stride || h) + h > f.length) throw o.wrong("outside its buffer view");
-		if ((m + f.offset) % _r[s]) throw o.wrong("not aligned");
+		if ((m + f.offset) % br[s]) throw o.wrong("not aligned");
 		return {
 			view: d,
 			offset: m,
@@ -1450,40 +1450,40 @@ function Sr(e, t) {
 		};
 	};
 }
-function Cr(e, t, n) {
-	let r = typeof t.raw == "number" && vr.has(e), i = fr(e, r ? new K(void 0, t.where) : t.key("codec"), dr[e]);
+function Er(e, t, n) {
+	let r = typeof t.raw == "number" && xr.has(e), i = hr(e, r ? new K(void 0, t.where) : t.key("codec"), mr[e]);
 	return {
 		view: n(r ? t : t.key("bufferView")),
 		codec: i,
 		where: t.where
 	};
 }
-async function wr(e, t, n) {
+async function Dr(e, t, n) {
 	let r = await n(e.view), i = t[e.view]?.length ?? Infinity;
-	if (r.byteLength < i) throw re(e.where);
-	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + _r[c] * o * s);
-	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : Tr(new Float32Array(l), e.where);
+	if (r.byteLength < i) throw ae(e.where);
+	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + br[c] * o * s);
+	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : Or(new Float32Array(l), e.where);
 }
-function Tr(e, t) {
-	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw j(t, `${n} among its numbers`);
+function Or(e, t) {
+	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw M(t, `${n} among its numbers`);
 	return e;
 }
 // eigenfield-three/src/planes.ts
-var J = 8, Er = 16;
-function Dr(e, t) {
-	return new A("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
+var J = 8, kr = 16;
+function Ar(e, t) {
+	return new j("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function Or(e, t = fe) {
+function jr(e, t = me) {
 	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
 	if (!n || !r) throw e.wrong("two numbers are needed");
-	if (n * r > me) throw e.wrong(`more than ${me} texels`);
+	if (n * r > ge) throw e.wrong(`more than ${ge} texels`);
 	return [n, r];
 }
-function kr(e, t, n, r, i) {
+function Mr(e, t, n, r, i) {
 	let a = e.key("planes").items(16);
 	if (!a.length) throw e.key("planes").wrong("no plane");
 	let o = a.map((e, a) => {
-		let o = e.key("channels").integer(1, 64), s = Lr(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => zr(e, o, t, r, i);
+		let o = e.key("channels").integer(1, 64), s = Br(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => Ur(e, o, t, r, i);
 		return {
 			channels: o,
 			...s,
@@ -1497,11 +1497,11 @@ function kr(e, t, n, r, i) {
 			s += t[0] * t[1] * e * n, c += r;
 		}
 	}
-	if (c > 4096) throw e.key("planes").wrong(`more than ${he} textures`);
-	if (s > ge) throw e.key("planes").wrong("too large when it is decoded");
+	if (c > 4096) throw e.key("planes").wrong(`more than ${_e} textures`);
+	if (s > ve) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
-function Ar(e, t) {
+function Nr(e, t) {
 	let n = t.reduce((e, { channels: t }) => e + t, 0), r = e.key("toRGB");
 	if (r.exists) {
 		let e = r.numbers(3 * n), t = (t, r) => e[t * n + r] ?? 0;
@@ -1533,11 +1533,11 @@ function Ar(e, t) {
 			1
 		]
 	];
-	throw Dr(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
+	throw Ar(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
 }
-function jr(e, t, n, r, i, a = !1) {
-	let o = Mr(e), s = t === 3 && o.bits === J ? 1 : t;
-	r && Br(e, s * n, r);
+function Pr(e, t, n, r, i, a = !1) {
+	let o = Fr(e), s = t === 3 && o.bits === J ? 1 : t;
+	r && Wr(e, s * n, r);
 	let [c, l] = [e.key("scale"), e.key("zero")], u = {
 		view: i(e.key("bufferView")),
 		codec: o,
@@ -1547,41 +1547,41 @@ function jr(e, t, n, r, i, a = !1) {
 	};
 	return a && o.bits === J && !c.exists && !l.exists ? {
 		...u,
-		...Nr(t)
+		...Ir(t)
 	} : {
 		...u,
-		scale: Ir(c, t, n),
-		zero: Ir(l, t, n)
+		scale: zr(c, t, n),
+		zero: zr(l, t, n)
 	};
 }
-function Mr(e) {
-	let t = e.key("mimeType").text(L);
-	if (!pr(t)) throw e.key("mimeType").wrong("an unknown type");
-	let n = e.key("bits"), r = n.exists ? n.integer(1, Er) : J, i = pr(t, r);
+function Fr(e) {
+	let t = e.key("mimeType").text(R);
+	if (!gr(t)) throw e.key("mimeType").wrong("an unknown type");
+	let n = e.key("bits"), r = n.exists ? n.integer(1, kr) : J, i = gr(t, r);
 	if (!i) throw n.wrong(`${r} bits of ${t}`);
-	let a = e.key("codec"), o = fr("picture", a, i);
+	let a = e.key("codec"), o = hr("picture", a, i);
 	if (o.mimeType !== t || o.bits !== r) throw a.wrong(`${r} bits of ${t}`);
 	return o;
 }
-function Nr(e) {
+function Ir(e) {
 	return {
 		scale: Array(e).fill(1 / 255),
 		zero: Array(e).fill(0)
 	};
 }
-function Pr(e) {
+function Lr(e) {
 	return e.some(({ codec: e }) => e.bits > J);
 }
-function Fr({ codec: e }) {
+function Rr({ codec: e }) {
 	return (2 ** e.bits - 1) / 255;
 }
-function Ir(e, t, n) {
+function zr(e, t, n) {
 	let r = e.items(t * n).map((e) => e.number());
 	if (r.length === t * n) return r;
 	if (r.length !== t) throw e.wrong(`${t} or ${t * n} numbers are needed`);
 	return Array(n).fill(r).flat();
 }
-function Lr(e, t, n, r) {
+function Br(e, t, n, r) {
 	let i = e.key("mean");
 	if (!i.exists) {
 		if (n === null || t !== 1 && t !== 3) throw i.wrong("no mean");
@@ -1592,23 +1592,40 @@ function Lr(e, t, n, r) {
 				textures: 1,
 				pieces: 1,
 				where: "/images/0",
-				...Nr(t)
+				...Ir(t)
 			},
 			meanSize: null,
 			precision: null
 		};
 	}
-	let a = Or(i.key("size")), o = jr(i, t, 1, a, r, !0);
+	let a = jr(i.key("size")), o = Pr(i, t, 1, a, r, !0);
 	return {
 		mean: o,
 		meanSize: a,
-		precision: Rr(i.key("precision"), o, r)
+		precision: Hr(i.key("precision"), o, r)
 	};
 }
-function Rr(e, t, n) {
+function Vr(e, t) {
+	let n = jr(e.key("size")), r = Fr(e);
+	return Wr(e, 1, n), {
+		channels: 1,
+		mean: {
+			view: t(e.key("bufferView")),
+			codec: r,
+			textures: 1,
+			pieces: 1,
+			where: e.where,
+			scale: [1 / (2 ** r.bits - 1)],
+			zero: [0]
+		},
+		meanSize: n,
+		precision: null
+	};
+}
+function Hr(e, t, n) {
 	if (!e.exists) return null;
 	if (t.codec.bits === J) throw e.wrong(`of a mean of ${J} bits`);
-	let r = Or(e.key("size"), pe), i = fr("picture", e.key("codec"), "png");
+	let r = jr(e.key("size"), he), i = hr("picture", e.key("codec"), "png");
 	if (i !== G.png) throw e.key("codec").wrong("no PNG");
 	return {
 		view: n(e.key("bufferView")),
@@ -1619,19 +1636,19 @@ function Rr(e, t, n) {
 		where: e.where
 	};
 }
-function zr(e, t, n, r, i) {
-	let a = Or(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Or(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, fe) : [];
+function Ur(e, t, n, r, i) {
+	let a = jr(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? jr(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, me) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
-	let d = 0, f = e.key("picture"), p = f.exists ? f.object() : {}, m = e.key("textures").items(he).map((e) => {
+	let d = 0, f = e.key("picture"), p = f.exists ? f.object() : {}, m = e.key("textures").items(_e).map((e) => {
 		let n = new K({
 			...p,
 			...e.object()
-		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, he) : 1;
-		return d += o, jr(n, t, o, a, i);
+		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, _e) : 1;
+		return d += o, Pr(n, t, o, a, i);
 	});
-	if (d > 4096) throw e.wrong(`more than ${he} textures`);
-	let h = e.key("codedWeights"), g = d ? h.exists ? Cr("weights", h, i) : r(e.key("weights"), "SCALAR", [q], n * d) : null;
+	if (d > 4096) throw e.wrong(`more than ${_e} textures`);
+	let h = e.key("codedWeights"), g = d ? h.exists ? Er("weights", h, i) : r(e.key("weights"), "SCALAR", [q], n * d) : null;
 	return {
 		size: a,
 		grid: c,
@@ -1642,76 +1659,104 @@ function zr(e, t, n, r, i) {
 		where: e.where
 	};
 }
-function Br(e, t, [n, r]) {
+function Wr(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
-	if (n * i > me) throw e.wrong(`more than ${me} texels`);
+	if (n * i > ge) throw e.wrong(`more than ${ge} texels`);
+}
+// eigenfield-three/src/sheets.ts
+function Gr(e, t) {
+	if (!e.exists) return null;
+	let n = e.key("faces").items(32).map((e) => e.integer(1, Ce));
+	if (!n.length) throw e.key("faces").wrong("no sheet");
+	return {
+		faces: n,
+		opacity: Vr(e.key("opacity"), t),
+		where: e.where
+	};
+}
+function Kr({ faces: e, where: t }, { index: n, attributes: r }) {
+	let i = e.reduce((e, t) => e + t, 0), a = (n?.count ?? 0) / 3;
+	if (i !== a) throw M(`${t}/faces`, `the sheets have ${i} triangles, the mesh has ${a}`);
+	let o = new Uint8Array(r.position?.count ?? 0), s = 0;
+	e.forEach((e, r) => {
+		for (let i = s + 3 * e; s < i; s++) {
+			let e = n?.getX(s) ?? 0, i = o[e] || r + 1, a = `sheets ${i - 1} and ${r} share vertex ${e}`;
+			if (i !== r + 1) throw M(`${t}/faces`, a);
+			o[e] = i;
+		}
+	});
 }
 // eigenfield-three/src/document.ts
-var Vr = [
+var qr = [
 	"namePattern",
 	"packed",
 	"precision",
 	"regions",
 	"sharedPicture",
+	"sheets",
 	"stacks",
 	"toRGB"
-], Hr = Object.values(G).flatMap(({ needs: e }) => e ?? []), Ur = /* @__PURE__ */ new Set([...Vr, ...Hr]), Wr = 64, Gr = 9, Kr = 10 ** Gr;
-function qr(e) {
+], Jr = Object.values(G).flatMap(({ needs: e }) => e ?? []), Yr = /* @__PURE__ */ new Set([...qr, ...Jr]), Xr = 64, Zr = 9, Qr = 10 ** Zr;
+function $r(e) {
 	let t = new K(e, "");
 	try {
-		return t.key("extensions").key(ue).exists;
+		return t.key("extensions").key(fe).exists;
 	} catch {
 		return !1;
 	}
 }
-function Jr(e) {
-	let t = new K(e, ""), n = t.key("extensions").key(ue), r = Yr(n), i = br(t), a = Sr(t, i), o = xr(i);
-	Xr(t);
-	let s = $r(t, o), c = n.key("cameras"), { count: l, names: u } = ei(c, o), d = ri(c, l), f = d.filter((e) => !e).length, p = kr(n, f, s, a, o), m = Ar(n, p), h = c.key("colour");
+function ei(e) {
+	let t = new K(e, ""), n = t.key("extensions").key(fe), r = ni(n), i = Cr(t), a = Tr(t, i), o = wr(i);
+	ri(t);
+	let s = oi(t, o), c = n.key("cameras"), { count: l, names: u } = si(c, o), d = ui(c, l), f = d.filter((e) => !e).length, p = Mr(n, f, s, a, o), m = Nr(n, p), h = c.key("colour");
 	if (h.exists && m.length < 3) throw h.wrong("needs three channels");
 	let g = n.key("viewPlane"), [_, v] = [g.key("triangles"), g.key("codedTriangles")], y = t.key("meshes").at(0).key("primitives").at(0), b = y.key("mode");
 	if (b.exists && b.integer(0, 6) !== 4) throw b.wrong("no triangles");
 	let [x, S] = [y.key("attributes"), y.key("indices")], C = n.key("generator"), w = n.key("mesh");
 	return {
 		version: r,
-		generator: C.exists ? C.text(L) : "",
+		generator: C.exists ? C.text(R) : "",
 		planes: p,
 		colours: m,
 		names: u,
 		heldOut: d,
 		reference: n.key("reference").integer(0, l - 1),
-		calibration: ii(c, l, a, o),
-		sizes: ai(c, l, a),
+		calibration: di(c, l, a, o),
+		sizes: fi(c, l, a),
 		colour: h.exists ? a(h, "SCALAR", [q], 6 * l) : null,
-		...oi(g),
-		triangles: v.exists ? Cr("triangles", v, o) : _.exists ? Qr(a(_, "SCALAR", [hr, gr], null), 2 * I) : null,
-		settings: si(n.key("settings")),
-		scores: si(n.key("scores")),
+		...pi(g),
+		triangles: v.exists ? Er("triangles", v, o) : _.exists ? ai(a(_, "SCALAR", [vr, yr], null), 2 * L) : null,
+		settings: mi(n.key("settings")),
+		scores: mi(n.key("scores")),
 		views: i,
-		mesh: w.exists ? Cr("mesh", w, o) : null,
-		position: Zr(a(x.key("POSITION"), "VEC3", [q], null), be),
-		uv: Zr(a(x.key("TEXCOORD_0"), "VEC2", [q], null), be),
-		indices: Qr(a(S, "SCALAR", [
-			mr,
-			hr,
-			gr
-		], null), xe),
+		mesh: w.exists ? Er("mesh", w, o) : null,
+		sheets: Gr(n.key("sheets"), o),
+		position: ii(a(x.key("POSITION"), "VEC3", [q], null), Se),
+		uv: ii(a(x.key("TEXCOORD_0"), "VEC2", [q], null), Se),
+		indices: ai(a(S, "SCALAR", [
+			_r,
+			vr,
+			yr
+		], null), Ce),
 		preview: s
 	};
 }
-function Yr(e) {
-	let t = e.key("version").text(L);
-	if (!/^1\.\d+$/.test(t)) throw new A("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
+function ti({ planes: e, sheets: t }) {
+	return t ? [...e, t.opacity] : e;
+}
+function ni(e) {
+	let t = e.key("version").text(R);
+	if (!/^1\.\d+$/.test(t)) throw new j("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
-	for (let e of n.exists ? n.items(F) : []) {
-		let t = e.text(L);
-		if (!Ur.has(t)) throw new A("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
+	for (let e of n.exists ? n.items(I) : []) {
+		let t = e.text(R);
+		if (!Yr.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
-function Xr(e) {
-	let t = e.key("nodes").items(F), n = Array(t.length).fill(!1);
+function ri(e) {
+	let t = e.key("nodes").items(I), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
 		for (let e of r.exists ? r.items(t.length) : []) {
@@ -1720,64 +1765,64 @@ function Xr(e) {
 			n[r] = !0;
 		}
 	}
-	for (let r of e.key("scenes").items(F)) {
+	for (let r of e.key("scenes").items(I)) {
 		let e = r.key("nodes");
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
-function Zr(e, t) {
-	if (e.count > t) throw j(e.where, `more than ${t}`);
+function ii(e, t) {
+	if (e.count > t) throw M(e.where, `more than ${t}`);
 	return e;
 }
-function Qr(e, t) {
-	if (e.count % 3) throw j(e.where, "torn triangles");
-	return Zr(e, 3 * t);
+function ai(e, t) {
+	if (e.count % 3) throw M(e.where, "torn triangles");
+	return ii(e, 3 * t);
 }
-function $r(e, t) {
+function oi(e, t) {
 	let n = e.key("images");
 	if (!n.exists) return null;
 	let r = n.at(0).key("bufferView");
 	return r.exists ? t(r) : null;
 }
-function ei(e, t) {
+function si(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
-		count: n.key("count").integer(1, I),
-		names: Cr("names", n, t)
+		count: n.key("count").integer(1, L),
+		names: Er("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? ni(r) : i.items(I).map((e) => e.text(L));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? li(r) : i.items(L).map((e) => e.text(R));
 	if (!a.length) throw i.wrong("no cameras");
-	let o = ti(a);
+	let o = ci(a);
 	if (o) throw i.wrong(o);
 	return {
 		count: a.length,
 		names: a
 	};
 }
-function ti(e) {
+function ci(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
-function ni(e) {
-	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, I));
+function li(e) {
+	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, L));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
-	let r = e.key("parts").items(Wr).map((e) => {
-		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(L))];
+	let r = e.key("parts").items(Xr).map((e) => {
+		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(R))];
 		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
 		if (a.exists) {
-			let e = a.items(i).map((e) => e.text(L));
+			let e = a.items(i).map((e) => e.text(R));
 			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
 			return [r, e];
 		}
-		let [o, s] = [e.key("first").integer(0, Kr), e.key("step").integer(0, Kr)], c = e.key("digits").integer(1, Gr);
+		let [o, s] = [e.key("first").integer(0, Qr), e.key("step").integer(0, Qr)], c = e.key("digits").integer(1, Zr);
 		return [r, Array.from({ length: i }, (e, t) => String(o + s * t).padStart(c, "0"))];
 	});
 	return Array.from({ length: t * n }, (t, i) => {
 		let a = [Math.floor(i / n), i % n], o = r.map(([e, t]) => t[a[e] ?? 0]).join("");
-		if (o.length > 1024) throw e.wrong(`names of more than ${L} characters`);
+		if (o.length > 1024) throw e.wrong(`names of more than ${R} characters`);
 		return o;
 	});
 }
-function ri(e, t) {
+function ui(e, t) {
 	let n = Array(t).fill(!1), r = e.key("heldOut");
 	if (!r.exists) return n;
 	for (let e of r.items(t)) {
@@ -1788,21 +1833,21 @@ function ri(e, t) {
 	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
 	return n;
 }
-function ii(e, t, n, r) {
+function di(e, t, n, r) {
 	let i = e.key("coded");
-	return i.exists ? Cr("cameras", i, r) : {
+	return i.exists ? Er("cameras", i, r) : {
 		intrinsics: n(e.key("intrinsics"), "SCALAR", [q], 5 * t),
 		poses: n(e.key("poses"), "SCALAR", [q], 12 * t)
 	};
 }
-function ai(e, t, n) {
+function fi(e, t, n) {
 	let r = e.key("size");
-	if (!r.exists) return n(e.key("sizes"), "SCALAR", [gr], 2 * t);
-	let [i = 0, a = 0] = r.numbers(2, 1, _e);
+	if (!r.exists) return n(e.key("sizes"), "SCALAR", [yr], 2 * t);
+	let [i = 0, a = 0] = r.numbers(2, 1, ye);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
-function oi(e) {
+function pi(e) {
 	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
 	for (let i of [
 		r(t, t) - 1,
@@ -1817,23 +1862,23 @@ function oi(e) {
 		extent: [i, a]
 	};
 }
-function si(e) {
+function mi(e) {
 	return e.exists ? e.object() : {};
 }
 // eigenfield-three/src/info.ts
-var ci = 1e-6;
-async function li(e, t) {
+var hi = 1e-6;
+async function gi(e, t) {
 	let [n, { lenses: r, poses: i }, a, o] = await Promise.all([
-		ui(e, t),
-		fi(e, t),
-		pi(e, t),
-		e.colour ? wr(e.colour, e.views, t) : null
+		_i(e, t),
+		yi(e, t),
+		bi(e, t),
+		e.colour ? Dr(e.colour, e.views, t) : null
 	]);
 	return n.map((t, n) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
-		if (!(s > ci && c > ci)) throw j(r.where, `focal lengths of "${t}"`);
-		let { R: f, t: p } = mi([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
-		if (!m || !h || Math.max(m, h) > 65535 || m * h > ve) throw j(a.where, `"${t}" is ${m} x ${h} pixels`);
+		if (!(s > hi && c > hi)) throw M(r.where, `focal lengths of "${t}"`);
+		let { R: f, t: p } = xi([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
+		if (!m || !h || Math.max(m, h) > 65535 || m * h > be) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
 				s,
@@ -1850,13 +1895,13 @@ async function li(e, t) {
 				0,
 				1
 			]
-		], [_, v] = o ? hi([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
+		], [_, v] = o ? Si([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
 		return {
 			name: t,
 			K: g,
 			R: f,
 			t: p,
-			centre: Ei(f, p),
+			centre: Ni(f, p),
 			width: m,
 			height: h,
 			gain: _,
@@ -1864,31 +1909,31 @@ async function li(e, t) {
 		};
 	});
 }
-async function ui({ names: e, heldOut: t }, n) {
+async function _i({ names: e, heldOut: t }, n) {
 	if (Array.isArray(e)) return e;
-	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : ti(r);
-	if (i) throw j(e.where, i);
+	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : ci(r);
+	if (i) throw M(e.where, i);
 	return r;
 }
-async function di(e, t, n) {
+async function vi(e, t, n) {
 	return {
-		numbers: await wr(e, t.views, n),
+		numbers: await Dr(e, t.views, n),
 		where: e.where
 	};
 }
-async function fi(e, t) {
+async function yi(e, t) {
 	let { calibration: n, heldOut: r } = e;
 	if ("intrinsics" in n) {
 		let { intrinsics: r, poses: i } = n;
 		return {
-			lenses: await di(r, e, t),
-			poses: await di(i, e, t)
+			lenses: await vi(r, e, t),
+			poses: await vi(i, e, t)
 		};
 	}
 	let { view: i, codec: a, where: o } = n, s = await a.decode(new Uint8Array(await t(i)), o), c = s.poses.length / 12;
-	if (c !== r.length) throw j(o, `${c} cameras in it, and ${r.length} names`);
+	if (c !== r.length) throw M(o, `${c} cameras in it, and ${r.length} names`);
 	let l = (e) => ({
-		numbers: Tr(e, o),
+		numbers: Or(e, o),
 		where: o
 	});
 	return {
@@ -1896,15 +1941,15 @@ async function fi(e, t) {
 		poses: l(s.poses)
 	};
 }
-async function pi(e, t) {
-	if (!Array.isArray(e.sizes)) return di(e.sizes, e, t);
+async function bi(e, t) {
+	if (!Array.isArray(e.sizes)) return vi(e.sizes, e, t);
 	let [n, r] = e.sizes;
 	return {
 		numbers: Uint32Array.from({ length: 2 * e.heldOut.length }, (e, t) => t % 2 ? r : n),
 		where: "its cameras' size"
 	};
 }
-function mi(e, t, n) {
+function xi(e, t, n) {
 	let r = (t) => [
 		e[4 * t] ?? NaN,
 		e[4 * t + 1] ?? NaN,
@@ -1920,21 +1965,21 @@ function mi(e, t, n) {
 	];
 	for (let e = 0; e < 3; e++) for (let r = e; r < 3; r++) {
 		let a = Y(i[e], i[r]) - +(e === r);
-		if (!(Math.abs(a) <= 2e-4)) throw j(t, `the pose of "${n}" is no rotation`);
+		if (!(Math.abs(a) <= 2e-4)) throw M(t, `the pose of "${n}" is no rotation`);
 	}
-	if (!(Y(Di(i[0], i[1]), i[2]) > 0)) throw j(t, `the pose of "${n}" is mirrored`);
+	if (!(Y(Pi(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
 	return {
 		R: i,
 		t: a
 	};
 }
-function hi(e, t, n) {
+function Si(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
-	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw j(t.colour?.where ?? "", `gain or offset of "${n}"`);
+	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw M(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
-async function gi(e, t) {
-	let n = vi(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => _i(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
+async function Ci(e, t) {
+	let n = Ti(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => wi(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
 	for (let e of i) {
 		let t = e.length / r;
 		for (let n = 0; n < r; n++) o.set(e.subarray(n * t, (n + 1) * t), n * a + s);
@@ -1942,38 +1987,38 @@ async function gi(e, t) {
 	}
 	return o;
 }
-async function _i({ weights: e, count: t }, n, r, i) {
+async function wi({ weights: e, count: t }, n, r, i) {
 	if (!e) return /* @__PURE__ */ new Float32Array();
-	if ("type" in e) return wr(e, r.views, i);
+	if ("type" in e) return Dr(e, r.views, i);
 	let { view: a, codec: o, where: s } = e, { cameras: c, components: l, values: u } = o.decode(new Uint8Array(await i(a)), s);
-	if (c === n && l === t) return Tr(u, s);
-	throw j(s, `${c} x ${l} weights, and ${n} encoded cameras x ${t} textures`);
+	if (c === n && l === t) return Or(u, s);
+	throw M(s, `${c} x ${l} weights, and ${n} encoded cameras x ${t} textures`);
 }
-function vi(e) {
+function Ti(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
 }
-function yi(e) {
-	return Math.max(0, ...vi(e).map(({ count: e }) => e));
+function Ei(e) {
+	return Math.max(0, ...Ti(e).map(({ count: e }) => e));
 }
-function bi(e, t) {
-	let n = [...t, ...vi(e).map(({ grid: e }) => e)];
+function Di(e, t) {
+	let n = [...t.slice(0, e.planes.length), ...Ti(e).map(({ grid: e }) => e)];
 	return [Math.max(...n.map(([e]) => e)), Math.max(...n.map(([, e]) => e))];
 }
-async function xi(e, t) {
+async function Oi(e, t) {
 	if (!e.triangles) return /* @__PURE__ */ new Uint32Array();
-	let { where: n } = e.triangles, r = await Si(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
+	let { where: n } = e.triangles, r = await ki(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
-		if (Math.max(t, a, o) >= i) throw j(n, `no encoded camera ${Math.max(t, a, o)}`);
-		if (t === a || a === o || o === t) throw j(n, "a triangle with one camera twice");
+		if (Math.max(t, a, o) >= i) throw M(n, `no encoded camera ${Math.max(t, a, o)}`);
+		if (t === a || a === o || o === t) throw M(n, "a triangle with one camera twice");
 	}
 	return r;
 }
-async function Si(e, t, n) {
-	return "type" in e ? Uint32Array.from(await wr(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
+async function ki(e, t, n) {
+	return "type" in e ? Uint32Array.from(await Dr(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
 }
-function Ci(e, t, n, r, i, a) {
-	let { right: o, up: s } = e, c = Di(o, s), l = [
+function Ai(e, t, n, r, i, a) {
+	let { right: o, up: s } = e, c = Pi(o, s), l = [
 		0,
 		0,
 		0
@@ -2001,8 +2046,8 @@ function Ci(e, t, n, r, i, a) {
 		settings: e.settings,
 		scores: e.scores,
 		metresPerUnit: typeof u == "number" && u > 0 && u <= 1e30 ? u : null,
-		bytes: wi(e, i),
-		size: bi(e, n),
+		bytes: ji(e, i),
+		size: Di(e, n),
 		planes: e.planes.map(({ channels: e, bases: t }, r) => ({
 			channels: e,
 			mean: n[r] ?? [1, 1],
@@ -2013,12 +2058,13 @@ function Ci(e, t, n, r, i, a) {
 			}))
 		})),
 		...a,
+		sheets: e.sheets?.faces.length ?? 0,
 		facesPlane: Math.abs(Y(l, c)) > .7
 	};
 }
-function wi(e, t) {
-	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(yi(e)).fill(0);
-	for (let { pictures: t } of vi(e)) {
+function ji(e, t) {
+	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(Ei(e)).fill(0);
+	for (let { pictures: t } of Ti(e)) {
 		let e = 0;
 		for (let { view: n, textures: i } of t) {
 			let t = r(n);
@@ -2028,22 +2074,23 @@ function wi(e, t) {
 			}
 		}
 	}
-	let c = i(vi(e).flatMap((e) => e.weights ? [e.weights.view] : [])), { position: l, uv: u, indices: d } = e, f = i([
+	let c = i(Ti(e).flatMap((e) => e.weights ? [e.weights.view] : [])), { position: l, uv: u, indices: d } = e, f = i([
 		l,
 		u,
 		d,
 		...e.mesh ? [e.mesh] : []
-	].map(({ view: e }) => e));
+	].map(({ view: e }) => e)), p = e.sheets ? r(e.sheets.opacity.mean.view) : 0;
 	return {
 		total: t,
 		mesh: f,
+		opacity: p,
 		mean: o,
 		weights: c,
-		other: t - o - c - f - s.reduce((e, t) => e + t, 0),
+		other: t - o - c - f - p - s.reduce((e, t) => e + t, 0),
 		textures: s
 	};
 }
-function Ti(e, t) {
+function Mi(e, t) {
 	let { origin: n, extent: r } = e, i = [
 		t[0] - n[0],
 		t[1] - n[1],
@@ -2051,7 +2098,7 @@ function Ti(e, t) {
 	];
 	return [r[0] > 0 ? Y(i, e.right) / r[0] : 0, r[1] > 0 ? Y(i, e.up) / r[1] : 0];
 }
-function Ei(e, t) {
+function Ni(e, t) {
 	let n = (n) => -(e[0][n] * t[0] + e[1][n] * t[1] + e[2][n] * t[2]);
 	return [
 		n(0),
@@ -2062,7 +2109,7 @@ function Ei(e, t) {
 function Y(e, t) {
 	return e[0] * t[0] + e[1] * t[1] + e[2] * t[2];
 }
-function Di(e, t) {
+function Pi(e, t) {
 	return [
 		e[1] * t[2] - e[2] * t[1],
 		e[2] * t[0] - e[0] * t[2],
@@ -2070,7 +2117,7 @@ function Di(e, t) {
 	];
 }
 // eigenfield-three/src/cameras.ts
-function Oi(e, t, n) {
+function Fi(e, t, n) {
 	let { info: r } = e, i = r.cameras.filter((e, t) => !r.heldOut[t]), a = r.cameras[r.reference];
 	if (!a) throw RangeError(`no camera ${r.reference}`);
 	let { width: o, height: s } = a, c = [
@@ -2109,7 +2156,7 @@ function Oi(e, t, n) {
 	e.viewWeights(t, n, "delaunay").forEach((e, t) => {
 		let n = i[t];
 		if (!e || !n) return;
-		let r = ki(n, o, s);
+		let r = Ii(n, o, s);
 		for (let t of [
 			0,
 			1,
@@ -2120,7 +2167,7 @@ function Oi(e, t, n) {
 			2
 		]) t < 2 && (c[t][i] += e * r[t][i]), l[t][i] += e * n.R[t][i];
 	});
-	let u = ji(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Ai(t) * m[0], Ai(n) * m[1]], _ = [
+	let u = Ri(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Li(t) * m[0], Li(n) * m[1]], _ = [
 		0,
 		1,
 		2
@@ -2137,7 +2184,7 @@ function Oi(e, t, n) {
 		offset: null
 	};
 }
-function ki({ K: e, width: t, height: n }, r, i) {
+function Ii({ K: e, width: t, height: n }, r, i) {
 	let a = Math.max(r / t, i / n), [o, s] = [(r - a * t) / 2, (i - a * n) / 2];
 	return [
 		[
@@ -2157,16 +2204,16 @@ function ki({ K: e, width: t, height: n }, r, i) {
 		]
 	];
 }
-function Ai(e) {
+function Li(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function ji(e) {
+function Ri(e) {
 	let t = e;
 	for (let e = 0; e < 50; e++) {
 		let e = [
-			Di(t[1], t[2]),
-			Di(t[2], t[0]),
-			Di(t[0], t[1])
+			Pi(t[1], t[2]),
+			Pi(t[2], t[0]),
+			Pi(t[0], t[1])
 		], n = Y(t[0], e[0]);
 		if (!(n > 1e-12)) break;
 		let r = t.map((t, r) => t.map((t, i) => (t + e[r][i] / n) / 2)), i = Math.max(...r.flatMap((e, n) => e.map((e, r) => Math.abs(e - t[n][r]))));
@@ -2174,46 +2221,46 @@ function ji(e) {
 	}
 	return t;
 }
-function Mi(e, t, n, r, i = 1) {
+function zi(e, t, n, r, i = 1) {
 	let a = n.width / n.height, o = i * Math.min(1, a / r), s = i * Math.min(1, r / a), c = {
 		left: (1 - o) / 2,
 		top: (1 - s) / 2,
 		width: o,
 		height: s
 	};
-	return Ni(e, t, n), Pi(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
+	return Bi(e, t, n), Vi(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
 }
-function Ni(e, t, n) {
-	let { R: r, centre: i } = n, a = new _().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
-	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new O()), t.updateMatrixWorld(!0);
+function Bi(e, t, n) {
+	let { R: r, centre: i } = n, a = new v().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
+	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new A()), t.updateMatrixWorld(!0);
 }
-function Pi(e, t, n, r) {
-	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Fi(e, n);
+function Vi(e, t, n, r) {
+	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Hi(e, n);
 	t.near = d, t.far = f, t.projectionMatrix.set(l * i, -l * a, -(2 * r.left - 1 + l * o), 0, 0, u * s, -(1 - 2 * r.top - u * c), 0, 0, 0, -(f + d) / (f - d), -2 * f * d / (f - d), 0, 0, -1, 0), t.projectionMatrixInverse.copy(t.projectionMatrix).invert();
 }
-function Fi(e, t) {
+function Hi(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
-		center: new O(),
+		center: new A(),
 		radius: 1
-	}, o = r.getMaxScaleOnAxis(), s = i.distanceTo(new O(...t.centre)) * o, c = 1.01 * (s + a * o);
+	}, o = r.getMaxScaleOnAxis(), s = i.distanceTo(new A(...t.centre)) * o, c = 1.01 * (s + a * o);
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
 // eigenfield-three/src/footprint.ts
-var Ii = 256;
-function Li(e, t, n) {
+var Ui = 256;
+function Wi(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / Ii)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / Ui)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Ri(t, i.getX(e), i.getY(e), i.getZ(e))), l = zi(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Gi(t, i.getX(e), i.getY(e), i.getZ(e))), l = Ki(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = zi(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = Ki(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -2223,7 +2270,7 @@ function Li(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function Ri({ K: e, R: t, t: n }, r, i, a) {
+function Gi({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -2231,36 +2278,36 @@ function Ri({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function zi(e) {
+function Ki(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/memory.ts
-var Bi = 4 / 3, Vi = 4, Hi = 8, Ui = 2, Wi = 2 ** 20;
-function Gi() {
+var qi = 4 / 3, Ji = 4, Yi = 8, Xi = 2, Zi = 2 ** 20;
+function Qi() {
 	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
-	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && Ki(e) ? Math.min(t ?? 4, 6) * 128 * Wi : Math.min(t ?? 8, 8) * 256 * Wi;
+	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && $i(e) ? Math.min(t ?? 4, 6) * 128 * Zi : Math.min(t ?? 8, 8) * 256 * Zi;
 }
-function Ki(e) {
+function $i(e) {
 	return (e?.maxTouchPoints ?? 0) > 1;
 }
-function qi([e, t], n) {
+function X([e, t], n) {
 	return [Math.ceil(e / n), Math.ceil(t / n)];
 }
-function Ji(e, t) {
-	let [n, r] = qi(e, t);
+function ea(e, t) {
+	let [n, r] = X(e, t);
 	return n * r;
 }
-function Yi(e) {
+function ta(e) {
 	return Math.ceil(e / 4);
 }
-function Xi(e, t) {
-	return t * Zi(e);
+function na(e, t) {
+	return t * ra(e);
 }
-function Zi(e) {
+function ra(e) {
 	return Math.max(1, Math.ceil(e / 4));
 }
-function Qi(e) {
+function ia(e) {
 	let { atlas: t, means: n, bases: r } = e, i = [
 		t,
 		...n.map(({ size: e }) => e),
@@ -2268,14 +2315,14 @@ function Qi(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-function $i(e, t) {
+function aa(e, t) {
 	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = [
 		1,
 		2,
 		4,
 		8,
 		16
-	].find((n) => Math.max(...e.atlas) / n <= t.side && ea(e, n) <= t.memory / 2) ?? 16, o = ea(e, a) + e.geometry, s = (t, n) => o + na(e, t, n), c = (n, r) => s(n, r) + aa(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
+	].find((n) => Math.max(...e.atlas) / n <= t.side && oa(e, n) <= t.memory / 2) ?? 16, o = oa(e, a) + e.geometry, s = (t, n) => o + ca(e, t, n), c = (n, r) => s(n, r) + da(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
 		1,
 		2,
 		4
@@ -2289,76 +2336,76 @@ function $i(e, t) {
 	};
 	return {
 		...p,
-		limitation: oa(p, n, e, t)
+		limitation: fa(p, n, e, t)
 	};
 }
-function ea(e, t) {
-	let n = e.means.map((e) => ta(e) * Yi(e.channels) * Ji(e.size, t)), r = Qi(e).map((n) => {
-		let r = n.join() === e.atlas.join() ? Bi : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
-		return Hi * Ji(n, t) * (r + +!!i);
+function oa(e, t) {
+	let n = e.means.map((e) => sa(e) * ta(e.channels) * ea(e.size, t)), r = ia(e).map((n) => {
+		let r = n.join() === e.atlas.join() ? qi : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
+		return Yi * ea(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function ta({ tenBits: e }) {
-	return e ? Hi : Vi;
+function sa({ tenBits: e }) {
+	return e ? Yi : Ji;
 }
-function na({ bases: e, rays: t }, n, r) {
+function ca({ bases: e, rays: t }, n, r) {
 	return e.reduce((e, i) => {
 		let a = Math.min(r, i.count);
 		if (!a) return e;
-		let o = t ? Zi(a) * 129 * 129 * Hi : 0;
-		return e + ta(i) * Xi(a, i.channels) * Ji(i.size, n) + o;
+		let o = t ? ra(a) * 129 * 129 * Yi : 0;
+		return e + sa(i) * na(a, i.channels) * ea(i.size, n) + o;
 	}, 0);
 }
-function ra({ means: e, bases: t }, n, r) {
-	return ia([...e.filter(({ pieces: e, tenBits: t }) => e > 1 || t).map(({ size: e }) => qi(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => qi(e, r))]);
+function la({ means: e, bases: t }, n, r) {
+	return ua([...e.filter(({ pieces: e, tenBits: t }) => e > 1 || t).map(({ size: e }) => X(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => X(e, r))]);
 }
-function ia(e) {
+function ua(e) {
 	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
 }
-function aa(e, t) {
-	let [n, r] = ra({
+function da(e, t) {
+	let [n, r] = la({
 		means: [],
 		bases: e.bases
 	}, 1, t);
-	return (Vi + (e.bases.some(({ tenBits: e }) => e) ? Ui : 0)) * n * r;
+	return (Ji + (e.bases.some(({ tenBits: e }) => e) ? Xi : 0)) * n * r;
 }
-function oa(e, t, n, r) {
+function fa(e, t, n, r) {
 	let i = [];
 	if (e.usable < t && i.push(`${e.usable} of ${t} eigen textures are drawn`), e.usable && e.scaleDown > 1 && i.push(`eigen textures have 1/${e.scaleDown} of their size`), e.meanDown > 1 && i.push(`the mean texture has 1/${e.meanDown} of its size`), !i.length) return null;
-	let a = ea(n, 1) + na(n, 1, t) + aa(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${sa(a)} MB of graphics memory and ${sa(r.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${ca(i.join(", "))}: ${o}.`;
+	let a = oa(n, 1) + ca(n, 1, t) + da(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${pa(a)} MB of graphics memory and ${pa(r.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${ma(i.join(", "))}: ${o}.`;
 }
-function sa(e) {
+function pa(e) {
 	return (e / 1e6).toFixed(+(e < 1e7));
 }
-function ca(e) {
+function ma(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var la = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of three passes. All\n// draw into textures whose row 0 is v = 0, and the second and third add to what is there:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec3 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return sum;\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec3 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n", ua = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec3 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec3 sum = vec3(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec3 line = vec3(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0).rgb;\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", da = 2, fa = `
+var ha = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of four passes. All\n// draw into textures whose row 0 is v = 0. All but the first add R, G, B and opacity to what is there, which is cleared\n// to zeros before:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n//   finerOpacity  in a scene with sheets, once for all of the atlas: the opacity of the sheets\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum; or the opacity, in the first channel, at a density of its own\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n\n// The opacity in `coarse` at texture coordinates of the atlas.\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", ga = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", _a = 2, va = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${ua}${la}`, pa = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", ma = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", ha = `${fa}
+${ga}${ha}`, ya = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", ba = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", xa = `${va}
 in vec3 point;
 out vec4 place;
 void main() { place = placeOf(point); }
-`, ga = "sumTextures", _a = "finerValue";
-function va(n, r, i) {
-	let o = new w({
-		glslVersion: f,
-		vertexShader: pa,
-		fragmentShader: `${fa}in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(${n}(own), 1.0); }\n`,
+`, Sa = "sumTextures", Ca = "finerValue", wa = "finerOpacity";
+function Ta(n, r, i) {
+	let o = new E({
+		glslVersion: p,
+		vertexShader: ya,
+		fragmentShader: `${va}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
 		uniforms: {
-			rectangle: { value: new ee(...r) },
+			rectangle: { value: new te(...r) },
 			...i
 		},
-		side: c,
+		side: l,
 		blending: a,
-		blendSrc: S,
-		blendDst: S,
+		blendSrc: C,
+		blendDst: C,
 		depthTest: !1,
 		depthWrite: !1
 	}), s = new t();
@@ -2382,129 +2429,159 @@ function va(n, r, i) {
 		2,
 		1,
 		3
-	]), s.boundingSphere = new E();
-	let l = new v(s, o);
-	return l.frustumCulled = !1, l;
+	]), s.boundingSphere = new O();
+	let c = new y(s, o);
+	return c.frustumCulled = !1, c;
 }
-function ya([e, t], n) {
-	return new k(e, t, {
-		type: p,
+function Ea([e, t], n) {
+	return new ne(e, t, {
+		type: m,
 		depthBuffer: !1,
 		generateMipmaps: n,
-		minFilter: n ? g : b,
-		magFilter: n ? h : b
+		minFilter: n ? _ : x,
+		magFilter: n ? g : x
 	});
 }
-function ba(e, t) {
-	let n = Di(e.right, e.up), r = [
+function Da(e, t) {
+	let n = Pi(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
 		t[2] - e.origin[2]
 	];
-	return [...Ti(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
+	return [...Mi(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
 }
-function xa(t, n, r) {
+function Oa(t, n, r) {
 	let i = t.geometry.getAttribute("position"), a = t.geometry.getAttribute("uv"), o = new Float32Array(3 * i.count), s = new Float32Array(2 * i.count);
-	for (let e = 0; e < i.count; e++) o.set(ba(n, [
+	for (let e = 0; e < i.count; e++) o.set(Da(n, [
 		i.getX(e),
 		i.getY(e),
 		i.getZ(e)
 	]), 3 * e), s.set([a.getX(e), a.getY(e)], 2 * e);
-	let l = Array.from({ length: 5 }, (e, t) => t - da), u = l.flatMap((e) => l.map((t) => new D(t, e)));
+	let c = Array.from({ length: 5 }, (e, t) => t - _a), u = c.flatMap((e) => c.map((t) => new k(t, e)));
 	u.sort((e, t) => t.lengthSq() - e.lengthSq());
-	let d = new m();
-	d.setAttribute("position", new e(s, 2)), d.setAttribute("onPlane", new e(o, 3)), d.setIndex(t.geometry.index ? new e(t.geometry.index.array, 1) : null), d.instanceCount = u.length, d.boundingSphere = new E();
-	let p = new w({
-		glslVersion: f,
-		vertexShader: ma.replace("SHIFTS", String(u.length)),
-		fragmentShader: ha,
+	let d = new h();
+	d.setAttribute("position", new e(s, 2)), d.setAttribute("onPlane", new e(o, 3)), d.setIndex(t.geometry.index ? new e(t.geometry.index.array, 1) : null), d.instanceCount = u.length, d.boundingSphere = new O();
+	let f = new E({
+		glslVersion: p,
+		vertexShader: ba.replace("SHIFTS", String(u.length)),
+		fragmentShader: xa,
 		uniforms: {
-			texel: { value: new D(2 / r.width, 2 / r.height) },
+			texel: { value: new k(2 / r.width, 2 / r.height) },
 			shifts: { value: u }
 		},
-		side: c,
-		blending: x,
+		side: l,
+		blending: S,
 		depthTest: !1,
 		depthWrite: !1
-	}), h = new v(d, p);
-	h.frustumCulled = !1;
-	let g = new T();
-	return g.add(h), {
+	}), m = new y(d, f);
+	m.frustumCulled = !1;
+	let g = new D();
+	return g.add(m), {
 		scene: g,
 		free: () => {
-			d.dispose(), p.dispose();
+			d.dispose(), f.dispose();
 		}
 	};
 }
 // eigenfield-three/src/composer.ts
-var Sa = class {
+var ka = {
+	version: 0,
+	mean: !0,
+	opacity: !0,
+	only: null,
+	count: 0,
+	weights: /* @__PURE__ */ new Float64Array(),
+	eye: null,
+	maps: null
+}, Aa = class {
+	opacity;
+	down;
 	mesh;
 	plane;
 	grids;
 	composed = null;
+	opacityDrawn = !1;
 	camera = new n();
-	constructor(e, t, n, r, i) {
-		this.mesh = r, this.plane = i;
-		let [a, ...o] = Qi({
+	constructor(e, t, n, r, i, a) {
+		this.opacity = n, this.down = r, this.mesh = i, this.plane = a;
+		let [o, ...s] = ia({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
-		}), s = (e, r) => {
-			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(Ca), a = new T();
+		}), c = (e, n) => {
+			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(Ma), a = new D();
 			return i.forEach(({ quad: e }, t) => a.add(Object.assign(e, { renderOrder: t }))), {
-				target: ya(qi(e, n), r),
+				target: Ea(X(e, r), n),
 				scene: a,
 				steps: i,
 				places: null
 			};
-		}, c = s(a ?? e, !0);
-		this.grids = o.map((e) => s(e, !1));
+		}, l = c(o ?? e, !0);
+		this.grids = s.map((e) => c(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = va(_a, [
+			let t = Ta(Ca, [
 				0,
 				0,
 				1,
 				1
 			], { coarse: { value: e.texture } });
-			c.scene.add(Object.assign(t, { renderOrder: c.scene.children.length }));
+			l.scene.add(Object.assign(t, { renderOrder: l.scene.children.length }));
 		}
-		this.grids.push(c);
+		this.grids.push(l);
 	}
 	get texture() {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && Ea(this.composed, n) || (this.composed = n, ka(e, t, () => {
+		this.composed && Fa(this.composed, n) || (this.composed = n, Ra(e, t, () => {
+			n.opacity && !this.opacityDrawn && this.drawOpacity(e);
 			for (let t of this.grids) {
 				n.eye && !t.places && t.steps.some(({ part: e }) => e.basis) && this.findPlaces(e, t);
-				for (let e of t.steps) wa(e, t, n);
-				this.draw(e, t.scene, t.target);
+				for (let e of t.steps) Na(e, t.places?.texture ?? null, n);
+				this.draw(e, t.scene, t.target, this.opacityDrawn && t === this.grids.at(-1));
 			}
 		}));
 	}
 	dispose() {
-		for (let { target: e, places: t, scene: n } of this.grids) {
-			e.dispose(), t?.dispose();
-			for (let e of n.children) e.geometry.dispose(), e.material.dispose();
-		}
+		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.dispose(), ja(n);
+	}
+	drawOpacity(e) {
+		let t = this.grids.at(-1);
+		if (!this.opacity || !t) return;
+		let n = Ea(X(this.opacity.grid, this.down), !1), r = Ma(this.opacity);
+		for (let e of r) Na(e, null, ka);
+		let [i, a] = [new D(), new D()];
+		i.add(...r.map(({ quad: e }) => e)), a.add(Ta(wa, [
+			0,
+			0,
+			1,
+			1
+		], { coarse: { value: n.texture } })), this.draw(e, i, n), this.draw(e, a, t.target);
+		for (let e of [i, a]) ja(e);
+		n.dispose(), this.opacityDrawn = !0;
 	}
 	findPlaces(e, t) {
-		t.places = ya([t.target.width, t.target.height], !1);
-		let { scene: n, free: r } = xa(this.mesh, this.plane, t.places);
+		t.places = Ea([t.target.width, t.target.height], !1);
+		let { scene: n, free: r } = Oa(this.mesh, this.plane, t.places);
 		this.draw(e, n, t.places), r();
 	}
-	draw(e, t, n) {
-		e.setRenderTarget(n), e.state.buffers.color.setMask(!0), e.clear(!0, !1, !1), e.render(t, this.camera);
+	draw(e, t, n, r = !1) {
+		e.setRenderTarget(n), e.state.buffers.color.setMask(!0);
+		let i = e.getContext();
+		r && i.colorMask(!0, !0, !0, !1), e.clear(!0, !1, !1), r && i.colorMask(!0, !0, !0, !0), e.render(t, this.camera);
 	}
 };
-function Ca(e) {
+function ja(e) {
+	for (let { geometry: t, material: n } of e.children) t.dispose(), n.dispose();
+}
+function Ma(e) {
 	let t = e.colours.length, [n, r] = [e.scale.length / (4 * t), Math.floor(64 / t)], i = [];
 	for (let a = 0; a < n; a += r) {
-		let o = Array.from({ length: 64 }, (t, n) => new O(...e.colours[n] ?? [
+		let o = Array.from({ length: 64 }, (t, n) => new A(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), s = e.basis ? 1 : 4, c = va(ga, e.rectangle, {
+		])), s = e.basis ? 1 : 4, c = Ta(Sa, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(a * t / s) },
 			sharing: { value: s },
@@ -2517,7 +2594,7 @@ function Ca(e) {
 			weightMaps: { value: null },
 			firstGroup: { value: (e.basis?.group ?? 0) + a },
 			places: { value: null },
-			eye: { value: new O() }
+			eye: { value: new A() }
 		});
 		i.push({
 			part: e,
@@ -2528,42 +2605,42 @@ function Ca(e) {
 	}
 	return i;
 }
-function wa({ part: e, first: t, groups: n, quad: r }, { places: i }, a) {
+function Na({ part: e, first: t, groups: n, quad: r }, i, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Ta(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Pa(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
-	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", u ? i?.texture ?? null : null), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
+	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", u ? i : null), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function Ta(e, t, n, r) {
+function Pa(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function Ea(e, t) {
+function Fa(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
-var Da = new i(0), Oa = new i();
-function ka(e, t, n) {
+var Ia = new i(0), La = new i();
+function Ra(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(Oa), e.setClearColor(Da, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(Oa, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(La), e.setClearColor(Ia, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(La, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/maps.ts
-function Aa(e, t, n, i, a) {
+function za(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? Zi(t) : 0;
+		u += e, d += t ? ra(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -2578,102 +2655,117 @@ function Aa(e, t, n, i, a) {
 			f[4 * (((t >> 2) * 129 + r) * 129 + i) + (t & 3)] = s.toHalfFloat(a);
 		}
 	}
-	let m = new o(f, 129, 129, Math.max(1, d));
-	return m.format = C, m.type = p, m.minFilter = m.magFilter = h, m.wrapS = m.wrapT = r, m.needsUpdate = !0, m;
+	let p = new o(f, 129, 129, Math.max(1, d));
+	return p.format = T, p.type = m, p.minFilter = p.magFilter = g, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
 }
 // ../src/eigenfield/rendering/shaders/surface.glsl?raw
-var ja = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/renderer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B at texture coordinates; nothing is cut off.\nvec3 surfaceValue(vec2 uv) {\n  vec3 plain = texture(composed, uv, -log2(finest)).rgb;\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What the surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) {\n  return clamp(surfaceValue(uv) * exposureScale + exposureBias, 0.0, 1.0);\n}\n", Ma = {
+var Ba = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/renderer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B and opacity at texture coordinates; nothing is cut off.\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What is seen of a value of the surface.\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\n\n// What an opaque surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\n\n// What a sheet adds to the sheets behind it at texture coordinates: R, G, B times its opacity, and its opacity. It is\n// blended with the factors ONE and ONE_MINUS_SRC_ALPHA. Colours are not cut off: those of all sheets together count.\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", Va = {
 	bilinear: 0,
 	bicubic: 1
-}, Na = {
+}, Ha = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, Pa = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Fa = `
-precision highp float;
-precision highp int;
-precision highp sampler2D;
-${ua}${ja}
-uniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error
+}, Ua = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Wa = Ua.replace("void main", "invariant gl_Position;\nvoid main"), Ga = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", Ka = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", qa = `${Ga}
+${ga}${Ba}
 uniform float shownGain;       // of the eigen texture around mid grey
-uniform sampler2D photograph;  // row 0 on top
-uniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w
-
 in vec2 surfaceUv;
+vec3 eigenColour(vec3 value) { return clamp(0.5 + shownGain * value, 0.0, 1.0); }
+`, Ja = `${qa}${Ka}
 in vec3 surfacePlace;
 out vec4 fragment;
-
-vec3 heat(float t) {
-  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);
-}
-
-vec3 errorColour(vec3 drawn) {
-  vec4 at = toPhotograph * vec4(surfacePlace, 1.0);
-  vec2 uv = at.xy / at.w;
-  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);
-  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);
-  return heat(5.0 * (off.r + off.g + off.b) / 3.0);
-}
-
 void main() {
   vec3 colour;
-  if (shown == 2) colour = clamp(0.5 + shownGain * surfaceValue(surfaceUv), 0.0, 1.0);
+  if (shown == 2) colour = eigenColour(surfaceValue(surfaceUv).rgb);
   else colour = surfaceColour(surfaceUv);
-  if (shown == 3) colour = errorColour(colour);
+  if (shown == 3) colour = errorColour(colour, surfacePlace);
   fragment = vec4(colour, 1.0);
 }
-`;
-function Ia(e) {
-	let t = {
+`, Ya = `${qa}
+layout(location = 0) out vec4 fragment;
+layout(location = 1) out vec4 solid;
+vec3 threeBytes(float depth) {
+  uint code = uint(clamp(depth, 0.0, 1.0) * 16777215.0);
+  return vec3(uvec3(code >> 16, code >> 8, code) & 255u) / 255.0;
+}
+void main() {
+  vec4 colour = sheetColour(surfaceUv);
+  if (shown == 2) colour.rgb = eigenColour(surfaceValue(surfaceUv).rgb) * colour.a;
+  fragment = colour;
+  float depth = (gl_FragCoord.z - gl_DepthRange.near) / gl_DepthRange.diff;
+  solid = colour.a < 0.5 ? vec4(0.0) : vec4(threeBytes(depth), 1.0);
+}
+`, Xa = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", Za = {
+	blending: a,
+	blendSrc: C,
+	blendDst: w
+};
+function Qa(e, t) {
+	let n = {
 		composed: { value: null },
 		finest: { value: 1 },
-		exposureScale: { value: new O(1, 1, 1) },
-		exposureBias: { value: new O() },
-		shown: { value: Na.picture },
+		exposureScale: { value: new A(1, 1, 1) },
+		exposureBias: { value: new A() },
+		shown: { value: Ha.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
-		toPhotograph: { value: new _() }
-	}, n = new w({
-		glslVersion: f,
-		vertexShader: Pa,
-		fragmentShader: Fa,
-		uniforms: t,
-		defines: { BICUBIC: Ma.bicubic },
-		side: e ? c : d
+		toPhotograph: { value: new v() }
+	}, r = new E({
+		glslVersion: p,
+		vertexShader: t ? Wa : Ua,
+		fragmentShader: t ? Ya : Ja,
+		uniforms: n,
+		defines: { BICUBIC: Va.bicubic },
+		side: e ? l : f,
+		...t ? {
+			...Za,
+			depthWrite: !1
+		} : {}
 	});
-	return n.name = "eigen textures", n;
+	return r.name = "eigen textures", r;
+}
+function $a(e) {
+	let { side: t } = e;
+	return new E({
+		name: "depth of sheets",
+		glslVersion: p,
+		vertexShader: Wa,
+		fragmentShader: Xa,
+		colorWrite: !1,
+		side: t
+	});
 }
 // eigenfield-three/src/gpu.ts
-function La(e, t) {
+function eo(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function Ra(e, [t, n], r, i, a) {
-	return Va(e, e.TEXTURE_2D_ARRAY, () => {
+function to(e, [t, n], r, i, a) {
+	return io(e, e.TEXTURE_2D_ARRAY, () => {
 		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, a ? e.RGBA16F : e.RGBA8, t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function za(e, t, n) {
+function no(e, t, n) {
 	let { width: r, height: i } = n;
-	Ha(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
+	ao(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
 }
-function Ba(e, [t, n], r = !1) {
-	return Va(e, e.TEXTURE_2D, () => {
+function ro(e, [t, n], r = !1) {
+	return io(e, e.TEXTURE_2D, () => {
 		e.texStorage2D(e.TEXTURE_2D, 1, r ? e.RG8 : e.RGBA8, t, n), e.texParameteri(e.TEXTURE_2D, e.TEXTURE_MIN_FILTER, e.NEAREST);
 	});
 }
-function Va(e, t, n) {
+function io(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return Ha(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return ao(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function Ha(e, t, n, r) {
+function ao(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -2687,9 +2779,9 @@ function Ha(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-var Ua = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", Wa = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform vec2 size; // of what is drawn\nuniform highp sampler2D precisions;\nuniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nvoid main() {\n  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);\n  if (nodes.x == 0) stored = vec4(code);\n  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / 4.0, -65504.0, 65504.0));\n}\n";
-function Ga(e, t) {
-	let n = Ya(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], [a, o, s, c, l] = [
+var oo = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", so = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform vec2 size; // of what is drawn\nuniform highp sampler2D precisions;\nuniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nvoid main() {\n  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);\n  if (nodes.x == 0) stored = vec4(code);\n  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / 4.0, -65504.0, 65504.0));\n}\n";
+function co(e, t) {
+	let n = po(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], [a, o, s, c, l] = [
 		"factors",
 		"size",
 		"precisions",
@@ -2697,7 +2789,7 @@ function Ga(e, t) {
 		"zero"
 	].map((t) => e.getUniformLocation(n, t)), u = ({ picture: t, rows: u }, d, f, p, m) => {
 		e.useProgram(n), e.uniform2f(o ?? null, t.width, u), e.uniform1i(s ?? null, +!!m), e.uniform2i(c ?? null, m?.precision.width ?? 0, m?.precision.height ?? 0), e.uniform1f(l ?? null, m?.zero ?? 0), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.viewport(0, 0, t.width, u);
-		for (let { channel: n, layer: r, component: i } of f) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, d, 0, r), Ka(t) ? e.uniform4f(a ?? null, 255, 65280, 0, 0) : e.uniform4fv(a ?? null, [
+		for (let { channel: n, layer: r, component: i } of f) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, d, 0, r), lo(t) ? e.uniform4f(a ?? null, 255, 65280, 0, 0) : e.uniform4fv(a ?? null, [
 			0,
 			1,
 			2,
@@ -2706,13 +2798,13 @@ function Ga(e, t) {
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let { picture: s, row: c, rows: l } = n, d = Ka(s) ? t.codes : t.picture;
+			let { picture: s, row: c, rows: l } = n, d = lo(s) ? t.codes : t.picture;
 			if (!d) return;
-			let f = () => Xa(e, 0, d, () => {
-				Ka(s) ? Ja(e, s, c, l) : qa(e, s, c, l), Za(e, () => u(n, r, i, a, o));
+			let f = () => mo(e, 0, d, () => {
+				lo(s) ? fo(e, s, c, l) : uo(e, s, c, l), ho(e, () => u(n, r, i, a, o));
 			});
-			o ? Xa(e, 1, t.precision, () => {
-				qa(e, o.precision, 0, o.precision.height), f();
+			o ? mo(e, 1, t.precision, () => {
+				uo(e, o.precision, 0, o.precision.height), f();
 			}) : f();
 		},
 		free() {
@@ -2720,30 +2812,30 @@ function Ga(e, t) {
 		}
 	};
 }
-function Ka(e) {
+function lo(e) {
 	return "data" in e;
 }
-function qa(e, t, n, r) {
+function uo(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function Ja(e, { data: t, width: n, stride: r }, i, a) {
+function fo(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
-function Ya(e) {
+function po(e) {
 	let t = e.createProgram();
-	for (let [n, r] of [[e.VERTEX_SHADER, Ua], [e.FRAGMENT_SHADER, Wa]]) {
+	for (let [n, r] of [[e.VERTEX_SHADER, oo], [e.FRAGMENT_SHADER, so]]) {
 		let i = e.createShader(n);
 		i && (e.shaderSource(i, r), e.compileShader(i), e.attachShader(t, i), e.deleteShader(i));
 	}
 	return e.linkProgram(t), t;
 }
-function Xa(e, t, n, r) {
+function mo(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), Ha(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), ao(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function Za(e, t) {
+function ho(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -2758,7 +2850,7 @@ function Za(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/parts.ts
-function Qa(e, t, n) {
+function go(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -2768,7 +2860,7 @@ function Qa(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = $a(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = vo(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -2796,7 +2888,7 @@ function Qa(e, t, n) {
 						n + e[1] / i[1]
 					],
 					colours: f,
-					...to(l, u, h),
+					...bo(l, u, h),
 					basis: {
 						ready: m,
 						column: o,
@@ -2804,12 +2896,32 @@ function Qa(e, t, n) {
 					}
 				});
 			}
-			o += p, s += h ? Zi(h) : 0;
+			o += p, s += h ? ra(h) : 0;
 		}
 	}), r;
 }
-function $a({ mean: e, channels: t, precision: n }) {
-	let { scale: r, zero: i } = e, a = n ? 4 : eo([e]), o = {
+function _o({ planes: e, sheets: t }, { means: n, needs: r }) {
+	let i = n[e.length], a = r.means[e.length]?.size;
+	return !t || !i || !a ? null : {
+		stored: i,
+		grid: a,
+		rectangle: [
+			0,
+			0,
+			1,
+			1
+		],
+		colours: [[
+			1,
+			0,
+			0
+		]],
+		...vo(t.opacity),
+		basis: null
+	};
+}
+function vo({ mean: e, channels: t, precision: n }) {
+	let { scale: r, zero: i } = e, a = n ? 4 : yo([e]), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
 	};
@@ -2819,11 +2931,11 @@ function $a({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function eo(e) {
-	return Pr(e) ? 1 : 255;
+function yo(e) {
+	return Lr(e) ? 1 : 255;
 }
-function to(e, t, n) {
-	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = eo(e), o = 4 * t * Zi(n), s = {
+function bo(e, t, n) {
+	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = yo(e), o = 4 * t * ra(n), s = {
 		scale: new Float32Array(o),
 		bias: new Float32Array(o)
 	};
@@ -2833,22 +2945,139 @@ function to(e, t, n) {
 	}
 	return s;
 }
+// eigenfield-three/src/sheet-stack.ts
+var xo = "sheets", So = 16, Co = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", wo = `${Ga}${Ka}
+uniform sampler2D sheets;      // R, G, B times coverage, and coverage
+uniform sampler2D solid;       // depth of what is at least half opaque
+uniform sampler2D nearest;     // depth of the last sheet, within its slice
+uniform float slices;
+uniform vec2 corner;           // of the viewport in what is drawn into
+uniform vec2 size;             // of the viewport
+uniform mat4 toPlace;          // from clip space
+out vec4 fragment;
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy - corner);
+  vec4 colour = texelFetch(sheets, at, 0);
+  if (colour.a <= 0.0) discard;
+  colour.rgb = clamp(colour.rgb, 0.0, 1.0);
+  vec4 known = texelFetch(solid, at, 0);
+  float depth = fract(texelFetch(nearest, at, 0).r * slices);
+  if (known.a > 0.5) depth = dot(floor(255.0 * known.rgb + 0.5), vec3(65536.0, 256.0, 1.0)) / 16777215.0;
+  if (shown == 3) {
+    vec2 pixel = (gl_FragCoord.xy - corner) / size;
+    vec4 place = toPlace * vec4(2.0 * vec3(pixel, depth) - 1.0, 1.0);
+    colour.rgb = errorColour(min(colour.rgb / colour.a, 1.0), place.xyz / place.w) * colour.a;
+  }
+  gl_FragDepth = depth;
+  fragment = colour;
+}
+`, To = new te(), Eo = class {
+	scene = new D();
+	camera = new n();
+	sheets;
+	depth;
+	screen;
+	target = null;
+	constructor(e, t, n) {
+		let r = 0;
+		e.forEach((e, n) => {
+			for (let i of [0, 1]) t.addGroup(r, 3 * e, 2 * n + i);
+			r += 3 * e;
+		}), this.depth = $a(n), this.depth.transparent = n.transparent = !0, this.sheets = new y(t, e.flatMap(() => [this.depth, n])), this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (t, n, r, i, a, o) => {
+			let { materialIndex: s = 0 } = o, c = e.length - 1 - (s >> 1);
+			t.getContext().depthRange(c / e.length, (c + 1) / e.length);
+		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
+		let { shown: i, photograph: a, toPhotograph: o } = n.uniforms;
+		this.screen = new E({
+			name: xo,
+			glslVersion: p,
+			vertexShader: Co,
+			fragmentShader: wo,
+			uniforms: {
+				shown: i,
+				photograph: a,
+				toPhotograph: o,
+				sheets: { value: null },
+				solid: { value: null },
+				nearest: { value: null },
+				slices: { value: e.length },
+				corner: { value: new k() },
+				size: { value: new k() },
+				toPlace: { value: new v() }
+			},
+			transparent: !0,
+			...Za
+		});
+	}
+	get bytes() {
+		return this.target ? So * this.target.width * this.target.height : 0;
+	}
+	attach(n, r) {
+		for (let e of [n.material].flat()) e.visible = !1;
+		n.geometry.computeBoundingBox(), n.geometry.computeBoundingSphere();
+		let { boundingBox: i, boundingSphere: a } = n.geometry, o = new t();
+		o.setAttribute("position", new e(new Float32Array([
+			-1,
+			-1,
+			0,
+			3,
+			-1,
+			0,
+			-1,
+			3,
+			0
+		]), 3)), Object.assign(o, {
+			boundingBox: i,
+			boundingSphere: a
+		});
+		let s = new y(o, this.screen);
+		s.name = xo, s.raycast = () => void 0, s.onBeforeRender = (e, t, i) => {
+			r(e, i), this.draw(e, i, n);
+		}, n.add(s);
+	}
+	dispose() {
+		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
+	}
+	draw(e, t, n) {
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(To);
+		if (!a || !o) return;
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Do(a, o));
+		let { target: s } = this;
+		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), Ra(e, t, () => {
+			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
+		}), e.getContext().depthRange(0, 1);
+		let { uniforms: c } = this.screen, l = (e, t) => {
+			Object.assign(c[e] ?? {}, { value: t });
+		};
+		l("sheets", s.textures[0]), l("solid", s.textures[1]), l("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
+	}
+};
+function Do(e, t) {
+	let n = new ne(e, t, {
+		count: 2,
+		type: m,
+		depthTexture: new c(e, t),
+		minFilter: x,
+		magFilter: x
+	}), [, r] = n.textures;
+	return r && (r.type = ee), n;
+}
 // eigenfield-three/src/pieces.ts
-function no(e) {
+function Oo(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
 // eigenfield-three/src/strength.ts
-var ro = 128, io = .98;
-async function ao(e, t, n, r) {
+var ko = 128, Ao = .98;
+async function jo(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = Fr(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(ro, ro).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = Rr(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(ko, ko).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, ro, ro);
-		let { data: u } = d.getImageData(0, 0, ro, ro);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, ko, ko);
+		let { data: u } = d.getImageData(0, 0, ko, ko);
 		(l ? [
 			0,
 			1,
@@ -2857,30 +3086,30 @@ async function ao(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), no(u), f.sort((e, t) => e - t);
-	let p = f[Math.floor(io * f.length)] ?? 0;
+	}), Oo(u), f.sort((e, t) => e - t);
+	let p = f[Math.floor(Ao * f.length)] ?? 0;
 	return p > 0 ? .45 / p : 1;
 }
 // eigenfield-three/src/means.ts
-async function oo(e, t, n = 1) {
-	let { mean: r, meanSize: i } = e, a = e.precision && await so(await t(e.precision.view), e.precision);
+async function Mo(e, t, n = 1) {
+	let { mean: r, meanSize: i } = e, a = e.precision && await No(await t(e.precision.view), e.precision);
 	return {
 		pieces: await r.codec.decode(await t(r.view), r, i, n),
 		precision: a
 	};
 }
-async function so(e, t) {
-	let { type: n } = Bn(e) ?? {}, { mimeType: r } = t.codec;
-	if (n && n !== r) throw j(t.where, `${n}, not ${r}`);
+async function No(e, t) {
+	let { type: n } = Un(e) ?? {}, { mimeType: r } = t.codec;
+	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
-	if (!i) throw j(t.where, "no picture");
+	if (!i) throw M(t.where, "no picture");
 	return i.picture;
 }
-function co({ pieces: e, precision: t }) {
-	no(e), t?.close();
+function Po({ pieces: e, precision: t }) {
+	Oo(e), t?.close();
 }
 // eigenfield-three/src/textures.ts
-var lo = 3, uo = class {
+var Fo = 3, Io = class {
 	parts;
 	options;
 	means;
@@ -2907,20 +3136,20 @@ var lo = 3, uo = class {
 		let o = r.planes.flatMap(({ channels: e, bases: t }) => t.map((t) => ({
 			...t,
 			channels: e,
-			tenBits: Pr(t.pictures)
-		}))), s = r.planes.map(({ channels: e, mean: t }, n) => ({
+			tenBits: Lr(t.pictures)
+		}))), s = ti(r).map(({ channels: e, mean: t }, n) => ({
 			size: i[n] ?? [1, 1],
 			channels: e,
 			pieces: t.pieces,
-			tenBits: Pr([t])
+			tenBits: Lr([t])
 		}));
 		this.needs = {
-			atlas: bi(r, i),
+			atlas: Di(r, i),
 			means: s,
 			bases: o,
 			rays: a,
 			geometry: t
-		}, this.means = s.map(() => new u()), this.bases = o.map(() => new u()), this.ready = o.map(({ count: e }) => Array(e).fill(!1)), this.entries = o.flatMap((e, t) => {
+		}, this.means = s.map(() => new d()), this.bases = o.map(() => new d()), this.ready = o.map(({ count: e }) => Array(e).fill(!1)), this.entries = o.flatMap((e, t) => {
 			let n = 0;
 			return e.pictures.map((r) => {
 				let i = n;
@@ -2944,7 +3173,7 @@ var lo = 3, uo = class {
 	attach(e) {
 		if (this.disposed) return;
 		let t = e.getContext();
-		if (!(t instanceof WebGL2RenderingContext)) throw new A("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
+		if (!(t instanceof WebGL2RenderingContext)) throw new j("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
 		this.detach(), this.renderer = e, e.domElement.addEventListener("webglcontextlost", this.onLost), e.domElement.addEventListener("webglcontextrestored", this.onRestored);
 		let n = this.turn;
 		this.load(t, n).catch((e) => {
@@ -2952,7 +3181,7 @@ var lo = 3, uo = class {
 		});
 	}
 	dispose() {
-		this.detach(), this.disposed = !0, this.decoded?.forEach(co), this.decoded = null;
+		this.detach(), this.disposed = !0, this.decoded?.forEach(Po), this.decoded = null;
 	}
 	detach() {
 		let e = this.renderer?.getContext();
@@ -2969,26 +3198,26 @@ var lo = 3, uo = class {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		if (!e.getExtension("EXT_color_buffer_float") && !e.getExtension("EXT_color_buffer_half_float")) throw new A("unsupported", "These graphics draw no half-floats; use a newer device or browser.");
+		if (!e.getExtension("EXT_color_buffer_float") && !e.getExtension("EXT_color_buffer_half_float")) throw new j("unsupported", "These graphics draw no half-floats; use a newer device or browser.");
 		let { packer: n, plan: r } = this.makeRoom(e);
 		if (this.plan = r, this.packer = n, this.onPlan(r), await this.loadMeans(e, t, r.meanDown), t !== this.turn) return;
 		let i = this.entries.filter(({ first: e }) => e < r.usable), a = [], o = 0;
 		try {
 			for (let e of i) {
-				for (; a.length < lo && o < i.length;) a.push(this.decode(i[o++], r.scaleDown));
+				for (; a.length < Fo && o < i.length;) a.push(this.decode(i[o++], r.scaleDown));
 				let s = await a[0] ?? [];
-				if (a.shift(), t === this.turn && this.pack(s, e, n, r.usable), no(s), t !== this.turn) return;
+				if (a.shift(), t === this.turn && this.pack(s, e, n, r.usable), Oo(s), t !== this.turn) return;
 				this.onTexture();
 			}
 		} finally {
-			for (let e of a) e.then(no).catch(() => void 0);
+			for (let e of a) e.then(Oo).catch(() => void 0);
 		}
 		n.free(), this.packer = null, this.onComplete();
 	}
 	pack(e, t, n, r) {
 		let { number: i, channels: a, first: o, picture: s } = t, c = this.bases[i]?.sourceTexture, l = this.ready[i];
 		if (!(c instanceof WebGLTexture) || !l) return;
-		let u = this.needs.bases[i]?.tenBits ? 255 * Fr(s) : 1, d = s.pieces < a;
+		let u = this.needs.bases[i]?.tenBits ? 255 * Rr(s) : 1, d = s.pieces < a;
 		for (let t = o; t < Math.min(o + s.textures, r); t++) {
 			for (let r = 0; r < s.pieces; r++) {
 				let i = (e) => a * Math.floor(t / 4) + e, l = (d ? [
@@ -3008,13 +3237,13 @@ var lo = 3, uo = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs, r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
-		for (let i = this.options.memory ?? Gi();; i /= 2) {
-			let a = $i(this.needs, La(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, tenBits: r }) => Ra(e, qi(t, o), Yi(n), l, r)), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
+		for (let i = this.options.memory ?? Qi();; i /= 2) {
+			let a = aa(this.needs, eo(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, tenBits: r }) => to(e, X(t, o), ta(n), l, r)), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return Ra(e, a ? qi(t, s) : [1, 1], a ? Xi(a, n) : 1, l, i);
-			})], d = ra(this.needs, o, s), f = Ba(e, d), p = [...t, ...n].some(({ tenBits: e }) => e), m = p ? Ba(e, d, !0) : null, h = Ba(e, ia(r));
+				return to(e, a ? X(t, s) : [1, 1], a ? na(a, n) : 1, l, i);
+			})], d = la(this.needs, o, s), f = ro(e, d), p = [...t, ...n].some(({ tenBits: e }) => e), m = p ? ro(e, d, !0) : null, h = ro(e, ua(r));
 			if (f && h && (m || !p) && u.every((e) => e !== null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = u[t] ?? null), {
-				packer: Ga(e, {
+				packer: co(e, {
 					picture: f,
 					codes: m,
 					precision: h
@@ -3027,23 +3256,23 @@ var lo = 3, uo = class {
 				m,
 				h
 			]) e.deleteTexture(t);
-			if (!c) throw new A("unsupported", "The graphics memory is full; close other pages and try again.");
+			if (!c) throw new j("unsupported", "The graphics memory is full; close other pages and try again.");
 		}
 	}
 	async loadMeans(e, t, n) {
-		let { scene: r, bytes: i } = this.parts, { decoded: a } = this;
-		this.decoded = null, (!a || n > 1) && (a?.forEach(co), a = await Promise.all(r.planes.map((e) => oo(e, i, n)))), a.forEach((n, i) => {
-			let a = this.means[i]?.sourceTexture, o = r.planes[i]?.mean;
-			t === this.turn && o && a instanceof WebGLTexture && this.putMean(e, n, o, a), co(n);
+		let { scene: r, bytes: i } = this.parts, a = ti(r), { decoded: o } = this;
+		this.decoded = null, (!o || n > 1) && (o?.forEach(Po), o = await Promise.all(a.map((e) => Mo(e, i, n)))), o.forEach((n, r) => {
+			let i = this.means[r]?.sourceTexture, o = a[r]?.mean;
+			t === this.turn && o && i instanceof WebGLTexture && this.putMean(e, n, o, i), Po(n);
 		}), t === this.turn && (this.hasMeans = !0, this.version += 1);
 	}
 	putMean(e, t, n, r) {
-		let { pieces: i, precision: a } = t, o = Pr([n]), [s] = i;
+		let { pieces: i, precision: a } = t, o = Lr([n]), [s] = i;
 		if (s && i.length === 1 && !o && "close" in s.picture) {
-			za(e, r, s.picture);
+			no(e, r, s.picture);
 			return;
 		}
-		let c = o ? 255 * Fr(n) : 1;
+		let c = o ? 255 * Rr(n) : 1;
 		i.forEach((e, t) => {
 			let i = [{
 				channel: 0,
@@ -3061,7 +3290,7 @@ var lo = 3, uo = class {
 		let { basis: n, picture: r } = e, i = this.parts.bytes(r.view).then((e) => r.codec.decode(e, r, n.size, t));
 		return i.catch(() => void 0), i;
 	}
-}, fo = 1.5, po = .001, mo = class extends l {
+}, Lo = 1.5, Ro = .001, zo = class extends u {
 	parts;
 	mesh;
 	info;
@@ -3080,6 +3309,7 @@ var lo = 3, uo = class {
 	lastByRay = !1;
 	complete;
 	material;
+	stack;
 	textures;
 	counts;
 	composers = /* @__PURE__ */ new Map();
@@ -3092,16 +3322,19 @@ var lo = 3, uo = class {
 		super(), this.parts = e;
 		let { scene: n, info: r, meshes: i } = e, [a] = i;
 		if (!a) throw Error("a field needs a mesh");
-		this.mesh = a, this.info = r, this.total = yi(n), this.counts = vi(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
+		this.mesh = a, this.info = r, this.total = Ei(n), this.counts = Ti(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
 		let o = 0;
-		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new uo(e, vo(a), t);
-		let s = [a.material].flat().some((e) => e.side !== d);
-		this.material = Ia(s), this.complete = new Promise((e, t) => {
+		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new Io(e, Uo(a), t);
+		let s = [a.material].flat().some((e) => e.side !== f);
+		this.material = Qa(s, n.sheets !== null), this.stack = n.sheets && new Eo(n.sheets.faces, a.geometry, this.material), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0);
 		let c = r.cameras[r.reference];
-		this.detail = c ? Li(a.geometry, c, [1, 1]) : 0, this.listen();
-		for (let e of i) e.material = this.material, e.onBeforeRender = (t, n, r) => this.prepare(t, r, e);
+		this.detail = c ? Wi(a.geometry, c, [1, 1]) : 0, this.listen();
+		for (let e of i) {
+			let t = (t, n) => this.prepare(t, n, e);
+			this.stack ? this.stack.attach(e, t) : (e.material = this.material, e.onBeforeRender = (e, n, r) => t(e, r));
+		}
 		t.renderer && this.textures.attach(t.renderer);
 	}
 	get usable() {
@@ -3117,7 +3350,7 @@ var lo = 3, uo = class {
 		return this.textures.plan?.limitation ?? null;
 	}
 	get gpuBytes() {
-		return this.textures.plan?.bytes ?? 0;
+		return (this.textures.plan?.bytes ?? 0) + (this.stack?.bytes ?? 0);
 	}
 	viewWeights(e, t, n = this.mixing) {
 		let r = new Float64Array(this.parts.weights.places.length / 2), { camera: i, weight: a } = this.parts.weights.at(e, t, n);
@@ -3130,13 +3363,13 @@ var lo = 3, uo = class {
 		let t = this.rowOf[e] ?? -1, n = this.info.cameras[e], r = this.columns;
 		if (t >= 0) return Float64Array.from(this.parts.omega.subarray(t * r, (t + 1) * r));
 		if (!n) throw RangeError(`no camera ${e}`);
-		return this.componentWeights(...Ti(this.info.viewPlane, n.centre));
+		return this.componentWeights(...Mi(this.info.viewPlane, n.centre));
 	}
 	restore(e) {
 		this.textures.attach(e);
 	}
 	dispose() {
-		this.textures.dispose(), this.freeComposers(), this.maps?.texture.dispose(), this.material.dispose(), this.mesh.geometry.dispose();
+		this.textures.dispose(), this.freeComposers(), this.stack?.dispose(), this.maps?.texture.dispose(), this.material.dispose(), this.mesh.geometry.dispose();
 	}
 	listen() {
 		this.textures.onPlan = ({ limitation: e }) => {
@@ -3144,7 +3377,7 @@ var lo = 3, uo = class {
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return fo * Math.max(1, this.detail * Math.sqrt(e * t) / n);
+		return Lo * Math.max(1, this.detail * Math.sqrt(e * t) / n);
 	}
 	get columns() {
 		return this.counts.reduce((e, t) => e + t, 0);
@@ -3161,30 +3394,35 @@ var lo = 3, uo = class {
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = _o(t, n), [i, a] = Ti(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
+		let r = Ho(t, n), [i, a] = Mi(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
 		this.setView();
-		let l = Ma[this.filter];
+		let l = Va[this.filter];
 		this.material.defines.BICUBIC !== l && (this.material.defines.BICUBIC = l, this.material.needsUpdate = !0), this.material.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
 		let { plan: r } = this.textures, { size: i, viewPlane: a } = this.info;
 		if (!r) return;
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
-		s || (s = new Sa(i, Qa(this.parts.scene, this.textures, r), o, this.mesh, a), this.composers.set(o, s)), s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
+		if (!s) {
+			let { scene: e } = this.parts, t = _o(e, this.textures);
+			s = new Aa(i, go(e, this.textures, r), t, o, this.mesh, a), this.composers.set(o, s);
+		}
+		s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
 	}
 	freeComposers() {
 		for (let e of this.composers.values()) e.dispose();
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.material.uniforms.shown.value, r = n === Na.eigen ? this.shownEigen : null;
+		let n = this.material.uniforms.shown.value, r = n === Ha.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
+			opacity: this.textures.hasMeans && this.stack !== null,
 			only: r,
-			count: n === Na.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === Ha.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && ba(this.info.viewPlane, t),
+			eye: t && Da(this.info.viewPlane, t),
 			maps: t && this.mapsOf(this.mixing)
 		};
 	}
@@ -3196,7 +3434,7 @@ var lo = 3, uo = class {
 		]).map((e) => 1 / e);
 		e.exposureScale.value.fromArray(a), e.exposureBias.value.fromArray(a.map((e, t) => -(i?.[t] ?? 0) * e));
 		let o = this.view === "error" && !t ? "picture" : this.view, s = this.shownEigen;
-		e.shown.value = Na[o === "eigen" && s >= this.loaded ? "mean" : o], o === "eigen" && (e.shownGain.value = this.gainOf(s)), t && this.aimPhotograph();
+		e.shown.value = Ha[o === "eigen" && s >= this.loaded ? "mean" : o], o === "eigen" && (e.shownGain.value = this.gainOf(s)), t && this.aimPhotograph();
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -3204,7 +3442,7 @@ var lo = 3, uo = class {
 	aimPhotograph() {
 		let e = this.camera === null ? void 0 : this.info.cameras[this.camera], { photograph: t } = this;
 		if (!e || !t) return;
-		let { K: n, R: r, t: i, width: a, height: o } = e, s = new _().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new _().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !yo(t.image), u = new _().makeScale(1 / a, (l ? -1 : 1) / o, 1);
+		let { K: n, R: r, t: i, width: a, height: o } = e, s = new v().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new v().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !Wo(t.image), u = new v().makeScale(1 / a, (l ? -1 : 1) / o, 1);
 		l && (u.elements[13] = 1), this.material.uniforms.toPhotograph.value.multiplyMatrices(u, c.multiply(s)), this.material.uniforms.photograph.value = t;
 	}
 	gainOf(e) {
@@ -3215,7 +3453,7 @@ var lo = 3, uo = class {
 		for (let { channels: t, bases: a } of n.planes) {
 			let o = n.colours.slice(i, i += t), s = a.find(({ count: t }) => t > e);
 			if (!(!s || e < 0)) {
-				ao(s, e, o, r).then((t) => {
+				jo(s, e, o, r).then((t) => {
 					this.gains.set(e, t), this.dispatchEvent({ type: "texture" });
 				}).catch(() => void 0);
 				break;
@@ -3225,13 +3463,13 @@ var lo = 3, uo = class {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= po * Math.max(...r);
+		return Math.abs(i) <= Ro * Math.max(...r);
 	}
 	mapsOf(e) {
 		let { usable: t } = this;
 		if (this.maps?.mixing === e && this.maps.usable === t) return this.maps.texture;
 		this.maps?.texture.dispose();
-		let n = Aa(this.parts.weights, e, this.parts.omega, this.counts, t);
+		let n = za(this.parts.weights, e, this.parts.omega, this.counts, t);
 		return this.maps = {
 			texture: n,
 			mixing: e,
@@ -3239,33 +3477,33 @@ var lo = 3, uo = class {
 		}, n;
 	}
 	fail(e) {
-		if (bo(e)) return;
-		let t = ie(e), n = `The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`;
+		if (Go(e)) return;
+		let t = oe(e), n = `The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`;
 		this.dispatchEvent({
 			type: "error",
-			error: new A(t.code, `${t.message} ${n}`, t.where)
+			error: new j(t.code, `${t.message} ${n}`, t.where)
 		});
 	}
-}, ho = new _(), go = new O();
-function _o(e, t) {
-	return go.setFromMatrixPosition(e.matrixWorld).applyMatrix4(ho.copy(t.matrixWorld).invert()), [
-		go.x,
-		go.y,
-		go.z
+}, Bo = new v(), Vo = new A();
+function Ho(e, t) {
+	return Vo.setFromMatrixPosition(e.matrixWorld).applyMatrix4(Bo.copy(t.matrixWorld).invert()), [
+		Vo.x,
+		Vo.y,
+		Vo.z
 	];
 }
-function vo(e) {
+function Uo(e) {
 	let { attributes: t, index: n } = e.geometry;
 	return Object.values(t).reduce((e, t) => e + t.array.byteLength, 0) + (n?.array.byteLength ?? 0);
 }
-function yo(e) {
+function Wo(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
-function bo(e) {
+function Go(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var xo = class {
+var Ko = class {
 	received = 0;
 	chunks = [];
 	waiters = [];
@@ -3296,7 +3534,7 @@ var xo = class {
 	}
 	settle() {
 		let e = [];
-		for (let t of this.waiters) t.to <= this.received ? t.resolve(this.copy(t.from, t.to)) : this.broken ? t.reject(this.broken.reason) : this.ended ? t.reject(ne(this.received, t.to)) : e.push(t);
+		for (let t of this.waiters) t.to <= this.received ? t.resolve(this.copy(t.from, t.to)) : this.broken ? t.reject(this.broken.reason) : this.ended ? t.reject(ie(this.received, t.to)) : e.push(t);
 		this.waiters = e;
 	}
 	copy(e, t) {
@@ -3308,53 +3546,53 @@ var xo = class {
 		}
 		return n.buffer;
 	}
-}, So = 1179937895, Co = 1313821514, wo = 5130562;
-async function To(e) {
+}, qo = 1179937895, Jo = 1313821514, Yo = 5130562;
+async function Xo(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof A && t.code === "truncated" ? Ao(e.received === 0) : t;
+		throw t instanceof j && t.code === "truncated" ? ts(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== So) throw Ao(!1);
+	if (new DataView(t).getUint32(0, !0) !== qo) throw ts(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
-	if (r !== 2) throw new A("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
-	if (i < 20) throw j("8", "a length of no file");
+	if (r !== 2) throw new j("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
+	if (i < 20) throw M("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== Co) throw j("16", "it does not begin with JSON");
-	if (o > de) throw j("12", `${o} bytes of JSON`);
-	if (20 + o > i) throw j("12", "a chunk longer than the file");
-	let s = Do(await e.read(20, 20 + o));
+	if (a.getUint32(4, !0) !== Jo) throw M("16", "it does not begin with JSON");
+	if (o > pe) throw M("12", `${o} bytes of JSON`);
+	if (20 + o > i) throw M("12", "a chunk longer than the file");
+	let s = Qo(await e.read(20, 20 + o));
 	return {
 		length: i,
 		text: s,
-		json: Oo(s, "20"),
-		binary: () => Eo(e, 20 + o, i)
+		json: $o(s, "20"),
+		binary: () => Zo(e, 20 + o, i)
 	};
 }
-async function Eo(e, t, n) {
+async function Zo(e, t, n) {
 	let r = t;
 	for (let t = 1; t < 64 && r + 8 <= n; t++) {
 		let t = new DataView(await e.read(r, r + 8)), i = t.getUint32(0, !0);
-		if (r + 8 + i > n) throw j(String(r), "a chunk longer than the file");
-		if (t.getUint32(4, !0) === wo) return r + 8;
+		if (r + 8 + i > n) throw M(String(r), "a chunk longer than the file");
+		if (t.getUint32(4, !0) === Yo) return r + 8;
 		r += 8 + i;
 	}
-	throw j(String(t), "no binary chunk");
+	throw M(String(t), "no binary chunk");
 }
-function Do(e) {
+function Qo(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
-		throw j("20", "its JSON is not UTF-8");
+		throw M("20", "its JSON is not UTF-8");
 	}
 }
-function Oo(e, t) {
-	if (ko(e) > 64) throw j(t, "its JSON is nested too deep");
+function $o(e, t) {
+	if (es(e) > 64) throw M(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
-		throw j(t, "its JSON cannot be read");
+		throw M(t, "its JSON cannot be read");
 	}
 }
-function ko(e) {
+function es(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3365,34 +3603,34 @@ function ko(e) {
 	}
 	return n;
 }
-function Ao(e) {
-	return new A("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
+function ts(e) {
+	return new j("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/packed.ts
-var jo = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Mo = 4;
-async function No(e, t) {
-	let n = new K(e, ""), r = n.key("extensions").key(ue), i = r.key("packed");
+var ns = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", rs = 4;
+async function is(e, t) {
+	let n = new K(e, ""), r = n.key("extensions").key(fe), i = r.key("packed");
 	if (!i.exists) return e;
-	Yr(r);
-	let a = br(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < Mo) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, Mo)).getUint32(0, !0);
-	if (Mo + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new K(Oo(await Fo(await t(o.offset + Mo, s), i.where), i.where), i.where).object(), u = Po(new K(c, `${i.where}/lengths`), o, Mo + s), { packed: d, ...f } = r.object();
+	ni(r);
+	let a = Cr(n), o = a[i.integer(a.length - 1, a.length - 1)];
+	if (!o || o.length < rs) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, rs)).getUint32(0, !0);
+	if (rs + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new K($o(await os(await t(o.offset + rs, s), i.where), i.where), i.where).object(), u = as(new K(c, `${i.where}/lengths`), o, rs + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
-		bufferViews: [...n.key("bufferViews").items(F).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
+		bufferViews: [...n.key("bufferViews").items(I).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
 		extensions: {
 			...n.key("extensions").object(),
-			[ue]: {
+			[fe]: {
 				...f,
 				...l
 			}
 		}
 	};
 }
-function Po(e, t, n) {
-	let r = n, i = e.items(F).map((e) => {
+function as(e, t, n) {
+	let r = n, i = e.items(I).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
 			buffer: 0,
@@ -3403,8 +3641,8 @@ function Po(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function Fo(e, t) {
-	let n = new TextEncoder().encode(jo), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function os(e, t) {
+	let n = new TextEncoder().encode(ns), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -3412,68 +3650,68 @@ async function Fo(e, t) {
 		~r,
 		~i
 	]), a.set(n, 5), a.set(new Uint8Array(e), 5 + n.length);
-	let o = await le(a, "deflate-raw", n.length + de, t);
+	let o = await de(a, "deflate-raw", n.length + pe, t);
 	try {
 		return new TextDecoder("utf-8", {
 			fatal: !0,
 			ignoreBOM: !0
 		}).decode(o.subarray(n.length));
 	} catch {
-		throw j(t, "its JSON is not UTF-8");
+		throw M(t, "its JSON is not UTF-8");
 	}
 }
 // eigenfield-three/src/proxy.ts
-var Io = 65535;
-function Lo(e, t) {
+var ss = 65535;
+function cs(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
-	if (!i) throw new A("damaged", "The proxy mesh has no triangles; make or download the file again.");
-	if (r.count !== n.count) throw j(t.uv.where, `${r.count} for ${n.count} vertices`);
+	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
+	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
 	for (let e = 0; e < n.count; e++) {
-		if (!(Math.max(Math.abs(n.getX(e)), Math.abs(n.getY(e)), Math.abs(n.getZ(e))) <= 1e30)) throw j(t.position.where, `vertex ${e} is not finite`);
-		if (!(Math.max(Math.abs(r.getX(e)), Math.abs(r.getY(e))) <= 1e30)) throw j(t.uv.where, `texture coordinates of vertex ${e} are not finite`);
+		if (!(Math.max(Math.abs(n.getX(e)), Math.abs(n.getY(e)), Math.abs(n.getZ(e))) <= 1e30)) throw M(t.position.where, `vertex ${e} is not finite`);
+		if (!(Math.max(Math.abs(r.getX(e)), Math.abs(r.getY(e))) <= 1e30)) throw M(t.uv.where, `texture coordinates of vertex ${e} are not finite`);
 	}
-	for (let e of i.array) if (e >= n.count) throw j(t.indices.where, `no vertex ${e}`);
+	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
 }
-async function Ro({ view: n, codec: r, where: i }, a) {
+async function ls({ view: n, codec: r, where: i }, a) {
 	let { positions: o, uv: s, indices: c } = r.decode(new Uint8Array(await a(n)), i);
-	if (!c.length) throw j(i, "a mesh without faces");
+	if (!c.length) throw M(i, "a mesh without faces");
 	let l = new t();
 	l.setAttribute("position", new e(o, 3)), l.setAttribute("uv", new e(s, 2));
-	let u = o.length / 3 <= Io;
+	let u = o.length / 3 <= ss;
 	return l.setIndex(new e(u ? Uint16Array.from(c) : c, 1)), l;
 }
-function zo(e) {
+function us(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/grid.ts
-function Bo(e) {
+function ds(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = Vo(e, n, r) ?? (n === r ? null : Vo(e, r, n));
+		let r = t / n, i = fs(e, n, r) ?? (n === r ? null : fs(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function Vo(e, t, n) {
-	let [r, i] = [Uo(e, 0), Uo(e, 1)];
-	if (t === 1 && Wo(i) > 0 || n === 1 && Wo(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => X(i, e) - X(i, t));
+function fs(e, t, n) {
+	let [r, i] = [ms(e, 0), ms(e, 1)];
+	if (t === 1 && hs(i) > 0 || n === 1 && hs(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => gs(i, e) - gs(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => X(r, e) - X(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => gs(r, e) - gs(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return Ho(n, t, (e, t) => X(r, o(t, e))) && Ho(t, n, (e, t) => X(i, o(e, t))) ? {
+	return ps(n, t, (e, t) => gs(r, o(t, e))) && ps(t, n, (e, t) => gs(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function Ho(e, t, n) {
+function ps(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -3483,33 +3721,33 @@ function Ho(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function Uo(e, t) {
+function ms(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function Wo(e) {
+function hs(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var X = (e, t) => e[t] ?? 0, Go = 1e-6, Ko = 32, qo = class {
+var gs = (e, t) => e[t] ?? 0, _s = 1e-6, vs = 32, ys = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = Bo(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = ds(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(Jo(e), this.isLine ? 0 : Jo(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(bs(e), this.isLine ? 0 : bs(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => is(e, t, this.places) : e === "bilinear" && this.grid ? os(this.places, this.grid) : Zo(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => As(e, t, this.places) : e === "bilinear" && this.grid ? Ms(this.places, this.grid) : Cs(this.places, this.triangles);
 	}
 };
-function Jo(e) {
+function bs(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Yo(e) {
+function xs(e) {
 	let t = {
 		camera: [
 			0,
@@ -3529,7 +3767,7 @@ function Yo(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function Xo(e, t, n, r, i, a) {
+function Ss(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -3537,49 +3775,49 @@ function Xo(e, t, n, r, i, a) {
 		m
 	];
 }
-function Zo(e, t) {
+function Cs(e, t) {
 	if (!t.length) {
-		let t = rs(e, ns(e));
-		return (n, r) => ts(n, r, e, t);
+		let t = ks(e, Os(e));
+		return (n, r) => Ds(n, r, e, t);
 	}
-	let n = $o(e, t, 3), r = es(t);
+	let n = Ts(e, t, 3), r = Es(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * Ko + $(i)] ?? []) {
+		for (let r of n[$(a) * vs + $(i)] ?? []) {
 			let [n, l, u] = [
-				Qo(t, r, 0),
-				Qo(t, r, 1),
-				Qo(t, r, 2)
-			], d = Xo(i, a, e, n, l, u), f = Math.min(...d);
+				ws(t, r, 0),
+				ws(t, r, 1),
+				ws(t, r, 2)
+			], d = Ss(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? ts(i, a, e, r) : Yo(c.map((e, n) => [Qo(t, o, n), e]));
+		return s < -1e-9 ? Ds(i, a, e, r) : xs(c.map((e, n) => [ws(t, o, n), e]));
 	};
 }
-var Qo = (e, t, n) => e[3 * t + n] ?? 0;
+var ws = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * Ko)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * vs)));
 }
-function $o(e, t, n) {
+function Ts(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * Ko + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * vs + t]?.push(i);
 	}
 	return r;
 }
-function es(e) {
+function Es(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [Qo(e, n, r), Qo(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [ws(e, n, r), ws(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -3588,7 +3826,7 @@ function es(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function ts(e, t, n, r) {
+function Ds(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -3603,12 +3841,12 @@ function ts(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return Yo([[o, 1 - c], [s, c]]);
+	return xs([[o, 1 - c], [s, c]]);
 }
-function ns(e) {
+function Os(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function rs(e, t) {
+function ks(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -3629,7 +3867,7 @@ function rs(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function is(e, t, n) {
+function As(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -3643,12 +3881,12 @@ function is(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || as(n, r, i, a) <= Go) return ts(e, t, n, rs(n, [
+	if (a < 0 || js(n, r, i, a) <= _s) return Ds(e, t, n, ks(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = Xo(e, t, n, r, i, a);
+	let [l, u, d] = Ss(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -3664,15 +3902,15 @@ function is(e, t, n) {
 		]
 	};
 }
-function as(e, t, n, r) {
+function js(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function os(e, t) {
+function Ms(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = rs(e, ns(e));
-		return (n, r) => ts(n, r, e, t);
+		let t = ks(e, Os(e));
+		return (n, r) => Ds(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -3681,7 +3919,7 @@ function os(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = $o(e, o.flat(), 4), c = [];
+	let s = Ts(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -3689,12 +3927,12 @@ function os(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * Ko + $(t)] ?? []) {
-			let s = o[a], c = s ? ss(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * vs + $(t)] ?? []) {
+			let s = o[a], c = s ? Ns(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return ts(t, n, e, l);
-		let [a, c] = cs(t, n, e, r);
+		if (!r || i < -1e-9) return Ds(t, n, e, l);
+		let [a, c] = Ps(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -3706,7 +3944,7 @@ function os(e, t) {
 		};
 	};
 }
-function ss(e, t, n, r) {
+function Ns(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -3714,7 +3952,7 @@ function ss(e, t, n, r) {
 	}
 	return i;
 }
-function cs(e, t, n, r) {
+function Ps(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -3732,37 +3970,37 @@ function cs(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = ls(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [ls(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Fs(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [Fs(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function ls(e) {
+function Fs(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var us = class {
+var Is = class {
 	parser;
 	options;
-	name = ue;
+	name = fe;
 	scene = null;
 	ours;
 	constructor(e, t = {}) {
-		this.parser = e, this.options = t, this.ours = qr(e.json);
+		this.parser = e, this.options = t, this.ours = $r(e.json);
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
 		let { json: e } = this.parser;
-		Object.assign(e, await No(e, (e, t) => this.read(e, t))), this.scene = Jr(e);
+		Object.assign(e, await is(e, (e, t) => this.read(e, t))), this.scene = ei(e);
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
 		let n = (await this.parser.getDependency("buffer", 0)).slice(e, e + t);
-		if (n.byteLength < t) throw re("/buffers/0");
+		if (n.byteLength < t) throw ae("/buffers/0");
 		return n;
 	}
 	loadMaterial(e) {
 		let t = this.scene && this.parser.json.meshes[0].primitives[0];
 		if (!t || t.material !== e) return null;
-		let { doubleSided: n } = this.parser.json.materials?.[e] ?? {}, r = new y();
+		let { doubleSided: n } = this.parser.json.materials?.[e] ?? {}, r = new b();
 		return r.side = n === !0 ? 2 : 0, Promise.resolve(r);
 	}
 	loadBufferView(e) {
@@ -3772,24 +4010,25 @@ var us = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = ds(e, this.parser), [r] = n;
-		if (!r) throw j("/meshes/0", "no node shows it");
-		Lo(r.geometry, t);
+		let n = Ls(e, this.parser), [r] = n;
+		if (!r) throw M("/meshes/0", "no node shows it");
+		cs(r.geometry, t);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
-			if (n.byteLength < (t.views[e]?.length ?? 0)) throw re(`/bufferViews/${e}`);
+			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ae(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await Ro(t.mesh, i);
+		}, a = t.mesh && await ls(t.mesh, i);
 		if (a) {
 			r.geometry.dispose();
 			for (let e of n) e.geometry = a;
 		}
+		t.sheets && Kr(t.sheets, r.geometry);
 		let [o, s, c, l] = await Promise.all([
-			Promise.all(t.planes.map((e) => oo(e, i))),
-			li(t, i),
+			Promise.all(ti(t).map((e) => Mo(e, i))),
 			gi(t, i),
-			xi(t, i)
-		]), u = s.filter((e, n) => !t.heldOut[n]), d = new qo(Float64Array.from(u.flatMap((e) => Ti(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = Ci(t, s, f, d.grid, this.fileBytes(), zo(r.geometry)), m = {
+			Ci(t, i),
+			Oi(t, i)
+		]), u = s.filter((e, n) => !t.heldOut[n]), d = new ys(Float64Array.from(u.flatMap((e) => Mi(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = Ai(t, s, f, d.grid, this.fileBytes(), us(r.geometry)), m = {
 			scene: t,
 			info: p,
 			meshes: n,
@@ -3800,7 +4039,7 @@ var us = class {
 			weights: d,
 			bytes: i
 		};
-		e.userData.eigenfield = new mo(m, this.options);
+		e.userData.eigenfield = new zo(m, this.options);
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -3808,44 +4047,44 @@ var us = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function ds(e, t) {
+function Ls(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		fs(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		Rs(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function fs(e) {
+function Rs(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function ps(e, t = {}) {
+async function zs(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new xo(), i = new AbortController(), a = () => {
+	let r = new Ko(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = gs(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = Hs(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
-		let e = await To(r);
-		if (!qr(e.json)) return {
-			gltf: await hs(r, e, o),
+		let e = await Xo(r);
+		if (!$r(e.json)) return {
+			gltf: await Vs(r, e, o),
 			field: null
 		};
-		let i = await ms(r, e, t);
+		let i = await Bs(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
 			gltf: i,
-			field: a instanceof mo ? a : null
+			field: a instanceof zo ? a : null
 		};
 	} catch (e) {
-		throw i.abort(), n?.throwIfAborted(), ie(e);
+		throw i.abort(), n?.throwIfAborted(), oe(e);
 	}
 }
-async function ms(e, t, n) {
-	let r = new te(), i = t.binary();
+async function Bs(e, t, n) {
+	let r = new re(), i = t.binary();
 	i.catch(() => void 0);
 	let a = {
 		total: t.length,
@@ -3854,51 +4093,51 @@ async function ms(e, t, n) {
 			return e.read(r, r + n);
 		}
 	};
-	return r.register((e) => new us(e, {
+	return r.register((e) => new Is(e, {
 		...n,
 		stream: a
 	})), r.parseAsync(t.text, "");
 }
-async function hs(e, t, n) {
+async function Vs(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
-		return await new te().parseAsync(r, "");
+		return await new re().parseAsync(r, "");
 	} catch (e) {
-		let t = ie(e).message;
-		throw new A("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
+		let t = oe(e).message;
+		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function gs(e, t, n, r) {
+async function Hs(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? _s(e) : await vs(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? Us(e) : await Ws(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : ys(t.received, e);
+			throw n.aborted ? e : Gs(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function _s(e) {
+function Us(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function vs(e, t) {
+async function Ws(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
-		throw t.aborted ? n : new A("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
+		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
-	if (!n.ok || !n.body) throw await n.body?.cancel(), new A("network", `The server answered ${n.status} for the scene; check its address.`, e);
+	if (!n.ok || !n.body) throw await n.body?.cancel(), new j("network", `The server answered ${n.status} for the scene; check its address.`, e);
 	let r = n.headers.get("Content-Encoding") ? null : n.headers.get("Content-Length");
 	return {
 		body: n.body,
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function ys(e, t) {
-	return new A("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
+function Gs(e, t) {
+	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { mo as EigenField, us as EigenfieldPlugin, A as SceneError, Gi as defaultMemory, ps as loadEigenfield, Oi as novelCamera, Mi as placeCamera };
+export { zo as EigenField, Is as EigenfieldPlugin, xo as SHEETS, j as SceneError, Qi as defaultMemory, zs as loadEigenfield, Fi as novelCamera, zi as placeCamera };

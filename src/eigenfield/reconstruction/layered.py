@@ -1,0 +1,131 @@
+"""The stages of soft sheets: a trial on views left out, and the sheets of all views."""
+
+from __future__ import annotations
+
+import json
+import logging
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.calibrate import triangulate_points
+from eigenfield.capture import Capture, LightField
+from eigenfield.core.camera import Camera
+from eigenfield.core.errors import CaptureError, OptionError
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.proxy import Proxy
+from eigenfield.reconstruction.array import AlignedArray, array_depths, inverse_depths
+from eigenfield.reconstruction.frame import filled_pictures, resized_cameras
+from eigenfield.reconstruction.layers import LAYERS_TUNING, Range, compare_held_out, layers_fault, layers_proxy
+from eigenfield.reconstruction.run import StageRunner
+from eigenfield.reconstruction.stage_files import STAGE_PROXY_FILE, STAGE_TRIAL_FILE, read_proxy, write_proxy
+
+log = logging.getLogger("eigenfield.reconstruction")
+
+
+@dataclass(frozen=True, eq=False)
+class SheetSource:
+    """What soft sheets are made from.
+
+    Attributes:
+        capture: All photographs.
+        light_field: Those with a camera.
+        array: Cameras and depth of an array; None for other captures.
+        points: (n, 3) points of structure from motion, if any.
+    """
+
+    capture: Capture
+    light_field: LightField
+    array: AlignedArray | None
+    points: NDArray[np.float64] | None
+
+    @property
+    def shown(self) -> LightField:
+        """The photographs that take part."""
+        return self.light_field if self.array is None else self.array.taking_part(self.capture)
+
+    @property
+    def inputs(self) -> list[Any]:
+        """What stages depend on."""
+        return [None if self.points is None else len(self.points)] if self.array is None else self.array.inputs
+
+    def fault(self) -> str | None:
+        """Why there can be no sheets; None if there can."""
+        if any(source.mask is not None for source in self.capture.sources):
+            return "photographs with masks have no layers"
+        return layers_fault(self.shown.cameras)
+
+    def views(self, run: StageRunner) -> tuple[NDArray[np.uint8], list[Camera], Range]:
+        """The photographs that take part, their cameras at the same size, and the range of inverse depths.
+
+        Args:
+            run: The stages.
+        """
+        shown = self.shown
+        pictures, cameras = filled_pictures(shown), resized_cameras(shown)
+        if self.array is not None:
+            return pictures, cameras, array_depths(self.array)
+        points = self.points
+        if points is None:
+            points = triangulate_points(shown, progress=run.progress)
+        return pictures, cameras, inverse_depths(shown, cameras, pictures, points)
+
+
+def sheets_of_capture(run: StageRunner, source: SheetSource) -> Proxy:
+    """The proxy of soft sheets.
+
+    Args:
+        run: The stages.
+        source: Photographs and cameras.
+
+    Raises:
+        OptionError: `surface`: the capture can have no sheets.
+    """
+    fault = source.fault()
+    if fault is not None:
+        raise OptionError("surface", fault, remedy="leave out --surface layers")
+    settings = run.settings
+
+    def build(folder: Path) -> None:
+        made = layers_proxy(
+            *source.views(run), count=settings.layers, triangles=settings.triangles, progress=run.progress
+        )
+        write_proxy(folder / STAGE_PROXY_FILE, made)
+
+    folder = run.stage("layers", [source.inputs, settings.layers, settings.triangles], build)
+    return read_proxy(folder / STAGE_PROXY_FILE)
+
+
+def sheets_are_better(run: StageRunner, source: SheetSource, mesh: Mesh) -> bool:
+    """Whether soft sheets draw photographs that are left out better than an opaque surface does.
+
+    Args:
+        run: The stages.
+        source: Photographs and cameras.
+        mesh: The opaque surface of all photographs.
+    """
+    settings = run.settings
+    if settings.layers == 1 or settings.by_hand is not None or source.fault() is not None:
+        return False
+    if source.array is not None and len(source.array.shown) >= LAYERS_TUNING.dense_views:
+        log.info("surface: opaque, as always for %d views or more of an array", LAYERS_TUNING.dense_views)
+        return False
+
+    def build(folder: Path) -> None:
+        try:
+            given = source.views(run)
+        except CaptureError:  # no range of depths: the opaque surface needed none
+            scores = [-np.inf, np.inf]
+        else:
+            scores = list(compare_held_out(*given, mesh, count=settings.layers, progress=run.progress))
+        (folder / STAGE_TRIAL_FILE).write_text(json.dumps([str(score) for score in scores]), encoding="utf-8")
+
+    folder = run.stage("trial", [source.inputs, settings.layers, settings.triangles, settings.surface], build)
+    sheets, opaque = map(float, json.loads((folder / STAGE_TRIAL_FILE).read_text(encoding="utf-8")))
+    better = sheets > opaque + LAYERS_TUNING.min_gain_db
+    words = "surface: %s, since views left out are drawn with %.2f dB by layers, with %.2f dB by the opaque surface"
+    log.info(words, "layers" if better else "opaque", sheets, opaque)
+    return better

@@ -1,0 +1,270 @@
+"""Soft sheets of a capture, and whether they or an opaque surface draw views better that neither was made from."""
+
+from __future__ import annotations
+
+import logging
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.core.camera import Camera
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.progress import Progress
+from eigenfield.core.proxy import Proxy
+from eigenfield.imaging.metrics import psnr
+from eigenfield.imaging.raster import rasterise_view
+from eigenfield.proxy import soft_relief
+from eigenfield.runtime.parallel import parallel_map
+from eigenfield.stereo import ReferenceView, view_matrices
+from eigenfield.stereo.multiplane import SoftSheets, fit_sheets
+from eigenfield.stereo.views import halve_pictures, label_parallax, unpack_pictures
+
+log = logging.getLogger("eigenfield.reconstruction")
+
+Range = tuple[float, float]  # of inverse depths along the axis of the central camera, 1 / world unit
+
+
+@dataclass(frozen=True)
+class LayersTuning:
+    """Constants of soft sheets. Pixels are those of the view that moves most.
+
+    Attributes:
+        min_views: Photographs of a capture that has sheets.
+        max_axis_angle_degrees: Angle between a camera's axis and the mean axis.
+        dense_views: Number of views from which "auto" keeps the opaque surface untried.
+        count: Number of sheets by default.
+        max_plane_step_pixels: Displacement from plane to plane at the size that planes are fitted at.
+        min_planes: Number of planes, at least.
+        max_planes: Number of planes, at most.
+        planes_side_pixels: Longer side of the photographs to which they are halved for the planes, at most.
+        sheets_side_pixels: The same for the sheets.
+        trial_side_pixels: The same for the sheets of a trial.
+        trial_step: Every so many photographs, one is left out of a trial.
+        margin_part: Part of the range of inverse depths, from the farthest on, up to which the reference view holds
+            every camera's frame.
+        margin_fraction: Of the longer side, by which the reference view is widened for the descent, at most.
+        tolerance_pixels: Distance of the mesh from a sheet.
+        depth_error_pixels: By which the lattice's depths move a point.
+        hidden_ratio: Of inverse depths, from which on a photograph does not see a point of the opaque surface.
+        min_gain_db: By which sheets must draw the views of a trial better.
+    """
+
+    min_views: int = 3
+    max_axis_angle_degrees: float = 25.0
+    dense_views: int = 25
+    count: int = 8
+    max_plane_step_pixels: float = 1.5
+    min_planes: int = 8
+    max_planes: int = 64
+    planes_side_pixels: int = 320
+    sheets_side_pixels: int = 800
+    trial_side_pixels: int = 300
+    trial_step: int = 4
+    margin_part: float = 0.1
+    margin_fraction: float = 0.15
+    tolerance_pixels: float = 0.1
+    depth_error_pixels: float = 0.04
+    hidden_ratio: float = 1.02
+    min_gain_db: float = 0.5
+
+
+LAYERS_TUNING = LayersTuning()
+
+
+def layers_fault(cameras: Sequence[Camera]) -> str | None:
+    """Why cameras cannot have sheets; None if they can.
+
+    Args:
+        cameras: All cameras.
+    """
+    if len(cameras) < LAYERS_TUNING.min_views:
+        return f"{len(cameras)} photographs are too few for layers"
+    axes = np.array([camera.R[2] for camera in cameras])
+    mean = axes.mean(axis=0)
+    cosine = float((axes @ mean).min()) / max(float(np.linalg.norm(mean)), 1e-9)
+    angle = math.degrees(math.acos(min(max(cosine, -1.0), 1.0)))
+    if angle > LAYERS_TUNING.max_axis_angle_degrees:
+        return f"the cameras do not look one way: one looks {angle:.0f} degrees off the others"
+    return None
+
+
+def layers_proxy(
+    pictures: NDArray[np.uint8], cameras: Sequence[Camera], bounds: Range, *, count: int | None, triangles: int,
+    progress: Progress | None = None,
+) -> Proxy:  # fmt: skip
+    """The proxy of the soft sheets that draw photographs best.
+
+    Args:
+        pictures: (V, H, W, 3) uint8 the photographs.
+        cameras: V of them, at the same size.
+        bounds: Inverse depths of the farthest and the nearest plane.
+        count: Number of sheets; None: LAYERS_TUNING.count.
+        triangles: Most triangles.
+        progress: Called within.
+    """
+    pictures, cameras = _halved(pictures, cameras, LAYERS_TUNING.sheets_side_pixels)
+    reference, sheets = _widened(*fit_views(pictures, cameras, bounds, count, progress), cameras, bounds)
+    tolerance = LAYERS_TUNING.tolerance_pixels / _reach(reference, cameras)
+    return soft_relief(
+        reference, sheets, cameras, tolerance=tolerance, depth_error=LAYERS_TUNING.depth_error_pixels,
+        triangles=triangles, progress=progress,
+    ).proxy  # fmt: skip
+
+
+def fit_views(
+    pictures: NDArray[np.uint8], cameras: Sequence[Camera], bounds: Range, count: int | None,
+    progress: Progress | None = None,
+) -> tuple[ReferenceView, SoftSheets]:  # fmt: skip
+    """The soft sheets of photographs, and their reference view.
+
+    Args:
+        pictures: As of `layers_proxy`.
+        cameras: As of `layers_proxy`.
+        bounds: As of `layers_proxy`.
+        count: As of `layers_proxy`.
+        progress: Called within.
+    """
+    longer = max(pictures.shape[1:3])
+    central = _middle_camera(cameras)
+    margin = min(_margin(central, cameras, bounds), round(LAYERS_TUNING.margin_fraction * longer))
+    reference = ReferenceView.with_margin(central, margin, 0.0, 1.0)
+    halvings = max(1, math.ceil(math.log2(longer / LAYERS_TUNING.planes_side_pixels)))
+    steps = _reach(reference, cameras) * (bounds[1] - bounds[0]) / 2**halvings / LAYERS_TUNING.max_plane_step_pixels
+    planes = min(max(math.ceil(steps) + 1, LAYERS_TUNING.min_planes), LAYERS_TUNING.max_planes)
+    sheets = fit_sheets(
+        pictures, view_matrices(reference, cameras), reference.shape, np.linspace(*bounds, planes),
+        min(LAYERS_TUNING.count if count is None else count, planes), halvings=halvings, progress=progress,
+    )  # fmt: skip
+    return reference, sheets
+
+
+def compare_held_out(
+    pictures: NDArray[np.uint8], cameras: Sequence[Camera], bounds: Range, mesh: Mesh, *, count: int | None,
+    progress: Progress | None = None,
+) -> tuple[float, float]:  # fmt: skip
+    """How well sheets and a mesh draw photographs left out: the mean PSNR of either.
+
+    At a small size, sheets are fitted to the other photographs. On the mesh, a pixel is the mean of the other
+    photographs that see its point.
+
+    Args:
+        pictures: As of `layers_proxy`.
+        cameras: As of `layers_proxy`.
+        bounds: As of `layers_proxy`.
+        mesh: The opaque surface.
+        count: As of `layers_proxy`.
+        progress: Called within.
+    """
+    pictures, cameras = _halved(pictures, cameras, LAYERS_TUNING.trial_side_pixels)
+    left_out = np.zeros(len(cameras), np.bool_)
+    left_out[LAYERS_TUNING.trial_step // 2 :: LAYERS_TUNING.trial_step] = True
+    others, shown = np.flatnonzero(~left_out).tolist(), np.flatnonzero(left_out).tolist()
+    known = [cameras[i] for i in others]
+    reference, sheets = fit_views(pictures[others], known, bounds, count, progress)
+    unknown = [cameras[i] for i in shown]
+    hard = draw_means(mesh, unknown, pictures[others], known)
+    scores = []
+    for i, matrix, (mean, covered) in zip(shown, view_matrices(reference, unknown), hard, strict=True):
+        soft = np.rint(np.clip(sheets.draw(matrix, pictures.shape[1:3]), 0, 1) * 255).astype(np.uint8)
+        pair = [psnr(drawn, pictures[i], covered) for drawn in (soft, mean)]
+        if covered.any():
+            scores.append(pair)
+    of_sheets, of_mesh = np.array(scores, np.float64).mean(axis=0).tolist() if scores else (math.inf, -math.inf)
+    return of_sheets, of_mesh
+
+
+def draw_means(
+    mesh: Mesh, views: Sequence[Camera], pictures: NDArray[np.uint8], cameras: Sequence[Camera]
+) -> list[tuple[NDArray[np.uint8], NDArray[np.bool_]]]:
+    """Each view of a mesh: (H, W, 3) at every pixel the mean of the photographs that see its point; (H, W) where any.
+
+    Args:
+        mesh: The surface.
+        views: The views to draw.
+        pictures: (V, H, W, 3) photographs.
+        cameras: V of them.
+    """
+    depths = parallel_map(lambda camera: rasterise_view(mesh, camera).inverse_depth, cameras)
+
+    def draw(view: Camera) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
+        inverse = rasterise_view(mesh, view).inverse_depth
+        row, column = np.indices(inverse.shape) + 0.5
+        rays = np.stack([column, row, np.ones_like(row)], axis=-1) @ np.linalg.inv(view.K).T
+        points = (rays / np.maximum(inverse, 1e-30)[..., None] - view.t) @ view.R
+        total, count = np.zeros((*inverse.shape, 3), np.float32), np.zeros(inverse.shape, np.float32)
+        for picture, camera, depth in zip(pictures, cameras, depths, strict=True):
+            pixels, distance = camera.project(points.reshape(-1, 3))
+            at = np.clip(np.nan_to_num(pixels), -2, (camera.width + 1, camera.height + 1)).astype(np.float32) - 0.5
+            at, distance = at.reshape(*inverse.shape, 2), distance.reshape(inverse.shape)
+            nearest = _read(depth, at, cv2.INTER_NEAREST)
+            seen = (inverse > 0) & (nearest > 0) & (distance > 0) & (distance * nearest < LAYERS_TUNING.hidden_ratio)
+            total += seen[..., None] * _read(picture, at, cv2.INTER_LINEAR)
+            count += seen
+        return np.rint(total / np.maximum(count, 1)[..., None]).astype(np.uint8), count > 0
+
+    return [draw(view) for view in views]
+
+
+def _read(picture: NDArray[Any], at: NDArray[np.float32], how: int) -> NDArray[Any]:
+    """A picture at (H, W, 2) index coordinates, 0 beyond its border."""
+    return np.asarray(cv2.remap(picture, at[..., 0], at[..., 1], how))
+
+
+def _halved(
+    pictures: NDArray[np.uint8], cameras: Sequence[Camera], side: int
+) -> tuple[NDArray[np.uint8], Sequence[Camera]]:
+    """Photographs and cameras at half the size, until the longer side is at most that."""
+    while max(pictures.shape[1:3]) > side:
+        pictures = unpack_pictures(halve_pictures(pictures))
+        height, width = pictures.shape[1:3]
+        half = np.diag([0.5, 0.5, 1.0])
+        cameras = [replace(camera, K=half @ camera.K, width=width, height=height) for camera in cameras]
+    return pictures, cameras
+
+
+def _middle_camera(cameras: Sequence[Camera]) -> Camera:
+    """The camera in the middle of all, which looks as the central one."""
+    centres = np.array([camera.centre for camera in cameras])
+    middle = centres.mean(axis=0)
+    central = cameras[int(np.argmin(np.linalg.norm(centres - middle, axis=1)))]
+    return replace(central, t=-central.R @ middle)
+
+
+def _margin(central: Camera, cameras: Sequence[Camera], bounds: Range) -> int:
+    """Pixels by which a camera's frame is widened to hold all others' up to LAYERS_TUNING.margin_part of the range."""
+    part = bounds[0] + LAYERS_TUNING.margin_part * (bounds[1] - bounds[0])
+    beyond = 0.0
+    for camera in cameras:
+        corners = np.array([(x, y, 1.0) for x in (0, camera.width) for y in (0, camera.height)])
+        rays = corners @ np.linalg.inv(camera.K).T @ camera.R @ central.R.T
+        start = central.R @ camera.centre + central.t
+        for inverse in (bounds[0], part):
+            points = start + rays * ((1 / inverse - start[2]) / rays[:, 2])[:, None]
+            pixels = (points @ central.K.T)[:, :2] * inverse
+            beyond = max(beyond, float(-pixels.min()), float((pixels - (central.width, central.height)).max()))
+    return math.ceil(beyond) + 2
+
+
+def _widened(
+    reference: ReferenceView, sheets: SoftSheets, cameras: Sequence[Camera], bounds: Range
+) -> tuple[ReferenceView, SoftSheets]:
+    """A reference view that holds every camera's frame, to whose border the backmost sheet goes on."""
+    more = _margin(_middle_camera(cameras), cameras, bounds) - reference.margin
+    if more <= 0:
+        return reference, sheets
+    wide = ReferenceView.with_margin(reference.camera, more, reference.offset, reference.scale)
+    around = (0, 0), (more, more), (more, more)
+    layers = np.pad(sheets.layers, (*around, (0, 0)), mode="edge")
+    layers[1:, ..., 3] = np.pad(sheets.layers[1:, ..., 3], around)
+    return replace(wide, margin=reference.margin + more), SoftSheets(np.pad(sheets.labels, around, mode="edge"), layers)
+
+
+def _reach(reference: ReferenceView, cameras: Sequence[Camera]) -> float:
+    """Pixels by which one unit of a label moves a point in the view that it moves most."""
+    parallax = label_parallax(view_matrices(reference, cameras), reference.shape)
+    return float(np.linalg.norm(parallax, axis=1).max())
