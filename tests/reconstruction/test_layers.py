@@ -92,6 +92,16 @@ def test_the_verb_refuses_numbers_of_layers_in_one_line(photos, tmp_path, run, g
     assert words in err
 
 
+def test_texture_maps_have_one_surface(photos, made, tmp_path, run):
+    work, _ = made
+    code, _, err = run("encode", photos, "--fit", "none", "--surface", "layers", "-o", tmp_path / "scene.glb")
+    assert code == 2
+    assert "--fit none" in err
+    code, _, err = run("encode", photos, "--fit", "none", "-n", "3", "--work", work, "-o", tmp_path / "scene.glb")
+    assert code == 0, err
+    assert "trial" not in err
+
+
 def test_photographs_with_masks_have_no_sheets(photos, tmp_path, made):
     masks = tmp_path / "masks"
     masks.mkdir()

@@ -122,6 +122,8 @@ def command(
             scratch = output.with_suffix(".work") if work is None else work
             settings["triangles"] = PROXY_DEFAULT_TRIANGLES if options.triangles is None else options.triangles
             settings["blind"] = options.hold_out if blind else None
+            if options.resolved().fit == "none":
+                _leave_out_layers(settings)
             check = partial(check_selection, options=options)
             made = reconstruct_capture(capture, place, scratch, progress, quiet, check, **settings)
             scene = encode(made.light_field, made.proxy, options, triangles=None, work=scratch, progress=progress)
@@ -145,6 +147,14 @@ def _refuse_unused(settings: Mapping[str, Any], blind: bool) -> None:
             f"--{asked[0].replace('_', '-').removesuffix('s')} is for making a proxy, but --proxy gives one",
             remedy="leave out one of the two",
         )
+
+
+def _leave_out_layers(settings: dict[str, Any]) -> None:
+    """One opaque surface, since texture maps know no other; refuse layers that were asked for."""
+    if settings["surface"] == "layers" or (settings["layers"] or 1) > 1:
+        message = "texture maps of several layers, which only a fit can make"
+        raise OptionError("sheets", message, remedy="leave out --fit none, or the layers")
+    settings["layers"] = 1
 
 
 def _open_capture(capture: Path, place: Mapping[str, Any], scratch: Path, quiet: bool) -> LightField:

@@ -26,6 +26,31 @@ from eigenfield.reconstruction.stage_files import STAGE_PROXY_FILE, STAGE_TRIAL_
 log = logging.getLogger("eigenfield.reconstruction")
 
 
+def capture_fault(capture: Capture) -> str | None:
+    """Why photographs can have no sheets; None if they can, as far as their cameras are known.
+
+    Args:
+        capture: The photographs.
+    """
+    if any(source.mask is not None for source in capture.sources):
+        return "photographs with masks have no layers"
+    return None if capture.light_field is None else layers_fault(capture.light_field.cameras)
+
+
+def check_capture(capture: Capture) -> None:
+    """Refuse photographs that can have no sheets, as far as their cameras are known.
+
+    Args:
+        capture: The photographs.
+
+    Raises:
+        OptionError: `surface`.
+    """
+    fault = capture_fault(capture)
+    if fault is not None:
+        raise OptionError("surface", fault, remedy="leave out --surface layers")
+
+
 @dataclass(frozen=True, eq=False)
 class SheetSource:
     """What soft sheets are made from.
@@ -51,12 +76,6 @@ class SheetSource:
     def inputs(self) -> list[Any]:
         """What stages depend on."""
         return [None if self.points is None else len(self.points)] if self.array is None else self.array.inputs
-
-    def fault(self) -> str | None:
-        """Why there can be no sheets; None if there can."""
-        if any(source.mask is not None for source in self.capture.sources):
-            return "photographs with masks have no layers"
-        return layers_fault(self.shown.cameras)
 
     def views(self, run: StageRunner) -> tuple[NDArray[np.uint8], list[Camera], Range]:
         """The photographs that take part, their cameras at the same size, and the range of inverse depths.
@@ -84,9 +103,7 @@ def sheets_of_capture(run: StageRunner, source: SheetSource) -> Proxy:
     Raises:
         OptionError: `surface`: the capture can have no sheets.
     """
-    fault = source.fault()
-    if fault is not None:
-        raise OptionError("surface", fault, remedy="leave out --surface layers")
+    check_capture(source.shown)
     settings = run.settings
 
     def build(folder: Path) -> None:
@@ -108,7 +125,7 @@ def sheets_are_better(run: StageRunner, source: SheetSource, mesh: Mesh) -> bool
         mesh: The opaque surface of all photographs.
     """
     settings = run.settings
-    if settings.layers == 1 or settings.by_hand is not None or source.fault() is not None:
+    if settings.layers == 1 or settings.by_hand is not None or capture_fault(source.shown) is not None:
         return False
     if source.array is not None and len(source.array.shown) >= LAYERS_TUNING.dense_views:
         log.info("surface: opaque, as always for %d views or more of an array", LAYERS_TUNING.dense_views)

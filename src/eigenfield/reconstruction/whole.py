@@ -36,7 +36,7 @@ from eigenfield.proxy import (
 )
 from eigenfield.proxy.surface.trim import SurfaceError
 from eigenfield.reconstruction.array import align_array, looks_one_way, relief_of_array
-from eigenfield.reconstruction.layered import SheetSource, sheets_are_better, sheets_of_capture
+from eigenfield.reconstruction.layered import SheetSource, check_capture, sheets_are_better, sheets_of_capture
 from eigenfield.reconstruction.report import ProxyReport, measure_proxy
 from eigenfield.reconstruction.run import ReconstructionSettings, StageRunner
 from eigenfield.reconstruction.stage_files import (
@@ -115,6 +115,8 @@ def reconstruct(
     )
     for text in fit_spheres:  # before the long stages
         find_view(parse_region(text), capture.names)
+    if surface == "layers":
+        check_capture(capture)
     with Stages(work) as stages:
         run = StageRunner(stages, settings, _identity(capture), progress, {})
         points = calibration = array = None
