@@ -43,7 +43,7 @@ def fill_unseen(model: PlaneModel, scales: Scales, surface: Surface) -> None:
 
 
 def mean_precision(scales: Scales) -> NDArray[np.float32] | None:
-    """(h, w) in PRECISION_MIN_FACTOR (of sheets SHEET_MIN_FACTOR) to 1: how finely each place of a mean is to be coded, None where all of it alike.
+    """(h, w) up to 1: how finely each place of a mean is to be coded, None where all of it alike.
 
     Least squared error over all pictures for a number of bits has steps in inverse proportion to the root of the
     pixels that a texel answers for (reverse water-filling); what is seen as often as most is the measure.
