@@ -16,7 +16,8 @@ import eigenfield as ef
 from eigenfield import gltf as scene_format
 from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError, OptionError
-from eigenfield.core.proxy import Proxy
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.proxy import Proxy, Sheets
 from eigenfield.encoding.residual.make import check_residual, crf_of, video_order, with_residual
 from eigenfield.encoding.residual.views import (
     captured_pixels,
@@ -93,6 +94,24 @@ def test_captured_views_are_exact_and_others_as_before(base, exact, capture):
         assert psnr(made.image, photograph, covered) >= 50 > 40 > psnr(drawn.image, photograph, covered)
     for where in ({"at": (0.3, -0.4)}, {"camera": "view_04.png"}, {"camera": "view_00.png"}):
         np.testing.assert_array_equal(ef.render(exact, **where).image, ef.render(base, **where).image)
+
+
+def test_captured_views_of_sheets_are_exact_as_far_as_the_sheets_cover_them(base, capture):
+    mesh = base.proxy.mesh
+    opacity = np.full(base.appearance.atlas, 0.75, np.float32)
+    thrice = Mesh(
+        np.concatenate([mesh.vertices] * 3),
+        np.concatenate([mesh.faces + sheet * len(mesh.vertices) for sheet in range(3)]).astype(np.int32),
+        np.concatenate([mesh.uv] * 3),
+    )
+    sheets = replace(base, proxy=Proxy(thrice, None, Sheets((len(mesh.faces),) * 3, opacity)))
+    for index, difference in differences(with_residual(sheets, capture, FINE)):
+        drawn = ef.render(sheets, camera=base.rig.names[index])
+        made, photograph = corrected_picture(drawn, difference), to_codes(capture.photograph(index).pixels)
+        covered = drawn.coverage > 0.1
+        np.testing.assert_allclose(drawn.coverage[covered], 1 - 0.25**3, atol=1e-5)
+        expected = photograph / 255 * drawn.coverage[..., None]
+        assert covered.mean() > 0.3 and psnr(made.image, to_codes(expected), covered) >= 50
 
 
 def test_coarser_videos_are_smaller_and_worse(base, capture):

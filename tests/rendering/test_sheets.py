@@ -156,6 +156,12 @@ def test_tiles_where_nothing_is_opaque_are_not_composed():
     np.testing.assert_allclose(picture.coverage, coverage, atol=HIDDEN)
 
 
+def test_sheets_that_are_nowhere_opaque_show_the_background():
+    scene = painted([[(square(0, 0, 1), RED, 0.0)], [(square(-0.5, 0, 1), BLUE, 0.0)]])
+    picture = drawn(scene, background=GREY)
+    assert not picture.coverage.any() and (picture.image == GREY.astype(np.float32)).all()
+
+
 def test_a_harmonised_cameras_own_colours():
     scene = stacked(tiny_scene(textures=3, size=64), bumpy_square(12))
     colours = np.tile(np.array([[[1.1, 0.9, 1.2], [0.02, -0.03, 0.05]]], np.float32), (5, 1, 1))

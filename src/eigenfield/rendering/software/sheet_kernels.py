@@ -139,11 +139,17 @@ def add_background(through, samples, background, sums, line):
         line: (pixels * LAYER_CHANNELS,), added to.
     """
     red, green, blue = background[0], background[1], background[2]
-    for i in range(through.shape[0]):
-        place = np.uintp(LAYER_CHANNELS * (i if samples == 1 else i // samples))
-        line[place] += sums[i, 0] + red * through[i]
-        line[place + np.uintp(1)] += sums[i, 1] + green * through[i]
-        line[place + np.uintp(2)] += sums[i, 2] + blue * through[i]
+    if samples == 1:
+        for i in range(through.shape[0]):
+            line[LAYER_CHANNELS * i] += sums[i, 0] + red * through[i]
+            line[LAYER_CHANNELS * i + 1] += sums[i, 1] + green * through[i]
+            line[LAYER_CHANNELS * i + 2] += sums[i, 2] + blue * through[i]
+    else:
+        for i in range(through.shape[0]):
+            place = LAYER_CHANNELS * (i // samples)
+            line[place] += sums[i, 0] + red * through[i]
+            line[place + 1] += sums[i, 1] + green * through[i]
+            line[place + 2] += sums[i, 2] + blue * through[i]
 
 
 @kernel(fastmath=True)
