@@ -48,6 +48,7 @@ class LayersTuning:
         margin_part: Part of the range of inverse depths, from the farthest on, up to which the reference view holds
             every camera's frame.
         margin_fraction: Of the longer side, by which the reference view is widened for the descent, at most.
+        max_margin_fraction: The same after the descent.
         tolerance_pixels: Distance of the mesh from a sheet.
         depth_error_pixels: By which the lattice's depths move a point.
         hidden_ratio: Of inverse depths, from which on a photograph does not see a point of the opaque surface.
@@ -67,6 +68,7 @@ class LayersTuning:
     trial_step: int = 4
     margin_part: float = 0.1
     margin_fraction: float = 0.15
+    max_margin_fraction: float = 0.5
     tolerance_pixels: float = 0.1
     depth_error_pixels: float = 0.04
     hidden_ratio: float = 1.02
@@ -238,16 +240,17 @@ def _middle_camera(cameras: Sequence[Camera]) -> Camera:
 def _margin(central: Camera, cameras: Sequence[Camera], bounds: Range) -> int:
     """Pixels by which a camera's frame is widened to hold all others' up to LAYERS_TUNING.margin_part of the range."""
     part = bounds[0] + LAYERS_TUNING.margin_part * (bounds[1] - bounds[0])
+    most = LAYERS_TUNING.max_margin_fraction * max(central.width, central.height)
     beyond = 0.0
     for camera in cameras:
         corners = np.array([(x, y, 1.0) for x in (0, camera.width) for y in (0, camera.height)])
         rays = corners @ np.linalg.inv(camera.K).T @ camera.R @ central.R.T
         start = central.R @ camera.centre + central.t
         for inverse in (bounds[0], part):
-            points = start + rays * ((1 / inverse - start[2]) / rays[:, 2])[:, None]
+            points = start + rays * ((1 / inverse - start[2]) / np.maximum(rays[:, 2:], 1e-6))
             pixels = (points @ central.K.T)[:, :2] * inverse
             beyond = max(beyond, float(-pixels.min()), float((pixels - (central.width, central.height)).max()))
-    return math.ceil(beyond) + 2
+    return math.ceil(min(beyond, most)) + 2
 
 
 def _widened(
