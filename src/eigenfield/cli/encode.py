@@ -121,7 +121,7 @@ def command(
         else:
             scratch = output.with_suffix(".work") if work is None else work
             settings["triangles"] = PROXY_DEFAULT_TRIANGLES if options.triangles is None else options.triangles
-            settings["blind"] = options.hold_out if blind else None
+            settings["blind"], settings["hold_out"] = options.hold_out if blind else None, options.hold_out
             if options.resolved().fit == "none":
                 _leave_out_layers(settings)
             check = partial(check_selection, options=options)

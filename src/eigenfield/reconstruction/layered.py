@@ -13,10 +13,12 @@ from numpy.typing import NDArray
 
 from eigenfield.calibrate import triangulate_points
 from eigenfield.capture import Capture, LightField
+from eigenfield.capture.holdout import held_out_cameras
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.proxy import Proxy
+from eigenfield.core.viewplane import fit_view_plane
 from eigenfield.reconstruction.array import AlignedArray, array_depths, inverse_depths
 from eigenfield.reconstruction.frame import filled_pictures, resized_cameras
 from eigenfield.reconstruction.layers import LAYERS_TUNING, Range, compare_held_out, layers_fault, layers_proxy
@@ -60,22 +62,27 @@ class SheetSource:
         light_field: Those with a camera.
         array: Cameras and depth of an array; None for other captures.
         points: (n, 3) points of structure from motion, if any.
+        hold_out: Rule of the views that take no part.
     """
 
     capture: Capture
     light_field: LightField
     array: AlignedArray | None
     points: NDArray[np.float64] | None
+    hold_out: str | None
 
     @property
     def shown(self) -> LightField:
         """The photographs that take part."""
-        return self.light_field if self.array is None else self.array.taking_part(self.capture)
+        cameras, names = self.light_field.cameras, self.light_field.names
+        places = fit_view_plane(cameras).coordinates([camera.centre for camera in cameras])
+        return self.light_field.subset(np.flatnonzero(~held_out_cameras(self.hold_out, names, places)))
 
     @property
     def inputs(self) -> list[Any]:
         """What stages depend on."""
-        return [None if self.points is None else len(self.points)] if self.array is None else self.array.inputs
+        known = [None if self.points is None else len(self.points)] if self.array is None else self.array.inputs
+        return [known, self.hold_out]
 
     def views(self, run: StageRunner) -> tuple[NDArray[np.uint8], list[Camera], Range]:
         """The photographs that take part, their cameras at the same size, and the range of inverse depths.

@@ -35,6 +35,7 @@ class ReconstructionSettings:
         primitives: Texts of primitives.
         fit_spheres: Texts of spheres to fit.
         blind: Rule of the views that take no part.
+        hold_out: Rule of the views that sheets are not made from; None: those of `blind`.
 
     Raises:
         OptionError: `surface`, `layers`, `triangles`, `primitive` or `fit-sphere`.
@@ -48,6 +49,7 @@ class ReconstructionSettings:
     primitives: tuple[str, ...] = ()
     fit_spheres: tuple[str, ...] = ()
     blind: str | None = None
+    hold_out: str | None = None
 
     def __post_init__(self) -> None:
         if self.surface not in SURFACE_KINDS:

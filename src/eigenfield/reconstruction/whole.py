@@ -82,6 +82,7 @@ def reconstruct(
     primitives: Sequence[str] = (),
     fit_spheres: Sequence[str] = (),
     blind: str | None = None,
+    hold_out: str | None = None,
     work: Path | None = None,
     progress: Progress | None = None,
 ) -> Reconstruction:
@@ -101,6 +102,8 @@ def reconstruct(
         fit_spheres: `VIEW:X,Y,W,H`, spheres fitted to an outline.
         blind: A rule of `hold_out` (see `encode`): these views take no part, each only registers its own camera. Arrays
             only.
+        hold_out: A rule of `hold_out`: layers, whose opacity is appearance, are not made from these views. Default:
+            those of `blind`.
         work: The folder of finished stages; None: nothing is stored.
         progress: Called within stages.
 
@@ -111,7 +114,7 @@ def reconstruct(
         OutputError: `work` cannot be written.
     """
     settings = ReconstructionSettings(
-        surface, layers, refine, triangles, background, tuple(primitives), tuple(fit_spheres), blind
+        surface, layers, refine, triangles, background, tuple(primitives), tuple(fit_spheres), blind, hold_out
     )
     for text in fit_spheres:  # before the long stages
         find_view(parse_region(text), capture.names)
@@ -133,7 +136,7 @@ def reconstruct(
                     "blind", "only arrays that look one way can be reconstructed blind",
                     remedy="leave out --blind: held-out views then help to find cameras and proxy",
                 )  # fmt: skip
-        source = SheetSource(capture, light_field, array, points)
+        source = SheetSource(capture, light_field, array, points, settings.hold_out or settings.blind)
         if settings.surface == "layers":
             proxy, error = sheets_of_capture(run, source), None
         else:
