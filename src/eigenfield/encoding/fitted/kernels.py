@@ -128,14 +128,13 @@ def bicubic_taps(point, across, down, width, height):
 
 
 @kernel()
-def sheet_points(near, column_of, row_of, opacity, size, rest, counts, starts, coordinates, shares):
+def sheet_points(near, column_of, row_of, opacity, rest, counts, starts, coordinates, shares):
     """Add a sheet behind those that were added before: what each pixel shows of it.
 
     Args:
         near: (h, at least w) inverse depth in the sheet, 0 where a pixel does not show it.
         column_of, row_of: (h, at least w) texel coordinates over depth.
-        opacity: (rows, columns) float32, read by Catmull-Rom and clipped to 0..1.
-        size: (H, W) of the finest atlas.
+        opacity: (H, W) float32 of the finest atlas, read by Catmull-Rom and clipped to 0..1.
         rest: (h, w) float32, the part of a pixel that shows what lies behind; changed.
         counts: (h, w) uint8 points of a pixel so far; changed.
         starts: (h, w) int64, where a pixel's points begin; empty to count alone.
@@ -143,8 +142,7 @@ def sheet_points(near, column_of, row_of, opacity, size, rest, counts, starts, c
         shares: (n,) written.
     """
     height, width = opacity.shape
-    right, bottom = np.float32(size[1] - 1), np.float32(size[0] - 1)
-    down, across = np.float32(height / size[0]), np.float32(width / size[1])
+    right, bottom, one = np.float32(width - 1), np.float32(height - 1), np.float32(1)
     put, point = starts.shape[0] > 0, np.empty(2, np.float32)
     for row in range(counts.shape[0]):
         for pixel in range(counts.shape[1]):
@@ -153,7 +151,7 @@ def sheet_points(near, column_of, row_of, opacity, size, rest, counts, starts, c
                 continue
             point[0] = min(max(column_of[row, pixel] / inverse, np.float32(0)), right)
             point[1] = min(max(row_of[row, pixel] / inverse, np.float32(0)), bottom)
-            left, top, a, d = bicubic_taps(point, across, down, width, height)
+            left, top, a, d = bicubic_taps(point, one, one, width, height)
             value = np.float32(0)
             for v in range(4):
                 line = np.float32(0)
