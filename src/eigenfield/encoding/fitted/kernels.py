@@ -447,3 +447,53 @@ def gather_steps(matrix, points, steps, tangents, owners, slopes, asked, seen, o
         out[2, t] += g * s
         out[3, t] += s
         out[4, t] += np.float64(asked[t])
+
+
+@kernel()
+def opacity_steps(counts, coordinates, shares, texture, image, weight, out):
+    """Add one observation to out (2, H, W): texel by texel of an opacity as large as the atlas the sums of g r and g g,
+    where g is the change of a pixel for a unit of the opacity of a point, T (c - b): T is what the points before let
+    through, c what the point shows, and b what is seen behind it. r is what the photograph has more than is drawn.
+
+    Args:
+        counts: As `forward`.
+        coordinates: As `forward`, in an atlas as large as the texture.
+        shares: (n,) uint16.
+        texture: (1, H, W) what is drawn.
+        image: (1, h, w) r.
+        weight: See `part_of`.
+        out: The sums.
+    """
+    height, width = texture.shape[1:]
+    flat, one = texture.reshape(-1), np.float32(1)
+    colours, parts = np.empty(256, np.float32), np.empty(256, np.float32)
+    gain, norm = out[0].reshape(-1), out[1].reshape(-1)
+    at = 0
+    for row in range(counts.shape[0]):
+        for pixel in range(counts.shape[1]):
+            count, whole = counts[row, pixel], part_of(weight, row, pixel)
+            first = at
+            at += count
+            if count < 2 or whole <= 0:
+                continue
+            behind, light = np.float32(0), np.float32(0)  # of what was passed, from the back on: colours and parts
+            for k in range(count):
+                left, top, a, d = bicubic_taps(coordinates[first + k], one, one, width, height)
+                value = np.float32(0)
+                for v in range(4):
+                    for u in range(4):
+                        value += d[v] * a[u] * flat[tap_index(left, top, u, v, width, height)]
+                colours[k], parts[k] = value, share_of(count, shares, first + k)
+            for k in range(count - 1, -1, -1):
+                if light > SHEET_MIN_REST:
+                    through = light + parts[k]
+                    g = through * (colours[k] - behind / light)
+                    left, top, a, d = bicubic_taps(coordinates[first + k], one, one, width, height)
+                    for v in range(4):
+                        for u in range(4):
+                            into = tap_index(left, top, u, v, width, height)
+                            w = d[v] * a[u]
+                            gain[into] += whole * w * g * image[0, row, pixel]
+                            norm[into] += whole * abs(w) * g * g
+                behind += parts[k] * colours[k]
+                light += parts[k]
