@@ -61,7 +61,9 @@ def test_the_fit_draws_what_the_renderer_draws(scene):
             whole = np.zeros_like(drawn)
             white = np.full((camera.height, camera.width, 3), 255, np.uint8)
             target(*footprints.of(index), white, np.eye(3, dtype=np.float32) / 255, whole)
-            np.testing.assert_allclose(whole[0], expected.coverage, atol=DROPPED)
+            part = np.where(expected.coverage > 0.95, 1, expected.coverage)
+            near = np.abs(expected.coverage - 0.95) < DROPPED
+            np.testing.assert_allclose(whole[0][~near], part[~near], atol=DROPPED)
 
 
 def test_points_come_front_to_back_and_fewer_pixels_keep_theirs(scene, capture):

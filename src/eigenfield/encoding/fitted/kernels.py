@@ -20,6 +20,7 @@ EDGE_ON_MAX_RATIO = 1e-6  # of the tangents' product: at most so much is seen ed
 SHARE_ONE = 1 << 14
 SHEET_MIN_SHARE = np.float32(1 / 1024)  # of a pixel, of a point that counts
 SHEET_MIN_REST = np.float32(1 / 512)  # of a pixel, that what is behind is seen through
+WHOLE_MIN_PART = np.float32(0.95)  # of a pixel that is to show the photograph's whole value: opacity is coded
 
 
 @kernel()
@@ -90,6 +91,7 @@ def target(counts, coordinates, shares, codes, matrix, image):
             for _ in range(counts[row, pixel]):
                 part += share_of(counts[row, pixel], shares, at)
                 at += 1
+            part = np.float32(1) if part > WHOLE_MIN_PART else part
             for k in range(image.shape[0]):
                 value = np.float32(0)
                 if part > 0:
