@@ -24,6 +24,7 @@ from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
 from eigenfield.core.scene import EncodedScene
 from eigenfield.core.version import __version__
+from eigenfield.encoding.fitted.opacity import fit_opacity
 from eigenfield.encoding.fitted.planes import byte_lambda, coded_opacity
 from eigenfield.encoding.fitted.surface import fit_surface
 from eigenfield.encoding.geometry.coded import DEPTH_ERROR_PX, coded_cameras, coded_mesh
@@ -158,7 +159,7 @@ def plan_encoding(
 ) -> EncodePlan:
     """Cameras and proxy as a file keeps them: for a fit, the surface fitted to the photographs, and both as coded.
 
-    Sheets are taken as they are: their surfaces were fitted to the photographs together with their opacity.
+    Of sheets the opacity alone is fitted: their surfaces were fitted to the photographs before.
 
     Args:
         capture: Photographs and cameras.
@@ -195,7 +196,7 @@ def _prepare(
     cameras, given = views.rig.cameras, proxy
     if isinstance(proxy, Proxy):
         if proxy.sheets is not None:
-            return _prepare_sheets(proxy, views, options)
+            return _prepare_sheets(proxy, views, options, work, progress)
         proxy = proxy.mesh
     triangles = _triangles_by_pictures(views, options) if _simplifies(options) else options.triangles
     mesh = prepare_proxy(proxy, cameras, triangles=triangles, progress=progress)
@@ -210,13 +211,16 @@ def _prepare(
     return PreparedProxy(given, fitted, views, by_quality)
 
 
-def _prepare_sheets(proxy: Proxy, views: CaptureViews, options: EncodeOptions) -> PreparedProxy:
-    """Sheets as they came. OptionError `sheets`: texture maps were asked for, which know one surface."""
+def _prepare_sheets(
+    proxy: Proxy, views: CaptureViews, options: EncodeOptions, work: Path | None, progress: Progress | None
+) -> PreparedProxy:
+    """Sheets with their opacity fitted. OptionError `sheets`: texture maps were asked for, which know one surface."""
     if options.fit == "none":
         message = "texture maps of several sheets, which only a fit can make"
         raise OptionError("sheets", message, remedy="leave out --fit none, or use another --surface")
     _warn_of_rounding(views.capture.cameras, views.rig.cameras, proxy.mesh)
-    return PreparedProxy(proxy, proxy, views, by_quality=False)
+    fitted = fit_opacity(proxy, views.rig.encoded_cameras, views.observations, work, progress)
+    return PreparedProxy(proxy, fitted, views, by_quality=False)
 
 
 def _triangles_by_pictures(views: CaptureViews, options: EncodeOptions) -> Callable[[Mesh], int | None]:

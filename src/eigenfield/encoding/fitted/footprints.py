@@ -25,6 +25,7 @@ from eigenfield.rendering.software.drawing import (
     rasterise_surface,
     smooth_edges,
 )
+from eigenfield.rendering.software.resample import make_taps
 from eigenfield.runtime.files import scratch_array
 from eigenfield.runtime.parallel import parallel_map
 
@@ -86,7 +87,9 @@ def open_footprints(
     """
     shapes = tuple((camera.height, camera.width) for camera in cameras)
     pixels = offsets_of([h * w for h, w in shapes])
-    add = partial(_add_opaque, surface, detail) if sheets is None else partial(_add_sheets, surface, sheets)
+    add = partial(_add_opaque, surface, detail)
+    if sheets is not None:
+        add = partial(_add_sheets, surface, sheets.faces, _at_size(sheets.opacity, surface.size))
 
     def part_of(camera: int) -> NDArray[np.uint8]:
         return np.asarray(counts[pixels[camera] : pixels[camera + 1]]).reshape(shapes[camera])
@@ -135,21 +138,33 @@ def _add_opaque(
 
 
 def _add_sheets(
-    surface: Surface, sheets: Sheets, camera: Camera, counts: NDArray[np.uint8], into: _Points | None
+    surface: Surface,
+    faces: Sequence[int],
+    opacity: NDArray[np.float32],
+    camera: Camera,
+    counts: NDArray[np.uint8],
+    into: _Points | None,
 ) -> None:
-    """As `_add_opaque`, of sheets."""
+    """As `_add_opaque`, of sheets with so many faces each and an opacity as large as the atlas."""
     rest = np.ones(counts.shape, np.float32)
     starts: NDArray[np.int64] = np.zeros((0, counts.shape[1]), np.int64)
     coordinates, shares = (np.zeros((0, 2), np.float32), np.zeros(0, np.uint16)) if into is None else into
     if into is not None:
         starts = (np.cumsum(counts, dtype=np.int64) - counts.reshape(-1)).reshape(counts.shape)
     counts[:] = 0
-    for faces in reversed(list(pairwise(accumulate(sheets.faces, initial=0)))):
-        sheet = _part_of(surface, slice(*faces))
+    for ends in reversed(list(pairwise(accumulate(faces, initial=0)))):
+        sheet = _part_of(surface, slice(*ends))
         frame = Framebuffer(sheet, camera.height, camera.width, ONE_SAMPLE)
         rasterise_surface(sheet, camera, ONE_SAMPLE, frame)
         places = frame.inverse_depth, frame.column_of, frame.row_of
-        sheet_points(*places, sheets.opacity, surface.size, rest, counts, starts, coordinates, shares)
+        sheet_points(*places, opacity, rest, counts, starts, coordinates, shares)
+
+
+def _at_size(opacity: NDArray[np.float32], size: tuple[int, int]) -> NDArray[np.float32]:
+    """(H, W) an opacity at the atlas's size, not clipped: what the renderers filter."""
+    rows, columns = (make_taps(*sides) for sides in zip(size, opacity.shape, strict=True))
+    lines = np.einsum("rt,rtc->rc", rows.weight, opacity[rows.at])
+    return np.einsum("ct,rct->rc", columns.weight, lines[:, columns.at]).astype(np.float32)
 
 
 def _part_of(surface: Surface, faces: slice) -> Surface:

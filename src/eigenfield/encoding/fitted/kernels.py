@@ -20,6 +20,7 @@ EDGE_ON_MAX_RATIO = 1e-6  # of the tangents' product: at most so much is seen ed
 SHARE_ONE = 1 << 14
 SHEET_MIN_SHARE = np.float32(1 / 1024)  # of a pixel, of a point that counts
 SHEET_MIN_REST = np.float32(1 / 512)  # of a pixel, that what is behind is seen through
+WHOLE_MIN_PART = np.float32(0.95)  # of a pixel that is to show the photograph's whole value: opacity is coded
 
 
 @kernel()
@@ -90,6 +91,7 @@ def target(counts, coordinates, shares, codes, matrix, image):
             for _ in range(counts[row, pixel]):
                 part += share_of(counts[row, pixel], shares, at)
                 at += 1
+            part = np.float32(1) if part > WHOLE_MIN_PART else part
             for k in range(image.shape[0]):
                 value = np.float32(0)
                 if part > 0:
@@ -128,14 +130,13 @@ def bicubic_taps(point, across, down, width, height):
 
 
 @kernel()
-def sheet_points(near, column_of, row_of, opacity, size, rest, counts, starts, coordinates, shares):
+def sheet_points(near, column_of, row_of, opacity, rest, counts, starts, coordinates, shares):
     """Add a sheet behind those that were added before: what each pixel shows of it.
 
     Args:
         near: (h, at least w) inverse depth in the sheet, 0 where a pixel does not show it.
         column_of, row_of: (h, at least w) texel coordinates over depth.
-        opacity: (rows, columns) float32, read by Catmull-Rom and clipped to 0..1.
-        size: (H, W) of the finest atlas.
+        opacity: (H, W) float32 of the finest atlas, read by Catmull-Rom and clipped to 0..1.
         rest: (h, w) float32, the part of a pixel that shows what lies behind; changed.
         counts: (h, w) uint8 points of a pixel so far; changed.
         starts: (h, w) int64, where a pixel's points begin; empty to count alone.
@@ -143,8 +144,7 @@ def sheet_points(near, column_of, row_of, opacity, size, rest, counts, starts, c
         shares: (n,) written.
     """
     height, width = opacity.shape
-    right, bottom = np.float32(size[1] - 1), np.float32(size[0] - 1)
-    down, across = np.float32(height / size[0]), np.float32(width / size[1])
+    right, bottom, one = np.float32(width - 1), np.float32(height - 1), np.float32(1)
     put, point = starts.shape[0] > 0, np.empty(2, np.float32)
     for row in range(counts.shape[0]):
         for pixel in range(counts.shape[1]):
@@ -153,7 +153,7 @@ def sheet_points(near, column_of, row_of, opacity, size, rest, counts, starts, c
                 continue
             point[0] = min(max(column_of[row, pixel] / inverse, np.float32(0)), right)
             point[1] = min(max(row_of[row, pixel] / inverse, np.float32(0)), bottom)
-            left, top, a, d = bicubic_taps(point, across, down, width, height)
+            left, top, a, d = bicubic_taps(point, one, one, width, height)
             value = np.float32(0)
             for v in range(4):
                 line = np.float32(0)
@@ -449,3 +449,53 @@ def gather_steps(matrix, points, steps, tangents, owners, slopes, asked, seen, o
         out[2, t] += g * s
         out[3, t] += s
         out[4, t] += np.float64(asked[t])
+
+
+@kernel()
+def opacity_steps(counts, coordinates, shares, texture, image, weight, out):
+    """Add one observation to out (2, H, W): texel by texel of an opacity as large as the atlas the sums of g r and g g,
+    where g is the change of a pixel for a unit of the opacity of a point, T (c - b): T is what the points before let
+    through, c what the point shows, and b what is seen behind it. r is what the photograph has more than is drawn.
+
+    Args:
+        counts: As `forward`.
+        coordinates: As `forward`, in an atlas as large as the texture.
+        shares: (n,) uint16.
+        texture: (1, H, W) what is drawn.
+        image: (1, h, w) r.
+        weight: See `part_of`.
+        out: The sums.
+    """
+    height, width = texture.shape[1:]
+    flat, one = texture.reshape(-1), np.float32(1)
+    colours, parts = np.empty(256, np.float32), np.empty(256, np.float32)
+    gain, norm = out[0].reshape(-1), out[1].reshape(-1)
+    at = 0
+    for row in range(counts.shape[0]):
+        for pixel in range(counts.shape[1]):
+            count, whole = counts[row, pixel], part_of(weight, row, pixel)
+            first = at
+            at += count
+            if count < 2 or whole <= 0:
+                continue
+            behind, light = np.float32(0), np.float32(0)  # of what was passed, from the back on: colours and parts
+            for k in range(count):
+                left, top, a, d = bicubic_taps(coordinates[first + k], one, one, width, height)
+                value = np.float32(0)
+                for v in range(4):
+                    for u in range(4):
+                        value += d[v] * a[u] * flat[tap_index(left, top, u, v, width, height)]
+                colours[k], parts[k] = value, share_of(count, shares, first + k)
+            for k in range(count - 1, -1, -1):
+                if light > SHEET_MIN_REST:
+                    through = light + parts[k]
+                    g = through * (colours[k] - behind / light)
+                    left, top, a, d = bicubic_taps(coordinates[first + k], one, one, width, height)
+                    for v in range(4):
+                        for u in range(4):
+                            into = tap_index(left, top, u, v, width, height)
+                            w = d[v] * a[u]
+                            gain[into] += whole * w * g * image[0, row, pixel]
+                            norm[into] += whole * abs(w) * g * g
+                behind += parts[k] * colours[k]
+                light += parts[k]

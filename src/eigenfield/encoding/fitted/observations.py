@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
-from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import Observations, cameras_of
 from eigenfield.core.progress import Progress
 from eigenfield.core.proxy import Proxy
@@ -159,17 +158,19 @@ def _open_observations(
 
 
 @contextlib.contextmanager
-def open_on_mesh(data: FitData, cameras: Sequence[Camera], mesh: Mesh, work: Path | None = None) -> Iterator[FitData]:
-    """The same observations on another mesh under as large an atlas.
+def open_on_proxy(
+    data: FitData, cameras: Sequence[Camera], proxy: Proxy, work: Path | None = None
+) -> Iterator[FitData]:
+    """The same observations on another proxy under as large an atlas.
 
     Args:
         data: The observations.
         cameras: Theirs.
-        mesh: The other mesh.
+        proxy: The other proxy.
         work: Folder for scratch files.
     """
-    surface = make_surface(mesh, *data.size)
-    with open_footprints(surface, cameras, data.footprints.detail, work=work) as footprints:
+    surface = make_surface(proxy.mesh, *data.size)
+    with open_footprints(surface, cameras, data.footprints.detail, proxy.sheets, work) as footprints:
         yield replace(data, footprints=footprints)
 
 

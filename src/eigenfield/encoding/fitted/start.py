@@ -77,7 +77,7 @@ def residual_energy(data: FitData, model: PlaneModel) -> tuple[NDArray[np.float3
     def piece(part: tuple[int, int]) -> NDArray[np.float32]:
         added = np.zeros((2, *model.grid), np.float32)
         for index in range(*part):
-            image = _residual_image(data, model, index)
+            image = residual_image(data, model, index)
             both = np.stack([np.square(image).sum(axis=0), np.ones(image.shape[1:], np.float32)])
             adjoint(*data.footprint(index), data.size, both, data.observations.weights(index), added)
         return added
@@ -89,7 +89,7 @@ def residual_energy(data: FitData, model: PlaneModel) -> tuple[NDArray[np.float3
     return energy, seen
 
 
-def _residual_image(data: FitData, model: PlaneModel, index: int) -> NDArray[np.float32]:
+def residual_image(data: FitData, model: PlaneModel, index: int) -> NDArray[np.float32]:
     """(C, h, w): what is left of a photograph."""
     footprint, image = data.footprint(index), data.blank(index, model.channels)
     matrix = (model.matrix / np.float32(255)).astype(np.float32)
@@ -103,7 +103,7 @@ def _residual_image(data: FitData, model: PlaneModel, index: int) -> NDArray[np.
 def _residual_map(data: FitData, model: PlaneModel, index: int, floor: np.float32) -> NDArray[np.float32]:
     """(C, h, w): what is left of a photograph, on the grid."""
     footprint, weight = data.footprint(index), data.observations.weights(index)
-    image = _residual_image(data, model, index)
+    image = residual_image(data, model, index)
     back, part = np.zeros((model.channels, *model.grid), np.float32), np.zeros((1, *model.grid), np.float32)
     adjoint(*footprint, data.size, image, weight, back)
     adjoint(*footprint, data.size, np.ones((1, *image.shape[1:]), np.float32), weight, part)

@@ -39,7 +39,7 @@ from eigenfield.encoding.fitted.colour import split_matrix
 from eigenfield.encoding.fitted.fit import fit_mean
 from eigenfield.encoding.fitted.kernels import adjoint, forward, gather_steps, target
 from eigenfield.encoding.fitted.model import PlaneModel
-from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_on_mesh, open_subsampled
+from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_on_proxy, open_subsampled
 from eigenfield.encoding.fitted.passes import MINUS, psnr_of
 from eigenfield.encoding.fitted.solve import measure_scales
 from eigenfield.encoding.geometry.distortion import spread_cameras, texels_of
@@ -155,7 +155,7 @@ def fit_surface(
         for number in range(SURFACE_TUNING.rounds + 1):
             if progress is not None:
                 progress("fit surface", number, SURFACE_TUNING.rounds + 1)
-            moved = open_on_mesh(every, used, mesh, work) if number else nullcontext(every)
+            moved = open_on_proxy(every, used, Proxy(mesh), work) if number else nullcontext(every)
             with moved as whole, open_subsampled(whole, step, work) as data:
                 model = PlaneModel(split_matrix()[0], np.full((1, *shape), 0.5, np.float32), (1, 1), [])
                 left = fit_mean(data, model, measure_scales(data, model))

@@ -19,7 +19,7 @@ from eigenfield.rendering.software.kernels import (
 from eigenfield.rendering.software.simd import add_texel, blend_texels, fetch_early
 from eigenfield.runtime.jit import kernel
 
-OPACITY_LANE = 3  # of the first layer: the number of a texel that holds its opacity
+OPACITY_LANE = 3  # of a texel's four numbers
 RUN_SAMPLES = 16  # of a line that are looked at or passed over together
 LEAST_TRANSMITTANCE = np.float32(1 / 4096)  # where less of what is behind shows through, nothing does
 
@@ -163,7 +163,7 @@ def draw_sheet(
         faces, texels, edges, bounds, listing, first, last, slack: As of `draw_texels`, with the sheet's triangles.
         middles: `inverse_depth`, `column_of` and `row_of` of `draw_texels`, overwritten in these rows.
         seen: As of `draw_texels`.
-        layers: (L, tiles, TILE_AREA, 4) the texture; the first layer's `OPACITY_LANE` is the opacity.
+        layers: (L, tiles, TILE_AREA, 4) the texture; `OPACITY_LANE` of the first is the opacity.
         size: (H, W) of the texture, in texels.
         bicubic: Whether the filter has 4 x 4 taps, not 2 x 2.
         room: Memory of a line: `parts`, `rows`, `columns`, `down` and `across` of `blend_line`.

@@ -100,7 +100,7 @@ def shade_sheets(
         stack: How they are stacked.
         bands: Of `set_up_sheets`.
         frame: As `set_up_sheets` leaves it; overwritten.
-        layers: (L, tiles, TILE_AREA, 4) the texture; the first layer's `OPACITY_LANE` is `stack.opacity`.
+        layers: (L, tiles, TILE_AREA, 4) the texture; `OPACITY_LANE` is `stack.opacity`.
         filter: As of `shade`.
         background: As of `shade`.
         dtype: As of `shade`.
