@@ -8,15 +8,18 @@ which says what each holds out and how large its file may be. Ours is the file o
 these two. Beside it are drawn:
 
 - the encoded views as one film, decoded and blended on our own mesh (a lumigraph), for each codec of --peers. Its rate
-  is searched so that film and mesh have the bytes of our file, at most 2 % more; the order of views is the best;
+  is searched so that film and mesh have the bytes of our file, at most 2 % more; the order of views is the best. Where
+  our file has soft sheets, which no lumigraph can be drawn on, the mesh is that of a second file with one opaque
+  surface (`encode --layers 1`);
 - the same lumigraph of the uncoded photographs;
 - the photograph of the nearest camera, and the neighbours' photographs blended;
 - the version before, with --before: another source tree, which encodes to the bytes of our file, or a .glb of the same
   capture and hold-out rule.
 
-All are measured over the pixels that our mesh covers. Crops of ours, the peers and the photograph go to
-OUT/NAME/crops-PEER.png, for each peer of our bytes: where ours is worse than that peer by most, and where it is better
-by most. What is done stays in OUT, and a run that was stopped goes on while the code is the same.
+All are measured over the pixels that this mesh covers, and depth edges are this mesh's. Crops of ours, the peers and
+the photograph go to OUT/NAME/crops-PEER.png, for each peer of our bytes: where ours is worse than that peer by most,
+and where it is better by most. What is done stays in OUT, and a run that was stopped goes on while the code is the
+same.
 """
 
 from __future__ import annotations
@@ -120,13 +123,14 @@ def of_capture(
 ) -> dict[str, Any]:
     """A row for each way, and crops beside each peer of our bytes."""
     work.mkdir(parents=True, exist_ok=True)
-    file = encoded(capture, case.hold_out, None if case.kilobytes is None else round(1000 * case.kilobytes), work)
-    size = file.stat().st_size
-    stage, peers = opened(file, capture)
+    most = None if case.kilobytes is None else round(1000 * case.kilobytes)
+    file = encoded(capture, case.hold_out, most, work)
+    size, sheets = file.stat().st_size, ef.load(file).proxy.sheets
+    opaque = file if sheets is None else encoded(capture, case.hold_out, None, work, more=["--layers", "1"])
+    stage, peers = opened(opaque, capture)
     index = held_out(stage)
-    mesh = parts(file)["mesh"]
-    drawn = ways_of(stage, peers)
-    ways: dict[str, Way] = {"ours": drawn["delaunay"]}
+    mesh = parts(opaque)["mesh"]
+    ways: dict[str, Way] = {"ours": drawn_by(file, stage, index)}
     spent: dict[str, dict[str, Any]] = {"ours": {"bytes": size}}
     left_out = []
     for codec in chosen:
@@ -138,27 +142,41 @@ def of_capture(
         spent[codec.name]["bytes"] += mesh
     if before is not None:
         old = before if before.is_file() else encoded(capture, case.hold_out, size, work, before)
-        ways["before"] = of_before(old, stage, index)
+        ways["before"] = drawn_by(old, stage, index)
         spent["before"] = {"bytes": old.stat().st_size, "version": version(before)}
     against = list(ways)[1:]
+    drawn = ways_of(stage, peers)
     ways |= {key: drawn[key] for key in PHOTOGRAPHS}
     rows, _ = measure_ways(stage, index, ways)
     methods = [{**row, **spent.get(row["key"], {})} for row in rows]
     heads = ["photograph", *map(caption, methods)]
     return {
         "rule": case.hold_out, "cameras": len(index), "encoded": len(peers.shown), "mesh": mesh,
+        "sheets": 0 if sheets is None else len(sheets.faces),
         "methods": methods, "left_out": left_out,
         "crops": [crops(stage, index, ways, peer, heads, work).name for peer in against],
     }  # fmt: skip
 
 
-def encoded(capture: Capture, hold_out: str, size: int | None, work: Path, tree: Path | None = None) -> Path:
-    """The file that `eigenfield encode` makes, of this source tree or of another one: of at most `size` bytes."""
-    name = "ours" if tree is None else "before"
-    words = ["encode", *prepared.words(capture), "--hold-out", hold_out]
+def encoded(
+    capture: Capture, hold_out: str, size: int | None, work: Path, tree: Path | None = None, more: Sequence[str] = ()
+) -> Path:
+    """The file that `eigenfield encode` makes, of this source tree or of another one: of at most `size` bytes.
+
+    Args:
+        capture: The capture.
+        hold_out: Rule of `encode --hold-out`.
+        size: Bytes at most; None: the default's quality.
+        work: Folder of the file.
+        tree: The other source tree.
+        more: Options that make an opaque surface.
+    """
+    name = "before" if tree else "opaque" if more else "ours"
+    words = ["encode", *prepared.words(capture), "--hold-out", hold_out, *more]
     words += [] if capture.proxy is None else ["--proxy", str(capture.proxy)]
     words += [] if size is None else ["--target-size", str(size)]
-    words += ["--work", str(work / f"{name}.work"), "-o", str(work / f"{name}.glb")]
+    stages = "before.work" if tree else "ours.work"
+    words += ["--work", str(work / stages), "-o", str(work / f"{name}.glb")]
     made = measure.run(["-m", "eigenfield", *words, "--overwrite", "--quiet"], tree)
     print(f"{capture.name}, {name}: {made['output'].strip()}", flush=True)
     return work / f"{name}.glb"
@@ -182,8 +200,8 @@ def coded(codec: VideoCodec, stage: Stage, peers: Peers, most: float) -> tuple[W
     return way, {"bytes": film.bytes, "parameter": film.rate, "order": film.order}
 
 
-def of_before(file: Path, stage: Stage, chosen: Sequence[int]) -> Way:
-    """What the file of the version before draws of the same cameras. SystemExit where it did not hold them out."""
+def drawn_by(file: Path, stage: Stage, chosen: Sequence[int]) -> Way:
+    """What another file of the capture draws of the cameras `chosen`. SystemExit where it did not hold them out."""
     scene = ef.load(file)
     renderer, names, held = Renderer(scene), stage.scene.rig.names, scene.rig.held_out
     place = {name: number for number, name in enumerate(scene.rig.names) if held[number]}

@@ -21,19 +21,25 @@ def section() -> str:
     return (
         "## Views between the cameras, at equal bytes\n\nHeld-out views, measured over the pixels that our mesh covers."
         " The codec's film holds the encoded views; it is decoded and blended as a lumigraph on our mesh, and its bytes"
-        " include the mesh. The last three ways of a capture need all photographs. The worst view is the lowest of each"
-        " figure. The last column is the share of luma's squared error within two pixels of depth edges.\n\n"
+        " include the mesh. Where our file has soft sheets, this mesh is the opaque surface of the same capture"
+        " (`--layers 1`), also for coverage and depth edges. The last three ways of a capture need all photographs. The"
+        " worst view is the lowest of each figure. The last column is the share of luma's squared error within two"
+        " pixels of depth edges.\n\n"
         f"{_captures(captures)}\n{table(head, rows)}\n{origin(shown, '../benchmarks/results/between.json')}\n"
     )
 
 
 def _captures(captures: Mapping[str, Any]) -> str:
     rows = [
-        [f"`{name}`", f"`{one['rule']}`", str(one["cameras"]), str(one["encoded"]), f"{one['mesh'] / 1e3:.1f}",
+        [f"`{name}`", f"`{one['rule']}`", str(one["cameras"]), str(one["encoded"]), str(one.get("sheets", 0) or NONE),
+         f"{one['mesh'] / 1e3:.1f}",
          f"{100 * one['methods'][0]['coverage']:.1f} %", f"{100 * one['methods'][0]['edge_pixels']:.0f} %"]
         for name, one in captures.items()
     ]  # fmt: skip
-    head = ["capture", "held out", "held-out views", "encoded views", "mesh kB", "coverage", "pixels near depth edges"]
+    head = [
+        "capture", "held out", "held-out views", "encoded views", "our soft sheets", "mesh kB", "coverage",
+        "pixels near depth edges",
+    ]  # fmt: skip
     return table(head, rows)
 
 

@@ -16,13 +16,16 @@ import measure
 from benchmarks.test_evidence_between import joined, square
 from benchmarks.test_evidence_codecs import numbered
 from eigenfield.core.camera import Camera
+from eigenfield.gltf import parts
 from eigenfield.imaging.metrics import psnr
 from evidence import captures, codecs, equal_bytes, pictures
-from evidence.between import near_depth_edges, share_near, squared_luma_errors
+from evidence.between import between as evidence_between
+from evidence.between import near_depth_edges, share_near, squared_luma_errors, start
 from evidence.captures import Capture
 from evidence.lumigraph import make_lumigraph
 from support.captures import write_capture
 from support.scenes import row_grid
+from support.sheets import stacked
 
 FAST = dataclasses.replace(
     codecs.VIDEO[1], options=tuple((k, "10" if k == "preset" else v) for k, v in codecs.VIDEO[1].options)
@@ -182,6 +185,36 @@ def test_a_small_capture_from_end_to_end(nine, tmp_path, monkeypatch):
     assert "`nine`" in text and f"{size / 1000:.1f}" in text and "python" in text
 
 
+def test_peers_of_soft_sheets_are_drawn_on_an_opaque_surface(nine, tmp_path, monkeypatch):
+    field = ef.open_capture(nine.folder)
+    plain = ef.encode(field, nine.proxy, textures=2, hold_out="odd", density=0.8, fit="none")
+    ef.save(stacked(plain, plain.proxy.mesh), tmp_path / "ours.glb", codec="png")
+    ef.save(plain, tmp_path / "opaque.glb", codec="png")
+    asked = []
+
+    def encoded(capture, hold_out, size, work, tree=None, more=()):
+        asked.append((size, more))
+        return work / ("opaque.glb" if more else "ours.glb")
+
+    monkeypatch.setattr(between, "encoded", encoded)
+    found = between.of_capture(nine, between.Case("odd", 12), tmp_path, [FAST])
+    rows = {row["key"]: row for row in found["methods"]}
+    assert asked == [(12_000, ()), (None, ["--layers", "1"])]
+    assert found["sheets"] == 3 and found["mesh"] == parts(tmp_path / "opaque.glb")["mesh"]
+    size = (tmp_path / "ours.glb").stat().st_size
+    assert rows["ours"]["bytes"] == size and rows[FAST.name]["bytes"] <= equal_bytes.OVER * size
+    opaque, photographs = ef.load(tmp_path / "opaque.glb"), ef.open_capture(nine.folder)
+    truth = ef.evaluate(opaque, photographs, png_maps="none")["image"]["held_out"]
+    assert [row["coverage"] for row in rows.values()] == pytest.approx([truth["coverage"]] * len(rows))
+    theirs = ef.evaluate(ef.load(tmp_path / "ours.glb"), photographs, png_maps="none")["image"]["held_out"]
+    assert rows["ours"]["psnr_full"] == pytest.approx(theirs["psnr_full"], abs=1e-6) != truth["psnr_full"]
+    usual = evidence_between(*start(opaque, photographs))["methods"]
+    for row in usual:
+        if row["key"] in between.PHOTOGRAPHS:
+            for key in ("psnr", "edge_share", "edge_pixels"):
+                assert rows[row["key"]][key] == pytest.approx(row[key])
+
+
 @pytest.mark.slow
 def test_another_tree_encodes_to_our_bytes(nine, tmp_path):
     tree = between.Path(__file__).parents[2]
@@ -200,8 +233,8 @@ def test_a_version_before_that_saw_the_views_is_refused(nine, tmp_path):
     stage, _ = between.opened(tmp_path / "held.glb", nine)
     chosen = between.held_out(stage)
     with pytest.raises(SystemExit, match=r"seen\.glb does not hold out .*view_01"):
-        between.of_before(tmp_path / "seen.glb", stage, chosen)
-    picture = between.of_before(tmp_path / "held.glb", stage, chosen)(chosen[0])
+        between.drawn_by(tmp_path / "seen.glb", stage, chosen)
+    picture = between.drawn_by(tmp_path / "held.glb", stage, chosen)(chosen[0])
     assert picture.shape == (56, 64, 3) and picture.dtype == np.uint8
 
 
