@@ -67,6 +67,8 @@ def test_a_faster_coder_only_chooses_the_components(made):
 def test_what_a_byte_of_the_mean_takes_off(made):
     _, scales = made
     assert plane_lambda(scales, Rate(STEP, STEP, FAST)) == pytest.approx(lambda_of_step(STEP) * 10)
-    half_seen = Scales.opaque(scales.mean * np.tile([0, 1], (SIZE[0], SIZE[1] // 2)).astype(np.float32), scales.coarse, (0, 0))
+    half_seen = Scales.opaque(
+        scales.mean * np.tile([0, 1], (SIZE[0], SIZE[1] // 2)).astype(np.float32), scales.coarse, (0, 0)
+    )
     assert plane_lambda(half_seen, Rate(STEP, STEP, FAST)) == pytest.approx(lambda_of_step(STEP) * 10)
     assert plane_lambda(Scales.opaque(scales.mean * 0, scales.coarse, (0, 0)), Rate(STEP, STEP, FAST)) == 0
