@@ -13,7 +13,7 @@ from eigenfield.rendering.software.drawing import make_surface
 
 
 def scales(mean, coarse=None):
-    return Scales(mean.astype(np.float32), (mean if coarse is None else coarse).astype(np.float32), (0.0, 0.0))
+    return Scales.opaque(mean.astype(np.float32), (mean if coarse is None else coarse).astype(np.float32), (0.0, 0.0))
 
 
 def chart(left, right):

@@ -26,7 +26,7 @@ def made() -> tuple[Block, Scales]:
     strength = 0.2 / soft.std() * 0.5 ** np.arange(4, dtype=np.float32)
     block = Block((0, SIZE[0], 0, SIZE[1]), soft * strength[:, None, None, None], np.ones((CAMERAS, 4), np.float32))
     share = np.full(SIZE, 10.0, np.float32)
-    return block, Scales(share, share, (0.0, 0.0))
+    return block, Scales.opaque(share, share, (0.0, 0.0))
 
 
 def costs(block: Block, scales: Scales, lambda_: float) -> list[float]:
@@ -67,6 +67,8 @@ def test_a_faster_coder_only_chooses_the_components(made):
 def test_what_a_byte_of_the_mean_takes_off(made):
     _, scales = made
     assert plane_lambda(scales, Rate(STEP, STEP, FAST)) == pytest.approx(lambda_of_step(STEP) * 10)
-    half_seen = Scales(scales.mean * np.tile([0, 1], (SIZE[0], SIZE[1] // 2)).astype(np.float32), scales.coarse, (0, 0))
+    half_seen = Scales.opaque(
+        scales.mean * np.tile([0, 1], (SIZE[0], SIZE[1] // 2)).astype(np.float32), scales.coarse, (0, 0)
+    )
     assert plane_lambda(half_seen, Rate(STEP, STEP, FAST)) == pytest.approx(lambda_of_step(STEP) * 10)
-    assert plane_lambda(Scales(scales.mean * 0, scales.coarse, (0, 0)), Rate(STEP, STEP, FAST)) == 0
+    assert plane_lambda(Scales.opaque(scales.mean * 0, scales.coarse, (0, 0)), Rate(STEP, STEP, FAST)) == 0

@@ -132,7 +132,11 @@ def sheets_are_better(run: StageRunner, source: SheetSource, mesh: Mesh) -> bool
         mesh: The opaque surface of all photographs.
     """
     settings = run.settings
-    if settings.layers == 1 or settings.by_hand is not None or capture_fault(source.shown) is not None:
+    if settings.layers == 1 or settings.by_hand is not None:
+        return False
+    fault = capture_fault(source.shown)
+    if fault is not None:
+        log.info("surface: opaque, since %s", fault)
         return False
     if source.array is not None and len(source.array.shown) >= LAYERS_TUNING.dense_views:
         log.info("surface: opaque, as always for %d views or more of an array", LAYERS_TUNING.dense_views)

@@ -51,6 +51,11 @@ class Scales:
     coarse_noise: NDArray[np.float32]
     usual: float
 
+    @classmethod
+    def opaque(cls, mean: NDArray[np.float32], coarse: NDArray[np.float32], smooth: tuple[float, float]) -> Scales:
+        """Of a surface of which a pixel shows nothing but one texel and its neighbours."""
+        return cls(mean, coarse, smooth, mean, coarse, _median(mean))
+
 
 def measure_scales(data: FitData, model: PlaneModel) -> Scales:
     """Row sums of the normal matrix, G^T G 1 = G^T 1: what Catmull-Rom's negative taps leave of its diagonal plus all
@@ -65,7 +70,7 @@ def measure_scales(data: FitData, model: PlaneModel) -> Scales:
     ratio = SHEET_SMOOTHNESS_RATIO if soft else MEAN_SMOOTHNESS_RATIO
     smooth = ratio * _median(fine), TEXTURE_SMOOTHNESS_RATIO * _median(coarse)
     if not soft:
-        return Scales(fine, coarse, smooth, fine, coarse, _median(fine))
+        return Scales.opaque(fine, coarse, smooth)
     density = data.footprints.detail * np.sqrt(fine.size / np.prod(data.size))
     return Scales(fine, coarse, smooth, *_texel_sums(data, model, squared=True), len(data) / float(density) ** 2)
 
