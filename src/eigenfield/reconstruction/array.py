@@ -147,7 +147,7 @@ def align_array(run: StageRunner, capture: Capture, points: NDArray[np.float64] 
         points: (n, 3) points of structure from motion, if any.
     """
     refine = _must_refine(capture, run.settings)
-    known = np.flatnonzero(~held_out_cameras(run.settings.blind, capture.names, _positions(capture)))
+    known = np.flatnonzero(~held_out_cameras(run.settings.blind, capture.names, array_positions(capture)))
     inputs = [refine, known.tolist(), None if points is None else len(points)]
 
     def build(folder: Path) -> None:
@@ -159,7 +159,7 @@ def align_array(run: StageRunner, capture: Capture, points: NDArray[np.float64] 
         if len(known) < len(pictures):
             new = np.setdiff1d(np.arange(len(pictures)), known)
             bases = None if capture.light_field is None else resized_cameras(capture)
-            positions = _positions(capture)[:, ::-1] if start.exchanged else _positions(capture)
+            positions = array_positions(capture)[:, ::-1] if start.exchanged else array_positions(capture)
             planar = register_views(planar, known, pictures[new], new, positions, bases, exact=not refine)
         light_field = _light_field(capture, planar)
         save_calibration(light_field, folder / "calibration")
@@ -275,7 +275,7 @@ def _start_array(capture: Capture, pictures: NDArray[np.uint8], points: NDArray[
     return start_given(cameras, low, high)
 
 
-def _positions(capture: Capture) -> NDArray[np.float64]:
+def array_positions(capture: Capture) -> NDArray[np.float64]:
     """(n, 2) positions on the array's plane, in any unit."""
     if capture.light_field is None:
         assert capture.layout is not None

@@ -18,8 +18,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.proxy import Proxy
-from eigenfield.core.viewplane import fit_view_plane
-from eigenfield.reconstruction.array import AlignedArray, array_depths, inverse_depths
+from eigenfield.reconstruction.array import AlignedArray, array_depths, array_positions, inverse_depths
 from eigenfield.reconstruction.frame import filled_pictures, resized_cameras
 from eigenfield.reconstruction.layers import LAYERS_TUNING, Range, compare_held_out, layers_fault, layers_proxy
 from eigenfield.reconstruction.run import StageRunner
@@ -74,9 +73,11 @@ class SheetSource:
     @property
     def shown(self) -> LightField:
         """The photographs that take part."""
-        cameras, names = self.light_field.cameras, self.light_field.names
-        places = fit_view_plane(cameras).coordinates([camera.centre for camera in cameras])
-        return self.light_field.subset(np.flatnonzero(~held_out_cameras(self.hold_out, names, places)))
+        # by the capture's own order and places, whichever photographs were left out since
+        held = held_out_cameras(self.hold_out, self.capture.names, array_positions(self.capture))
+        unseen = {name for name, out in zip(self.capture.names, held, strict=True) if out}
+        names = self.light_field.names
+        return self.light_field.subset([index for index, name in enumerate(names) if name not in unseen])
 
     @property
     def inputs(self) -> list[Any]:
