@@ -40,8 +40,8 @@ def encode(
         capture: Photographs with their cameras.
         proxy: A triangle mesh in the cameras' world, its file, or a proxy with sheets.
         options: What is asked for; None for the defaults.
-        work: Folder for scratch files, up to 17 bytes a pixel, and 10 for each sheet that it shows, or 4 bytes x channels
-            x cameras x texels.
+        work: Folder for scratch files, up to 17 bytes a pixel, and 10 for each sheet that it shows; or 4 bytes x
+            channels x cameras x texels.
         progress: Reports each stage.
         changes: Fields of `EncodeOptions` by name, in place of those of `options`.
 
