@@ -11,8 +11,8 @@ import eigenfield as ef
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.encoding.fitted import surface
-from eigenfield.encoding.fitted.kernels import gather_steps
 from eigenfield.encoding.fitted.surface import fit_surface
+from eigenfield.encoding.fitted.surface_kernels import gather_steps
 from eigenfield.encoding.geometry.coded import DEPTH_ERROR_PX
 from eigenfield.gltf import encode_scene
 from eigenfield.proxy.relief.find_lattice import relief_lattice

@@ -16,7 +16,9 @@ from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.proxy import Sheets
-from eigenfield.encoding.fitted.kernels import footprint_coordinates, footprint_counts, sheet_points
+from eigenfield.encoding.fitted.kernels import footprint_coordinates, footprint_counts
+from eigenfield.encoding.fitted.model import make_upsampler
+from eigenfield.encoding.fitted.sheet_kernels import sheet_points
 from eigenfield.rendering.software.drawing import (
     CENTRE_OFFSETS_PX,
     Framebuffer,
@@ -25,7 +27,6 @@ from eigenfield.rendering.software.drawing import (
     rasterise_surface,
     smooth_edges,
 )
-from eigenfield.rendering.software.resample import make_taps
 from eigenfield.runtime.files import scratch_array
 from eigenfield.runtime.parallel import parallel_map
 
@@ -89,7 +90,9 @@ def open_footprints(
     pixels = offsets_of([h * w for h, w in shapes])
     add = partial(_add_opaque, surface, detail)
     if sheets is not None:
-        add = partial(_add_sheets, surface, sheets.faces, _at_size(sheets.opacity, surface.size))
+        opacity = np.zeros((1, *surface.size), np.float32)
+        make_upsampler(surface, (sheets.opacity.shape[0], sheets.opacity.shape[1])).up(sheets.opacity[None], opacity)
+        add = partial(_add_sheets, surface, sheets.faces, opacity[0])
 
     def part_of(camera: int) -> NDArray[np.uint8]:
         return np.asarray(counts[pixels[camera] : pixels[camera + 1]]).reshape(shapes[camera])
@@ -158,13 +161,6 @@ def _add_sheets(
         rasterise_surface(sheet, camera, ONE_SAMPLE, frame)
         places = frame.inverse_depth, frame.column_of, frame.row_of
         sheet_points(*places, opacity, rest, counts, starts, coordinates, shares)
-
-
-def _at_size(opacity: NDArray[np.float32], size: tuple[int, int]) -> NDArray[np.float32]:
-    """(H, W) an opacity at the atlas's size, not clipped: what the renderers filter."""
-    rows, columns = (make_taps(*sides) for sides in zip(size, opacity.shape, strict=True))
-    lines = np.einsum("rt,rtc->rc", rows.weight, opacity[rows.at])
-    return np.einsum("ct,rct->rc", columns.weight, lines[:, columns.at]).astype(np.float32)
 
 
 def _part_of(surface: Surface, faces: slice) -> Surface:

@@ -1,5 +1,5 @@
 """Kernels of the fit: what is drawn of textures of any size, its exact transpose, so that least squares can be solved
-by them; upsampling of coarse textures; steps of conjugate gradients; derivatives with respect to the surface."""
+by them; upsampling of coarse textures; steps of conjugate gradients."""
 
 # mypy: disable-error-code="no-untyped-def,no-untyped-call"
 
@@ -11,15 +11,11 @@ from eigenfield.rendering.software.kernels import filter_weights
 from eigenfield.rendering.software.simd import gather_bicubic, scatter_bicubic
 from eigenfield.runtime.jit import kernel
 
-EDGE_ON_MAX_RATIO = 1e-6  # of the tangents' product: at most so much is seen edge-on, without a derivative
-
 # The footprint of a camera: `counts` (h, w) uint8 says of how many points of the atlas each pixel is the weighted sum;
 # `coordinates` (n, 2) float32 are their columns and rows in the atlas, pixel by pixel. On sheets with an opacity,
 # `shares` (n,) uint16 are the weights in units of 1 / SHARE_ONE, and the points of a pixel come front to back. On an
 # opaque surface there are none: a single point is all that its pixel shows, each of up to four is a quarter of it.
 SHARE_ONE = 1 << 14
-SHEET_MIN_SHARE = np.float32(1 / 1024)  # of a pixel, of a point that counts
-SHEET_MIN_REST = np.float32(1 / 512)  # of a pixel, that what is behind is seen through
 WHOLE_MIN_PART = np.float32(0.95)  # of a pixel that is to show the photograph's whole value: opacity is coded
 
 
@@ -127,51 +123,6 @@ def bicubic_taps(point, across, down, width, height):
     y = position(point[1], down, np.float32(height - 1))
     left, top = np.int64(x), np.int64(y)
     return left, top, filter_weights(4, x - np.float32(left)), filter_weights(4, y - np.float32(top))
-
-
-@kernel()
-def sheet_points(near, column_of, row_of, opacity, rest, counts, starts, coordinates, shares):
-    """Add a sheet behind those that were added before: what each pixel shows of it.
-
-    Args:
-        near: (h, at least w) inverse depth in the sheet, 0 where a pixel does not show it.
-        column_of, row_of: (h, at least w) texel coordinates over depth.
-        opacity: (H, W) float32 of the finest atlas, read by Catmull-Rom and clipped to 0..1.
-        rest: (h, w) float32, the part of a pixel that shows what lies behind; changed.
-        counts: (h, w) uint8 points of a pixel so far; changed.
-        starts: (h, w) int64, where a pixel's points begin; empty to count alone.
-        coordinates: (n, 2) written.
-        shares: (n,) written.
-    """
-    height, width = opacity.shape
-    right, bottom, one = np.float32(width - 1), np.float32(height - 1), np.float32(1)
-    put, point = starts.shape[0] > 0, np.empty(2, np.float32)
-    for row in range(counts.shape[0]):
-        for pixel in range(counts.shape[1]):
-            behind, inverse = rest[row, pixel], near[row, pixel]
-            if behind <= 0 or inverse <= 0:
-                continue
-            point[0] = min(max(column_of[row, pixel] / inverse, np.float32(0)), right)
-            point[1] = min(max(row_of[row, pixel] / inverse, np.float32(0)), bottom)
-            left, top, a, d = bicubic_taps(point, one, one, width, height)
-            value = np.float32(0)
-            for v in range(4):
-                line = np.float32(0)
-                y = min(max(top + v - 1, 0), height - 1)
-                for u in range(4):
-                    line += a[u] * opacity[y, min(max(left + u - 1, 0), width - 1)]
-                value += d[v] * line
-            share = behind * min(max(value, np.float32(0)), np.float32(1))
-            if share < SHEET_MIN_SHARE:
-                continue
-            if behind - share < SHEET_MIN_REST:
-                share = behind
-            rest[row, pixel] = behind - share
-            if put:
-                at = starts[row, pixel] + counts[row, pixel]
-                coordinates[at, 0], coordinates[at, 1] = point[0], point[1]
-                shares[at] = np.uint16(share * np.float32(SHARE_ONE) + np.float32(0.5))
-            counts[row, pixel] += 1
 
 
 @kernel(inline=True)
@@ -394,108 +345,3 @@ def next_direction(direction, rest, ratio, share, extra, energy):
                 direction[k, y, x] = ready + ratio * direction[k, y, x]
                 total += np.float64(rest[k, y, x]) * np.float64(ready)
     return total
-
-
-@kernel()
-def gather_steps(matrix, points, steps, tangents, owners, slopes, asked, seen, out):
-    """Add one observation to out (5, t) float64: texel by texel the sums of g r, g g s, g s, s and r, where g is the
-    change of the picture for a unit of the step, s the pixels that the texel answers for and r their residual.
-
-    Args:
-        matrix: (3, 4) of its camera.
-        points: (t, 3) places of the texels in the world.
-        steps: (t, 3) how a unit moves them.
-        tangents: (m, 2, 3) how a texel to the right and one down move in the world.
-        owners: (t,) the face of each texel.
-        slopes: (t, 2) the mean's, for a texel right and down.
-        asked: (t,) r.
-        seen: (t,) s.
-        out: The sums.
-    """
-    for t in range(points.shape[0]):
-        s = seen[t]
-        if s <= 0:
-            continue
-        x = matrix[0, 3]
-        y = matrix[1, 3]
-        w = matrix[2, 3]
-        for k in range(3):
-            x += matrix[0, k] * points[t, k]
-            y += matrix[1, k] * points[t, k]
-            w += matrix[2, k] * points[t, k]
-        if w <= 0:
-            continue
-        x, y = x / w, y / w
-        right_x = right_y = down_x = down_y = step_x = step_y = 0.0
-        face = owners[t]
-        for k in range(3):
-            along_x, along_y = matrix[0, k] - x * matrix[2, k], matrix[1, k] - y * matrix[2, k]
-            right_x += along_x * tangents[face, 0, k]
-            right_y += along_y * tangents[face, 0, k]
-            down_x += along_x * tangents[face, 1, k]
-            down_y += along_y * tangents[face, 1, k]
-            step_x += along_x * steps[t, k]
-            step_y += along_y * steps[t, k]
-        area = right_x * down_y - right_y * down_x
-        size = (abs(right_x) + abs(right_y)) * (abs(down_x) + abs(down_y))
-        if abs(area) <= EDGE_ON_MAX_RATIO * size:
-            continue
-        # the picture's point stays where the surface moved by the step: the texel there is that many back
-        back_right = (step_x * down_y - step_y * down_x) / area
-        back_down = (right_x * step_y - right_y * step_x) / area
-        g = -(slopes[t, 0] * back_right + slopes[t, 1] * back_down)
-        out[0, t] += g * asked[t]
-        out[1, t] += g * g * s
-        out[2, t] += g * s
-        out[3, t] += s
-        out[4, t] += np.float64(asked[t])
-
-
-@kernel()
-def opacity_steps(counts, coordinates, shares, texture, image, weight, out):
-    """Add one observation to out (2, H, W): texel by texel of an opacity as large as the atlas the sums of g r and g g,
-    where g is the change of a pixel for a unit of the opacity of a point, T (c - b): T is what the points before let
-    through, c what the point shows, and b what is seen behind it. r is what the photograph has more than is drawn.
-
-    Args:
-        counts: As `forward`.
-        coordinates: As `forward`, in an atlas as large as the texture.
-        shares: (n,) uint16.
-        texture: (1, H, W) what is drawn.
-        image: (1, h, w) r.
-        weight: See `part_of`.
-        out: The sums.
-    """
-    height, width = texture.shape[1:]
-    flat, one = texture.reshape(-1), np.float32(1)
-    colours, parts = np.empty(256, np.float32), np.empty(256, np.float32)
-    gain, norm = out[0].reshape(-1), out[1].reshape(-1)
-    at = 0
-    for row in range(counts.shape[0]):
-        for pixel in range(counts.shape[1]):
-            count, whole = counts[row, pixel], part_of(weight, row, pixel)
-            first = at
-            at += count
-            if count < 2 or whole <= 0:
-                continue
-            behind, light = np.float32(0), np.float32(0)  # of what was passed, from the back on: colours and parts
-            for k in range(count):
-                left, top, a, d = bicubic_taps(coordinates[first + k], one, one, width, height)
-                value = np.float32(0)
-                for v in range(4):
-                    for u in range(4):
-                        value += d[v] * a[u] * flat[tap_index(left, top, u, v, width, height)]
-                colours[k], parts[k] = value, share_of(count, shares, first + k)
-            for k in range(count - 1, -1, -1):
-                if light > SHEET_MIN_REST:
-                    through = light + parts[k]
-                    g = through * (colours[k] - behind / light)
-                    left, top, a, d = bicubic_taps(coordinates[first + k], one, one, width, height)
-                    for v in range(4):
-                        for u in range(4):
-                            into = tap_index(left, top, u, v, width, height)
-                            w = d[v] * a[u]
-                            gain[into] += whole * w * g * image[0, row, pixel]
-                            norm[into] += whole * abs(w) * g * g
-                behind += parts[k] * colours[k]
-                light += parts[k]

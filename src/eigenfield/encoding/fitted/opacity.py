@@ -24,10 +24,10 @@ from eigenfield.core.progress import Progress
 from eigenfield.core.proxy import Proxy
 from eigenfield.encoding.fitted.colour import split_matrix
 from eigenfield.encoding.fitted.fit import MEAN_WANTED, NOTHING_WANTED
-from eigenfield.encoding.fitted.kernels import opacity_steps
 from eigenfield.encoding.fitted.model import PlaneModel
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_on_proxy
 from eigenfield.encoding.fitted.passes import PASS_TASK_OBSERVATIONS, psnr_of
+from eigenfield.encoding.fitted.sheet_kernels import opacity_steps
 from eigenfield.encoding.fitted.solve import fit_textures, measure_scales, residual
 from eigenfield.encoding.fitted.start import residual_image
 from eigenfield.encoding.geometry.distortion import spread_cameras

@@ -37,11 +37,12 @@ from eigenfield.core.progress import Progress
 from eigenfield.core.proxy import Proxy
 from eigenfield.encoding.fitted.colour import split_matrix
 from eigenfield.encoding.fitted.fit import fit_mean
-from eigenfield.encoding.fitted.kernels import adjoint, forward, gather_steps, target
+from eigenfield.encoding.fitted.kernels import adjoint, forward, target
 from eigenfield.encoding.fitted.model import PlaneModel
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_on_proxy, open_subsampled
 from eigenfield.encoding.fitted.passes import MINUS, psnr_of
 from eigenfield.encoding.fitted.solve import measure_scales
+from eigenfield.encoding.fitted.surface_kernels import gather_steps
 from eigenfield.encoding.geometry.distortion import spread_cameras, texels_of
 from eigenfield.imaging.graph import face_edges
 from eigenfield.runtime.parallel import parallel_stream
