@@ -9,6 +9,7 @@ import pytest
 
 import eigenfield as ef
 from eigenfield.core.errors import OptionError
+from eigenfield.core.lattice import camera_lattice
 from eigenfield.core.proxy import Proxy
 from eigenfield.encoding.fitted.colour import LUMA, split_matrix
 from eigenfield.encoding.fitted.coverage import mean_precision
@@ -17,6 +18,8 @@ from eigenfield.encoding.fitted.kernels import SHARE_ONE, forward, target
 from eigenfield.encoding.fitted.model import PlaneModel
 from eigenfield.encoding.fitted.observations import open_fit_data, open_subsampled
 from eigenfield.encoding.fitted.solve import measure_scales
+from eigenfield.encoding.geometry.distortion import depth_distortion
+from eigenfield.encoding.geometry.simplify_relief import simplify_relief_rd
 from eigenfield.gltf import encode_scene, read_scene
 from eigenfield.imaging.metrics import psnr
 from eigenfield.rendering import Renderer, ViewWeights, camera_weights
@@ -103,6 +106,44 @@ def test_sheets_from_photographs_to_a_file_and_back(scene, capture):
         drawn = Renderer(read).draw(read.rig.cameras[index], camera_weights(read, index))
         grey, true = drawn.image @ LUMA, capture.photograph(index).pixels @ LUMA  # chroma is as fine, its atlas is not
         assert psnr(grey[..., None], true[..., None], drawn.coverage > 0.98) > least
+
+
+def lattice_of(scene):
+    camera = scene.rig.cameras[4]
+    return camera_lattice(camera.matrix, 0.25, 2e-4)
+
+
+def test_sheets_keep_the_triangles_that_are_worth_their_bytes(scene, capture):
+    cameras, observations, proxy = scene.rig.cameras, capture.observations, scene.proxy
+    sizes = []
+    for lambda_ in (1e-7, 1e-3):
+        found = simplify_relief_rd(proxy, lattice_of(scene), cameras, observations, lambda_, 1.0)
+        assert sum(found.sheets) == len(found.mesh.faces) and len(found.sheets) == 3
+        strips = np.floor(3 * found.mesh.uv[found.mesh.faces].mean(axis=1)[:, 0])
+        assert np.array_equal(strips, np.repeat([0, 1, 2], found.sheets))
+        sizes.append(len(found.stream))
+    assert sizes[1] < 0.6 * sizes[0]
+
+
+def test_a_sheet_that_shows_nothing_vanishes(scene, capture):
+    opacity = scene.proxy.sheets.opacity.copy()
+    opacity[:, opacity.shape[1] // 3 : 2 * opacity.shape[1] // 3] = 0
+    clear = replace(scene.proxy, sheets=replace(scene.proxy.sheets, opacity=opacity))
+    found = simplify_relief_rd(clear, lattice_of(scene), scene.rig.cameras, capture.observations, 1e-6, 1.0)
+    assert len(found.sheets) == 2 and not (np.floor(3 * found.mesh.uv[:, 0]) == 1).any()
+
+
+def test_what_is_seen_through_other_sheets_costs_as_much_less(scene, capture):
+    cameras, proxy = scene.rig.cameras, scene.proxy
+    shown = depth_distortion(proxy.mesh, lattice_of(scene), cameras, capture.observations, proxy.sheets)
+    alone = replace(proxy.sheets, opacity=(np.arange(128) < 42).astype(np.float32) * np.ones((96, 1), np.float32))
+    bare = depth_distortion(proxy.mesh, lattice_of(scene), cameras, capture.observations, alone)
+    column = np.broadcast_to(np.arange(shown.cost_map.most.shape[1]), shown.cost_map.most.shape)
+    wall = (shown.cost_map.given > 0) & (column < shown.cost_map.most.shape[1] / 3 - 2)
+    assert (shown.cost_map.most[wall] <= bare.cost_map.most[wall] * 1.001 + 1e-9).all()
+    assert shown.cost_map.most[wall].sum() < 0.9 * bare.cost_map.most[wall].sum()
+    others = (bare.cost_map.given > 0) & (column > shown.cost_map.most.shape[1] / 3 + 4)
+    assert bare.cost_map.most[others].max() < 1e-6 < shown.cost_map.most[others].max()
 
 
 def test_opacity_has_the_even_sides_that_its_encoder_takes(scene, capture):

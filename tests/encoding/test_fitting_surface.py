@@ -9,7 +9,9 @@ import pytest
 
 import eigenfield as ef
 from eigenfield.core.camera import Camera
+from eigenfield.core.lattice import Lattice
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.proxy import Proxy, Sheets
 from eigenfield.encoding.fitted import surface
 from eigenfield.encoding.fitted.surface import fit_surface
 from eigenfield.encoding.fitted.surface_kernels import gather_steps
@@ -51,12 +53,17 @@ def photographs_of(mesh: Mesh, cameras: tuple[Camera, ...]):
     return InMemory([draw_texture(mesh, detailed(), camera, samples=2).image for camera in cameras])
 
 
+def fitted(mesh: Mesh, lattice: Lattice | None, cameras: tuple[Camera, ...], observations: InMemory, side: int) -> Mesh:
+    """The mesh of `fit_surface`."""
+    return fit_surface(Proxy(mesh, lattice), cameras, observations, side).mesh
+
+
 @pytest.mark.parametrize("off", [0.97, 1.04])
 def test_a_plane_at_the_wrong_depth_is_brought_to_the_right_one(off):
     cameras = row_grid(9, 64, 56)
     observations = photographs_of(sheet(3.0), cameras)
     wrong = sheet(3.0 * off)
-    found = fit_surface(wrong, None, cameras, observations, SIDE)
+    found = fitted(wrong, None, cameras, observations, SIDE)
     inside = (np.abs(wrong.vertices[:, :2]) < 1.6).all(axis=1)  # what most cameras see
     before, after = (np.abs(mesh.vertices[inside, 2]) for mesh in (wrong, found))
     assert np.median(after) < 0.15 * np.median(before)
@@ -67,7 +74,7 @@ def test_a_plane_at_the_wrong_depth_is_brought_to_the_right_one(off):
 def test_photographs_again_at_another_time_move_a_surface_alike():
     cameras, wrong = row_grid(9, 64, 56), sheet(3.1)
     once = photographs_of(sheet(3.0), cameras)
-    found, again = (fit_surface(wrong, None, cameras, some, SIDE) for some in (once, repeated(once.pixels, 2)))
+    found, again = (fitted(wrong, None, cameras, some, SIDE) for some in (once, repeated(once.pixels, 2)))
     assert np.abs(found.vertices - wrong.vertices).max() > 0.05
     np.testing.assert_allclose(again.vertices, found.vertices, atol=2e-3)
 
@@ -81,7 +88,7 @@ def test_a_relief_stays_on_the_rays_it_was_made_on():
     exact = lattice.coordinates(true.vertices)
     exact[:, 2] *= 1.03
     wrong = replace(true, vertices=lattice.points(exact).astype(np.float32))
-    found = fit_surface(wrong, lattice, cameras, observations, SIDE)
+    found = fitted(wrong, lattice, cameras, observations, SIDE)
     now = lattice.coordinates(found.vertices)
     np.testing.assert_allclose(now[:, :2], exact[:, :2], atol=0.02)
     right = lattice.coordinates(true.vertices)[:, 2]
@@ -90,14 +97,36 @@ def test_a_relief_stays_on_the_rays_it_was_made_on():
     assert again is not None and again.fine == lattice.fine
 
 
+def test_a_sheet_is_brought_to_its_depth_behind_another():
+    """A wall that is too far, seen through a sheet that is right and lets half of the light through."""
+    cameras, glass = row_grid(9, 64, 56), sheet(2.4)
+    behind, before = photographs_of(sheet(3.0), cameras).pixels, photographs_of(glass, cameras).pixels
+    photographs = InMemory([0.5 * wall + 0.5 * pane for wall, pane in zip(behind, before, strict=True)])
+    wrong = sheet(3.1)
+    faces = len(wrong.faces)
+    both = Mesh(
+        np.concatenate([wrong.vertices, glass.vertices]),
+        np.concatenate([wrong.faces, glass.faces + len(wrong.vertices)]),
+        np.concatenate([wrong.uv * [0.5, 1], glass.uv * [0.5, 1] + [0.5, 0]]).astype(np.float32),
+    )  # fmt: skip
+    opacity = np.where(np.arange(2 * SIDE) < SIDE, 1, 0.5).astype(np.float32) * np.ones((SIDE, 1), np.float32)
+    proxy = Proxy(both, None, Sheets((faces, faces), opacity))
+    found = fit_surface(proxy, cameras, photographs, 2 * SIDE)
+    assert found.sheets is proxy.sheets
+    seen = (np.abs(wrong.vertices[:, :2]) < 1.6).all(axis=1)
+    wall, pane = np.split(found.mesh.vertices[:, 2], 2)
+    assert np.median(np.abs(wall[seen])) < 0.4 * 0.1
+    assert np.median(np.abs(pane[seen] + 0.6)) < 0.03
+
+
 def test_what_is_right_stays_and_what_nothing_tells_stays():
     cameras = row_grid(9, 64, 56)
     true = sheet(3.0)
-    found = fit_surface(true, None, cameras, photographs_of(true, cameras), SIDE)
+    found = fitted(true, None, cameras, photographs_of(true, cameras), SIDE)
     assert np.abs(found.vertices - true.vertices).max() < 0.02
     noise = np.random.default_rng(3)
     for pictures in (np.full((9, 56, 64, 3), 0.5, np.float32), noise.random((9, 56, 64, 3), np.float32)):
-        found = fit_surface(true, None, cameras, InMemory(list(pictures)), SIDE)
+        found = fitted(true, None, cameras, InMemory(list(pictures)), SIDE)
         assert np.abs(found.vertices - true.vertices).max() < 0.12  # half a pixel of parallax
 
 
@@ -107,7 +136,7 @@ def test_doubled_vertices_move_as_one():
     torn = Mesh(whole.vertices[whole.faces.ravel()], np.arange(whole.faces.size, dtype=np.int32).reshape(-1, 3),
                 whole.uv[whole.faces.ravel()])  # fmt: skip
     observations = photographs_of(sheet(3.0), cameras)
-    found, torn_found = (fit_surface(mesh, None, cameras, observations, SIDE) for mesh in (whole, torn))
+    found, torn_found = (fitted(mesh, None, cameras, observations, SIDE) for mesh in (whole, torn))
     assert np.abs(found.vertices - whole.vertices).max() > 0.05
     first = np.unique(whole.faces, return_index=True)[1]
     np.testing.assert_array_equal(torn_found.vertices, torn_found.vertices[first][whole.faces.ravel()])
@@ -129,7 +158,7 @@ def test_surfaces_that_touch_without_common_vertices_stay_together():
         np.concatenate([halves[0].faces, halves[1].faces + len(fine.vertices)]),
         np.concatenate([half.uv for half in halves]).astype(np.float32),
     )
-    found = fit_surface(wrong, None, cameras, photographs_of(sheet(3.0), cameras), SIDE)
+    found = fitted(wrong, None, cameras, photographs_of(sheet(3.0), cameras), SIDE)
     moved = np.abs(found.vertices - wrong.vertices).max(axis=1) > 0
     touching = np.abs(wrong.vertices[:, 0]) < 1e-6
     assert moved.any() and touching.sum() == 9 + 6 and not moved[touching].any()
@@ -140,7 +169,7 @@ def test_surfaces_that_touch_without_common_vertices_stay_together():
 def test_a_mesh_of_open_edges_alone_stays():
     cameras = row_grid(9, 64, 56)
     wrong = sheet(3.1, 2)
-    found = fit_surface(wrong, None, cameras, photographs_of(sheet(3.0), cameras), SIDE)
+    found = fitted(wrong, None, cameras, photographs_of(sheet(3.0), cameras), SIDE)
     np.testing.assert_array_equal(found.vertices, wrong.vertices)
 
 
@@ -152,7 +181,7 @@ def test_masked_pixels_do_not_count():
     for picture in pictures:
         picture[:, :20] = spoiled.random((56, 20, 3))
     wrong = sheet(3.1)
-    found = fit_surface(wrong, None, cameras, InMemory(pictures, [mask] * 9), SIDE)
+    found = fitted(wrong, None, cameras, InMemory(pictures, [mask] * 9), SIDE)
     seen = (np.abs(wrong.vertices[:, :2]) < 0.8).all(axis=1)
     assert np.median(np.abs(found.vertices[seen, 2])) < 0.03
 
@@ -160,7 +189,7 @@ def test_masked_pixels_do_not_count():
 def test_a_mesh_that_no_camera_sees_is_left_alone():
     cameras = row_grid(4, 64, 56)
     behind = sheet(-3.0)
-    assert fit_surface(behind, None, cameras, photographs_of(sheet(3.0), cameras), SIDE) is behind
+    assert fitted(behind, None, cameras, photographs_of(sheet(3.0), cameras), SIDE) is behind
 
 
 def test_what_a_step_changes_is_what_a_camera_then_draws():

@@ -10,6 +10,7 @@ import pytest
 from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice, camera_lattice
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.proxy import Proxy
 from eigenfield.encoding.geometry.coded import DEPTH_ERROR_PX, coded_mesh
 from eigenfield.encoding.geometry.collapse_kernels import collapse, collapse_state, collapsed_faces
 from eigenfield.encoding.geometry.distortion import depth_distortion, hole_error
@@ -239,7 +240,7 @@ def test_flat_photographs_do_not_mind():
 def test_a_mesh_that_no_camera_sees_costs_nothing_but_is_whole():
     mesh, cameras, photographs = photographed_plane()
     away = [replace(camera, t=camera.t + np.array([50.0, 0, 0])) for camera in cameras]
-    form = simplify_relief_rd(mesh, plane_lattice(cameras), away, greys(photographs), 1e-3, 1.0)
+    form = simplify_relief_rd(Proxy(mesh), plane_lattice(cameras), away, greys(photographs), 1e-3, 1.0)
     assert len(form.mesh.faces) > 0
 
 

@@ -226,7 +226,7 @@ def test_threads_do_not_change_it():
     try:
         for count in (1, 3):
             set_threads(count)
-            found = fit_sheets(photographs(), matrices(), FRAME, LABELS, 2, planes=planes, tuning=tuning)
+            (found,) = fit_sheets(photographs(), matrices(), FRAME, LABELS, [2], planes=planes, tuning=tuning)
             made.append(found.layers.tobytes() + found.labels.tobytes())
     finally:
         set_threads(None)
@@ -235,7 +235,7 @@ def test_threads_do_not_change_it():
 
 def test_progress_goes_from_nothing_to_all():
     told, planes, tuning = [], MultiplaneTuning(steps=3, levels=2), SheetTuning(steps=2, levels=2)
-    given = photographs(), matrices(), FRAME, LABELS, 2
+    given = photographs(), matrices(), FRAME, LABELS, [2]
     fit_sheets(*given, planes=planes, tuning=tuning, progress=lambda *said: told.append(said))
     assert told == [("planes", 1, 3), ("planes", 2, 3), ("planes", 3, 3), ("sheets", 1, 2), ("sheets", 2, 2)]
 
@@ -249,7 +249,7 @@ def test_labels_ascend(labels):
 @pytest.mark.parametrize("count", [0, 4])
 def test_there_are_no_more_sheets_than_planes(count):
     with pytest.raises(ValueError, match="sheets of 3 planes"):
-        fit_sheets(photographs(), matrices(), FRAME, LABELS, count)
+        fit_sheets(photographs(), matrices(), FRAME, LABELS, [count])
 
 
 def wavy_labels(seed=0):
@@ -334,8 +334,8 @@ def test_sheets_find_a_slanted_wall_between_planes():
     pictures = np.stack([SoftSheets(leaning, wall).draw(matrix, SHAPE) for matrix in views])
     codes = np.round(np.clip(pictures, 0, 1) * 255).astype(np.uint8)
     planes, tuning = MultiplaneTuning(steps=60, levels=4), SheetTuning(steps=200, levels=4)
-    given = codes[shown], views[shown], FRAME, np.array([0.6, 1.2, 1.8]), 1
-    found = fit_sheets(*given, planes=planes, tuning=tuning)
+    given = codes[shown], views[shown], FRAME, np.array([0.6, 1.2, 1.8]), [1]
+    (found,) = fit_sheets(*given, planes=planes, tuning=tuning)
     inner = slice(6, -6), slice(8, -8)
     assert np.abs(found.labels[0] - leaning[0])[inner].mean() < 0.15
     assert psnr(found.draw(views[4], SHAPE), codes[4]) > 30

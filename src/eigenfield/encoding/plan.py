@@ -159,7 +159,7 @@ def plan_encoding(
 ) -> EncodePlan:
     """Cameras and proxy as a file keeps them: for a fit, the surface fitted to the photographs, and both as coded.
 
-    Of sheets the opacity alone is fitted: their surfaces were fitted to the photographs before.
+    Of sheets the opacity is fitted too.
 
     Args:
         capture: Photographs and cameras.
@@ -204,7 +204,8 @@ def _prepare(
     if options.fit == "none":
         return PreparedProxy(given, Proxy(mesh), views, by_quality=False)
     lattice, side = relief_lattice(mesh, cameras, DEPTH_ERROR_PX), atlas_side(mesh, cameras[views.rig.reference], 1.0)
-    mesh = fit_surface(mesh, lattice, views.rig.encoded_cameras, views.observations, side, work, progress)
+    given_surface = Proxy(mesh, lattice)
+    mesh = fit_surface(given_surface, views.rig.encoded_cameras, views.observations, side, work, progress).mesh
     measured = views.rig.encoded_cameras if _simplifies(options) else cameras
     fitted = relief_proxy(mesh, measured, DEPTH_ERROR_PX)
     by_quality = _simplifies(options) and lattice is None  # a relief keeps its atlas
@@ -214,13 +215,21 @@ def _prepare(
 def _prepare_sheets(
     proxy: Proxy, views: CaptureViews, options: EncodeOptions, work: Path | None, progress: Progress | None
 ) -> PreparedProxy:
-    """Sheets with their opacity fitted. OptionError `sheets`: texture maps were asked for, which know one surface."""
+    """Sheets with opacity and surfaces fitted.
+
+    Raises:
+        OptionError: `sheets`: texture maps were asked for, which know one surface.
+    """
     if options.fit == "none":
         message = "texture maps of several sheets, which only a fit can make"
         raise OptionError("sheets", message, remedy="leave out --fit none, or use another --surface")
     _warn_of_rounding(views.capture.cameras, views.rig.cameras, proxy.mesh)
-    fitted = fit_opacity(proxy, views.rig.encoded_cameras, views.observations, work, progress)
-    return PreparedProxy(proxy, fitted, views, by_quality=False)
+    given, cameras, observations = proxy, views.rig.encoded_cameras, views.observations
+    side = 0 if proxy.sheets is None else max(proxy.sheets.opacity.shape)
+    proxy = fit_opacity(proxy, cameras, observations, work, progress)
+    proxy = fit_surface(proxy, cameras, observations, side, work, progress)
+    proxy = fit_opacity(proxy, cameras, observations, work, progress)
+    return PreparedProxy(given, proxy, views, by_quality=False)
 
 
 def _triangles_by_pictures(views: CaptureViews, options: EncodeOptions) -> Callable[[Mesh], int | None]:
@@ -267,21 +276,16 @@ def _coded_proxy(proxy: Proxy, views: CaptureViews, options: EncodeOptions, atla
 
     A relief is simplified by rate and distortion, unless a number of triangles was asked for.
     """
-    if proxy.sheets is not None:
-        return _coded_sheets(proxy, views, resolved_value(options.quality))
+    rig, quality = views.rig, resolved_value(options.quality)
     if not _simplifies(options):
-        return coded_mesh(proxy, views.rig.cameras, views.rig.reference)
-    rig = views.rig
-    texels = float(np.prod(atlas)) * texels_per_pixel(proxy.mesh, rig.cameras[rig.reference]) ** 2
-    lambda_ = byte_lambda(resolved_value(options.quality))
-    return simplify_proxy_rd(proxy, rig.encoded_cameras, rig.encoded_reference, views.observations, lambda_, texels)
-
-
-def _coded_sheets(proxy: Proxy, views: CaptureViews, quality: int) -> Coded[Proxy]:
-    """A proxy with sheets as a fitted file keeps it: the mesh as it came, and their opacity."""
-    made = coded_mesh(proxy, views.rig.cameras, views.rig.reference)
+        made = coded_mesh(proxy, rig.cameras, rig.reference)
+    else:
+        texels = float(np.prod(atlas)) * texels_per_pixel(proxy.mesh, rig.cameras[rig.reference]) ** 2
+        encoded, reference, lambda_ = rig.encoded_cameras, rig.encoded_reference, byte_lambda(quality)
+        made = simplify_proxy_rd(proxy, encoded, reference, views.observations, lambda_, texels)
     sheets = made.value.sheets
-    assert sheets is not None
+    if sheets is None:
+        return made
     opacity = coded_opacity(sheets.opacity, quality)
     coded = replace(made.value, sheets=replace(sheets, opacity=opacity.value))
     return Coded(coded, made.payloads | opacity.payloads)

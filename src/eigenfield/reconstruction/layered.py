@@ -20,7 +20,14 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.core.proxy import Proxy
 from eigenfield.reconstruction.array import AlignedArray, array_depths, array_positions, inverse_depths
 from eigenfield.reconstruction.frame import filled_pictures, resized_cameras
-from eigenfield.reconstruction.layers import LAYERS_TUNING, Range, compare_held_out, layers_fault, layers_proxy
+from eigenfield.reconstruction.layers import (
+    LAYERS_TUNING,
+    Range,
+    best_count,
+    compare_held_out,
+    layers_fault,
+    layers_proxy,
+)
 from eigenfield.reconstruction.run import StageRunner
 from eigenfield.reconstruction.stage_files import STAGE_PROXY_FILE, STAGE_TRIAL_FILE, read_proxy, write_proxy
 
@@ -101,8 +108,30 @@ class SheetSource:
         return pictures, cameras, inverse_depths(shown, cameras, pictures, points)
 
 
-def sheets_of_capture(run: StageRunner, source: SheetSource) -> Proxy:
+def sheets_of_capture(run: StageRunner, source: SheetSource, count: int) -> Proxy:
     """The proxy of soft sheets.
+
+    Args:
+        run: The stages.
+        source: Photographs and cameras.
+        count: Number of sheets.
+
+    Raises:
+        OptionError: `surface`: the capture can have no sheets.
+    """
+    triangles = run.settings.triangles
+
+    def build(folder: Path) -> None:
+        made = layers_proxy(*source.views(run), count=count, triangles=triangles, progress=run.progress)
+        write_proxy(folder / STAGE_PROXY_FILE, made)
+
+    folder = run.stage("layers", [source.inputs, count, triangles], build)
+    return read_proxy(folder / STAGE_PROXY_FILE)
+
+
+def asked_count(run: StageRunner, source: SheetSource) -> int:
+    """The number of sheets where they are asked for: that of the settings, or the least that draws views left out
+    about as well as any.
 
     Args:
         run: The stages.
@@ -112,20 +141,16 @@ def sheets_of_capture(run: StageRunner, source: SheetSource) -> Proxy:
         OptionError: `surface`: the capture can have no sheets.
     """
     check_capture(source.shown)
-    settings = run.settings
-
-    def build(folder: Path) -> None:
-        made = layers_proxy(
-            *source.views(run), count=settings.layers, triangles=settings.triangles, progress=run.progress
-        )
-        write_proxy(folder / STAGE_PROXY_FILE, made)
-
-    folder = run.stage("layers", [source.inputs, settings.layers, settings.triangles], build)
-    return read_proxy(folder / STAGE_PROXY_FILE)
+    if run.settings.layers is not None:
+        return run.settings.layers
+    counts, scores, _ = _trial(run, source, None)
+    index = best_count(counts, scores)
+    log.info("layers: %d, which draw views left out with %.2f dB", counts[index], scores[index])
+    return counts[index]
 
 
-def sheets_are_better(run: StageRunner, source: SheetSource, mesh: Mesh) -> bool:
-    """Whether soft sheets draw photographs that are left out better than an opaque surface does.
+def better_count(run: StageRunner, source: SheetSource, mesh: Mesh) -> int | None:
+    """The number of soft sheets, if they draw photographs that are left out better than an opaque surface does.
 
     Args:
         run: The stages.
@@ -134,27 +159,40 @@ def sheets_are_better(run: StageRunner, source: SheetSource, mesh: Mesh) -> bool
     """
     settings = run.settings
     if settings.layers == 1 or settings.by_hand is not None:
-        return False
+        return None
     fault = capture_fault(source.shown)
     if fault is not None:
         log.info("surface: opaque, since %s", fault)
-        return False
-    if source.array is not None and len(source.array.shown) >= LAYERS_TUNING.dense_views:
-        log.info("surface: opaque, as always for %d views or more of an array", LAYERS_TUNING.dense_views)
-        return False
+        return None
+    counts, scores, opaque = _trial(run, source, mesh)
+    index = best_count(counts, scores)
+    dense = source.array is not None and len(source.array.shown) >= LAYERS_TUNING.dense_views
+    gain = LAYERS_TUNING.dense_min_gain_db if dense else LAYERS_TUNING.min_gain_db
+    better = scores[index] > opaque + gain
+    words = "surface: %s, since views left out are drawn with %.2f dB by %d layers, with %.2f dB by the opaque surface"
+    log.info(words, "layers" if better else "opaque", scores[index], counts[index], opaque)
+    return counts[index] if better else None
+
+
+def _trial(run: StageRunner, source: SheetSource, mesh: Mesh | None) -> tuple[tuple[int, ...], list[float], float]:
+    """Numbers of sheets, and as `compare_held_out`. Where no range of depths is found, the opaque surface wins, which
+    needed none."""
+    settings = run.settings
+    counts = LAYERS_TUNING.counts if settings.layers is None else (settings.layers,)
 
     def build(folder: Path) -> None:
         try:
             given = source.views(run)
-        except CaptureError:  # no range of depths: the opaque surface needed none
-            scores = [-np.inf, np.inf]
+        except CaptureError:
+            if mesh is None:
+                raise
+            scores, opaque = [-np.inf] * len(counts), np.inf
         else:
-            scores = list(compare_held_out(*given, mesh, count=settings.layers, progress=run.progress))
-        (folder / STAGE_TRIAL_FILE).write_text(json.dumps([str(score) for score in scores]), encoding="utf-8")
+            scores, opaque = compare_held_out(*given, mesh, counts=counts, progress=run.progress)
+        (folder / STAGE_TRIAL_FILE).write_text(
+            json.dumps([str(score) for score in (*scores, opaque)]), encoding="utf-8"
+        )
 
-    folder = run.stage("trial", [source.inputs, settings.layers, settings.triangles, settings.surface], build)
-    sheets, opaque = map(float, json.loads((folder / STAGE_TRIAL_FILE).read_text(encoding="utf-8")))
-    better = sheets > opaque + LAYERS_TUNING.min_gain_db
-    words = "surface: %s, since views left out are drawn with %.2f dB by layers, with %.2f dB by the opaque surface"
-    log.info(words, "layers" if better else "opaque", sheets, opaque)
-    return better
+    folder = run.stage("trial", [source.inputs, counts, settings.triangles, settings.surface], build)
+    *scores, opaque = map(float, json.loads((folder / STAGE_TRIAL_FILE).read_text(encoding="utf-8")))
+    return counts, scores, opaque

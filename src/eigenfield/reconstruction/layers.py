@@ -36,8 +36,8 @@ class LayersTuning:
     Attributes:
         min_views: Photographs of a capture that has sheets.
         max_axis_angle_degrees: Angle between a camera's axis and the mean axis.
-        dense_views: Number of views from which "auto" keeps the opaque surface untried.
-        count: Number of sheets by default.
+        dense_views: Number of views of an array from which sheets must gain more.
+        counts: Numbers of sheets that are tried.
         max_plane_step_pixels: Displacement from plane to plane at the size that planes are fitted at.
         min_planes: Number of planes, at least.
         max_planes: Number of planes, at most.
@@ -52,13 +52,16 @@ class LayersTuning:
         tolerance_pixels: Distance of the mesh from a sheet.
         depth_error_pixels: By which the lattice's depths move a point.
         hidden_ratio: Of inverse depths, from which on a photograph does not see a point of the opaque surface.
-        min_gain_db: By which sheets must draw the views of a trial better.
+        min_gain_db: By which sheets must draw the views of a trial better than the opaque surface.
+        dense_min_gain_db: The same of a dense array, whose opaque surface is then fitted well, and takes fewer bytes:
+            with 4.1 dB sheets were better (Boxes), with 1.0 and 2.0 they were worse (Antinous, Shop).
+        count_gain_db: By which more sheets must draw them better than fewer.
     """
 
     min_views: int = 3
     max_axis_angle_degrees: float = 25.0
     dense_views: int = 25
-    count: int = 8
+    counts: tuple[int, ...] = (4, 8, 12)
     max_plane_step_pixels: float = 1.5
     min_planes: int = 8
     max_planes: int = 64
@@ -73,6 +76,8 @@ class LayersTuning:
     depth_error_pixels: float = 0.04
     hidden_ratio: float = 1.02
     min_gain_db: float = 0.5
+    dense_min_gain_db: float = 3.0
+    count_gain_db: float = 0.15
 
 
 LAYERS_TUNING = LayersTuning()
@@ -96,7 +101,7 @@ def layers_fault(cameras: Sequence[Camera]) -> str | None:
 
 
 def layers_proxy(
-    pictures: NDArray[np.uint8], cameras: Sequence[Camera], bounds: Range, *, count: int | None, triangles: int,
+    pictures: NDArray[np.uint8], cameras: Sequence[Camera], bounds: Range, *, count: int, triangles: int,
     progress: Progress | None = None,
 ) -> Proxy:  # fmt: skip
     """The proxy of the soft sheets that draw photographs best.
@@ -105,12 +110,13 @@ def layers_proxy(
         pictures: (V, H, W, 3) uint8 the photographs.
         cameras: V of them, at the same size.
         bounds: Inverse depths of the farthest and the nearest plane.
-        count: Number of sheets; None: LAYERS_TUNING.count.
+        count: Number of sheets.
         triangles: Most triangles.
         progress: Called within.
     """
     pictures, cameras = _halved(pictures, cameras, LAYERS_TUNING.sheets_side_pixels)
-    reference, sheets = _widened(*fit_views(pictures, cameras, bounds, count, progress), cameras, bounds)
+    reference, (fitted,) = fit_views(pictures, cameras, bounds, [count], progress)
+    reference, sheets = _widened(reference, fitted, cameras, bounds)
     tolerance = LAYERS_TUNING.tolerance_pixels / _reach(reference, cameras)
     return soft_relief(
         reference, sheets, cameras, tolerance=tolerance, depth_error=LAYERS_TUNING.depth_error_pixels,
@@ -119,16 +125,16 @@ def layers_proxy(
 
 
 def fit_views(
-    pictures: NDArray[np.uint8], cameras: Sequence[Camera], bounds: Range, count: int | None,
+    pictures: NDArray[np.uint8], cameras: Sequence[Camera], bounds: Range, counts: Sequence[int],
     progress: Progress | None = None,
-) -> tuple[ReferenceView, SoftSheets]:  # fmt: skip
-    """The soft sheets of photographs, and their reference view.
+) -> tuple[ReferenceView, list[SoftSheets]]:  # fmt: skip
+    """The reference view of photographs, and their soft sheets for each of some numbers of sheets.
 
     Args:
         pictures: As of `layers_proxy`.
         cameras: As of `layers_proxy`.
         bounds: As of `layers_proxy`.
-        count: As of `layers_proxy`.
+        counts: The numbers, of which those above the number of planes are taken as that.
         progress: Called within.
     """
     longer = max(pictures.shape[1:3])
@@ -140,16 +146,16 @@ def fit_views(
     planes = min(max(math.ceil(steps) + 1, LAYERS_TUNING.min_planes), LAYERS_TUNING.max_planes)
     sheets = fit_sheets(
         pictures, view_matrices(reference, cameras), reference.shape, np.linspace(*bounds, planes),
-        min(LAYERS_TUNING.count if count is None else count, planes), halvings=halvings, progress=progress,
+        [min(count, planes) for count in counts], halvings=halvings, progress=progress,
     )  # fmt: skip
     return reference, sheets
 
 
 def compare_held_out(
-    pictures: NDArray[np.uint8], cameras: Sequence[Camera], bounds: Range, mesh: Mesh, *, count: int | None,
+    pictures: NDArray[np.uint8], cameras: Sequence[Camera], bounds: Range, mesh: Mesh | None, *, counts: Sequence[int],
     progress: Progress | None = None,
-) -> tuple[float, float]:  # fmt: skip
-    """How well sheets and a mesh draw photographs left out: the mean PSNR of either.
+) -> tuple[list[float], float]:  # fmt: skip
+    """How well sheets and a mesh draw photographs left out: the mean PSNR for each number of sheets, and of the mesh.
 
     At a small size, sheets are fitted to the other photographs. On the mesh, a pixel is the mean of the other
     photographs that see its point.
@@ -158,26 +164,38 @@ def compare_held_out(
         pictures: As of `layers_proxy`.
         cameras: As of `layers_proxy`.
         bounds: As of `layers_proxy`.
-        mesh: The opaque surface.
-        count: As of `layers_proxy`.
+        mesh: The opaque surface; None: sheets are compared with each other.
+        counts: Numbers of sheets.
         progress: Called within.
     """
     pictures, cameras = _halved(pictures, cameras, LAYERS_TUNING.trial_side_pixels)
     left_out = np.zeros(len(cameras), np.bool_)
     left_out[LAYERS_TUNING.trial_step // 2 :: LAYERS_TUNING.trial_step] = True
     others, shown = np.flatnonzero(~left_out).tolist(), np.flatnonzero(left_out).tolist()
-    known = [cameras[i] for i in others]
-    reference, sheets = fit_views(pictures[others], known, bounds, count, progress)
-    unknown = [cameras[i] for i in shown]
-    hard = draw_means(mesh, unknown, pictures[others], known)
+    known, unknown = [cameras[i] for i in others], [cameras[i] for i in shown]
+    reference, stacks = fit_views(pictures[others], known, bounds, counts, progress)
+    whole = np.ones(pictures.shape[1:3], np.bool_)
+    hard = [(pictures[i], whole) for i in shown] if mesh is None else draw_means(mesh, unknown, pictures[others], known)
     scores = []
     for i, matrix, (mean, covered) in zip(shown, view_matrices(reference, unknown), hard, strict=True):
-        soft = np.rint(np.clip(sheets.draw(matrix, pictures.shape[1:3]), 0, 1) * 255).astype(np.uint8)
-        pair = [psnr(drawn, pictures[i], covered) for drawn in (soft, mean)]
+        soft = [sheets.draw(matrix, pictures.shape[1:3]) for sheets in stacks]
+        drawn = [*(np.rint(np.clip(one, 0, 1) * 255).astype(np.uint8) for one in soft), mean]
         if covered.any():
-            scores.append(pair)
-    of_sheets, of_mesh = np.array(scores, np.float64).mean(axis=0).tolist() if scores else (math.inf, -math.inf)
-    return of_sheets, of_mesh
+            scores.append([psnr(one, pictures[i], covered) for one in drawn])
+    if not scores:
+        return [math.inf] * len(counts), -math.inf
+    *of_sheets, of_mesh = np.array(scores, np.float64).mean(axis=0).tolist()
+    return of_sheets, -math.inf if mesh is None else of_mesh
+
+
+def best_count(counts: Sequence[int], scores: Sequence[float]) -> int:
+    """The index of the least number of sheets that draws about as well as any.
+
+    Args:
+        counts: Numbers of sheets, ascending.
+        scores: PSNR of each.
+    """
+    return next(k for k in range(len(counts)) if scores[k] + LAYERS_TUNING.count_gain_db >= max(scores))
 
 
 def draw_means(

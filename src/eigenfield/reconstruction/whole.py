@@ -36,7 +36,13 @@ from eigenfield.proxy import (
 )
 from eigenfield.proxy.surface.trim import SurfaceError
 from eigenfield.reconstruction.array import align_array, looks_one_way, relief_of_array
-from eigenfield.reconstruction.layered import SheetSource, check_capture, sheets_are_better, sheets_of_capture
+from eigenfield.reconstruction.layered import (
+    SheetSource,
+    asked_count,
+    better_count,
+    check_capture,
+    sheets_of_capture,
+)
 from eigenfield.reconstruction.report import ProxyReport, measure_proxy
 from eigenfield.reconstruction.run import ReconstructionSettings, StageRunner
 from eigenfield.reconstruction.stage_files import (
@@ -92,8 +98,8 @@ def reconstruct(
         capture: Photographs, with or without cameras.
         surface: "relief" for arrays with one viewing direction (two layers seen from the centre), "poisson" for
             everything else, "layers" for soft sheets, if all cameras look about one way. "auto" takes the relief where
-            it fits, else the Poisson surface; or layers where few views are given and layers draw left-out ones better.
-        layers: Number of soft sheets, 2 to MAX_SHEETS; 1: none. None: as many as usual.
+            it fits, else the Poisson surface; or layers where they draw left-out views clearly better.
+        layers: Number of soft sheets, 2 to MAX_SHEETS; 1: none. None: by what they gain in views left out.
         refine: Correct the cameras of an array together with its depth. None: if no calibration is given or there are
             25 views or more, unless they are exact.
         triangles: Most triangles of the proxy, approximately.
@@ -138,12 +144,13 @@ def reconstruct(
                 )  # fmt: skip
         source = SheetSource(capture, light_field, array, points, settings.hold_out or settings.blind)
         if settings.surface == "layers":
-            proxy, error = sheets_of_capture(run, source), None
+            proxy, error = sheets_of_capture(run, source, asked_count(run, source)), None
         else:
             mesh, error = _opaque_surface(run, source)
             proxy = Proxy(mesh)
-            if settings.surface == "auto" and sheets_are_better(run, source, mesh):
-                proxy, error = sheets_of_capture(run, source), None
+            count = better_count(run, source, mesh) if settings.surface == "auto" else None
+            if count is not None:
+                proxy, error = sheets_of_capture(run, source, count), None
         report = measure_proxy(proxy.mesh, light_field.cameras, error)
         return Reconstruction(light_field, proxy, calibration if work is not None else None, run.seconds, report)
 

@@ -52,8 +52,9 @@ def mean_precision(scales: Scales) -> NDArray[np.float32] | None:
     if not known.any():
         return None
     share = np.minimum(scales.mean_noise / scales.usual, 1).astype(np.float32)
-    opaque = scales.mean_noise is scales.mean
-    cell, least = (PRECISION_CELL_TEXELS, PRECISION_MIN_FACTOR) if opaque else (SHEET_CELL_TEXELS, SHEET_MIN_FACTOR)
+    cell, least = PRECISION_CELL_TEXELS, PRECISION_MIN_FACTOR
+    if scales.soft:
+        cell, least = SHEET_CELL_TEXELS, SHEET_MIN_FACTOR
     rows, columns = (max(1, round(side / cell)) for side in share.shape)
     covered = cv2.resize(known, (columns, rows), interpolation=cv2.INTER_AREA)
     cells = cv2.resize(share * known, (columns, rows), interpolation=cv2.INTER_AREA) / np.maximum(covered, 1e-6)

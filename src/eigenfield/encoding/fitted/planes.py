@@ -46,6 +46,8 @@ class PlanePreset:
         texture_step: Quantiser step of the components, likewise.
         subsampled: Whether fewer pixels are fitted where there are many observations.
         ahead: Densities are as if the atlas had so many texels a pixel more, up to FIT_MAX_DENSITY.
+        sheet_steps: Factors of the steps of mean and components on sheets, which share a pixel; chosen on Boxes, and
+            tried on Fern.
     """
 
     name: str
@@ -57,6 +59,7 @@ class PlanePreset:
     texture_step: float
     subsampled: bool
     ahead: float
+    sheet_steps: tuple[float, float]
 
     def settings(self, size: tuple[int, int], density: float, textures: int) -> PlaneSettings:
         """What the plane of a fit is to be.
@@ -72,22 +75,25 @@ class PlanePreset:
         mean, grid = plane_size(size, finer * self.mean_share), plane_size(size, finer * self.texture_share)
         return PlaneSettings(self.matrix, mean, grid, count, count)
 
-    def rate(self, step: float, patient: bool = False) -> Rate:
+    def rate(self, step: float, soft: bool = False, patient: bool = False) -> Rate:
         """How finely the plane is coded.
 
         Args:
             step: See `step_of`.
+            soft: Whether it is on sheets.
             patient: Whether libaom codes it, which the machine must have.
         """
-        mean_step, texture_step = self.mean_step * self.mean_share * step, self.texture_step * self.texture_share * step
+        mean, texture = self.sheet_steps if soft else (1.0, 1.0)
+        mean_step = mean * self.mean_step * self.mean_share * step
+        texture_step = texture * self.texture_step * self.texture_share * step
         coder, trial = (encode_aom, SVT_CODER) if patient else (SVT_CODER, None)
         return Rate(mean_step, texture_step, coder, trial)
 
 
 _LUMA, _CHROMA = split_matrix()
 PLANE_PRESETS = (
-    PlanePreset("luma", _LUMA, 1.0, TEXTURE_DENSITY_RATIO, 1.0, 0.85, 0.7, False, 0.0),
-    PlanePreset("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 0.95, True, 0.2),
+    PlanePreset("luma", _LUMA, 1.0, TEXTURE_DENSITY_RATIO, 1.0, 0.85, 0.7, False, 0.0, (0.7, 1.0)),
+    PlanePreset("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 0.95, True, 0.2, (0.8, 8.0)),
 )
 OPACITY_STEP = 2.0  # quantiser step of the opacity, of `step_of`; chosen on Fern
 HALF_GREY_LEVEL = 0.002  # in the photographs' range
@@ -129,7 +135,7 @@ class Fits:
         step = step_of(quality)
         precision = mean_precision(self.planes[0][1].scales)
         return {
-            plane.name: code_plane(fit, plane.rate(step, self.patient), grid, precision, progress)
+            plane.name: code_plane(fit, plane.rate(step, fit.scales.soft, self.patient), grid, precision, progress)
             for plane, fit in self.planes
         }
 

@@ -79,7 +79,7 @@ def _coarsening(scales: Scales) -> float:
     For the same error in the pictures, steps are in inverse proportion to the root of a texel's noise, were its errors
     independent of those of the texels behind. They are partly alike: half of that, in octaves, is best (Fern).
     """
-    if scales.coarse_noise is scales.coarse:
+    if not scales.soft:
         return 1.0
     usual = scales.usual * scales.mean.size / scales.coarse.size
     return float((usual / max(float(scales.coarse_noise[scales.coarse > 0].mean()), 1e-12)) ** 0.25)

@@ -18,6 +18,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.encoding.fitted.footprints import Footprint
 from eigenfield.encoding.fitted.kernels import SHARE_ONE, add_laplacian, adjoint, next_direction, take_step
 from eigenfield.encoding.fitted.model import PRODUCT_CHUNK_TEXELS, AtlasComposer, PlaneModel
 from eigenfield.encoding.fitted.observations import FitData
@@ -51,6 +52,11 @@ class Scales:
     coarse_noise: NDArray[np.float32]
     usual: float
 
+    @property
+    def soft(self) -> bool:
+        """Whether they are of sheets with an opacity."""
+        return self.mean_noise is not self.mean
+
     @classmethod
     def opaque(cls, mean: NDArray[np.float32], coarse: NDArray[np.float32], smooth: tuple[float, float]) -> Scales:
         """Of a surface of which a pixel shows nothing but one texel and its neighbours."""
@@ -82,12 +88,12 @@ def _texel_sums(data: FitData, model: PlaneModel, squared: bool) -> tuple[NDArra
     def piece(part: tuple[int, int]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         mean, grid = np.zeros_like(fine), np.zeros_like(coarse)
         for index in range(*part):
-            counts, points, shares = data.footprint(index)
+            footprint = data.footprint(index)
             if squared:
-                shares = (np.square(shares, dtype=np.float32) / SHARE_ONE).astype(np.uint16)
-            weight, ones = data.observations.weights(index), np.ones((1, *counts.shape), np.float32)
-            adjoint(counts, points, shares, data.size, ones, weight, mean)
-            adjoint(counts, points, shares, data.size, ones, weight, grid)
+                footprint = squared_shares(footprint)
+            weight, ones = data.observations.weights(index), np.ones((1, *footprint[0].shape), np.float32)
+            adjoint(*footprint, data.size, ones, weight, mean)
+            adjoint(*footprint, data.size, ones, weight, grid)
         return mean, grid
 
     for mean, grid in parallel_map(piece, pieces(len(data), PASS_TASK_OBSERVATIONS)):
@@ -96,6 +102,16 @@ def _texel_sums(data: FitData, model: PlaneModel, squared: bool) -> tuple[NDArra
     np.maximum(fine, 0, out=fine)
     np.maximum(coarse, 0, out=coarse)
     return fine[0], coarse[0]
+
+
+def squared_shares(footprint: Footprint) -> Footprint:
+    """The footprint with the squares of its shares; that of an opaque surface has none.
+
+    Args:
+        footprint: Of a camera.
+    """
+    counts, points, shares = footprint
+    return counts, points, (np.square(shares, dtype=np.float32) / SHARE_ONE).astype(np.uint16)
 
 
 def _median(values: NDArray[np.float32]) -> float:

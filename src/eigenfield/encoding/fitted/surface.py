@@ -41,7 +41,7 @@ from eigenfield.encoding.fitted.kernels import adjoint, forward, target
 from eigenfield.encoding.fitted.model import PlaneModel
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_on_proxy, open_subsampled
 from eigenfield.encoding.fitted.passes import MINUS, psnr_of
-from eigenfield.encoding.fitted.solve import measure_scales
+from eigenfield.encoding.fitted.solve import measure_scales, squared_shares
 from eigenfield.encoding.fitted.surface_kernels import gather_steps
 from eigenfield.encoding.geometry.distortion import spread_cameras, texels_of
 from eigenfield.imaging.graph import face_edges
@@ -121,20 +121,19 @@ class MovableMesh:
 
 
 def fit_surface(
-    mesh: Mesh,
-    lattice: Lattice | None,
+    proxy: Proxy,
     cameras: Sequence[Camera],
     observations: Observations,
     side: int,
     work: Path | None = None,
     progress: Progress | None = None,
-) -> Mesh:
-    """The mesh with its vertices moved to where a mean texture draws the photographs best; as it was where that does
+) -> Proxy:
+    """The proxy with its vertices moved to where a mean texture draws the photographs best; as it was where that does
     not help.
 
     Args:
-        mesh: With UVs, the same at all times of the observations.
-        lattice: Of a relief, whose vertices stay on their rays; None: they move along their normals.
+        proxy: With UVs, the same at all times of the observations. Vertices of a relief stay on their rays of its
+            lattice, others move along their normals.
         cameras: Of the observations.
         observations: Those of `max_cameras` cameras, spread over the array, are decoded.
         side: Texels of the atlas, about a pixel each.
@@ -150,13 +149,14 @@ def fit_surface(
     shape = (min(side, SURFACE_TUNING.max_side_texels),) * 2
     pixels = sum(used[camera].width * used[camera].height for camera in cameras_of(some))
     step = 2 if len(some) >= SURFACE_TUNING.subsample_observations or pixels > SURFACE_TUNING.subsample_pixels else 1
-    movable = _movable_mesh(mesh, lattice, used, shape)
+    mesh = proxy.mesh
+    movable = _movable_mesh(mesh, proxy.lattice, used, shape)
     best, reached, off = mesh, -np.inf, np.zeros(len(movable.lines))
-    with open_fit_data(used, some, Proxy(mesh), shape, work) as every:
+    with open_fit_data(used, some, proxy, shape, work) as every:
         for number in range(SURFACE_TUNING.rounds + 1):
             if progress is not None:
                 progress("fit surface", number, SURFACE_TUNING.rounds + 1)
-            moved = open_on_proxy(every, used, Proxy(mesh), work) if number else nullcontext(every)
+            moved = open_on_proxy(every, used, replace(proxy, mesh=mesh), work) if number else nullcontext(every)
             with moved as whole, open_subsampled(whole, step, work) as data:
                 model = PlaneModel(split_matrix()[0], np.full((1, *shape), 0.5, np.float32), (1, 1), [])
                 left = fit_mean(data, model, measure_scales(data, model))
@@ -176,7 +176,7 @@ def fit_surface(
             mesh = movable.displaced_mesh(off)
     if progress is not None:
         progress("fit surface", SURFACE_TUNING.rounds + 1, SURFACE_TUNING.rounds + 1)
-    return best
+    return replace(proxy, mesh=best)
 
 
 def _movable_mesh(
@@ -246,7 +246,7 @@ def _step_equations(
         forward(*footprint, data.size, model.mean, MINUS, image)
         asked, seen, errors = (np.zeros_like(model.mean) for _ in range(3))
         adjoint(*footprint, data.size, image, weight, asked)
-        adjoint(*footprint, data.size, np.ones_like(image), weight, seen)
+        adjoint(*squared_shares(footprint), data.size, np.ones_like(image), weight, seen)
         adjoint(*footprint, data.size, np.square(image), weight, errors)
         return asked[0][covered], seen[0][covered], errors[0]
 

@@ -63,9 +63,21 @@ def _code(proxy: Proxy, lattice: Lattice) -> Coded[Proxy]:
     faces = () if sheets is None else sheets.faces
     stream, mesh = encoder(MESH_CODEC)(proxy.mesh, lattice, uv_bits=UV_BITS, fine=lattice.fine, sheets=faces)
     if sheets is not None:
-        left = np.add.reduceat(whole_faces(proxy.mesh, lattice), np.cumsum((0, *faces[:-1])), dtype=np.int64)
-        sheets = Sheets(tuple(left[left > 0].tolist()), sheets.opacity)
+        sheets = Sheets(faces_left(faces, whole_faces(proxy.mesh, lattice)), sheets.opacity)
     return proxy_of_stream(stream, mesh, sheets)
+
+
+def faces_left(sheets: tuple[int, ...], kept: NDArray[np.bool_]) -> tuple[int, ...]:
+    """Number of faces of each sheet of which some are kept; () for no sheets.
+
+    Args:
+        sheets: Number of faces of each, at least 1.
+        kept: (m,) whether each face of the mesh is.
+    """
+    if not sheets:
+        return ()
+    left = np.add.reduceat(kept, np.cumsum((0, *sheets[:-1])), dtype=np.int64)
+    return tuple(left[left > 0].tolist())
 
 
 def proxy_of_stream(stream: bytes, mesh: Mesh, sheets: Sheets | None = None) -> Coded[Proxy]:

@@ -4,7 +4,7 @@ A point whose inverse depth is off by d is drawn b d pixels off in a camera, b b
 gradient g of the photograph the error is (g . b) d, squared and summed over the cameras that see the point; what is
 the same in all of them is no loss, the texture takes it. However far it is off, it is not worse than something
 else in its place: the variance of the photographs around. Only where the surface is gone and none lies behind, the
-picture is black.
+picture is black. Of sheets with an opacity, a camera sees a point as far as it is opaque and what is in front is not.
 """
 
 # mypy: disable-error-code="no-untyped-call"
@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt, uniform_filter
@@ -22,9 +23,10 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice
 from eigenfield.core.mesh import Mesh, barycentric_coordinates, signed_areas
 from eigenfield.core.observations import Observations, select_cameras
+from eigenfield.core.proxy import Sheets
 from eigenfield.encoding.geometry.raster_kernels import HALF_TEXEL_STEPS, TEXEL_STEPS, CostMap, draw_owners
 from eigenfield.imaging.colour import LUMA_BT709
-from eigenfield.imaging.raster import rasterise_view
+from eigenfield.imaging.raster import rasterise, rasterise_view
 from eigenfield.imaging.sampling import distances_to, farthest_points
 from eigenfield.runtime.parallel import parallel_stream
 
@@ -36,6 +38,7 @@ VARIANCE_WINDOW_PX = 9  # over which the variance of photographs is taken
 VISIBLE_MAX_DEPTH_RATIO = 0.004  # of inverse depth, by which a visible point may lie behind what is drawn
 COVER_CELL_PX = 4  # within which one point must lie behind another to stand for it
 COVER_MIN_DEPTH_RATIO = 0.01  # of inverse depth, by which it must
+REMAP_MAX_POINTS = 32000  # in a row of OpenCV, whose sides are 16 bits
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +66,11 @@ def luma_of(observations: Observations, index: int) -> NDArray[np.float32]:
 
 
 def depth_distortion(
-    mesh: Mesh, lattice: Lattice, cameras: Sequence[Camera], observations: Observations
+    mesh: Mesh,
+    lattice: Lattice,
+    cameras: Sequence[Camera],
+    observations: Observations,
+    sheets: Sheets | None = None,
 ) -> DistortionMap:
     """Squared error of all photographs together for wrong depths of a relief.
 
@@ -72,6 +79,7 @@ def depth_distortion(
         lattice: Of the relief.
         cameras: Of the observations.
         observations: Those of DISTORTION_MAX_CAMERAS cameras, spread over the array, are decoded.
+        sheets: Of the mesh; None: it is opaque.
     """
     assert mesh.uv is not None
     exact, pixel = lattice.coordinates(mesh.vertices), 2.0**lattice.fine  # steps
@@ -86,26 +94,104 @@ def depth_distortion(
     depth = np.zeros(owners.shape, np.float32)
     depth[given] = points[:, 2]
     world, deeper = lattice.points(points), lattice.points(points + np.array([0, 0, 1]))
+    layers = None if sheets is None else _Layers.of(mesh, sheets, owners[given], corners, weights)
 
     chosen = spread_cameras(cameras, DISTORTION_MAX_CAMERAS)
     some = select_cameras(observations, chosen)
 
     def of_observation(index: int) -> NDArray[np.float64]:
-        return _camera_distortion(mesh, cameras[chosen[some.camera_of(index)]], luma_of(some, index), world, deeper)
+        camera, photograph = cameras[chosen[some.camera_of(index)]], luma_of(some, index)
+        return _camera_distortion(mesh, layers, camera, photograph, world, deeper)
 
-    sums = np.zeros((6, len(points)))
+    sums = np.zeros((7, len(points)))
     for found in parallel_stream(of_observation, range(len(some))):  # in order: the same at any number of threads
         sums += found
-    seen, first, second, most, black, pixels = sums
+    shares, seen, first, second, most, black, pixels = sums
     if not seen.any():
         return DistortionMap(_cost_map(depth, given, np.zeros((3, len(points)))), (side, start), 0.0)
-    of_texel = len(observations) / len(some) * float(pixels[0] / seen.sum())
-    curve = second - np.square(first) / np.maximum(seen, 1)
-    for values in (curve, most):  # what nobody here sees another camera may: as the usual, by one of them
-        values[seen == 0] = np.median(values[seen > 0] / seen[seen > 0])
-    bare = np.where(_has_surface_behind(points / [pixel, pixel, 1]), most, np.maximum(black, most))
+    of_texel = len(observations) / len(some) * float(pixels[0] / shares.sum())
+    if layers is None:
+        curve, usual = second - np.square(first) / np.maximum(seen, 1), float(np.median(seen[seen > 0]))
+        for values in (curve, most):  # what nobody here sees another camera may: as the usual, by one of them
+            values[seen == 0] = np.median(values[seen > 0] / seen[seen > 0])
+        behind = _has_surface_behind(points / [pixel, pixel, 1])
+    else:
+        curve, usual = second - np.square(first) / np.maximum(seen, 1e-6), float(len(some))
+        behind = layers.of_texel > 0
+    bare = np.where(behind, most, np.maximum(black, most))
     cost_map = _cost_map(depth, given, np.stack([curve, most, bare]) * of_texel)
-    return DistortionMap(cost_map, (side, start), float(np.median(seen[seen > 0])) * of_texel)
+    return DistortionMap(cost_map, (side, start), usual * of_texel)
+
+
+@dataclass(frozen=True, eq=False)
+class _Layers:
+    """Sheets as a distortion map has them.
+
+    Attributes:
+        mesh: Of the sheets.
+        sheets: Its sheets.
+        of_texel: (t,) the sheet of each covered texel.
+        opacity: (t,) of each covered texel.
+    """
+
+    mesh: Mesh
+    sheets: Sheets
+    of_texel: NDArray[np.int64]
+    opacity: NDArray[np.float32]
+
+    @classmethod
+    def of(
+        cls,
+        mesh: Mesh,
+        sheets: Sheets,
+        owner: NDArray[np.int32],
+        corners: NDArray[np.int32],
+        weights: NDArray[np.float64],
+    ) -> _Layers:
+        """owner: (t,) the face of each covered texel; corners, weights: of `texel_weights`."""
+        assert mesh.uv is not None
+        uv = np.einsum("tk,tkx->tx", weights, mesh.uv[corners])
+        number = np.searchsorted(np.cumsum(sheets.faces), owner, side="right")
+        return cls(mesh, sheets, number, _read_opacity(sheets, uv))
+
+    def shares(
+        self, camera: Camera, inside: NDArray[np.bool_], row: NDArray[np.int64], column: NDArray[np.int64]
+    ) -> NDArray[np.float64]:
+        """(t,) the share that each covered texel has in its pixel.
+
+        Args:
+            camera: The view.
+            inside: (t,) whether a texel is in the picture.
+            row: (t,) of its pixel.
+            column: (t,) of its pixel.
+        """
+        assert self.mesh.uv is not None
+        corners, uv = camera.homogeneous(self.mesh.vertices), self.mesh.uv
+        through = np.ones((camera.height, camera.width), np.float32)
+        shares, ends = np.zeros(len(inside)), np.cumsum((0, *self.sheets.faces))
+        for number in reversed(range(len(self.sheets.faces))):
+            here = inside & (self.of_texel == number)
+            shares[here] = self.opacity[here] * through[row[here], column[here]]
+            faces = self.mesh.faces[ends[number] : ends[number + 1]]
+            drawn = rasterise(corners, faces, camera.width, camera.height)
+            y, x = np.nonzero(drawn.face >= 0)
+            face = drawn.face[y, x]
+            of_corners = np.einsum("nkx,nx->nk", drawn.edges[face], np.stack([x + 0.5, y + 0.5, np.ones(len(x))], 1))
+            at = np.einsum("nk,nkx->nx", of_corners / of_corners.sum(axis=1, keepdims=True), uv[faces[face]])
+            through[y, x] *= 1 - _read_opacity(self.sheets, at)
+        return shares
+
+
+def _read_opacity(sheets: Sheets, uv: NDArray[np.float64]) -> NDArray[np.float32]:
+    """(n,) the opacity at texture coordinates (n, 2)."""
+    height, width = sheets.opacity.shape
+    at = (uv * (width, height) - 0.5).astype(np.float32)
+    column, row = (np.ascontiguousarray(at[None, :, axis]) for axis in range(2))
+    rows = [
+        cv2.remap(sheets.opacity, column[:, part], row[:, part], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)[0]
+        for part in (slice(k, k + REMAP_MAX_POINTS) for k in range(0, len(at), REMAP_MAX_POINTS))
+    ]
+    return np.concatenate(rows) if rows else np.zeros(0, np.float32)
 
 
 def texels_of(mesh: Mesh, shape: tuple[int, ...]) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]:
@@ -127,19 +213,27 @@ def texel_weights(
 
 
 def _camera_distortion(
-    mesh: Mesh, camera: Camera, photograph: NDArray[np.float32], world: NDArray[np.float64], deeper: NDArray[np.float64]
+    mesh: Mesh,
+    layers: _Layers | None,
+    camera: Camera,
+    photograph: NDArray[np.float32],
+    world: NDArray[np.float64],
+    deeper: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """(6, t): whether the camera sees each texel, error for a step of depth and its square, variance around, the
-    photograph's square, and how many pixels see the mesh."""
+    """(7, t): the share that each texel has in the camera's picture, 0 or 1 on an opaque mesh, and its square; times
+    this the error for a step of depth and its square, the variance around and the photograph's square; and how many
+    pixels see the mesh."""
     drawn = rasterise_view(mesh, camera)
-    inside, row, column, at = visible_points(camera, world, drawn.inverse_depth)
+    nearest = drawn.inverse_depth if layers is None else np.zeros_like(drawn.inverse_depth)
+    inside, row, column, at = visible_points(camera, world, nearest)
+    share = inside if layers is None else layers.shares(camera, inside, row, column)
+    seen = np.square(share, dtype=np.float64)
     down, right = map(np.asarray, np.gradient(photograph))
     shift = np.nan_to_num(camera.project(deeper)[0] - at)
     error = np.where(inside, right[row, column] * shift[:, 0] + down[row, column] * shift[:, 1], 0)
     pixels = np.full(len(world), float((drawn.face >= 0).sum()))
-    pictures = local_variance(photograph), np.square(photograph)
-    found = [np.where(inside, picture[row, column], 0) for picture in pictures]
-    return np.stack([inside, error, np.square(error), *found, pixels])
+    pictures = error, np.square(error), *(one[row, column] for one in (local_variance(photograph), photograph**2))
+    return np.stack([share, seen, *(np.where(inside, picture, 0) * seen for picture in pictures), pixels])
 
 
 def visible_points(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -110,31 +110,34 @@ def fit_sheets(
     matrices: NDArray[np.float64],
     shape: tuple[int, int],
     labels: NDArray[np.float64],
-    count: int,
+    counts: Sequence[int],
     *,
     halvings: int = 1,
     planes: MultiplaneTuning = MULTIPLANE_TUNING,
     tuning: SheetTuning = SHEET_TUNING,
     progress: Progress | None = None,
-) -> SoftSheets:
-    """The soft sheets that draw V photographs best: first planes at a small size, then sheets at each larger one.
+) -> list[SoftSheets]:
+    """The soft sheets that draw V photographs best, for each of some numbers of sheets.
+
+    First planes are fitted at a small size, from which all start, then sheets at each larger one.
 
     Args:
         pictures: As of `fit_multiplane`.
         matrices: As of `fit_multiplane`.
         shape: As of `fit_multiplane`.
         labels: As of `fit_multiplane`, at about equal distances.
-        count: Number of sheets, at most that of labels.
+        counts: Numbers of sheets, at most that of labels.
         halvings: How often the size is halved for the planes; with 0 sheets are fitted at the planes' size.
         planes: Constants of the planes.
         tuning: Constants of the sheets.
         progress: Reports the steps.
 
     Raises:
-        ValueError: As `fit_multiplane`; or `count` is not from 1 to the number of labels.
+        ValueError: As `fit_multiplane`; or a count is not from 1 to the number of labels.
     """
-    if not 1 <= count <= np.size(labels):
-        raise ValueError(f"{count} sheets of {np.size(labels)} planes")
+    for count in counts:
+        if not 1 <= count <= np.size(labels):
+            raise ValueError(f"{count} sheets of {np.size(labels)} planes")
     sizes = [(pack_pictures(pictures), check_matrices(matrices, len(pictures)), shape)]
     for _ in range(halvings):
         packed, views, (height, width) = sizes[-1]
@@ -142,13 +145,16 @@ def fit_sheets(
         sizes.append((halve_pictures(packed), halved_matrices(views), half))
     image = fit_multiplane(*sizes[-1], labels, tuning=planes, progress=progress)
     spacing = float(np.ptp(image.labels)) / (len(image.labels) - 1)
-    sheets = sheets_of(image, count)
-    rounds = sizes[: max(1, halvings)][::-1]
-    for number, (packed, views, size) in enumerate(rounds):
-        sheets = enlarged(sheets, size)
-        ticker = _ticker(progress, "sheets", len(rounds) * tuning.steps, number * tuning.steps)
-        _SheetDescent(sheets, spacing, tuning).run(packed, views, ticker)
-    return sheets
+    rounds, found = sizes[: max(1, halvings)][::-1], []
+    total, before = len(counts) * len(rounds) * tuning.steps, 0
+    for count in counts:
+        sheets = sheets_of(image, count)
+        for packed, views, size in rounds:
+            sheets = enlarged(sheets, size)
+            _SheetDescent(sheets, spacing, tuning).run(packed, views, _ticker(progress, "sheets", total, before))
+            before += tuning.steps
+        found.append(sheets)
+    return found
 
 
 def enlarged(sheets: SoftSheets, shape: tuple[int, int]) -> SoftSheets:
