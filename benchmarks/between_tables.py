@@ -16,6 +16,7 @@ def section() -> str:
     if not (RESULTS / "between.json").exists():
         return ""
     captures, shown = newest(runs("between"))
+    parts = _parts()
     head = ["capture", "what is drawn", "kB", "RGB / luma dB", "worst view", "SSIM", "FLIP", "error near depth edges"]
     rows = [_row(name, number, row) for name, one in captures.items() for number, row in enumerate(one["methods"])]
     return (
@@ -25,7 +26,26 @@ def section() -> str:
         " (`--layers 1`), also for coverage and depth edges. The last three ways of a capture need all photographs. The"
         " worst view is the lowest of each figure. The last column is the share of luma's squared error within two"
         " pixels of depth edges.\n\n"
-        f"{_captures(captures)}\n{table(head, rows)}\n{origin(shown, '../benchmarks/results/between.json')}\n"
+        f"{_captures(captures)}\n{table(head, rows)}\n{origin(shown, '../benchmarks/results/between.json')}\n{parts}"
+    )
+
+
+def _parts() -> str:
+    """What each part of soft sheets is worth (benchmarks/layers.py)."""
+    if not (RESULTS / "layers.json").exists():
+        return ""
+    captures, shown = newest(runs("layers"))
+    words = {key: part["words"] for one in captures.values() for key, part in one["parts"].items()}
+    rows = [
+        [words[key], *(f"{one['parts'][key]['held_out']:.2f} / {one['parts'][key]['captured']:.2f}"
+                       for one in captures.values())]
+        for key in words
+    ]  # fmt: skip
+    head = ["sheets", *(f"`{name}`, {one['views']} views" for name, one in captures.items())]
+    return (
+        "\n### What each part of soft sheets is worth\n\nPSNR in RGB of every fourth view, which took no part, and"
+        " of the others. Photographs are halved to at most 300 pixels; nothing is coded, and nothing depends on the view.\n\n"
+        f"{table(head, rows)}\n{origin(shown, '../benchmarks/results/layers.json')}\n"
     )
 
 

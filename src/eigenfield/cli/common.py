@@ -133,7 +133,7 @@ mesh_options = together(_surface_option("auto relief poisson", f"{MESH_KINDS}.")
 reconstruction_options = together(  # the arguments of `reconstruct`
     _surface_option("auto relief layers poisson", f"{MESH_KINDS}; layers: soft sheets with an opacity."),
     click.option("--layers", metavar="N", default="auto", show_default=True, callback=_parse_layers,
-                 help="Number of soft sheets; 1: none."),
+                 help="Number of soft sheets; 1: none; auto: what views left out choose."),
     _mesh_options,
 )  # fmt: skip
 

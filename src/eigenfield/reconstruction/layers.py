@@ -53,8 +53,8 @@ class LayersTuning:
         depth_error_pixels: By which the lattice's depths move a point.
         hidden_ratio: Of inverse depths, from which on a photograph does not see a point of the opaque surface.
         min_gain_db: By which sheets must draw the views of a trial better than the opaque surface.
-        dense_min_gain_db: The same of a dense array, whose opaque surface is then fitted well, and takes fewer bytes:
-            with 4.1 dB sheets were better (Boxes), with 1.0 and 2.0 they were worse (Antinous, Shop).
+        dense_min_gain_db: The same of a dense array, on whose opaque surface the fit then gains more, in fewer bytes.
+            With 4.1 dB sheets were better (Boxes); with 3.5 (Amethyst), 2.0 (Shop) and 1.0 (Antinous) they were worse.
         count_gain_db: By which more sheets must draw them better than fewer.
     """
 
@@ -76,7 +76,7 @@ class LayersTuning:
     depth_error_pixels: float = 0.04
     hidden_ratio: float = 1.02
     min_gain_db: float = 0.5
-    dense_min_gain_db: float = 3.0
+    dense_min_gain_db: float = 3.8
     count_gain_db: float = 0.15
 
 
@@ -114,7 +114,7 @@ def layers_proxy(
         triangles: Most triangles.
         progress: Called within.
     """
-    pictures, cameras = _halved(pictures, cameras, LAYERS_TUNING.sheets_side_pixels)
+    pictures, cameras = halved(pictures, cameras, LAYERS_TUNING.sheets_side_pixels)
     reference, (fitted,) = fit_views(pictures, cameras, bounds, [count], progress)
     reference, sheets = _widened(reference, fitted, cameras, bounds)
     tolerance = LAYERS_TUNING.tolerance_pixels / _reach(reference, cameras)
@@ -168,7 +168,7 @@ def compare_held_out(
         counts: Numbers of sheets.
         progress: Called within.
     """
-    pictures, cameras = _halved(pictures, cameras, LAYERS_TUNING.trial_side_pixels)
+    pictures, cameras = halved(pictures, cameras, LAYERS_TUNING.trial_side_pixels)
     left_out = np.zeros(len(cameras), np.bool_)
     left_out[LAYERS_TUNING.trial_step // 2 :: LAYERS_TUNING.trial_step] = True
     others, shown = np.flatnonzero(~left_out).tolist(), np.flatnonzero(left_out).tolist()
@@ -235,10 +235,16 @@ def _read(picture: NDArray[Any], at: NDArray[np.float32], how: int) -> NDArray[A
     return np.asarray(cv2.remap(picture, at[..., 0], at[..., 1], how))
 
 
-def _halved(
+def halved(
     pictures: NDArray[np.uint8], cameras: Sequence[Camera], side: int
 ) -> tuple[NDArray[np.uint8], Sequence[Camera]]:
-    """Photographs and cameras at half the size, until the longer side is at most that."""
+    """Photographs and cameras at half the size, until the longer side is at most that.
+
+    Args:
+        pictures: (V, H, W, 3) uint8 photographs.
+        cameras: V of them.
+        side: Pixels.
+    """
     while max(pictures.shape[1:3]) > side:
         pictures = unpack_pictures(halve_pictures(pictures))
         height, width = pictures.shape[1:3]
