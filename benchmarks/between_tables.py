@@ -44,7 +44,8 @@ def _parts() -> str:
     head = ["sheets", *(f"`{name}`, {one['views']} views" for name, one in captures.items())]
     return (
         "\n### What each part of soft sheets is worth\n\nPSNR in RGB of every fourth view, which took no part, and"
-        " of the others. Photographs are halved to at most 300 pixels; nothing is coded, and nothing depends on the view.\n\n"
+        " of the others. Photographs are halved to at most 300 pixels. Nothing is coded, and nothing depends on the"
+        " view.\n\n"
         f"{table(head, rows)}\n{origin(shown, '../benchmarks/results/layers.json')}\n"
     )
 

@@ -69,7 +69,7 @@ class _GivenError(Exception):
     """Carries what sheets would be fitted to."""
 
 
-def given_of(name: str, out: Path) -> tuple[NDArray[np.uint8], list[Camera], Range]:
+def given_of(name: str, out: Path) -> tuple[NDArray[np.uint8], Sequence[Camera], Range]:
     """Photographs at the size of a trial, their cameras, and the range of inverse depths of a capture."""
     capture = captures.named(name, out)
     photographs = ef.open_any(capture.folder, calibration=capture.calibration)
@@ -81,8 +81,8 @@ def given_of(name: str, out: Path) -> tuple[NDArray[np.uint8], list[Camera], Ran
         try:
             ef.reconstruct(photographs, surface="layers", layers=COUNT)
         except _GivenError as found:
-            pictures, cameras, bounds = found.args
-            return *layers.halved(pictures, cameras, LAYERS_TUNING.trial_side_pixels), bounds
+            pictures, cameras = layers.halved(*found.args[:2], LAYERS_TUNING.trial_side_pixels)
+            return pictures, cameras, found.args[2]
     raise SystemExit(f"{name} has no soft sheets")
 
 
