@@ -81,8 +81,9 @@ def given_of(name: str, out: Path) -> tuple[NDArray[np.uint8], Sequence[Camera],
         try:
             ef.reconstruct(photographs, surface="layers", layers=COUNT)
         except _GivenError as found:
-            pictures, cameras = layers.halved(*found.args[:2], LAYERS_TUNING.trial_side_pixels)
-            return pictures, cameras, found.args[2]
+            pictures, cameras, bounds = found.args
+            small, of_small = layers.halved(pictures, cameras, LAYERS_TUNING.trial_side_pixels)
+            return small, of_small, bounds
     raise SystemExit(f"{name} has no soft sheets")
 
 
