@@ -23,7 +23,7 @@ def read_obj(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArr
         (n, 3) positions, (m, 3) faces and, if every corner has one, (n, 2) UVs with v down.
 
     Raises:
-        ProxyError: `proxy-index-range`, with the number of the line.
+        ProxyError: `proxy-index-range`, with the number of the line; `proxy-polygon`.
         ValueError: Damaged data, with the number of the line.
     """
     positions: list[tuple[float, float, float]] = []
@@ -33,35 +33,39 @@ def read_obj(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArr
     largest = [(0, 0), (0, 0)]  # the highest vertex and texture coordinate index, and its line
     if b"\0" in data:
         raise ValueError("binary data")
-    lines = enumerate(data.decode("utf-8", errors="replace").splitlines(), 1)
-    for number, text in lines:
-        line = text
-        while line.endswith("\\"):  # a statement that continues in the next line
-            line = line[:-1] + next(lines, (0, ""))[1]
+    lines = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n")
+    for number, line in enumerate(lines, 1):
         words = line.split()
+        if not words or words[0] not in (b"v", b"vt", b"f"):
+            continue
+        following = number
+        while b"#" not in line and line.rstrip().endswith(b"\\"):  # a statement goes on in a line of numbers
+            line = line.rstrip()[:-1]
+            if following == len(lines) or lines[following].strip()[:1].isalpha():
+                break
+            line += b" " + lines[following]
+            following += 1
+        if following > number or b"#" in line:
+            words = line.split(b"#")[0].split()
         try:
             match words:
-                case ["v", x, y, z, *_]:
+                case [b"v", x, y, z, *_]:
                     positions.append((float(x), float(y), float(z)))
-                case ["vt", u, *rest] if not rest or rest[0].startswith("#"):
+                case [b"vt", u]:
                     texels.append((float(u), 0.0))
-                case ["vt", u, v, *_]:
+                case [b"vt", u, v, *_]:
                     texels.append((float(u), 1.0 - float(v)))
-                case ["v", *_] | ["vt"]:
+                case [b"v", *_] | [b"vt"]:
                     raise ValueError("numbers are missing")
-                case ["f", *tokens]:
+                case [b"f", *tokens]:
                     sizes.append(0)
                     for token in tokens:
-                        if token.startswith("#"):
-                            break
-                        fields = token.split("/")
+                        fields = token.split(b"/")
                         vertex = _index(fields[0], len(positions))
                         texel = _index(fields[1], len(texels)) if len(fields) > 1 and fields[1] else -1
                         largest = [max(largest[0], (vertex, number)), max(largest[1], (texel, number))]
                         corners.append((vertex, texel))
                         sizes[-1] += 1
-                case _:
-                    pass
         except ValueError as error:
             raise ValueError(f"line {number}: {error}") from error
         except IndexError as error:
@@ -78,12 +82,13 @@ def read_obj(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArr
     table = np.array(corners, np.int64).reshape(-1, 2)
     polygons = Polygons(table[:, 0], np.array(sizes, np.int64))
     if len(table) == 0 or (table[:, 1] < 0).any():
-        return vertices, triangulate_polygons(polygons, None)[0], None
-    origin, faces, uv = split_seams(*triangulate_polygons(polygons, np.array(texels, np.float64)[table[:, 1]]))
+        return vertices, triangulate_polygons(polygons, None, vertices)[0], None
+    uv = np.array(texels, np.float64)[table[:, 1]]
+    origin, faces, uv = split_seams(*triangulate_polygons(polygons, uv, vertices))
     return vertices[origin], faces, uv
 
 
-def _index(word: str, count: int) -> int:
+def _index(word: bytes, count: int) -> int:
     """An index counted from 0: positive ones count from 1, negative ones back from the latest."""
     index = int(word)
     if index > 0:
