@@ -141,8 +141,9 @@ def check_mesh(raw: RawMesh, path: Path | None) -> Mesh:
     with np.errstate(over="ignore"):
         single = vertices.astype(np.float32)
     broken = np.flatnonzero(~np.isfinite(single).all(axis=1))
-    used = np.unique(faces)
-    broken = broken[np.isin(broken, used)]
+    used = np.zeros(len(vertices), bool)
+    used[faces] = True
+    broken = broken[used[broken]]
     if len(broken):
         raise ProxyError(
             "proxy-not-finite",
@@ -159,8 +160,8 @@ def check_mesh(raw: RawMesh, path: Path | None) -> Mesh:
     if len(kept) < len(faces):
         log.warning("%s: %d of %d triangles have no area: dropped", path or "mesh", len(faces) - len(kept), len(faces))
     mesh = Mesh(single, kept.astype(np.int32), None if uv is None else uv.astype(np.float32))
-    if len(used) < len(vertices):
-        log.info("%s: %d vertices that no triangle uses are dropped", path or "mesh", len(vertices) - len(used))
+    if not used.all():
+        log.info("%s: %d vertices that no triangle uses are dropped", path or "mesh", len(vertices) - used.sum())
     return remove_unused_vertices(make_sound(mesh, path))
 
 
