@@ -81,12 +81,13 @@ def read_ply(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArr
         ValueError: Damaged data.
     """
     order, elements, start = _read_header(data)
-    tables = _read_ascii(data, elements, start) if order == "" else _read_binary(data, elements, start, order)
-    vertex = tables.get("vertex")
-    if vertex is None or not all(axis in vertex.scalars for axis in "xyz"):
-        if elements and vertex is None:
-            raise ValueError(f"no element vertex, but {', '.join(element.name for element in elements)}"[:100])
+    names = {element.name: [each.name for each in element.properties if not each.length] for element in elements}
+    if "vertex" not in names:
+        raise ValueError(f"it has no element vertex, but {', '.join(names) or 'none'}")
+    if not all(axis in names["vertex"] for axis in "xyz"):
         raise ValueError("its vertices have no x, y and z")
+    tables = _read_ascii(data, elements, start) if order == "" else _read_binary(data, elements, start, order)
+    vertex = tables["vertex"]
     vertices = np.stack([vertex.scalars[axis] for axis in "xyz"], axis=1)
     faces, uv = np.zeros((0, 3), np.int64), None
     for element in elements:
@@ -256,7 +257,7 @@ def _read_ascii(data: bytes, elements: list[_Element], start: int) -> dict[str, 
         warnings.simplefilter("error", DeprecationWarning)
         try:
             numbers = np.fromstring(body.decode("latin-1"), np.float64, sep=" ")
-        except DeprecationWarning:
+        except (DeprecationWarning, ValueError):
             raise ValueError(_no_number(data, start)) from None
     tables, at = {}, 0
     begins = []
