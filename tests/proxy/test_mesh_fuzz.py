@@ -12,7 +12,8 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from eigenfield.proxy import read_mesh
-from eigenfield.proxy.meshes.read import RawMesh, check_mesh
+from eigenfield.proxy.meshes.formats import RawMesh
+from eigenfield.proxy.meshes.read import check_mesh
 from support.mesh_files import GltfFile, ply_file
 
 FEW, MANY = 12, 2_000

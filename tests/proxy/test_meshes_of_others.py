@@ -13,7 +13,8 @@ import pytest
 
 from eigenfield.core.errors import ProxyError
 from eigenfield.proxy import read_mesh
-from eigenfield.proxy.meshes.read import RawMesh, check_mesh
+from eigenfield.proxy.meshes.formats import RawMesh
+from eigenfield.proxy.meshes.read import check_mesh
 from support.mesh_files import GltfFile, ply_file
 
 # A roof: two squares that share an edge; all numbers are multiples of 1/128

@@ -12,7 +12,7 @@ import logging
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 from urllib.parse import unquote, unquote_to_bytes
 
 import numpy as np
@@ -23,6 +23,7 @@ from eigenfield.core.errors import ProxyError
 from eigenfield.gltf.accessors import ViewBytes, find_accessor, read_accessor
 from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, HEADER, JSON_CHUNK, MAGIC
 from eigenfield.gltf.strict_json import Value, quote
+from eigenfield.proxy.meshes.formats import MeshFormat, RawMesh
 from eigenfield.proxy.meshes.polygons import check_range, strip_triangles
 
 log = logging.getLogger("eigenfield.proxy")
@@ -40,29 +41,12 @@ GLTF_HARMLESS_EXTENSIONS = (  # a name, or how it begins: they change no geometr
 _POINTS_AND_LINES, _TRIANGLES, _STRIP, _FAN = range(4), 4, 5, 6
 
 
-class Part(NamedTuple):
-    """The triangles of a primitive.
-
-    Attributes:
-        vertices: (n, 3) float64.
-        faces: (m, 3) int64.
-        uv: (n, 2) float64, v down, or None.
-    """
-
-    vertices: NDArray[np.float64]
-    faces: NDArray[np.int64]
-    uv: NDArray[np.float64] | None
-
-
-def read_gltf(data: bytes, path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64] | None]:
+def read_gltf(data: bytes, path: Path) -> RawMesh:
     """All triangles of a scene.
 
     Args:
         data: The file, binary or text.
         path: Of the file, for external buffers and messages.
-
-    Returns:
-        (n, 3) positions, (m, 3) faces and, if every primitive has them, (n, 2) UVs with v down.
 
     Raises:
         ProxyError: `proxy-extension`, `proxy-nodes`, `proxy-index-range`, `proxy-unreadable`.
@@ -71,7 +55,7 @@ def read_gltf(data: bytes, path: Path) -> tuple[NDArray[np.float64], NDArray[np.
     """
     file = _GltfFile(*_split_glb(data), path)
     file.check_extensions()
-    parts: dict[tuple[int, tuple[float, ...]], list[Part]] = {}
+    parts: dict[tuple[int, tuple[float, ...]], list[RawMesh]] = {}
     vertices, faces, uvs, without, start, total = [], [], [], 0, 0, 0
     for matrix, mesh, weights in file.places():
         if (mesh, weights) not in parts:
@@ -91,12 +75,12 @@ def read_gltf(data: bytes, path: Path) -> tuple[NDArray[np.float64], NDArray[np.
     if file.skinned:
         log.warning("%s: %d meshes with bones are read as they were modelled, in no pose", path, file.skinned)
     if not vertices:
-        return np.zeros((0, 3)), np.zeros((0, 3), np.int64), None
+        return RawMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64), None)
     if 0 < without < len(vertices):
         log.info(
             "%s: %d of %d parts have no texture coordinates: those of the others are ignored", path, without, len(uvs)
         )
-    return np.concatenate(vertices), np.concatenate(faces), None if without else np.concatenate(uvs)
+    return RawMesh(np.concatenate(vertices), np.concatenate(faces), None if without else np.concatenate(uvs))
 
 
 def _split_glb(data: bytes) -> tuple[Value, memoryview | None]:
@@ -244,7 +228,7 @@ class _GltfFile:
         for row in range(max(counts, default=0)):
             yield _matrix(**{name.lower(): None if t is None else t[row] for name, t in tables.items()})
 
-    def read_parts(self, mesh: int, weights: tuple[float, ...]) -> Iterator[Part]:
+    def read_parts(self, mesh: int, weights: tuple[float, ...]) -> Iterator[RawMesh]:
         """The primitives of a mesh that have triangles.
 
         Args:
@@ -261,7 +245,7 @@ class _GltfFile:
                 continue
             yield self._read_primitive(primitive, mode, weights)
 
-    def _read_primitive(self, primitive: Value, mode: int, weights: tuple[float, ...]) -> Part:
+    def _read_primitive(self, primitive: Value, mode: int, weights: tuple[float, ...]) -> RawMesh:
         attributes = primitive["attributes"]
         texels, uv_map = self._texture(primitive)
         packed = _extension(primitive, DRACO)
@@ -283,7 +267,9 @@ class _GltfFile:
             moved = self._floats(target, "POSITION", 3)
             if weight and moved is not None:
                 vertices = vertices + weight * moved
-        return Part(vertices, _triangles(indices, mode), None if uv is None else uv @ uv_map[:2, :2].T + uv_map[:2, 2])
+        return RawMesh(
+            vertices, _triangles(indices, mode), None if uv is None else uv @ uv_map[:2, :2].T + uv_map[:2, 2]
+        )
 
     def _texture(self, primitive: Value) -> tuple[str, NDArray[np.float64]]:
         """The texture coordinates of the base colour, by their attribute, and their (3, 3) transform.
@@ -455,3 +441,15 @@ def _triangles(indices: NDArray[np.int64], mode: int) -> NDArray[np.int64]:
     if len(indices) % 3:
         raise ValueError(f"{len(indices)} indices are no whole number of triangles")
     return indices.reshape(-1, 3)
+
+
+GLTF = MeshFormat(
+    "glTF 2.0", (".glb", ".gltf"), read_gltf,
+    "triangles, strips and fans of the scene that is shown; transforms of nodes; every type of accessor, sparse ones "
+    "too; buffers in the file, beside it and in data URIs; weights of morph targets; "
+    + ", ".join(f"`{name}`" for name in GLTF_READ_EXTENSIONS) + " (Draco with `pip install 'eigenfield[meshes]'`)",
+    "every other entry of `extensionsRequired` that may change geometry, among them "
+    + " and ".join(f"`{name}`" for name in MESHOPT) + "; nodes that form a circle or multiply",
+    "points and lines, materials, bones, animations, other scenes",
+    "trimesh 5.2, glTF-Transform 4.5, gltfpack, DracoPy 2.2, eigenfield",
+)  # fmt: skip

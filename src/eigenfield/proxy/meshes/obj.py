@@ -6,21 +6,21 @@ silently drops UVs if one index is out of range, and splits the mesh where the m
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
-from numpy.typing import NDArray
 
 from eigenfield.core.errors import ProxyError
+from eigenfield.proxy.meshes.formats import MeshFormat, RawMesh
 from eigenfield.proxy.meshes.polygons import Polygons, split_seams, triangulate_polygons
 
 
-def read_obj(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64] | None]:
+def read_obj(data: bytes, path: Path) -> RawMesh:
     """Geometry and texture coordinates of an OBJ file.
 
     Args:
         data: The file.
-
-    Returns:
-        (n, 3) positions, (m, 3) faces and, if every corner has one, (n, 2) UVs with v down.
+        path: Of the file.
 
     Raises:
         ProxyError: `proxy-index-range`, with the number of the line; `proxy-polygon`.
@@ -82,10 +82,10 @@ def read_obj(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArr
     table = np.array(corners, np.int64).reshape(-1, 2)
     polygons = Polygons(table[:, 0], np.array(sizes, np.int64))
     if len(table) == 0 or (table[:, 1] < 0).any():
-        return vertices, triangulate_polygons(polygons, None, vertices)[0], None
+        return RawMesh(vertices, triangulate_polygons(polygons, None, vertices)[0], None)
     uv = np.array(texels, np.float64)[table[:, 1]]
     origin, faces, uv = split_seams(*triangulate_polygons(polygons, uv, vertices))
-    return vertices[origin], faces, uv
+    return RawMesh(vertices[origin], faces, uv)
 
 
 def _index(word: bytes, count: int) -> int:
@@ -96,3 +96,13 @@ def _index(word: bytes, count: int) -> int:
     if index == 0 or -index > count:
         raise IndexError(f"index {index} names nothing")
     return count + index
+
+
+OBJ = MeshFormat(
+    "Wavefront OBJ", (".obj",), read_obj,
+    "`v`, `vt` and `f` with indices of every form, polygons, statements that a backslash continues; UVs if every "
+    "corner has them",
+    "indices that name nothing and lines that make no sense, with their numbers",
+    "materials, groups, normals, colours, lines, curves",
+    "trimesh 5.2, MeshLab 2016 and pymeshlab 2025.7, eigenfield",
+)  # fmt: skip

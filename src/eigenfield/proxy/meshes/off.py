@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import warnings
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.proxy.meshes.formats import MeshFormat, RawMesh
 from eigenfield.proxy.meshes.polygons import Polygons, triangulate_polygons
 
 
-def read_off(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def read_off(data: bytes, path: Path) -> RawMesh:
     """The triangles of an OFF file.
 
     Args:
         data: The file.
-
-    Returns:
-        (n, 3) positions and (m, 3) faces.
+        path: Of the file.
 
     Raises:
         ProxyError: `proxy-index-range`, `proxy-polygon`.
@@ -42,7 +42,7 @@ def read_off(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         raise ValueError(f"{count} vertices and {polygons} faces announced, {len(lines) - 1} lines found")
     vertices = _first_numbers(lines[1 : 1 + count], 3)
     rows = lines[1 + count : 1 + count + polygons]
-    return vertices, triangulate_polygons(_read_faces(rows), None, vertices)[0]
+    return RawMesh(vertices, triangulate_polygons(_read_faces(rows), None, vertices)[0], None)
 
 
 def _read_faces(lines: list[bytes]) -> Polygons:
@@ -74,3 +74,12 @@ def _first_numbers(lines: list[bytes], width: int) -> NDArray[np.float64]:
             except (DeprecationWarning, ValueError):
                 pass  # words among the numbers, perhaps behind those that count
     return np.array([line.split()[:width] for line in lines], np.float64).reshape(-1, width)
+
+
+OFF = MeshFormat(
+    "OFF", (".off",), read_off,
+    "text with three coordinates a vertex (`OFF`, `COFF`, `NOFF`, `STOFF`, or no word), polygons, comments",
+    "`OFF BINARY`, `4OFF`, `nOFF`",
+    "colours, normals, texture coordinates",
+    "trimesh 5.2, pymeshlab 2025.7",
+)  # fmt: skip

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import logging
 import warnings
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.proxy.meshes.formats import MeshFormat, RawMesh
 from eigenfield.proxy.meshes.ply_kernels import copy_lists, measure_rows
 from eigenfield.proxy.meshes.polygons import (
     Polygons,
@@ -67,14 +69,12 @@ class _Table(NamedTuple):
     end: int
 
 
-def read_ply(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64] | None]:
+def read_ply(data: bytes, path: Path) -> RawMesh:
     """Geometry and texture coordinates of a PLY file.
 
     Args:
         data: The file.
-
-    Returns:
-        (n, 3) positions, (m, 3) faces and (n, 2) UVs with v down, or None.
+        path: Of the file.
 
     Raises:
         ProxyError: `proxy-index-range`, `proxy-polygon`.
@@ -106,11 +106,11 @@ def read_ply(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArr
             faces = np.concatenate([faces, found])
     if uv is not None and len(uv) == len(faces):
         origin, faces, uv = split_seams(faces, uv)
-        return vertices[origin], faces, _flip_v(uv)
+        return RawMesh(vertices[origin], faces, _flip_v(uv))
     for u, v in PLY_UV_NAMES:
         if u in vertex.scalars and v in vertex.scalars:
-            return vertices, faces, _flip_v(np.stack([vertex.scalars[u], vertex.scalars[v]], axis=1))
-    return vertices, faces, None
+            return RawMesh(vertices, faces, _flip_v(np.stack([vertex.scalars[u], vertex.scalars[v]], axis=1)))
+    return RawMesh(vertices, faces, None)
 
 
 def _index_list(element: _Element) -> str:
@@ -309,3 +309,13 @@ def _no_number(data: bytes, start: int) -> str:
             except ValueError:
                 return f"line {number} does not consist of numbers"
     return "a line does not consist of numbers"
+
+
+PLY = MeshFormat(
+    "PLY", (".ply",), read_ply,
+    "text and binary of both byte orders; numbers and lists of any type and length; polygons and `tristrips`; UVs of "
+    "vertices (`s t`, `u v`, `texture_u texture_v`) or of corners (`texcoord`); comments in any encoding, blank lines",
+    "data that end early, rows of a text that hold more than the header says, a file without an element `vertex`",
+    "colours, normals, other elements, what follows the last element",
+    "trimesh 5.2, MeshLab (pymeshlab 2025.7), COLMAP 4 (Poisson), eigenfield",
+)  # fmt: skip

@@ -10,41 +10,29 @@ import codecs
 import logging
 import os
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.errors import FormatError, ProxyError
 from eigenfield.core.mesh import Mesh, triangle_areas
-from eigenfield.proxy.meshes.gltf import read_gltf
-from eigenfield.proxy.meshes.obj import read_obj
-from eigenfield.proxy.meshes.off import read_off
-from eigenfield.proxy.meshes.ply import read_ply
+from eigenfield.proxy.meshes.formats import RawMesh
+from eigenfield.proxy.meshes.gltf import GLTF
+from eigenfield.proxy.meshes.obj import OBJ
+from eigenfield.proxy.meshes.off import OFF
+from eigenfield.proxy.meshes.ply import PLY
 from eigenfield.proxy.meshes.polygons import check_range
 from eigenfield.proxy.meshes.sound import make_sound
-from eigenfield.proxy.meshes.stl import read_stl
+from eigenfield.proxy.meshes.stl import STL
 from eigenfield.proxy.topology import remove_unused_vertices
 
 log = logging.getLogger("eigenfield.proxy")
 
-MESH_SUFFIXES = (".ply", ".obj", ".glb", ".gltf", ".stl", ".off")
+MESH_FORMATS = (PLY, OBJ, GLTF, STL, OFF)
+MESH_SUFFIXES = tuple(suffix for each in MESH_FORMATS for suffix in each.suffixes)
 MESH_SLIVER_RATIO = 1e-9  # area over the square of the longest edge: below, a triangle is degenerate
 MESH_MAX_ROUNDING_RATIO = 1e-5  # float32 spacing over the mesh's extent: above, rounding is noticeable
-
-
-class RawMesh(NamedTuple):
-    """A mesh as a file stores it.
-
-    Attributes:
-        vertices: (n, 3) float64.
-        faces: (m, 3) int64.
-        uv: (n, 2) float64, v down, or None.
-    """
-
-    vertices: NDArray[np.float64]
-    faces: NDArray[np.int64]
-    uv: NDArray[np.float64] | None
 
 
 def read_mesh(path: str | os.PathLike[str]) -> Mesh:
@@ -90,14 +78,8 @@ def read_mesh(path: str | os.PathLike[str]) -> Mesh:
 def _parse(data: bytes, suffix: str, file: Path) -> RawMesh:
     """A parser may raise anything on a damaged file; this is the only place that turns it into a ProxyError."""
     try:
-        data = _without_mark(data)
-        if suffix == ".obj":
-            return RawMesh(*read_obj(data))
-        if suffix in (".glb", ".gltf"):
-            return RawMesh(*read_gltf(data, file))
-        if suffix == ".ply":
-            return RawMesh(*read_ply(data))
-        return RawMesh(*(read_off if suffix == ".off" else read_stl)(data), None)
+        reader = next(each.read for each in MESH_FORMATS if suffix in each.suffixes)
+        return reader(_without_mark(data), file)
     except ProxyError as error:
         raise ProxyError(error.code, error.message, path=file, remedy=error.remedy) from error
     except Exception as error:

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import logging
 import re
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+
+from eigenfield.proxy.meshes.formats import MeshFormat, RawMesh
 
 log = logging.getLogger("eigenfield.proxy")
 
@@ -18,14 +21,12 @@ _SOLID = re.compile(rb"^[ \t]*solid\b", re.MULTILINE | re.IGNORECASE)
 _END = re.compile(rb"^[ \t]*end[ \t]*solid\b", re.MULTILINE | re.IGNORECASE)
 
 
-def read_stl(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def read_stl(data: bytes, path: Path) -> RawMesh:
     """The triangles of an STL file.
 
     Args:
         data: The file.
-
-    Returns:
-        (n, 3) positions and (m, 3) faces.
+        path: Of the file.
 
     Raises:
         ValueError: Damaged data.
@@ -42,7 +43,7 @@ def read_stl(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         found = max(len(data) - _HEAD_BYTES, 0) // _TRIANGLE.itemsize
         raise ValueError(f"{max(count, 0)} triangles announced, {found} found")
     vertices, index = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
-    return vertices, index.reshape(-1, 3)
+    return RawMesh(vertices, index.reshape(-1, 3), None)
 
 
 def _read_ascii(data: bytes) -> NDArray[np.float64]:
@@ -55,3 +56,12 @@ def _read_ascii(data: bytes) -> NDArray[np.float64]:
     if len(corners) != 3 * facets:
         raise ValueError(f"{facets} triangles have {len(corners)} corners")
     return corners.reshape(-1, 3, 3)
+
+
+STL = MeshFormat(
+    "STL", (".stl",), read_stl,
+    "binary, and text with any number of solids; corners at one place are joined",
+    "fewer triangles than are announced, a solid without an end",
+    "normals, attributes, what follows the last triangle",
+    "trimesh 5.2, pymeshlab 2025.7",
+)  # fmt: skip
