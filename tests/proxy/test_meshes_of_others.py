@@ -6,6 +6,7 @@ import json
 import logging
 import struct
 import sys
+from pathlib import Path
 from urllib.parse import quote
 
 import numpy as np
@@ -13,8 +14,8 @@ import pytest
 
 from eigenfield.core.errors import ProxyError
 from eigenfield.proxy import read_mesh
-from eigenfield.proxy.meshes.formats import RawMesh
-from eigenfield.proxy.meshes.read import check_mesh
+from eigenfield.proxy.meshes.formats import RawMesh, table_of_formats
+from eigenfield.proxy.meshes.read import MESH_FORMATS, check_mesh
 from support.mesh_files import GltfFile, ply_file
 
 # A roof: two squares that share an edge; all numbers are multiples of 1/128
@@ -348,6 +349,12 @@ def test_a_huge_concave_polygon_is_refused(tmp_path):
     text = "".join(f"v {i} {i % 2} 0\n" for i in range(count)) + "v 0 -9 0\n"
     with pytest.raises(ProxyError, match="is not convex has 20003 corners, 10000 are allowed; export it as triangles"):
         read_mesh(written(tmp_path, "a.obj", text + "f " + " ".join(map(str, range(1, count + 2))) + "\n"))
+
+
+def test_the_page_has_the_table_of_formats():
+    table = table_of_formats(MESH_FORMATS)
+    page = Path(__file__).parents[2] / "docs/meshes.md"
+    assert table in page.read_text(encoding="utf-8"), f"docs/meshes.md needs this table:\n{table}"
 
 
 OBJ = "".join(f"v {x} {y} {z}\n" for x, y, z in POSITIONS) + "".join(

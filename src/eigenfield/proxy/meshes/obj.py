@@ -1,7 +1,6 @@
 """Wavefront OBJ: geometry and texture coordinates, nothing else.
 
-trimesh (5.2) is not used here. It takes index 0 for the first vertex, counts relative indices from the end of the file,
-silently drops UVs if one index is out of range, and splits the mesh where the material changes.
+Relative indices count from where they stand, and a material or a group does not cut the mesh.
 """
 
 from __future__ import annotations
@@ -104,5 +103,5 @@ OBJ = MeshFormat(
     "corner has them",
     "indices that name nothing and lines that make no sense, with their numbers",
     "materials, groups, normals, colours, lines, curves",
-    "trimesh 5.2, MeshLab 2016 and pymeshlab 2025.7, eigenfield",
+    "trimesh 5.2, MeshLab (pymeshlab 2025.7), eigenfield",
 )  # fmt: skip

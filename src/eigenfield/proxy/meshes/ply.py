@@ -317,5 +317,5 @@ PLY = MeshFormat(
     "vertices (`s t`, `u v`, `texture_u texture_v`) or of corners (`texcoord`); comments in any encoding, blank lines",
     "data that end early, rows of a text that hold more than the header says, a file without an element `vertex`",
     "colours, normals, other elements, what follows the last element",
-    "trimesh 5.2, MeshLab (pymeshlab 2025.7), COLMAP 4 (Poisson), eigenfield",
+    "trimesh 5.2, MeshLab (pymeshlab 2025.7), eigenfield",
 )  # fmt: skip
