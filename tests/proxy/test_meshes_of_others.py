@@ -512,6 +512,25 @@ def test_faces_that_are_there_twice_are_taken_once(caplog, kind):
     assert caplog.messages == ["mesh: 72 of 144 triangles are there twice: taken once"]
 
 
+@pytest.mark.parametrize("suffix", ["obj", "off", "ply"])
+@pytest.mark.parametrize("again", ["4 3 2 1", "2 3 4 1", "3 2 1 4", "5 6 7 8", "8 7 6 5"])
+def test_polygons_that_are_there_twice_are_taken_once(tmp_path, caplog, suffix, again):
+    """A fan from another corner has another diagonal: such triangles would not be the same."""
+    points = [(0, 0, 0), (2, 0, 0), (3, 2, 0), (0, 1, 0)] * 2
+    second = [int(word) - 1 for word in again.split()]
+    if suffix == "obj":
+        data = "".join(f"v {x} {y} {z}\n" for x, y, z in points) + f"f 1 2 3 4\nf {again}\n"
+    elif suffix == "off":
+        rows = [f"{x} {y} {z}" for x, y, z in points] + ["4 0 1 2 3", "4 " + " ".join(map(str, second))]
+        data = "\n".join(["OFF", "8 2 0", *rows])
+    else:
+        vertex = ("vertex", [("x", "f4"), ("y", "f4"), ("z", "f4")], points)
+        data = ply_file([vertex, ("face", [("vertex_indices", "i4", "u1")], [[[0, 1, 2, 3]], [second]])], "<")
+    mesh = read_mesh(written(tmp_path, f"a.{suffix}", data))
+    np.testing.assert_array_equal(mesh.faces, [(0, 1, 2), (0, 2, 3)])
+    assert "2 of 4 triangles are there twice" in caplog.text
+
+
 def test_half_of_the_faces_turned(caplog):
     vertices, faces = grid_mesh()
     mixed = faces.copy()

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import area_normals
 from eigenfield.proxy.meshes.polygon_kernels import clip_ears
+from eigenfield.proxy.meshes.sound import number_places
 
 log = logging.getLogger("eigenfield.proxy")
 
@@ -70,7 +71,45 @@ def triangulate_polygons(
         log.info("%d polygons that are not convex are cut by ear clipping", len(concave))
         if crossing:
             log.warning("%d polygons cross themselves: their triangles are a guess; export triangles", crossing)
+    _cut_alike(vertices, polygons, first, begin, corner)
     return polygons.corners[corner], None if uv is None else uv[corner]
+
+
+def _cut_alike(
+    vertices: NDArray[np.float64],
+    polygons: Polygons,
+    first: NDArray[np.int64],
+    begin: NDArray[np.int64],
+    triangles: NDArray[np.int64],
+) -> None:
+    """Cut a polygon that is there again, begun or wound elsewise, into the triangles (corners) of the first.
+
+    Two polygons are one if they run the same edges. What is there twice is then taken once triangle by triangle.
+    """
+    with np.errstate(over="ignore"):
+        place = number_places(vertices.astype(np.float32))[polygons.corners]
+    mixed = place.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15)  # sums of sets that differ hardly ever agree
+    mixed ^= mixed >> np.uint64(29)
+    for size in np.unique(polygons.sizes[polygons.sizes > 3]):
+        which = np.flatnonzero(polygons.sizes == size)
+        corners = first[which, None] + np.arange(size)
+        if len(np.unique(mixed[corners].sum(axis=1))) == len(which):
+            continue
+        ends = place[corners]
+        following = np.roll(ends, -1, axis=1)
+        edges = np.sort(np.minimum(ends, following) * len(vertices) + np.maximum(ends, following), axis=1)
+        _, earliest, group = np.unique(edges, axis=0, return_index=True, return_inverse=True)
+        original = earliest[group.reshape(-1)]
+        again = np.flatnonzero(original != np.arange(len(which)))
+        original = original[again]
+        by_place = np.argsort(ends, axis=1, kind="stable")
+        rank = np.argsort(by_place, axis=1)
+        rows = np.arange(size - 2)
+        cut = triangles[begin[which[original], None] + rows] - first[which[original], None, None]
+        line = np.arange(len(again))[:, None, None]
+        triangles[begin[which[again], None] + rows] = (
+            by_place[again][line, rank[original][line, cut]] + first[which[again], None, None]
+        )
 
 
 def _find_concave(

@@ -25,7 +25,7 @@ def make_sound(mesh: Mesh, path: Path | None) -> Mesh:
         mesh: Without degenerate faces.
         path: Of the file, for the log.
     """
-    place = _number_places(mesh.vertices)
+    place = number_places(mesh.vertices)
     count, total = int(place.max()) + 1, len(mesh.faces)
     corners = place[mesh.faces]
     kept = _first_of_each(np.sort(corners, axis=1), count)
@@ -43,8 +43,12 @@ def make_sound(mesh: Mesh, path: Path | None) -> Mesh:
     return mesh
 
 
-def _number_places(vertices: NDArray[np.float32]) -> NDArray[np.int64]:
-    """(n,) the number of each vertex's position: equal positions have one."""
+def number_places(vertices: NDArray[np.float32]) -> NDArray[np.int64]:
+    """(n,) the number of each vertex's position: equal positions have one.
+
+    Args:
+        vertices: (n, 3).
+    """
     bits = np.ascontiguousarray(vertices + np.float32(0)).view(np.uint32).astype(np.uint64)  # + 0: -0 is 0
     found = bits[:, 0]
     for axis in (1, 2):
