@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,6 +24,23 @@ class RawMesh(NamedTuple):
     vertices: NDArray[np.float64]
     faces: NDArray[np.int64]
     uv: NDArray[np.float64] | None
+
+
+def parse_numbers(text: bytes) -> NDArray[np.float64]:
+    """(n,) all numbers of a text, with white space between them.
+
+    Args:
+        text: In ASCII.
+
+    Raises:
+        ValueError: It holds something else.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", DeprecationWarning)  # of NumPy before 2.4, which raises ValueError
+        try:
+            return np.fromstring(text.decode("latin-1"), np.float64, sep=" ")
+        except DeprecationWarning as error:
+            raise ValueError(str(error)) from None
 
 
 @dataclass(frozen=True)

@@ -451,5 +451,5 @@ GLTF = MeshFormat(
     "every other entry of `extensionsRequired` that may change geometry, among them "
     + " and ".join(f"`{name}`" for name in MESHOPT) + "; nodes that form a circle or multiply",
     "points and lines, materials, bones, animations, other scenes",
-    "trimesh 5.2, glTF-Transform 4.5, gltfpack 1.3, DracoPy 2.2, eigenfield",
+    "trimesh 5.2, Blender 5.0 (bpy), glTF-Transform 4.5, gltfpack 1.3, DracoPy 2.2, eigenfield",
 )  # fmt: skip

@@ -103,5 +103,5 @@ OBJ = MeshFormat(
     "corner has them",
     "indices that name nothing and lines that make no sense, with their numbers",
     "materials, groups, normals, colours, lines, curves",
-    "trimesh 5.2, MeshLab (pymeshlab 2025.7), eigenfield",
+    "trimesh 5.2, Blender 5.0 (bpy), MeshLab (pymeshlab 2025.7), eigenfield",
 )  # fmt: skip

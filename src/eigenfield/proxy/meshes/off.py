@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import warnings
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.proxy.meshes.formats import MeshFormat, RawMesh
+from eigenfield.proxy.meshes.formats import MeshFormat, RawMesh, parse_numbers
 from eigenfield.proxy.meshes.polygons import Polygons, triangulate_polygons
 
 
@@ -66,13 +65,10 @@ def _first_numbers(lines: list[bytes], width: int) -> NDArray[np.float64]:
         short = next(line for line in lines if len(line.split()) < width)
         raise ValueError(f"{width} numbers expected in {short.decode('latin-1')[:40]!r}")
     if len(columns) == 1:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", DeprecationWarning)
-            try:
-                numbers = np.fromstring(b"\n".join(lines).decode("latin-1"), np.float64, sep=" ")
-                return numbers.reshape(len(lines), -1)[:, :width]
-            except (DeprecationWarning, ValueError):
-                pass  # words among the numbers, perhaps behind those that count
+        try:
+            return parse_numbers(b"\n".join(lines)).reshape(len(lines), -1)[:, :width]
+        except ValueError:
+            pass  # words among the numbers, perhaps behind those that count
     return np.array([line.split()[:width] for line in lines], np.float64).reshape(-1, width)
 
 
@@ -81,5 +77,5 @@ OFF = MeshFormat(
     "text with three coordinates a vertex (`OFF`, `COFF`, `NOFF`, `STOFF`, or no word), polygons, comments",
     "`OFF BINARY`, `4OFF`, `nOFF`",
     "colours, normals, texture coordinates",
-    "trimesh 5.2, pymeshlab 2025.7",
+    "trimesh 5.2, MeshLab (pymeshlab 2025.7)",
 )  # fmt: skip

@@ -7,14 +7,13 @@ it, with v up.
 from __future__ import annotations
 
 import logging
-import warnings
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.proxy.meshes.formats import MeshFormat, RawMesh
+from eigenfield.proxy.meshes.formats import MeshFormat, RawMesh, parse_numbers
 from eigenfield.proxy.meshes.ply_kernels import copy_lists, measure_rows
 from eigenfield.proxy.meshes.polygons import (
     Polygons,
@@ -252,13 +251,10 @@ def _cut_off(element: _Element, found: int) -> str:
 
 def _read_ascii(data: bytes, elements: list[_Element], start: int) -> dict[str, _Table]:
     """Rows are read number by number, wherever lines end; blank lines do no harm."""
-    body = data[start:]
-    with warnings.catch_warnings():
-        warnings.simplefilter("error", DeprecationWarning)
-        try:
-            numbers = np.fromstring(body.decode("latin-1"), np.float64, sep=" ")
-        except (DeprecationWarning, ValueError):
-            raise ValueError(_no_number(data, start)) from None
+    try:
+        numbers = parse_numbers(data[start:])
+    except ValueError:
+        raise ValueError(_no_number(data, start)) from None
     tables, at = {}, 0
     begins = []
     for element in elements:
@@ -317,5 +313,5 @@ PLY = MeshFormat(
     "vertices (`s t`, `u v`, `texture_u texture_v`) or of corners (`texcoord`); comments in any encoding, blank lines",
     "data that end early, rows of a text that hold more than the header says, a file without an element `vertex`",
     "colours, normals, other elements, what follows the last element",
-    "trimesh 5.2, MeshLab (pymeshlab 2025.7), eigenfield",
+    "trimesh 5.2, Blender 5.0 (bpy), MeshLab (pymeshlab 2025.7), eigenfield",
 )  # fmt: skip

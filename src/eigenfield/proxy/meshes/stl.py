@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.proxy.meshes.formats import MeshFormat, RawMesh
+from eigenfield.proxy.meshes.formats import MeshFormat, RawMesh, parse_numbers
 
 log = logging.getLogger("eigenfield.proxy")
 
 _HEAD_BYTES = 84
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-_VERTEX = re.compile(rb"^[ \t]*vertex[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)", re.MULTILINE | re.IGNORECASE)
+_VERTEX = re.compile(rb"^[ \t]*vertex[ \t]+(\S+[ \t]+\S+[ \t]+\S+)", re.MULTILINE | re.IGNORECASE)
 _FACET = re.compile(rb"^[ \t]*facet\b", re.MULTILINE | re.IGNORECASE)
 _SOLID = re.compile(rb"^[ \t]*solid\b", re.MULTILINE | re.IGNORECASE)
 _END = re.compile(rb"^[ \t]*end[ \t]*solid\b", re.MULTILINE | re.IGNORECASE)
@@ -52,7 +52,7 @@ def _read_ascii(data: bytes) -> NDArray[np.float64]:
     solids, ends, facets = (len(pattern.findall(text)) for pattern in (_SOLID, _END, _FACET))
     if ends < solids:
         raise ValueError(f"{solids} solids begin and {ends} end")
-    corners = np.array(_VERTEX.findall(text), dtype="S").astype(np.float64).reshape(-1, 3)
+    corners = parse_numbers(b" ".join(_VERTEX.findall(text))).reshape(-1, 3)
     if len(corners) != 3 * facets:
         raise ValueError(f"{facets} triangles have {len(corners)} corners")
     return corners.reshape(-1, 3, 3)
@@ -63,5 +63,5 @@ STL = MeshFormat(
     "binary, and text with any number of solids; corners at one place are joined",
     "fewer triangles than are announced, a solid without an end",
     "normals, attributes, what follows the last triangle",
-    "trimesh 5.2, pymeshlab 2025.7",
+    "trimesh 5.2, Blender 5.0 (bpy), MeshLab (pymeshlab 2025.7)",
 )  # fmt: skip
