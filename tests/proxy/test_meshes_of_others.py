@@ -531,6 +531,35 @@ def test_polygons_that_are_there_twice_are_taken_once(tmp_path, caplog, suffix, 
     assert "2 of 4 triangles are there twice" in caplog.text
 
 
+def quad_grid(diagonal, n=5):
+    """A wavy square of quads, each cut along one of its diagonals."""
+    vertices, _ = grid_mesh(n)
+    i = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
+    a, b, c, d = i, i + 1, i + n + 2, i + n + 1
+    cuts = {"a c": ((a, b, c), (a, c, d)), "d b": ((d, c, b), (d, b, a))}[diagonal]
+    return vertices * (1, 1, 0.1), np.stack([np.stack(cut, axis=1) for cut in cuts], axis=1).reshape(-1, 3)
+
+
+def test_quads_that_are_there_twice_are_taken_once_whatever_their_diagonals(caplog):
+    vertices, faces = quad_grid("a c")
+    _, back = quad_grid("d b")
+    mesh = check_mesh(RawMesh(vertices, np.concatenate([faces, back]), None), None)
+    np.testing.assert_array_equal(mesh.faces, faces)
+    assert caplog.messages == ["mesh: 50 of 100 triangles are there twice: taken once"]
+
+
+def test_tetrahedra_on_a_common_edge_stay(caplog):
+    """Their faces cut four points along both diagonals too, but not a flat quad. Three share an edge of six faces."""
+    points = [(0, 0, 0), (0, 0, 1)]
+    faces = []
+    for k, turn in enumerate(np.radians([0, 120, 240])):
+        points += [(np.cos(turn + t), np.sin(turn + t), z) for t, z in ((0, 0.2), (0.8, 0.7))]
+        c, d = 2 * k + 2, 2 * k + 3
+        faces += [(0, 1, d), (1, 0, c), (0, d, c), (1, c, d)]
+    np.testing.assert_array_equal(check_mesh(RawMesh(np.array(points), np.array(faces), None), None).faces, faces)
+    assert not caplog.records
+
+
 def test_half_of_the_faces_turned(caplog):
     vertices, faces = grid_mesh()
     mixed = faces.copy()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +15,16 @@ from eigenfield.proxy.topology_kernels import wind_alike
 log = logging.getLogger("eigenfield.proxy")
 
 
+SOUND_MAX_QUAD_HEIGHT = 0.05  # between the diagonals of a quad, over the shorter one: more is a tetrahedron
+
+
 def make_sound(mesh: Mesh, path: Path | None) -> Mesh:
     """The mesh with every face once and neighbours wound alike; itself if it is so.
 
-    Vertices at one place count as one, whatever their UVs. Of faces with the same three corners the first stays. Then
-    faces are turned until the two of every edge run it in opposite directions: of each patch those that are fewer.
-    Edges of more than two faces join no patches.
+    Vertices at one place count as one, whatever their UVs. Of faces with the same three corners the first stays, and of
+    two pairs of faces that cut one flat quad along both its diagonals. Then faces are turned until the two of every
+    edge run it in opposite directions: of each patch those that are fewer. Edges of more than two faces join no
+    patches.
 
     Args:
         mesh: Without degenerate faces.
@@ -29,10 +34,17 @@ def make_sound(mesh: Mesh, path: Path | None) -> Mesh:
     count, total = int(place.max()) + 1, len(mesh.faces)
     corners = place[mesh.faces]
     kept = _first_of_each(np.sort(corners, axis=1), count)
-    if kept is not None:
+    if kept is None:
+        kept = np.arange(total)
+    edges = _find_edges(corners[kept], count)
+    again = _find_quads_again(mesh.vertices[mesh.faces[kept]], corners[kept], edges) if edges.crowded else None
+    if again is not None:
+        kept = kept[~again]
+        edges = _find_edges(corners[kept], count)
+    if len(kept) < total:
         log.warning("%s: %d of %d triangles are there twice: taken once", path or "mesh", total - len(kept), total)
-        mesh, corners = Mesh(mesh.vertices, mesh.faces[kept], mesh.uv), corners[kept]
-    turned = _find_turned(corners, count)
+        mesh = Mesh(mesh.vertices, mesh.faces[kept], mesh.uv)
+    turned = _find_turned(edges, len(kept))
     if turned is not None:
         log.warning(
             "%s: %d of %d triangles are wound against their neighbours: turned", path or "mesh", turned.sum(), total
@@ -41,6 +53,70 @@ def make_sound(mesh: Mesh, path: Path | None) -> Mesh:
         faces[turned] = faces[turned][:, [0, 2, 1]]
         mesh = Mesh(mesh.vertices, faces, mesh.uv)
     return mesh
+
+
+class _Edges(NamedTuple):
+    """The edges of exactly two faces.
+
+    Attributes:
+        one: (e,) number of the edge in its first face: edge k of face f is 3 f + k, from corner k to the next.
+        other: (e,) in its second face.
+        against: (e,) whether both run it in one direction.
+        crowded: Whether there are edges of more faces.
+    """
+
+    one: NDArray[np.int64]
+    other: NDArray[np.int64]
+    against: NDArray[np.bool_]
+    crowded: bool
+
+
+def _find_edges(corners: NDArray[np.int64], count: int) -> _Edges:
+    """The edges of faces (m, 3) of places below `count`."""
+    ends = np.roll(corners, -1, axis=1).reshape(-1)
+    starts = corners.reshape(-1)
+    key = np.minimum(starts, ends) * count + np.maximum(starts, ends)
+    order = np.argsort(key, kind="stable")
+    same = np.concatenate([[False], key[order][1:] == key[order][:-1], [False]])
+    pair = np.flatnonzero(same[1:-1] & ~same[:-2] & ~same[2:])
+    one, other = order[pair], order[pair + 1]
+    return _Edges(one, other, starts[one] == starts[other], bool((same[1:] & same[:-1]).any()))
+
+
+def _find_quads_again(
+    positions: NDArray[np.float32], corners: NDArray[np.int64], edges: _Edges
+) -> NDArray[np.bool_] | None:
+    """(m,) faces that cut a quad along its other diagonal where two earlier ones cut it already; None without any.
+
+    Args:
+        positions: (m, 3, 3) of the corners.
+        corners: (m, 3) their places.
+        edges: Of the faces.
+    """
+    faces = np.stack([edges.one // 3, edges.other // 3], axis=1)
+    k = np.stack([edges.one % 3, edges.other % 3], axis=1)
+    at = [(faces[:, 0], k[:, 0]), (faces[:, 0], (k[:, 0] + 1) % 3), (faces[:, 0], (k[:, 0] + 2) % 3),
+          (faces[:, 1], (k[:, 1] + 2) % 3)]  # fmt: skip
+    a, b, c, d = (positions[each].astype(np.float64) for each in at)
+    places = np.stack([corners[each] for each in at], axis=1)
+    across, along = b - a, d - c
+    normal = np.cross(across, along)
+    inside = [(np.cross(across, c - a) * np.cross(across, d - a)).sum(axis=1) < 0,
+              (np.cross(along, a - c) * np.cross(along, b - c)).sum(axis=1) < 0]  # fmt: skip
+    shorter = np.minimum(np.linalg.norm(across, axis=1), np.linalg.norm(along, axis=1))
+    height = np.abs((normal * (c - a)).sum(axis=1))
+    flat = height <= SOUND_MAX_QUAD_HEIGHT * shorter * np.linalg.norm(normal, axis=1)
+    quads = np.flatnonzero(inside[0] & inside[1] & flat)
+    quads = quads[np.argsort(faces[quads].min(axis=1), kind="stable")]
+    if len(quads) < 2:
+        return None
+    _, first, group = np.unique(np.sort(places[quads], axis=1), axis=0, return_index=True, return_inverse=True)
+    original = quads[first[group.reshape(-1)]]
+    later = (original != quads) & (np.sort(places[quads][:, :2]) == np.sort(places[original][:, 2:])).all(axis=1)
+    again = np.zeros(len(corners), bool)
+    again[faces[quads[later]]] = True
+    again[faces[original[later]]] = False
+    return again if again.any() else None
 
 
 def number_places(vertices: NDArray[np.float32]) -> NDArray[np.int64]:
@@ -68,22 +144,14 @@ def _first_of_each(rows: NDArray[np.int64], count: int) -> NDArray[np.int64] | N
     return np.sort(np.unique(key, return_index=True)[1])
 
 
-def _find_turned(corners: NDArray[np.int64], count: int) -> NDArray[np.bool_] | None:
-    """(m,) which faces to turn so that neighbours are wound alike; None if no turning helps."""
-    ends = np.roll(corners, -1, axis=1).reshape(-1)
-    starts = corners.reshape(-1)
-    key = np.minimum(starts, ends) * count + np.maximum(starts, ends)
-    order = np.argsort(key, kind="stable")
-    same = np.concatenate([[False], key[order][1:] == key[order][:-1], [False]])
-    pair = np.flatnonzero(same[1:-1] & ~same[:-2] & ~same[2:])  # edges of exactly two faces
-    one, other = order[pair], order[pair + 1]
-    against = starts[one] == starts[other]
-    if not against.any():
+def _find_turned(edges: _Edges, count: int) -> NDArray[np.bool_] | None:
+    """Which of `count` faces to turn so that neighbours are wound alike; None if no turning helps."""
+    if not edges.against.any():
         return None
-    one, other = one // 3, other // 3
+    one, other, against = edges.one // 3, edges.other // 3, edges.against
     links = np.concatenate([one, other])
     by_face = np.argsort(links, kind="stable")
-    first = np.searchsorted(links[by_face], np.arange(len(corners) + 1))
+    first = np.searchsorted(links[by_face], np.arange(count + 1))
     turned = wind_alike(first, np.concatenate([other, one])[by_face], np.concatenate([against, against])[by_face])
     remaining = against ^ turned[one] ^ turned[other]
     return turned if remaining.sum() < against.sum() else None
