@@ -29,7 +29,7 @@ def read_obj(data: bytes, path: Path) -> RawMesh:
     texels: list[tuple[float, float]] = []
     corners: list[tuple[int, int]] = []  # vertex and texture coordinate, counted from 0; -1: none
     sizes: list[int] = []
-    largest = [(0, 0), (0, 0)]  # the highest vertex and texture coordinate index, and its line
+    largest = [(-1, 0), (-1, 0)]  # the highest vertex and texture coordinate index, and its line
     if b"\0" in data:
         raise ValueError("binary data")
     lines = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n")
@@ -62,7 +62,10 @@ def read_obj(data: bytes, path: Path) -> RawMesh:
                         fields = token.split(b"/")
                         vertex = _index(fields[0], len(positions))
                         texel = _index(fields[1], len(texels)) if len(fields) > 1 and fields[1] else -1
-                        largest = [max(largest[0], (vertex, number)), max(largest[1], (texel, number))]
+                        if vertex > largest[0][0]:
+                            largest[0] = vertex, number
+                        if texel > largest[1][0]:
+                            largest[1] = texel, number
                         corners.append((vertex, texel))
                         sizes[-1] += 1
         except ValueError as error:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import area_normals
 from eigenfield.proxy.meshes.polygon_kernels import clip_ears
-from eigenfield.proxy.meshes.sound import number_places
+from eigenfield.proxy.meshes.sound import mix_places, number_places
 
 log = logging.getLogger("eigenfield.proxy")
 
@@ -58,6 +58,8 @@ def triangulate_polygons(
     start = np.repeat(first, count)
     step = np.arange(count.sum()) - np.repeat(begin, count)
     corner = np.stack([start, start + step + 1, start + step + 2], axis=1)
+    if count.max(initial=0) < 2:
+        return polygons.corners[corner], None if uv is None else uv[corner]
     concave = _find_concave(vertices, polygons.corners, corner, begin, count)
     if len(concave):
         most = int(polygons.sizes[concave].max())
@@ -88,8 +90,7 @@ def _cut_alike(
     """
     with np.errstate(over="ignore"):
         place = number_places(vertices.astype(np.float32))[polygons.corners]
-    mixed = place.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15)  # sums of sets that differ hardly ever agree
-    mixed ^= mixed >> np.uint64(29)
+    mixed = mix_places(place)
     for size in np.unique(polygons.sizes[polygons.sizes > 3]):
         which = np.flatnonzero(polygons.sizes == size)
         corners = first[which, None] + np.arange(size)

@@ -94,9 +94,14 @@ def _find_quads_again(
         edges: Of the faces.
     """
     faces = np.stack([edges.one // 3, edges.other // 3], axis=1)
-    k = np.stack([edges.one % 3, edges.other % 3], axis=1)
-    at = [(faces[:, 0], k[:, 0]), (faces[:, 0], (k[:, 0] + 1) % 3), (faces[:, 0], (k[:, 0] + 2) % 3),
-          (faces[:, 1], (k[:, 1] + 2) % 3)]  # fmt: skip
+    last = edges.other % 3
+    total = mix_places(corners).sum(axis=1)[faces[:, 0]] + mix_places(corners[faces[:, 1], (last + 2) % 3])
+    ordered = np.sort(total)
+    several = np.isin(total, ordered[1:][ordered[1:] == ordered[:-1]])
+    if not several.any():
+        return None
+    faces, k, last = faces[several], edges.one[several] % 3, last[several]
+    at = [(faces[:, 0], k), (faces[:, 0], (k + 1) % 3), (faces[:, 0], (k + 2) % 3), (faces[:, 1], (last + 2) % 3)]
     a, b, c, d = (positions[each].astype(np.float64) for each in at)
     places = np.stack([corners[each] for each in at], axis=1)
     across, along = b - a, d - c
@@ -130,6 +135,16 @@ def number_places(vertices: NDArray[np.float32]) -> NDArray[np.int64]:
     for axis in (1, 2):
         found = np.unique(found << np.uint64(32) | bits[:, axis], return_inverse=True)[1].astype(np.uint64)
     return found.astype(np.int64)
+
+
+def mix_places(place: NDArray[np.int64]) -> NDArray[np.uint64]:
+    """Numbers of which the sums of two different sets hardly ever agree.
+
+    Args:
+        place: Numbers of places.
+    """
+    mixed = place.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15)  # 2^64 over the golden ratio
+    return mixed ^ mixed >> np.uint64(29)
 
 
 def _first_of_each(rows: NDArray[np.int64], count: int) -> NDArray[np.int64] | None:
