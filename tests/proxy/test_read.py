@@ -233,9 +233,10 @@ def test_glb_that_trimesh_writes_agrees(tmp_path):
 
 
 def test_compressed_glb_is_refused_in_words(tmp_path):
-    path = written(tmp_path, "a.glb", glb([{}], extra={"extensionsRequired": ["KHR_draco_mesh_compression"]})[0])
+    path = written(tmp_path, "a.glb", glb([{}], extra={"extensionsRequired": ["EXT_meshopt_compression"]})[0])
     with pytest.raises(ProxyError, match="compressed"):
         read_mesh(path)
+    assert code_of(path) == "proxy-extension"
 
 
 def test_stl_corners_are_joined(tmp_path):

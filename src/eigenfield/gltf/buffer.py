@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.payloads import Payload
-from eigenfield.gltf.document import DTYPES
+from eigenfield.gltf.accessors import DTYPES
 
 
 @dataclass

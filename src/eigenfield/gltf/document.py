@@ -11,12 +11,9 @@ from numpy.typing import NDArray
 
 from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError
+from eigenfield.gltf.accessors import ViewBytes, find_accessor, read_accessor
 from eigenfield.gltf.container import Glb
 from eigenfield.gltf.strict_json import Value, quote
-
-FLOAT, UINT32, UINT16, UINT8 = 5126, 5125, 5123, 5121
-DTYPES = {kind: np.dtype(name) for kind, name in ((FLOAT, "<f4"), (UINT32, "<u4"), (UINT16, "<u2"), (UINT8, "u1"))}
-WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,29 +133,20 @@ class Document:
         Raises:
             FormatError: `accessor-missing`, `accessor-type`, `accessor-range`, `accessor-alignment`.
         """
-        count = len(list(self.root["accessors"].items(limits.MAX_VIEWS)))
-        index = reference.integer(0, 2**31)
-        if index >= count:
-            reference.fail("accessor-missing", f"there are {count} accessors, {index} is none of them")
-        entry = self.root["accessors"].at(index)
+        self.root["accessors"].items(limits.MAX_VIEWS)
+        entry = find_accessor(self.root, reference)
         found = entry["type"].text()
         component = entry["componentType"].integer(0, 2**31)
         if found != kind or component not in components:
             entry.fail("accessor-type", f"{quote(found)} of {component}, {kind} of {components} expected")
         if entry.has("sparse") or (entry.has("normalized") and entry["normalized"].value is not False):
             entry.fail("accessor-type", "sparse and normalised accessors are not read here")
-        length = entry["count"].integer(1, most)
-        view = self.view(entry["bufferView"])
-        dtype, width = DTYPES[component], WIDTHS[kind]
-        start = entry["byteOffset"].integer(0, limits.MAX_FILE) if entry.has("byteOffset") else 0
-        element = dtype.itemsize * width
-        stride = view.stride or element
-        if (view.offset + start) % dtype.itemsize or stride % dtype.itemsize:
-            entry.fail("accessor-alignment", f"begins at byte {view.offset + start}")
-        if stride < element or start + stride * (length - 1) + element > view.length:
-            entry.fail("accessor-range", f"{length} entries do not fit into {view.length} bytes from byte {start}")
-        shape, strides = ((length, width), (stride, dtype.itemsize)) if width > 1 else ((length,), (stride,))
-        return np.ndarray(shape, dtype, self.glb.binary, view.offset + start, strides).copy()
+        entry["bufferView"]
+        return read_accessor(entry, self._view_bytes, most, aligned=True)
+
+    def _view_bytes(self, reference: Value) -> ViewBytes:
+        view = self.view(reference)
+        return ViewBytes(self.glb.binary[view.offset : view.end], view.stride, view.offset)
 
 
 def all_finite(array: NDArray[Any]) -> bool:

@@ -16,7 +16,8 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Payload
 from eigenfield.core.viewplane import ViewPlane
-from eigenfield.gltf.document import FLOAT, UINT8, UINT16, UINT32, Document, all_finite
+from eigenfield.gltf.accessors import FLOAT, UINT8, UINT16, UINT32
+from eigenfield.gltf.document import Document, all_finite
 from eigenfield.gltf.name_pattern import read_pattern
 from eigenfield.gltf.streams import read_stream
 from eigenfield.gltf.strict_json import Value, is_printable, quote

@@ -14,7 +14,8 @@ from eigenfield.coding.pictures import stacking
 from eigenfield.coding.pictures.stacking import PICTURES, codec_of
 from eigenfield.core.errors import FormatError
 from eigenfield.core.payloads import Affine, Payload, PicturePayload
-from eigenfield.gltf.document import FLOAT, Document, all_finite
+from eigenfield.gltf.accessors import FLOAT
+from eigenfield.gltf.document import Document, all_finite
 from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.layout_geometry import CameraList
 from eigenfield.gltf.streams import codec_named, read_stream

@@ -11,7 +11,8 @@ from eigenfield.coding.codecs import CODECS
 from eigenfield.coding.pictures.pictures_10bit import MIN_SIDE_TEXELS
 from eigenfield.coding.video.av1 import Planes
 from eigenfield.core.scene import Residual
-from eigenfield.gltf.document import UINT16, UINT32, Document
+from eigenfield.gltf.accessors import UINT16, UINT32
+from eigenfield.gltf.document import Document
 from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.layout_geometry import CameraList
 from eigenfield.gltf.streams import read_stream

@@ -125,6 +125,10 @@ class Value:
             self.fail("json-value", f"{len(found)} entries, {least} to {most} are allowed")
         return (Value(item, f"{self.where}/{index}") for index, item in enumerate(found))
 
+    def size(self) -> int:
+        """Entries of an array."""
+        return len(self._expect(list, "an array"))
+
     def at(self, index: int) -> Value:
         """One entry of an array."""
         found = self._expect(list, "an array")

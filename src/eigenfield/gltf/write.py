@@ -24,13 +24,13 @@ from eigenfield.core.proxy import Sheets
 from eigenfield.core.scene import Residual, Scene
 from eigenfield.core.version import __version__
 from eigenfield.gltf import packed, strict_json
+from eigenfield.gltf.accessors import FLOAT, UINT8, UINT16, UINT32
 from eigenfield.gltf.axes import NEAR_PLANE_RATIO, capture_to_gltf, opening_view, quaternion
 from eigenfield.gltf.buffer import Buffer
 from eigenfield.gltf.cached import CachedPayloads, cached_payloads
 from eigenfield.gltf.coarse import shown_mesh
 from eigenfield.gltf.coded_pictures import PlanePictures, ScenePictures, code_pictures, shortest_decimals
 from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, Glb, file_head, json_bytes
-from eigenfield.gltf.document import FLOAT, UINT8, UINT16, UINT32
 from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.layout import read_layout, unpacked_document
 from eigenfield.gltf.name_pattern import name_pattern

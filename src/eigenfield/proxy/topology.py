@@ -21,9 +21,10 @@ def remove_unused_vertices(mesh: Mesh) -> Mesh:
     Args:
         mesh: The mesh.
     """
-    used, index = np.unique(mesh.faces, return_inverse=True)
-    uv = None if mesh.uv is None else mesh.uv[used]
-    return Mesh(mesh.vertices[used], index.reshape(mesh.faces.shape).astype(np.int32), uv)
+    used = np.zeros(len(mesh.vertices), bool)
+    used[mesh.faces] = True
+    index = np.cumsum(used, dtype=np.int32) - np.int32(1)
+    return Mesh(mesh.vertices[used], index[mesh.faces], None if mesh.uv is None else mesh.uv[used])
 
 
 def face_patches(faces: NDArray[np.int32], which: NDArray[np.bool_] | None = None) -> NDArray[np.int64]:

@@ -1,4 +1,4 @@
-"""The triangulation of a hole."""
+"""The triangulation of a hole, and the winding of neighbours."""
 
 # mypy: disable-error-code="no-untyped-def,no-untyped-call"
 
@@ -59,3 +59,41 @@ def triangulate_least_area(loop):
         stack[height + 1, 0], stack[height + 1, 1] = j, k
         height += 2
     return triangles[:count]
+
+
+@kernel()
+def wind_alike(first, neighbour, against):
+    """Which faces to turn so that neighbours are wound alike, breadth first; of each patch the fewer.
+
+    Args:
+        first: (m + 1,) where each face's neighbours begin.
+        neighbour: Faces.
+        against: Whether the neighbour is wound the other way.
+
+    Returns:
+        (m,) bool. In a patch with one side only, as a Möbius strip, some neighbours stay different.
+    """
+    count = first.size - 1
+    turned, seen = np.zeros(count, np.bool_), np.zeros(count, np.bool_)
+    queue = np.empty(count, np.int64)
+    for root in range(count):
+        if seen[root]:
+            continue
+        seen[root] = True
+        queue[0] = root
+        done, found, many = 0, 1, 0
+        while done < found:
+            face = queue[done]
+            done += 1
+            many += turned[face]
+            for k in range(first[face], first[face + 1]):
+                other = neighbour[k]
+                if not seen[other]:
+                    seen[other] = True
+                    turned[other] = turned[face] != against[k]
+                    queue[found] = other
+                    found += 1
+        if 2 * many > found:
+            for k in range(found):
+                turned[queue[k]] = not turned[queue[k]]
+    return turned

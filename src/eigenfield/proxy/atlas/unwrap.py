@@ -64,6 +64,8 @@ def unwrap_mesh(
     elif mesh.uv is not None:
         log.warning("the mesh's own texture coordinates are no atlas: %s; new charts are cut", fault)
     plain = weld_vertices(mesh)
+    if len(plain.vertices) < len(mesh.vertices):
+        log.info("%d vertices at the places of others are joined", len(mesh.vertices) - len(plain.vertices))
     limit = PROXY_DEFAULT_TRIANGLES if triangles is None else triangles
     if len(plain.faces) > limit:
         plain = simplify_mesh(plain, limit)

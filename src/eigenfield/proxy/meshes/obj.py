@@ -1,67 +1,73 @@
 """Wavefront OBJ: geometry and texture coordinates, nothing else.
 
-trimesh (5.2) is not used here. It takes index 0 for the first vertex, counts relative indices from the end of the file,
-silently drops UVs if one index is out of range, and splits the mesh where the material changes.
+Relative indices count from where they stand, and a material or a group does not cut the mesh.
 """
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
-from numpy.typing import NDArray
 
 from eigenfield.core.errors import ProxyError
+from eigenfield.proxy.meshes.formats import MeshFormat, RawMesh
 from eigenfield.proxy.meshes.polygons import Polygons, split_seams, triangulate_polygons
 
 
-def read_obj(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64] | None]:
+def read_obj(data: bytes, path: Path) -> RawMesh:
     """Geometry and texture coordinates of an OBJ file.
 
     Args:
         data: The file.
-
-    Returns:
-        (n, 3) positions, (m, 3) faces and, if every corner has one, (n, 2) UVs with v down.
+        path: Of the file.
 
     Raises:
-        ProxyError: `proxy-index-range`, with the number of the line.
+        ProxyError: `proxy-index-range`, with the number of the line; `proxy-polygon`.
         ValueError: Damaged data, with the number of the line.
     """
     positions: list[tuple[float, float, float]] = []
     texels: list[tuple[float, float]] = []
     corners: list[tuple[int, int]] = []  # vertex and texture coordinate, counted from 0; -1: none
     sizes: list[int] = []
-    largest = [(0, 0), (0, 0)]  # the highest vertex and texture coordinate index, and its line
+    largest = [(-1, 0), (-1, 0)]  # the highest vertex and texture coordinate index, and its line
     if b"\0" in data:
         raise ValueError("binary data")
-    lines = enumerate(data.decode("utf-8", errors="replace").splitlines(), 1)
-    for number, text in lines:
-        line = text
-        while line.endswith("\\"):  # a statement that continues in the next line
-            line = line[:-1] + next(lines, (0, ""))[1]
+    lines = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n")
+    for number, line in enumerate(lines, 1):
         words = line.split()
+        if not words or words[0] not in (b"v", b"vt", b"f"):
+            continue
+        following = number
+        while b"#" not in line and line.rstrip().endswith(b"\\"):  # a statement goes on in a line of numbers
+            line = line.rstrip()[:-1]
+            if following == len(lines) or lines[following].strip()[:1].isalpha():
+                break
+            line += b" " + lines[following]
+            following += 1
+        if following > number or b"#" in line:
+            words = line.split(b"#")[0].split()
         try:
             match words:
-                case ["v", x, y, z, *_]:
+                case [b"v", x, y, z, *_]:
                     positions.append((float(x), float(y), float(z)))
-                case ["vt", u, *rest] if not rest or rest[0].startswith("#"):
+                case [b"vt", u]:
                     texels.append((float(u), 0.0))
-                case ["vt", u, v, *_]:
+                case [b"vt", u, v, *_]:
                     texels.append((float(u), 1.0 - float(v)))
-                case ["v", *_] | ["vt"]:
+                case [b"v", *_] | [b"vt"]:
                     raise ValueError("numbers are missing")
-                case ["f", *tokens]:
+                case [b"f", *tokens]:
                     sizes.append(0)
                     for token in tokens:
-                        if token.startswith("#"):
-                            break
-                        fields = token.split("/")
+                        fields = token.split(b"/")
                         vertex = _index(fields[0], len(positions))
                         texel = _index(fields[1], len(texels)) if len(fields) > 1 and fields[1] else -1
-                        largest = [max(largest[0], (vertex, number)), max(largest[1], (texel, number))]
+                        if vertex > largest[0][0]:
+                            largest[0] = vertex, number
+                        if texel > largest[1][0]:
+                            largest[1] = texel, number
                         corners.append((vertex, texel))
                         sizes[-1] += 1
-                case _:
-                    pass
         except ValueError as error:
             raise ValueError(f"line {number}: {error}") from error
         except IndexError as error:
@@ -78,12 +84,13 @@ def read_obj(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArr
     table = np.array(corners, np.int64).reshape(-1, 2)
     polygons = Polygons(table[:, 0], np.array(sizes, np.int64))
     if len(table) == 0 or (table[:, 1] < 0).any():
-        return vertices, triangulate_polygons(polygons, None)[0], None
-    origin, faces, uv = split_seams(*triangulate_polygons(polygons, np.array(texels, np.float64)[table[:, 1]]))
-    return vertices[origin], faces, uv
+        return RawMesh(vertices, triangulate_polygons(polygons, None, vertices)[0], None)
+    uv = np.array(texels, np.float64)[table[:, 1]]
+    origin, faces, uv = split_seams(*triangulate_polygons(polygons, uv, vertices))
+    return RawMesh(vertices[origin], faces, uv)
 
 
-def _index(word: str, count: int) -> int:
+def _index(word: bytes, count: int) -> int:
     """An index counted from 0: positive ones count from 1, negative ones back from the latest."""
     index = int(word)
     if index > 0:
@@ -91,3 +98,13 @@ def _index(word: str, count: int) -> int:
     if index == 0 or -index > count:
         raise IndexError(f"index {index} names nothing")
     return count + index
+
+
+OBJ = MeshFormat(
+    "Wavefront OBJ", (".obj",), read_obj,
+    "`v`, `vt` and `f` with indices of every form, polygons, statements that a backslash continues; UVs if every "
+    "corner has them",
+    "indices that name nothing and lines that make no sense, with their numbers",
+    "materials, groups, normals, colours, lines, curves",
+    "trimesh 5.2, Blender 5.0 (bpy), MeshLab (pymeshlab 2025.7), eigenfield",
+)  # fmt: skip

@@ -15,7 +15,8 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy.atlas.unwrap import unwrap_mesh
-from eigenfield.proxy.meshes.read import RawMesh, check_mesh, read_mesh
+from eigenfield.proxy.meshes.formats import RawMesh
+from eigenfield.proxy.meshes.read import check_mesh, read_mesh
 from eigenfield.proxy.surface.neighbours import project_inside
 
 PREPARE_THUMBNAIL_PIXELS = 64  # side of the pictures in which a mesh is searched whose vertices all lie outside

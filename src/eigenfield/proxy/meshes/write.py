@@ -78,9 +78,9 @@ def check_mesh_name(path: Path) -> None:
 
 def _glb(mesh: Mesh) -> bytes:
     """glTF 2.0 in one binary chunk, with coordinates in the cameras' world."""
+    from eigenfield.gltf.accessors import FLOAT, UINT32
     from eigenfield.gltf.buffer import Buffer
     from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, file_head, json_bytes
-    from eigenfield.gltf.document import FLOAT, UINT32
 
     buffer = Buffer()
     bounds = {"min": mesh.vertices.min(axis=0).tolist(), "max": mesh.vertices.max(axis=0).tolist()}
