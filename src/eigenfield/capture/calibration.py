@@ -79,6 +79,8 @@ class Entry:
         lens: The photograph's distortion; None if there is none.
         mask: The mask's path as the calibration writes it.
         bounds: Nearest and farthest depth of the scene from this camera, where the calibration states them.
+        stored: The program that wrote the entry works on pixels as they are stored. Otherwise the camera is of the
+            photograph that its EXIF orientation turns upright. Sizes that fit one of the two alone decide first.
     """
 
     file: str
@@ -89,6 +91,7 @@ class Entry:
     lens: Lens | None = None
     mask: str | None = None
     bounds: tuple[float, float] | None = None
+    stored: bool = False
 
     def camera(self, width: int, height: int, path: Path) -> Camera:
         """The camera at the calibration's own size; CaptureError naming `path`, the calibration, if it cannot be."""

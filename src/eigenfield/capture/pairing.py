@@ -121,7 +121,9 @@ def _make_view(entry: Entry, path: Path, finder: PhotographFinder, calibration: 
     """The view, and whether its camera was scaled to the photograph's size."""
     header = read_header(path)
     claimed = entry.intrinsics.width, entry.intrinsics.height
-    ways = (True, header.upright_size), (False, header.stored_size)
+    ways = [(True, header.upright_size), (False, header.stored_size)]
+    if entry.stored:
+        ways.reverse()
     fitting = [way for way in ways if all(c is None or c == s for c, s in zip(claimed, way[1], strict=True))]
     scaled = not fitting
     if scaled and None not in claimed:

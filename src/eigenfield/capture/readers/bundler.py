@@ -146,4 +146,5 @@ def _parse_entry(lines: list[tuple[int, str]], name: str, path: Path) -> Entry |
     lens = Lens("brown", (float(k1), float(k2), 0.0, 0.0, 0.0))
     intrinsics = Intrinsics(None, None, (float(focal), float(focal)), None, (None, None))
     centre = camera_centre(R, t, label, path)
-    return Entry(name, label, intrinsics, BUNDLER_TO_OPENCV_AXES @ R, centre, None if lens.is_identity else lens)
+    axes, distortion = BUNDLER_TO_OPENCV_AXES @ R, None if lens.is_identity else lens
+    return Entry(name, label, intrinsics, axes, centre, distortion, stored=True)

@@ -116,7 +116,7 @@ def _make_entry(shot: _ImageRecord, cameras: dict[int, tuple[Intrinsics, Lens | 
     R = _rotation_matrix(q / length)
     with np.errstate(over="ignore", invalid="ignore"):
         centre = -R.T @ t
-    return Entry(shot.name.replace("\\", "/"), label, intrinsics, R, centre, lens)
+    return Entry(shot.name.replace("\\", "/"), label, intrinsics, R, centre, lens, stored=True)
 
 
 def _rotation_matrix(q: NDArray[np.float64]) -> NDArray[np.float64]:

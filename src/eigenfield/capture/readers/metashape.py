@@ -211,7 +211,7 @@ def _make_entry(
     with np.errstate(over="ignore", invalid="ignore"):
         centre = frame.scale * (frame.rotation @ matrix[:3, 3]) + frame.shift
     check_finite([centre], label, path)
-    return Entry(name.replace("\\", "/"), label, sensor[0], axes.T, centre, sensor[1])
+    return Entry(name.replace("\\", "/"), label, sensor[0], axes.T, centre, sensor[1], stored=True)
 
 
 def _shift_to_origin(entries: tuple[Entry, ...]) -> tuple[tuple[Entry, ...], list[str]]:

@@ -31,6 +31,7 @@ TRANSFORMS_OWN_MODEL = "EIGENFIELD"
 TRANSFORMS_OWN_COEFFICIENTS = {
     "rational": (8, 12, 14), "metashape": (9,), "metashape-equidistant": (9,), "metashape-equisolid": (9,)
 }  # fmt: skip
+TRANSFORMS_TURNED_KEY = "exif_orientation_applied"  # of a frame, our own: its photograph was turned upright
 Similarity = tuple[NDArray[np.float64], NDArray[np.float64], float]  # rotation, shift, scale
 OPENGL_TO_OPENCV_AXES = np.diag([1.0, -1.0, -1.0])  # OpenGL axes to OpenCV axes
 
@@ -166,7 +167,8 @@ def _make_entry(top: Mapping[str, Any], own: Any, number: int, path: Path, undo:
         axes = OPENGL_TO_OPENCV_AXES @ (rotation.T @ pose[:, :3]).T
         centre = rotation.T @ (pose[:, 3] / scale - shift)
     mask = mask and mask.replace("\\", "/")
-    return Entry(file.replace("\\", "/"), frame.label, intrinsics, axes, centre, lens, mask)
+    stored = frame.get(TRANSFORMS_TURNED_KEY) is not True
+    return Entry(file.replace("\\", "/"), frame.label, intrinsics, axes, centre, lens, mask, stored=stored)
 
 
 def _read_applied_transform(top: Mapping[str, Any], path: Path) -> Similarity:

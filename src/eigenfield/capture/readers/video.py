@@ -161,7 +161,21 @@ def _decode_frames(path: Path, frame: int | float) -> Iterator[av.VideoFrame]:
 
 def _to_rgb(frame: av.VideoFrame) -> NDArray[np.uint8]:
     pixels = _yuv420_to_rgb(frame) if frame.format.name in ("yuv420p", "yuvj420p") else frame.to_ndarray(format="rgb24")
-    return np.ascontiguousarray(np.rot90(pixels, round(frame.rotation / 90)))
+    return np.ascontiguousarray(_upright(pixels, frame))
+
+
+def _upright(pixels: NDArray[np.uint8], frame: av.VideoFrame) -> NDArray[np.uint8]:
+    """The picture as its display matrix shows it: turned by quarters, mirrored or both.
+
+    A stored point (x, y) is shown at (a x + c y, b x + d y); the matrix begins a b u c d (ISO/IEC 14496-12, 6.2.2).
+    """
+    found = frame.side_data.get("DISPLAYMATRIX")
+    if found is None:
+        return pixels
+    a, b, _, c, d = np.frombuffer(found, np.int32)[:5].astype(np.int64).tolist()
+    if abs(b) + abs(c) > abs(a) + abs(d):  # x is shown along y
+        pixels, a, d = pixels.swapaxes(0, 1), c, b
+    return pixels[:: -1 if d < 0 else 1, :: -1 if a < 0 else 1]
 
 
 def _yuv420_to_rgb(frame: av.VideoFrame) -> NDArray[np.uint8]:

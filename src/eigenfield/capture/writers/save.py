@@ -37,8 +37,8 @@ def save_calibration(
 ) -> None:
     """Write cameras into a folder: `transforms.json` (nerfstudio, instant-ngp) and `sparse/0` (COLMAP, binary).
 
-    `open_capture` reads both forms back to the same cameras. If COLMAP has no model for a lens, `sparse` is left out,
-    with a warning. Skew is refused.
+    `open_capture` reads both forms back to the same cameras. If COLMAP has no model for a lens, or EXIF mirrors a
+    photograph, `sparse` is left out, with a warning. Skew is refused.
 
     Args:
         light_field: The cameras.
@@ -92,7 +92,10 @@ def _make_files(light_field: LightField, place: Path, points: SparsePoints | Non
     files = {TRANSFORMS_FILE: (json.dumps(document, indent=1, allow_nan=False) + "\n").encode()}
     model = colmap_model(light_field, points)
     if model is None:
-        log.warning("%s: COLMAP has no model for the lens: only %s is written", place, TRANSFORMS_FILE)
+        log.warning(
+            "%s: COLMAP has no model for the lens, or for photographs that EXIF mirrors: only %s is written",
+            place, TRANSFORMS_FILE,
+        )  # fmt: skip
     else:
         files |= {f"{COLMAP_MODEL_FOLDER}/{name}": data for name, data in model.items()}
     if points is not None:
