@@ -110,7 +110,7 @@ FORMATS = (
 # files that a folder does not hold by chance: if no reader claims one of these, it is damaged or incomplete
 CALIBRATION_PATTERNS = (
     "transforms.json", "poses_bounds.npy", "*_par.txt", "*.camera", "bundle.out", "bundle/bundle.out", "cameras.xml",
-    "sparse/0/images.*", "sparse/0/cameras.*", "sparse/images.*", "sparse/cameras.*", "*_P.txt",
+    "sparse/[0-9]*/images.*", "sparse/[0-9]*/cameras.*", "sparse/images.*", "sparse/cameras.*", "*_P.txt",
 )  # fmt: skip
 FORMATS_BY_NAME = {row.name: row for row in FORMATS}
 
