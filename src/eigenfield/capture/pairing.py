@@ -15,6 +15,7 @@ import numpy as np
 
 from eigenfield.capture.calibration import Calibration, Entry, escape_name, or_error
 from eigenfield.capture.duplicates import describe_duplicates, find_duplicates
+from eigenfield.capture.far import move_to_origin
 from eigenfield.capture.lightfield import LightField, View
 from eigenfield.capture.locate import PhotographFinder, photographs_in, with_masks
 from eigenfield.capture.messages import describe, natural_key
@@ -42,6 +43,7 @@ def pair_photographs(read: Calibration, root: Path, *, apart: bool, masks: Path 
     Raises:
         CaptureError: As `open_capture` does.
     """
+    read, origin = move_to_origin(read)
     base = read.path if read.path.is_dir() else read.path.parent
     finder = PhotographFinder(root, base, apart)
     log.info("%s: %d calibration entries", read.path, len(read.entries))
@@ -73,7 +75,7 @@ def pair_photographs(read: Calibration, root: Path, *, apart: bool, masks: Path 
             path=root,
             remedy="check that the photographs lie where the calibration says, or name it with --calibration",
         )
-    return LightField(root, _with_unique_names(views), tuple(problems), read.format)
+    return LightField(root, _with_unique_names(views), tuple(problems), read.format, origin=origin)
 
 
 def _match_entries(

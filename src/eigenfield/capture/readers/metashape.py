@@ -10,7 +10,7 @@ appendix "Camera models": fx = f + b1, fy = f, skew b2; **p1 and p2 are exchange
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from xml.etree.ElementTree import Element
@@ -53,7 +53,6 @@ METASHAPE_LENS_MODELS = {
 METASHAPE_PARAMETERS = {
     "f", "fx", "fy", "cx", "cy", "b1", "b2", "skew", "k1", "k2", "k3", "k4", "p1", "p2", "p3", "p4"
 }  # fmt: skip
-METASHAPE_FAR_EXTENTS = 1000.0  # cameras farther from the origin are shifted to it, because a file keeps float32
 METASHAPE_ROTATION_TOLERANCE = 1e-4
 
 
@@ -103,8 +102,7 @@ def read_metashape(path: Path) -> Calibration:
         return _make_entry(camera, lenses[number], _frame_of(camera, frames), path)
 
     entries, errors = read_each(make_entry, usable)
-    entries, moved = _shift_to_origin(entries)
-    return Calibration(path, "metashape", entries, errors, (*problems, *left_out, *moved))
+    return Calibration(path, "metashape", entries, errors, (*problems, *left_out))
 
 
 def _find_chunk(root: Element, path: Path) -> tuple[Element, list[str]]:
@@ -212,24 +210,6 @@ def _make_entry(
         centre = frame.scale * (frame.rotation @ matrix[:3, 3]) + frame.shift
     check_finite([centre], label, path)
     return Entry(name.replace("\\", "/"), label, sensor[0], axes.T, centre, sensor[1], stored=True)
-
-
-def _shift_to_origin(entries: tuple[Entry, ...]) -> tuple[tuple[Entry, ...], list[str]]:
-    """Shift georeferenced cameras, millions of metres from the origin, to it: there float32 resolves half metres."""
-    if len(entries) < 2:
-        return entries, []
-    centres = np.array([entry.centre for entry in entries])
-    middle = centres.mean(axis=0)
-    extent = float(np.ptp(centres, axis=0).max())
-    if not 0 < extent * METASHAPE_FAR_EXTENTS < np.abs(middle).max():
-        return entries, []
-    shift = np.round(middle)
-    moved = tuple(replace(entry, centre=entry.centre - shift) for entry in entries)
-    where = ", ".join(f"{-v:.0f}" for v in shift)
-    return moved, [
-        f"the cameras stand {np.linalg.norm(middle):.3g} units from the origin (georeferenced) and were moved by "
-        f"({where}): a mesh from the same project must be moved alike"
-    ]
 
 
 def _read_calibration(sensor: Element | None, number: str, path: Path) -> tuple[Intrinsics, Lens | None]:
