@@ -10,7 +10,7 @@ from eigenfield.capture.arrangement import Arrangement, OpenOptions
 from eigenfield.capture.calibration import Calibration, escape_name
 from eigenfield.capture.messages import list_names
 from eigenfield.capture.readers import colmap, transforms
-from eigenfield.capture.readers.bundler import find_bundler, read_bundler
+from eigenfield.capture.readers.bundler import find_bundler, find_unlisted, read_bundler
 from eigenfield.capture.readers.folder import find_photographs, read_photographs
 from eigenfield.capture.readers.grid_names import find_grid_names, read_grid_names
 from eigenfield.capture.readers.hci import find_hci, read_hci
@@ -172,8 +172,16 @@ def _ambiguous_error(path: Path, titles: str, rows: list[Format]) -> CaptureErro
 
 
 def _describe_unread(folder: Path) -> list[str]:
-    found = [_relative_name(path, folder) for pattern in CALIBRATION_PATTERNS for path in sorted(folder.glob(pattern))]
-    return [f"{list_names(found)}: named as a calibration, but damaged or incomplete, and not read"] if found else []
+    unlisted = find_unlisted(folder)
+    paths = [path for pattern in CALIBRATION_PATTERNS for path in sorted(folder.glob(pattern)) if path != unlisted]
+    found = [_relative_name(path, folder) for path in paths]
+    lines = [f"{list_names(found)}: named as a calibration, but damaged or incomplete, and not read"] if found else []
+    if unlisted is not None:
+        name = _relative_name(unlisted, folder)
+        lines.append(
+            f"{name}: a Bundler file without the list of its photographs, and not read; put list.txt beside it"
+        )
+    return lines
 
 
 def _find_claims(folder: Path, formats: tuple[Format, ...]) -> list[Claim]:
