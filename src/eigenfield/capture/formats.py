@@ -42,7 +42,7 @@ class Format:
         read_cameras: From what `find` returned and the folder of the photographs to the calibration.
         read_names: From what `find` returned and the caller's options to the arrangement.
         endings: Of file names that may be named directly as a calibration of this format.
-        uses: Those of "grid" and "frame" that the reader uses.
+        uses: Those of "grid", "frame" and "pattern" that the reader uses.
         cameras: Whether it may yield cameras at all.
     """
 
@@ -101,7 +101,7 @@ FORMATS = (
                  "grid", cameras=True),
     _name_format("hci", "HCI 4D benchmark (input_CamNNN, row-major)", find_hci, read_hci, "grid", cameras=True),
     _name_format("stanford", "Stanford archive (out_RR_CC_V_U: row, column)", find_stanford, read_stanford, "grid"),
-    _name_format("grid", "grid names (*_RR_CC: row, column)", find_grid_names, read_grid_names, "grid"),
+    _name_format("grid", "grid names (*_RR_CC: row, column)", find_grid_names, read_grid_names, "grid", "pattern"),
     _name_format("numbered", "numbered frames with --grid", lambda folder: None, read_numbered, "grid",
                  rank=RANK_ON_REQUEST),  # it must be asked for
     _name_format("video", "one video a camera", find_videos, read_videos, "frame", rank=RANK_ANY),
