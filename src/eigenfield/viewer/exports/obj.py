@@ -173,7 +173,7 @@ def _mesh(scene: Scene, material: str) -> bytes:
     lines += [f"vt {u!r} {1 - v!r}" for u, v in mesh.uv.astype(np.float64).tolist()]
     lines += ["usemtl mean", "s off"]
     lines += [f"f {a}/{a} {b}/{b} {c}/{c}" for a, b, c in (mesh.faces + 1).tolist()]
-    return ("\n".join(lines) + "\n").encode("ascii")
+    return ("\n".join(lines) + "\n").encode()
 
 
 def _material(scene: Scene, picture: str) -> bytes:
