@@ -11,6 +11,7 @@ from eigenfield.capture.calibration import Calibration, escape_name
 from eigenfield.capture.messages import list_names
 from eigenfield.capture.readers import colmap, transforms
 from eigenfield.capture.readers.bundler import find_bundler, find_unlisted, read_bundler
+from eigenfield.capture.readers.deepview import DEEPVIEW_FILE, find_deepview, read_deepview
 from eigenfield.capture.readers.folder import find_photographs, read_photographs
 from eigenfield.capture.readers.grid_names import find_grid_names, read_grid_names
 from eigenfield.capture.readers.hci import find_hci, read_hci
@@ -21,6 +22,7 @@ from eigenfield.capture.readers.numbered import read_numbered
 from eigenfield.capture.readers.opencv import find_opencv, read_opencv
 from eigenfield.capture.readers.positions import find_positions, read_positions
 from eigenfield.capture.readers.projections import find_projections, read_projections
+from eigenfield.capture.readers.realitycapture import find_realitycapture, read_realitycapture
 from eigenfield.capture.readers.stanford import find_stanford, read_stanford
 from eigenfield.capture.readers.strecha import find_strecha, read_strecha
 from eigenfield.capture.readers.video import find_videos, read_videos
@@ -95,6 +97,8 @@ FORMATS = (
     _camera_format("bundler", "Bundler bundle.out", find_bundler, _ignore_root(read_bundler), ".out"),
     _camera_format("metashape", "Agisoft Metashape XML", find_metashape, _ignore_root(read_metashape), ".xml"),
     _camera_format("opencv", "OpenCV YAML, XML or JSON", find_opencv, read_opencv, ".yml", ".yaml", ".xml"),
+    _camera_format("realitycapture", "RealityCapture CSV", find_realitycapture, read_realitycapture, ".csv"),
+    _camera_format("deepview", "DeepView models.json", find_deepview, _ignore_root(read_deepview)),
     _camera_format("projections", "3x4 projection matrices", find_projections, _ignore_root(read_projections), "_p.txt",
                    ".p"),
     _name_format("positions", "parallel cameras in names (_RR_CC_A_B_LENS_SENSOR)", find_positions, read_positions,
@@ -199,6 +203,8 @@ def _relative_name(found: Path, folder: Path) -> str:
 
 def claim_of_file(path: Path, formats: tuple[Format, ...]) -> Claim:
     """The format of a calibration that is named as a file; CaptureError `calibration-unknown`, `format-ambiguous`."""
+    if len(formats) > 1 and path.name == DEEPVIEW_FILE and find_deepview(path.parent) == path:
+        return Claim(FORMATS_BY_NAME["deepview"], path)
     if len(formats) > 1 and path.suffix.lower() == ".json":
         return Claim(FORMATS_BY_NAME["transforms"], path)
     if FORMATS_BY_NAME["colmap"] in formats and path.stem in ("cameras", "images") and colmap.is_model(path.parent):

@@ -15,6 +15,7 @@ from eigenfield.capture.messages import list_names
 from eigenfield.capture.pairing import pair_photographs
 from eigenfield.capture.photoset import Capture, PhotoSet
 from eigenfield.capture.readers.grid_names import compile_pattern
+from eigenfield.capture.readers.video import is_video_rig, read_videos
 from eigenfield.core.errors import CaptureError, OptionError
 
 StrPath = str | os.PathLike[str]
@@ -134,12 +135,14 @@ class _Source:
         root: Folder of the photographs.
         apart: The calibration was named apart from the photographs.
         options: The caller's.
+        videos: The cameras are of videos, one a camera.
     """
 
     claim: Claim
     root: Path
     apart: bool
     options: OpenOptions
+    videos: bool
 
 
 def _find_source(
@@ -175,8 +178,9 @@ def _find_source(
             return None
         if claim.format.read_cameras is not None:
             root = photograph_root(root, claim.found)
-    _refuse_unused(claim, options)
-    return _Source(claim, root, calibration is not None, options)
+    videos = claim.format.read_cameras is not None and is_video_rig(root)
+    _refuse_unused(claim, replace(options, frame=None) if videos else options)
+    return _Source(claim, root, calibration is not None, options, videos)
 
 
 def _restrict_formats(row: Format, formats: tuple[Format, ...]) -> tuple[Format, ...]:
@@ -226,9 +230,13 @@ def _open_source(source: _Source, masks: StrPath | None, strict: bool) -> Captur
     folder = None if masks is None else Path(masks)
     row = source.claim.format
     if row.read_cameras is not None:
-        read = row.read_cameras(source.claim.found, source.root)
-        read = replace(read, problems=(*source.claim.problems, *read.problems))
-        return pair_photographs(read, source.root, apart=source.apart, masks=folder, strict=strict)
+        root, lines = source.root, source.claim.problems
+        if source.videos:
+            frames = read_videos(root, source.options)
+            root, lines = frames.files[0].parent, (*lines, *frames.problems)
+        read = row.read_cameras(source.claim.found, root)
+        read = replace(read, problems=(*lines, *read.problems))
+        return pair_photographs(read, root, apart=source.apart, masks=folder, strict=strict)
     arrangement = _read_arrangement(source)
     if arrangement.calibration is None:
         return make_photo_set(arrangement, source.root, masks=folder, strict=strict)

@@ -109,8 +109,9 @@ _place_options = together(
     masks_option,
     click.option("--format", metavar="NAME",
                  help="What the capture is, where it may be read in several ways: "
-                      "transforms, colmap, llff, middlebury, strecha, bundler, metashape, opencv, projections, "
-                      "positions, hci, stanford, grid, numbered, video or folder."),
+                      "transforms, colmap, llff, middlebury, strecha, bundler, metashape, opencv, "
+                      "realitycapture, deepview, projections, positions, hci, stanford, grid, numbered, video "
+                      "or folder."),
     grid_options,
 )  # fmt: skip
 

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from eigenfield.capture.arrangement import Arrangement, OpenOptions, require_photographs
-from eigenfield.capture.locate import files_named
+from eigenfield.capture.locate import IMAGES_FOLDER, files_named, photographs_in
 from eigenfield.capture.messages import natural_key
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.runtime.parallel import parallel_map
@@ -52,6 +52,12 @@ def videos_of(folder: Path) -> list[Path]:
 def find_videos(folder: Path) -> Path | None:
     """The folder, if it or its `videos/` holds at least two videos."""
     return folder if len(videos_of(folder)) >= VIDEO_MIN_FILES else None
+
+
+def is_video_rig(folder: Path) -> bool:
+    """Whether a folder holds videos where other captures have photographs."""
+    none = not photographs_in(folder) and not photographs_in(folder / IMAGES_FOLDER)
+    return none and find_videos(folder) is not None
 
 
 def parse_frame(frame: int | str | None) -> int | float:
