@@ -240,7 +240,8 @@ def _read_lens(frame: _Frame) -> Lens | None:
             f"{frame.label} has the camera model {model!r}, which is not read",
             f"undistort it to {', '.join(TRANSFORMS_PERSPECTIVE_MODELS[:5])} or {TRANSFORMS_FISHEYE_MODELS[0]}",
         )
-    unread = [key for key in TRANSFORMS_UNREAD_KEYS if frame.get(key)]
+    strange = (frame.own.keys() | frame.top.keys()).intersection(TRANSFORMS_UNREAD_KEYS)
+    unread = sorted(key for key in strange if frame.get(key))
     k1, k2, k3, k4, p1, p2 = _read_coefficients(frame)
     k5, k6 = (frame.number(key) or 0.0 for key in ("k5", "k6"))
     if not all(map(math.isfinite, (k1, k2, k3, k4, k5, k6, p1, p2))):
