@@ -11,7 +11,7 @@ from unittest import mock
 
 import pytest
 
-from eigenfield.proxy.meshes.obj import read_obj
+from eigenfield.proxy import read_mesh
 from support.captures import write_capture
 from support.program import call
 
@@ -70,7 +70,7 @@ def test_verbs_that_write_files(capture, tmp_path):
         line.split(maxsplit=1)[1] for line in (tmp_path / library).read_text(encoding="utf-8").splitlines()
         if line.startswith("map_Kd")
     ]  # fmt: skip
-    assert (tmp_path / picture).is_file() and len(read_obj((tmp_path / "写真.obj").read_bytes())[1])
+    assert (tmp_path / picture).is_file() and len(read_mesh(tmp_path / "写真.obj").faces)
     assert said("cp1252", "render", scene, "--camera", PHOTOGRAPH, "-o", tmp_path / "bild ö.png")[0] == 0
     assert said("cp1252", "export", scene, "-o", tmp_path / "シーン.html")[0] == 0
 
