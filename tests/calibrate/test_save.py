@@ -11,6 +11,7 @@ import pycolmap
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from PIL import Image
 
 from eigenfield.capture import Lens, LightField, View, open_capture
 from eigenfield.capture.points import SparsePoints
@@ -90,6 +91,57 @@ def test_both_forms_are_read_back_to_the_same_cameras(name, tmp_path):
     save_calibration(field, tmp_path / "out", some_points(4))
     same(open_capture(tmp_path / "photos", calibration=tmp_path / "out" / "transforms.json"), field)
     same(open_capture(tmp_path / "photos", calibration=tmp_path / "out" / "sparse" / "0"), field)
+
+
+@pytest.mark.parametrize("orientation", [1, 3, 6, 8])
+@pytest.mark.parametrize("name", ["none", "brown k3", "rational", "fisheye"])
+def test_photographs_that_exif_turns_stand_in_each_form_as_its_readers_take_them(orientation, name, tmp_path):
+    lens = LENSES[name]
+    if lens is not None and name != "fisheye":
+        lens = Lens(lens.model, tuple(c * (4 if 1 < i < 4 else 1) for i, c in enumerate(lens.coefficients)))
+    views = []
+    (tmp_path / "photos").mkdir()
+    exif = Image.Exif()
+    exif[0x0112] = orientation
+    pixels = np.random.default_rng(orientation).uniform(60, 200, (4, 5, 3)).astype(np.uint8)
+    for index in range(3):
+        stored = Image.fromarray(pixels).resize((48, 40), Image.Resampling.BICUBIC)
+        width, height = (40, 48) if orientation > 4 else (48, 40)
+        stored.save(tmp_path / "photos" / f"v{index}.png", exif=exif)
+        camera = turned(Camera(np.array([[50, 0, 21], [0, 47, 23], [0, 0, 1.0]]), np.eye(3), np.zeros(3), 1, 1), index)
+        camera = replace(camera, width=width, height=height)
+        views.append(View(f"v{index}.png", tmp_path / "photos" / f"v{index}.png", camera, lens))
+    field = LightField(tmp_path / "photos", tuple(views), (), "test")
+    points = replace(some_points(3), pixels=np.tile([11.0, 5.0], (14, 1)))
+    save_calibration(field, tmp_path / "out", points)
+    same(open_capture(tmp_path / "photos", calibration=tmp_path / "out" / "transforms.json"), field)
+
+    back = {1: 0, 3: 2, 6: 1, 8: -1}[orientation]  # quarter turns from the upright picture to the stored one
+    of_colmap = open_capture(tmp_path / "photos", calibration=tmp_path / "out" / "sparse" / "0")
+    for index, view in enumerate(of_colmap.views):
+        upright, stored = field.photograph(index), of_colmap.photograph(index)
+        np.testing.assert_allclose(np.rot90(upright.pixels, back), stored.pixels, atol=2e-5)
+        if upright.mask is not None and stored.mask is not None:
+            assert np.mean(np.rot90(upright.mask, back) != stored.mask) < 0.01  # pixels on the rim fall either way
+        points_seen = view.camera.R.T @ np.array([[0.1, -0.2, 3.0], [0.3, 0.2, 2.0]]).T + view.camera.centre[:, None]
+        (x, y), (u, v) = field.views[index].camera.project(points_seen.T)[0].T, view.camera.project(points_seen.T)[0].T
+        width, height = field.sizes[index]
+        at = {1: (x, y), 3: (width - x, height - y), 6: (y, width - x), 8: (height - y, x)}[orientation]
+        np.testing.assert_allclose((u, v), at, atol=1e-9)
+    seen = pycolmap.Reconstruction(str(tmp_path / "out" / "sparse" / "0")).images[1].points2D[0].xy
+    width, height = field.sizes[0]
+    at = {1: (11, 5), 3: (width - 11, height - 5), 6: (5, width - 11), 8: (height - 5, 11)}[orientation]
+    np.testing.assert_allclose(seen, at, atol=1e-9)
+
+
+def test_mirrored_photographs_have_no_camera_in_colmap(tmp_path, caplog):
+    field = light_field(tmp_path / "photos", [None] * 3)
+    exif = Image.Exif()
+    exif[0x0112] = 2
+    Image.open(field.views[1].path).save(field.views[1].path, exif=exif)
+    save_calibration(field, tmp_path / "out")
+    assert not (tmp_path / "out" / "sparse").exists() and "COLMAP" in caplog.text
+    same(open_capture(tmp_path / "photos", calibration=tmp_path / "out" / "transforms.json"), field)
 
 
 def test_lenses_that_differ_stand_in_each_frame(tmp_path):

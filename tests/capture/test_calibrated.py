@@ -18,7 +18,7 @@ from eigenfield.capture.readers.strecha import find_strecha, read_strecha
 from eigenfield.core.errors import CaptureError
 from support import calibrations as write
 from support.calibrations import CUBE, HEIGHT, NAMES, WIDTH, stations
-from support.readers import FINDERS, FORMATS, WRITERS, check_cube
+from support.readers import CENTRED, FINDERS, FORMATS, WRITERS, check_cube
 
 
 def test_every_format_of_calibrations_has_a_writer():
@@ -33,7 +33,7 @@ def test_a_cube_projects_where_it_must(tmp_path, name):
     assert FINDERS[FORMATS.get(name, name)](tmp_path) == path
     calibration = read(path)
     assert calibration.format == FORMATS.get(name, name)
-    check_cube(calibration, stations(name in ("llff", "bundler"), name in ("llff", "bundler")))
+    check_cube(calibration, stations(name in CENTRED, name in CENTRED))
 
 
 @pytest.mark.parametrize("name", list(WRITERS))
@@ -71,7 +71,7 @@ def test_a_missing_file_is_named(tmp_path, name):
 @pytest.mark.parametrize("apart", [False, True])
 def test_open_capture_pairs_it_with_photographs(tmp_path, name, apart):
     """As people call it: on the folder, or with --calibration and the photographs elsewhere."""
-    square = name in ("llff", "bundler")
+    square = name in CENTRED
     path = WRITERS[name][0](tmp_path / "capture" if apart else tmp_path)
     write.photographs(tmp_path / "images")
     capture = open_capture(tmp_path, calibration=path) if apart else open_capture(tmp_path)

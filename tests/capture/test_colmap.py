@@ -7,13 +7,14 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+import pycolmap
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image
 
 from eigenfield.capture import open_capture
-from eigenfield.capture.photographs.lens import Lens
+from eigenfield.capture.photographs.lens import Lens, source_positions
 from eigenfield.capture.readers.colmap import COLMAP_MODELS, read_colmap
 from eigenfield.core.errors import CaptureError
 
@@ -25,6 +26,11 @@ PARAMETERS = {
     "RADIAL": (40.0, 15.5, 12.25, -0.1, 0.02),
     "OPENCV": (40.0, 41.0, 15.5, 12.25, -0.1, 0.02, 0.003, -0.004),
     "OPENCV_FISHEYE": (40.0, 41.0, 15.5, 12.25, -0.1, 0.02, 0.003, -0.004),
+    "FULL_OPENCV": (40.0, 41.0, 15.5, 12.25, -0.1, 0.02, 0.003, -0.004, 0.01, 0.05, -0.02, 0.003),
+    "SIMPLE_RADIAL_FISHEYE": (40.0, 15.5, 12.25, -0.1),
+    "RADIAL_FISHEYE": (40.0, 15.5, 12.25, -0.1, 0.02),
+    "SIMPLE_FISHEYE": (40.0, 15.5, 12.25),
+    "FISHEYE": (40.0, 41.0, 15.5, 12.25),
 }
 LENSES = {
     "SIMPLE_PINHOLE": None,
@@ -33,6 +39,11 @@ LENSES = {
     "RADIAL": Lens("brown", (-0.1, 0.02, 0, 0, 0)),
     "OPENCV": Lens("brown", (-0.1, 0.02, 0.003, -0.004, 0)),
     "OPENCV_FISHEYE": Lens("fisheye", (-0.1, 0.02, 0.003, -0.004)),
+    "FULL_OPENCV": Lens("rational", (-0.1, 0.02, 0.003, -0.004, 0.01, 0.05, -0.02, 0.003)),
+    "SIMPLE_RADIAL_FISHEYE": Lens("fisheye", (-0.1, 0, 0, 0)),
+    "RADIAL_FISHEYE": Lens("fisheye", (-0.1, 0.02, 0, 0)),
+    "SIMPLE_FISHEYE": Lens("fisheye", (0, 0, 0, 0)),
+    "FISHEYE": Lens("fisheye", (0, 0, 0, 0)),
 }
 NAMES = ("a photo.png", "left/b.png", "left/deep er/c.png", "ü.png")
 
@@ -44,11 +55,12 @@ def pose(index: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def cameras_bin(model: str = "PINHOLE", number: int | None = None, width: int = WIDTH) -> bytes:
-    p = PARAMETERS[model]
-    head = struct.pack("<Q", 1) + struct.pack(
-        "<IiQQ", 7, COLMAP_MODELS[model][0] if number is None else number, width, HEIGHT
-    )
-    return head + struct.pack(f"<{len(p)}d", *p)
+    return struct.pack("<Q", 1) + camera_record(7, PARAMETERS[model], number, model, width)
+
+
+def camera_record(camera: int, p: tuple[float, ...], number: int | None = None, model="", width: int = WIDTH) -> bytes:
+    number = COLMAP_MODELS[model][0] if number is None else number
+    return struct.pack("<IiQQ", camera, number, width, HEIGHT) + struct.pack(f"<{len(p)}d", *p)
 
 
 def images_bin(points: int = 2, names: tuple[str, ...] = NAMES) -> bytes:
@@ -105,7 +117,7 @@ def test_models_and_poses(tmp_path, binary, model):
     light_field = open_capture(tmp_path)
     assert light_field.format == "colmap" and light_field.problems == ()
     assert light_field.names == ("a photo.png", "b.png", "c.png", "ü.png")
-    fy = 40.0 if model in ("SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL") else 41.0
+    fy = 40.0 if PARAMETERS[model][1] == 15.5 else 41.0
     for i, view in enumerate(light_field.views):
         (w, *xyz), t = pose(i)
         assert np.allclose(view.camera.K, [[40, 0, 15.5], [0, fy, 12.25], [0, 0, 1]])
@@ -159,10 +171,64 @@ def test_empty_lines_of_points(tmp_path):
     assert len(open_capture(capture(tmp_path, cameras_txt(), images_txt("")))) == 4
 
 
-@pytest.mark.parametrize("number", [7, 10, 17, 999, -1])
+@pytest.mark.parametrize("model", PARAMETERS)
+def test_lenses_are_those_of_colmap(tmp_path, model):
+    """Where COLMAP itself puts what the pinhole picture's pixels show."""
+    (entry,) = read_colmap(capture(tmp_path, cameras_bin(model), images_bin(names=NAMES[:1])) / "sparse" / "0").entries
+    K = entry.intrinsics.matrix(WIDTH, HEIGHT)
+    of_colmap = pycolmap.Camera(model=model, width=WIDTH, height=HEIGHT, params=PARAMETERS[model])
+    rays = [[(x + 0.5 - K[0, 2]) / K[0, 0], (y + 0.5 - K[1, 2]) / K[1, 1], 1] for y in range(24) for x in range(32)]
+    theirs = of_colmap.img_from_cam(np.array(rays)).reshape(HEIGHT, WIDTH, 2)
+    lens = entry.lens or Lens("brown", (0.0,) * 5)
+    x, y, _ = source_positions(K, lens, WIDTH, HEIGHT)
+    np.testing.assert_allclose(np.stack([x, y], axis=2) + 0.5, theirs, atol=1e-4)
+
+
+UNREAD = {7: ("FOV", 5), 10: ("THIN_PRISM_FISHEYE", 12), 11: ("RAD_TAN_THIN_PRISM_FISHEYE", 16), 12: (
+    "SIMPLE_DIVISION", 4), 13: ("DIVISION", 5), 16: ("EUCM", 6), 17: ("EQUIRECTANGULAR", 2)}  # fmt: skip
+
+
+@pytest.mark.parametrize("number", [*UNREAD, 999, -1])
 def test_other_models_are_refused_by_name(tmp_path, number):
-    error = refused("camera-model", capture(tmp_path, cameras_bin(number=number), images_bin()))
-    assert {7: "FOV", 10: "THIN_PRISM_FISHEYE", 17: "EQUIRECTANGULAR"}.get(number, str(number)) in str(error)
+    name, count = UNREAD.get(number, (str(number), 4))
+    cameras = struct.pack("<Q", 1) + camera_record(7, (9.0,) * count, number)
+    error = refused("camera-model", capture(tmp_path, cameras, images_bin()))
+    assert name in str(error)
+
+
+@pytest.mark.parametrize("binary", [True, False])
+@pytest.mark.parametrize("number", UNREAD)
+def test_a_camera_of_another_model_costs_its_own_views_alone(tmp_path, number, binary):
+    """A panorama between photographs; whether an image uses it or not, the others are read."""
+    name, count = UNREAD[number]
+    if binary:
+        foreign = camera_record(3, (9.0,) * count, number)
+        cameras = struct.pack("<Q", 2) + foreign + camera_record(7, PARAMETERS["PINHOLE"], model="PINHOLE")
+        mixed = images_bin().replace(struct.pack("<I", 7) + b"left/b.png", struct.pack("<I", 3) + b"left/b.png")
+        unused = images_bin()
+    else:
+        cameras = cameras_txt() + f"3 {name} 2000 1000 {' '.join(['9'] * count)}\n"
+        mixed, unused = images_txt().replace("7 left/b.png", "3 left/b.png"), images_txt()
+    light_field = open_capture(capture(tmp_path / "unused", cameras, unused))
+    assert len(light_field) == 4 and not light_field.problems
+    light_field = open_capture(capture(tmp_path / "used", cameras, mixed))
+    assert light_field.names == ("a photo.png", "c.png", "ü.png")
+    (line,) = [problem for problem in light_field.problems if "camera 3" in problem]
+    assert f"1 image: left/b.png) has the camera model {name}, which is not read" in line
+
+
+@pytest.mark.parametrize("inner", ["sparse", "colmap/sparse"])
+def test_the_model_of_most_images_is_read_and_the_others_named(tmp_path, inner):
+    """COLMAP begins a model anew where photographs do not hang together; the first need not be the largest."""
+    capture(tmp_path, cameras_txt(), images_txt()[: images_txt().index("\n3 ") + 1], f"{inner}/0")
+    capture(tmp_path, cameras_bin(), images_bin(), f"{inner}/1")
+    capture(tmp_path, cameras_bin(), images_bin()[:90], f"{inner}/2")  # damaged
+    capture(tmp_path, cameras_bin(), images_bin(names=NAMES[:3]), f"{inner}/10")
+    light_field = open_capture(tmp_path)
+    assert len(light_field) == 4
+    (line,) = light_field.problems
+    assert "sparse/1 is read" in line and "sparse/0 (2 images), sparse/2 (damaged), sparse/10 (3 images)" in line
+    assert len(open_capture(tmp_path / "images", calibration=tmp_path / inner / "10")) == 3
 
 
 def test_other_models_are_refused_in_text_too(tmp_path):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import re
 import shutil
 from pathlib import Path
 
@@ -25,6 +24,7 @@ from eigenfield.capture import (
     open_photographs,
     read_header,
 )
+from eigenfield.capture.format_table import FORMAT_NOTES, table_of_formats
 from eigenfield.capture.photographs.exif import read_focal_length
 from eigenfield.core.errors import CaptureError, EigenfieldError
 from eigenfield.core.observations import select_cameras
@@ -55,8 +55,11 @@ def test_every_row_is_documented_and_offered(run):
     page = Path(eigenfield.__file__).parents[2] / "docs" / "captures.md"
     if page.exists():  # not in an installed package
         text = page.read_text(encoding="utf-8")
-        table = text.split("\n## Formats\n\n")[1].split("\n\n")[0]
-        assert re.findall(r"^\| `(\w+)` \|", table, re.MULTILINE) == [row.name for row in FORMATS]
+        table = table_of_formats()
+        assert text.split("\n## Formats\n\n")[1].split("\n\n")[0] == table, (
+            f"docs/captures.md needs this table:\n{table}"
+        )
+    assert list(FORMAT_NOTES) == [row.name for row in FORMATS]
     words = " ".join(run("inspect", "--help").out.split())
     names = [row.name for row in FORMATS]
     assert f": {', '.join(names[:-1])} or {names[-1]}." in words

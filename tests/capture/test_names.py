@@ -7,8 +7,13 @@ import shutil
 import cv2
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from eigenfield.capture import LightField, PhotoSet, open_any, open_photographs
+from eigenfield.capture.arrangement import OpenOptions
+from eigenfield.capture.readers.grid_names import find_grid_names, read_grid_names
+from eigenfield.core.errors import OptionError
 from support.named import CUBE, nodes, places, refused, write
 
 # Stanford
@@ -108,6 +113,89 @@ def test_grid_names(tmp_path, form):
     assert photo_set.format == "grid" and nodes(photo_set) == names
     layout = photo_set.layout
     assert (layout.measured, layout.signs, layout.rectified, layout.exact) == (False, False, None, False)
+
+
+GRID_FORMS = [
+    "x{c}_y{r}", "row{r}_col{c}", "r{r:02d}c{c:02d}", "{r}-{c}", "{r} {c}", "{r} - {c}", "{r}, {c}", "{r}x{c}",
+    "Row {r} Column {c}", "scene (x={c}, y={r})", "scene 7 u{c} v{r} final", "col_{c:03d}-row_{r:03d}",
+    "IMG-Y{r}-X{c}_1", "s{c}t{r}", "view_y-{r}_x-{c}", "max {r} {c}", "take2_x{c}y{r}", "C{c:02d}R{r:02d}",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("form", GRID_FORMS)
+def test_grid_names_as_people_write_them(tmp_path, form):
+    names = {form.format(r=r, c=c) + ".png": (r, c) for r in range(1, 4) for c in range(4)}
+    photo_set = open_any(write(tmp_path, list(names)))
+    assert photo_set.format == "grid" and nodes(photo_set) == names and photo_set.layout.shape == (3, 4)
+    assert not photo_set.problems
+    assert open_any(tmp_path, grid=(3, 4), format="grid").layout.shape == (3, 4)
+    refused("grid-size", tmp_path, grid=(4, 3))
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.data())
+def test_any_words_and_separators_give_the_same_grid(tmp_path_factory, data):
+    """Names made of a head, two words or none, separators, numbers with or without leading zeros, and a tail."""
+    pick = lambda *values: data.draw(st.sampled_from(values))  # noqa: E731
+    row_word, column_word = pick(("row", "col"), ("r", "c"), ("y", "x"), ("v", "u"), ("Row", "Column"), ("", ""))
+    after, between = pick("", "_", " ") if row_word else "", pick("_", "-", " ", ", ", " - ")
+    head, tail, digits = pick("", "scan 12_", "Photo-"), pick("", "_rgb", " (copy)"), pick(1, 2, 3)
+    column_first = bool(row_word) and data.draw(st.booleans())
+    rows = data.draw(st.lists(st.integers(0, 30), min_size=2, max_size=4, unique=True))
+    columns = data.draw(st.lists(st.integers(0, 30), min_size=2, max_size=4, unique=True))
+    names = {}
+    for r in rows:
+        for c in columns:
+            parts = [f"{row_word}{after}{r:0{digits}d}", f"{column_word}{after}{c:0{digits}d}"]
+            names[f"{head}{between.join(parts[::-1] if column_first else parts)}{tail}.png"] = (r, c)
+    folder = tmp_path_factory.mktemp("names")
+    for name in names:
+        (folder / name).touch()
+    assert find_grid_names(folder) == folder
+    read = read_grid_names(folder, OpenOptions())
+    found = zip(read.layout.rows.tolist(), read.layout.columns.tolist(), strict=True)
+    assert dict(zip([path.name for path in read.files], found, strict=True)) == names
+
+
+@pytest.mark.parametrize(("pattern", "form"), [
+    ("view_{row}_{col}.png", "view_{r}_{c}"),
+    ("view_{row}_{col}", "view_{r}_{c}"),
+    ("{col}of{row}*.png", "{c}of{r} take {c}"),
+    ("*[{row}]({col}).PNG", "a.b[{r}]({c})"),
+    ("cam{col}-{row}", "cam{c}-{r}"),
+])  # fmt: skip
+def test_a_pattern_says_row_and_column(tmp_path, pattern, form):
+    names = {form.format(r=r, c=c) + ".png": (r, c) for r in (-1, 0, 1) for c in range(4)}
+    write(tmp_path, [*names, "poster.png"])
+    photo_set = open_any(tmp_path, format="grid", pattern=pattern)
+    assert nodes(photo_set) == names
+    assert photo_set.problems == ("1 photograph is not named like the rest and left out: poster.png",)
+    assert nodes(open_photographs(tmp_path, pattern=pattern)) == names  # a pattern means a grid
+    with pytest.raises(OptionError, match="--pattern means nothing"):
+        open_any(tmp_path, format="folder", pattern=pattern)
+
+
+@pytest.mark.parametrize("pattern", ["", "view.png", "{row}_{row}", "{row}", "{row}_{col}_{col}", "{ROW}_{COL}"])
+def test_patterns_that_are_none(tmp_path, pattern):
+    with pytest.raises(OptionError) as caught:
+        open_any(write(tmp_path, ["0_0.png"]), pattern=pattern)
+    assert caught.value.code == "pattern-unknown"
+
+
+def test_a_pattern_that_no_name_fits(tmp_path):
+    folder = write(tmp_path, [f"a{i}_{j}.png" for i in range(3) for j in range(3)])
+    assert "b{row}_{col}" in str(refused("names-unknown", folder, pattern="b{row}_{col}"))
+
+
+@pytest.mark.parametrize("names", [
+    [f"x{i}.png" for i in range(6)],
+    [f"s1e{i:02d}.png" for i in range(6)],
+    [f"r{i}_x{i}.png" for i in range(6)],  # words of two kinds
+    [f"2021-04-{i:02d} 08.png" for i in range(6)],
+    [f"x{1920 + i}_y{1080 + j}.png" for i in range(3) for j in range(3)],  # pixels, not nodes
+])  # fmt: skip
+def test_words_and_separators_that_are_no_grid(tmp_path, names):
+    assert open_any(write(tmp_path, names)).layout is None
 
 
 @pytest.mark.parametrize("names", [

@@ -7,6 +7,7 @@ import re
 import numpy as np
 import pytest
 
+from eigenfield.capture import open_any, open_capture
 from eigenfield.capture.readers.bundler import find_bundler, read_bundler
 from eigenfield.capture.readers.llff import read_llff
 from eigenfield.capture.readers.middlebury import read_middlebury
@@ -148,6 +149,40 @@ def test_bundler_list_must_agree(tmp_path):
     with pytest.raises(CaptureError) as error:
         read_bundler(path)
     assert error.value.code == "bundler-list"
+
+
+BUNDLER_PLACES = {  # the Bundler file and its list
+    "Bundler's own": ("bundle/bundle.out", "prepare/list.txt"),
+    "beside the photographs": ("bundle.out", "name_list.txt"),
+    "of Metashape": ("model.out", "cameras of today.txt"),
+    "above": ("bundler/scene.out", "photographs.txt"),
+}
+
+
+@pytest.mark.parametrize("name", BUNDLER_PLACES)
+@pytest.mark.parametrize("form", ["./{}", "{} 0 90.0", "C:\\photos of today\\{}", '"D:/a b/{}"'])
+def test_bundler_lists_under_other_names(tmp_path, name, form):
+    path, place = (tmp_path / part for part in BUNDLER_PLACES[name])
+    path.parent.mkdir(parents=True, exist_ok=True)
+    place.parent.mkdir(parents=True, exist_ok=True)
+    write.bundler(tmp_path / "made", stations(True, True)).rename(path)
+    place.write_text("".join(form.format(s.name) + "\n" for s in stations()), encoding="utf-8")
+    for other, text in (("notes.txt", "Four photographs, a0.png is the first.\n\n\n"), ("few.txt", "a0.png\n")):
+        (place.parent / other).write_text(text)
+    write.photographs(tmp_path / "images")
+    light_field = open_capture(tmp_path)
+    assert light_field.format == "bundler" and light_field.names == write.NAMES and not light_field.problems
+    for view, station in zip(light_field.views, stations(True, True), strict=True):
+        assert np.allclose(view.camera.project(write.CUBE)[0], station.pixels(write.CUBE))
+
+
+@pytest.mark.parametrize("file", ["bundle.out", "bundle/bundle.out", "model.out"])
+def test_a_bundler_file_without_its_list_is_named(tmp_path, file):
+    (tmp_path / file).parent.mkdir(exist_ok=True)
+    write.bundler(tmp_path / "made", stations(True, True)).rename(tmp_path / file)
+    write.photographs(tmp_path / "images")
+    (line,) = open_any(tmp_path).problems
+    assert line.startswith(f"{file}: a Bundler file without the list of its photographs") and "list.txt" in line
 
 
 def test_bundler_as_colmap_exports_it(tmp_path):

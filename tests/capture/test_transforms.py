@@ -215,7 +215,7 @@ def test_a_photograph_changed_after_opening_is_noticed(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("camera_size", "turned"), [((30, 40), True), ((40, 30), False), ((60, 80), True), (None, True)]
+    ("camera_size", "turned"), [((30, 40), True), ((40, 30), False), ((60, 80), True), (None, False)]
 )
 def test_orientation_follows_the_cameras_size(tmp_path, camera_size, turned):
     top = document(3, ".jpg")

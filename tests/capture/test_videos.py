@@ -56,12 +56,27 @@ def test_frames_that_are_none(word):
         parse_frame(word)
 
 
-def test_a_video_is_turned_upright(tmp_path):
+# how a stored point (x, y) is shown: a, b, c, d of (a x + c y, b x + d y), and the same of an array
+DISPLAYS = {
+    "as stored": ((1, 0, 0, 1), lambda p: p),
+    "left and right exchanged": ((-1, 0, 0, 1), lambda p: p[:, ::-1]),
+    "upside down and mirrored": ((1, 0, 0, -1), lambda p: p[::-1]),
+    "half a turn": ((-1, 0, 0, -1), lambda p: p[::-1, ::-1]),
+    "a quarter turn clockwise": ((0, 1, -1, 0), lambda p: np.rot90(p, -1)),
+    "a quarter turn back": ((0, -1, 1, 0), lambda p: np.rot90(p, 1)),
+    "rows for columns": ((0, 1, 1, 0), lambda p: p.swapaxes(0, 1)),
+    "rows for columns, both reversed": ((0, -1, -1, 0), lambda p: np.rot90(p, 2).swapaxes(0, 1)),
+}
+
+
+@pytest.mark.parametrize("name", DISPLAYS)
+def test_a_video_is_shown_as_its_display_matrix_says(tmp_path, name):
     write_video(tmp_path / "a.mp4", 3)
     flat = read_frame(tmp_path / "a.mp4", 1)
     data = bytearray((tmp_path / "a.mp4").read_bytes())
     at = data.index(b"tkhd") + 4 + 40  # the matrix of the track header, version 0
-    turn = [0, 0x10000, 0, -0x10000, 0, 0, 0, 0, 0x40000000]  # a quarter turn clockwise
-    data[at : at + 36] = b"".join(v.to_bytes(4, "big", signed=True) for v in turn)
+    (a, b, c, d), shown = DISPLAYS[name]
+    matrix = [a << 16, b << 16, 0, c << 16, d << 16, 0, 0, 0, 1 << 30]
+    data[at : at + 36] = b"".join(v.to_bytes(4, "big", signed=True) for v in matrix)
     (tmp_path / "a.mp4").write_bytes(data)
-    assert np.array_equal(read_frame(tmp_path / "a.mp4", 1), np.rot90(flat, -1))
+    assert np.array_equal(read_frame(tmp_path / "a.mp4", 1), shown(flat))

@@ -22,7 +22,7 @@ from support.scenes import bumpy_square, row_grid
 
 KEYS = {
     "schema", "root", "format", "views", "bytes", "sizes", "files", "distorted", "masks", "array", "problems",
-    "damaged", "cameras", "proxy", "layout", "photographs", "next",
+    "damaged", "origin", "cameras", "proxy", "layout", "photographs", "next",
 }  # fmt: skip
 
 

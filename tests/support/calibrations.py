@@ -6,6 +6,7 @@ library and no reader's inverse takes part: a writer composes its format's numbe
 
 from __future__ import annotations
 
+import json
 import struct
 from dataclasses import dataclass
 from pathlib import Path
@@ -289,3 +290,55 @@ def projections(folder: Path, all_stations, ending="_P.txt", skew=0.0, factors=(
         head = "CONTOUR\n" if ending == ".txt" else ""
         (folder / f"{s.name.removesuffix('.png')}{ending}").write_text(head + text + "\n", encoding="utf-8")
     return folder
+
+
+def deepview(folder: Path, all_stations, kind="perspective", radial=(0.0, 0.0, 0.0), ending="") -> Path:
+    cameras = []
+    for s in all_stations:
+        rows, _ = world_to_camera(s)
+        cameras.append({
+            "name": s.name.removesuffix(".png") + ending, "position": s.eye.tolist(),
+            "orientation": axis_angle(rows).ravel().tolist(), "focal_length": s.fx, "pixel_aspect_ratio": s.fy / s.fx,
+            "principal_point": [s.cx, s.cy], "width": float(WIDTH), "height": float(HEIGHT),
+            "radial_distortion": list(radial), "projection_type": kind,
+        })  # fmt: skip
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / "models.json"
+    path.write_text(json.dumps(cameras), encoding="utf-8")
+    return path
+
+
+def realitycapture(folder: Path, all_stations, lens=None, head="#cameras 4\n", separator=",") -> Path:
+    """Heading clockwise from north, pitch up from straight down, roll to the right, of the directions alone."""
+    columns = [
+        "#name",
+        "x",
+        "y",
+        "alt",
+        "heading",
+        "pitch",
+        "roll",
+        "f",
+        "px",
+        "py",
+        "k1",
+        "k2",
+        "k3",
+        "k4",
+        "t1",
+        "t2",
+    ]
+    lines = [separator.join(columns)]
+    for s in all_stations:
+        up = -s.down
+        heading, pitch = np.degrees(np.arctan2(up[0], up[1])), np.degrees(np.arcsin(up[2]))
+        roll = np.degrees(np.arctan2(-s.right[2], -s.forward[2]))
+        side = max(WIDTH, HEIGHT)
+        values = [*s.eye, heading, pitch, roll, s.fx * 36 / side, (s.cx - WIDTH / 2) / side, (s.cy - HEIGHT / 2) / side]
+        values += [(lens or {}).get(key, 0.0) for key in columns[-6:]]
+        lines.append(separator.join([s.name, *(repr(float(v)) for v in values)]))
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / "alignment.csv"
+    text = "\n".join(lines)
+    path.write_text(head + (text.replace(".", ",").replace(",png", ".png") if separator == ";" else text) + "\n")
+    return path

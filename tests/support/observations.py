@@ -71,6 +71,10 @@ class CalibratedInMemory:
     def metres_per_unit(self) -> None:
         return None
 
+    @property
+    def origin(self) -> np.ndarray:
+        return np.zeros(3)
+
     def bytes(self, index: int) -> int:
         return self.observations.pixels[index].size
 

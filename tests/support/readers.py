@@ -9,11 +9,13 @@ import numpy as np
 from eigenfield.capture import formats
 from eigenfield.capture.photographs.lens import source_positions
 from eigenfield.capture.readers.bundler import read_bundler
+from eigenfield.capture.readers.deepview import read_deepview
 from eigenfield.capture.readers.llff import read_llff
 from eigenfield.capture.readers.metashape import read_metashape
 from eigenfield.capture.readers.middlebury import read_middlebury
 from eigenfield.capture.readers.opencv import read_opencv
 from eigenfield.capture.readers.projections import read_projections
+from eigenfield.capture.readers.realitycapture import read_realitycapture
 from eigenfield.capture.readers.strecha import read_strecha
 from support import calibrations as write
 from support.calibrations import CUBE, HEIGHT, WIDTH, stations
@@ -26,7 +28,14 @@ def write_llff(folder):
     return write.llff(folder, stations(square=True, centred=True))
 
 
+def write_realitycapture(folder):
+    write.photographs(folder / "images")  # whose sizes the CSV does not say
+    return write.realitycapture(folder, stations(True, True))
+
+
 WRITERS = {
+    "deepview": (lambda folder: write.deepview(folder, stations()), read_deepview),
+    "realitycapture": (write_realitycapture, read_realitycapture),
     "llff": (write_llff, read_llff),
     "middlebury": (lambda folder: write.middlebury(folder, stations()), read_middlebury),
     "strecha": (lambda folder: write.strecha(folder / "gt_dense_cameras", stations()), read_strecha),
@@ -37,6 +46,7 @@ WRITERS = {
     "easymocap": (lambda folder: write.easymocap(folder, stations()), read_opencv),
     "projections": (lambda folder: write.projections(folder, stations()), read_projections),
 }
+CENTRED = ("llff", "bundler", "realitycapture")  # without a principal point here, and with square pixels
 FORMATS = {"opencv-xml": "opencv", "easymocap": "opencv"}
 
 

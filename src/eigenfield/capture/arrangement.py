@@ -29,11 +29,13 @@ class OpenOptions:
         grid: (rows, columns) of photographs in row-major order.
         frame: Frame of each video: an index from 0, or seconds ("2.5s").
         work: Folder that keeps the frames taken from videos; None for a temporary one.
+        pattern: How names state row and column: `view_{row}_{col}.png`.
     """
 
     grid: tuple[int, int] | None = None
     frame: int | str | None = None
     work: Path | None = None
+    pattern: str | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,6 +21,7 @@ Made = TypeVar("Made")
 
 # of focal lengths in pixels and positions in world units: products of two of them stay finite, and a file keeps float32
 CALIBRATION_MAX_MAGNITUDE = 1e30
+CALIBRATION_FOCAL_TOLERANCE = 0.02  # by which a focal length and an angle of view may differ
 
 
 def escape_name(text: str) -> str:
@@ -37,7 +38,7 @@ class Intrinsics:
         width: Of the photograph they are for, pixels; None where the calibration does not state it.
         height: Likewise.
         focal: (fx, fy) pixels, or None where `angle` gives it.
-        angle: (horizontal, vertical or None) full field of view, radians.
+        angle: (horizontal, vertical or None) full field of view, radians; beside a focal length a second statement.
         principal: (cx, cy) pixels, each None for the middle.
     """
 
@@ -53,14 +54,22 @@ class Intrinsics:
         focal, principal = (float(K[0, 0]), float(K[1, 1])), (float(K[0, 2]), float(K[1, 2]))
         return Intrinsics(width, height, focal, None, principal)
 
+    def contradiction(self, width: int, height: int) -> tuple[float, float] | None:
+        """A focal length as stated and as the angle has it, pixels, where both are stated and differ."""
+        if self.focal is None or self.angle is None:
+            return None
+        axes = zip(self.focal, self._focal_of_angle(width, height), self.angle, strict=True)
+        stated = ((one, other) for one, other, angle in axes if angle is not None)
+        return next((p for p in stated if not math.isclose(*p, rel_tol=CALIBRATION_FOCAL_TOLERANCE)), None)
+
+    def _focal_of_angle(self, width: int, height: int) -> tuple[float, float]:
+        assert self.angle is not None
+        fx = width / (2 * math.tan(self.angle[0] / 2))
+        return fx, fx if self.angle[1] is None else height / (2 * math.tan(self.angle[1] / 2))
+
     def matrix(self, width: int, height: int) -> NDArray[np.float64]:
         """(3, 3) K at the size that the calibration is for."""
-        if self.focal is not None:
-            fx, fy = self.focal
-        else:
-            assert self.angle is not None
-            fx = width / (2 * math.tan(self.angle[0] / 2))
-            fy = fx if self.angle[1] is None else height / (2 * math.tan(self.angle[1] / 2))
+        fx, fy = self._focal_of_angle(width, height) if self.focal is None else self.focal
         cx = width / 2 if self.principal[0] is None else self.principal[0]
         cy = height / 2 if self.principal[1] is None else self.principal[1]
         return np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]])
@@ -79,6 +88,8 @@ class Entry:
         lens: The photograph's distortion; None if there is none.
         mask: The mask's path as the calibration writes it.
         bounds: Nearest and farthest depth of the scene from this camera, where the calibration states them.
+        stored: The program that wrote the entry works on pixels as they are stored. Otherwise the camera is of the
+            photograph that its EXIF orientation turns upright. Sizes that fit one of the two alone decide first.
     """
 
     file: str
@@ -89,6 +100,7 @@ class Entry:
     lens: Lens | None = None
     mask: str | None = None
     bounds: tuple[float, float] | None = None
+    stored: bool = False
 
     def camera(self, width: int, height: int, path: Path) -> Camera:
         """The camera at the calibration's own size; CaptureError naming `path`, the calibration, if it cannot be."""

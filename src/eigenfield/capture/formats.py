@@ -10,7 +10,8 @@ from eigenfield.capture.arrangement import Arrangement, OpenOptions
 from eigenfield.capture.calibration import Calibration, escape_name
 from eigenfield.capture.messages import list_names
 from eigenfield.capture.readers import colmap, transforms
-from eigenfield.capture.readers.bundler import find_bundler, read_bundler
+from eigenfield.capture.readers.bundler import find_bundler, find_unlisted, read_bundler
+from eigenfield.capture.readers.deepview import DEEPVIEW_FILE, find_deepview, read_deepview
 from eigenfield.capture.readers.folder import find_photographs, read_photographs
 from eigenfield.capture.readers.grid_names import find_grid_names, read_grid_names
 from eigenfield.capture.readers.hci import find_hci, read_hci
@@ -21,6 +22,7 @@ from eigenfield.capture.readers.numbered import read_numbered
 from eigenfield.capture.readers.opencv import find_opencv, read_opencv
 from eigenfield.capture.readers.positions import find_positions, read_positions
 from eigenfield.capture.readers.projections import find_projections, read_projections
+from eigenfield.capture.readers.realitycapture import find_realitycapture, read_realitycapture
 from eigenfield.capture.readers.stanford import find_stanford, read_stanford
 from eigenfield.capture.readers.strecha import find_strecha, read_strecha
 from eigenfield.capture.readers.video import find_videos, read_videos
@@ -42,7 +44,7 @@ class Format:
         read_cameras: From what `find` returned and the folder of the photographs to the calibration.
         read_names: From what `find` returned and the caller's options to the arrangement.
         endings: Of file names that may be named directly as a calibration of this format.
-        uses: Those of "grid" and "frame" that the reader uses.
+        uses: Those of "grid", "frame" and "pattern" that the reader uses.
         cameras: Whether it may yield cameras at all.
     """
 
@@ -95,13 +97,15 @@ FORMATS = (
     _camera_format("bundler", "Bundler bundle.out", find_bundler, _ignore_root(read_bundler), ".out"),
     _camera_format("metashape", "Agisoft Metashape XML", find_metashape, _ignore_root(read_metashape), ".xml"),
     _camera_format("opencv", "OpenCV YAML, XML or JSON", find_opencv, read_opencv, ".yml", ".yaml", ".xml"),
+    _camera_format("realitycapture", "RealityCapture CSV", find_realitycapture, read_realitycapture, ".csv"),
+    _camera_format("deepview", "DeepView models.json", find_deepview, _ignore_root(read_deepview)),
     _camera_format("projections", "3x4 projection matrices", find_projections, _ignore_root(read_projections), "_p.txt",
                    ".p"),
     _name_format("positions", "parallel cameras in names (_RR_CC_A_B_LENS_SENSOR)", find_positions, read_positions,
                  "grid", cameras=True),
     _name_format("hci", "HCI 4D benchmark (input_CamNNN, row-major)", find_hci, read_hci, "grid", cameras=True),
     _name_format("stanford", "Stanford archive (out_RR_CC_V_U: row, column)", find_stanford, read_stanford, "grid"),
-    _name_format("grid", "grid names (*_RR_CC: row, column)", find_grid_names, read_grid_names, "grid"),
+    _name_format("grid", "grid names (*_RR_CC: row, column)", find_grid_names, read_grid_names, "grid", "pattern"),
     _name_format("numbered", "numbered frames with --grid", lambda folder: None, read_numbered, "grid",
                  rank=RANK_ON_REQUEST),  # it must be asked for
     _name_format("video", "one video a camera", find_videos, read_videos, "frame", rank=RANK_ANY),
@@ -110,7 +114,7 @@ FORMATS = (
 # files that a folder does not hold by chance: if no reader claims one of these, it is damaged or incomplete
 CALIBRATION_PATTERNS = (
     "transforms.json", "poses_bounds.npy", "*_par.txt", "*.camera", "bundle.out", "bundle/bundle.out", "cameras.xml",
-    "sparse/0/images.*", "sparse/0/cameras.*", "sparse/images.*", "sparse/cameras.*", "*_P.txt",
+    "sparse/[0-9]*/images.*", "sparse/[0-9]*/cameras.*", "sparse/images.*", "sparse/cameras.*", "*_P.txt",
 )  # fmt: skip
 FORMATS_BY_NAME = {row.name: row for row in FORMATS}
 
@@ -172,8 +176,16 @@ def _ambiguous_error(path: Path, titles: str, rows: list[Format]) -> CaptureErro
 
 
 def _describe_unread(folder: Path) -> list[str]:
-    found = [_relative_name(path, folder) for pattern in CALIBRATION_PATTERNS for path in sorted(folder.glob(pattern))]
-    return [f"{list_names(found)}: named as a calibration, but damaged or incomplete, and not read"] if found else []
+    unlisted = find_unlisted(folder)
+    paths = [path for pattern in CALIBRATION_PATTERNS for path in sorted(folder.glob(pattern)) if path != unlisted]
+    found = [_relative_name(path, folder) for path in paths]
+    lines = [f"{list_names(found)}: named as a calibration, but damaged or incomplete, and not read"] if found else []
+    if unlisted is not None:
+        name = _relative_name(unlisted, folder)
+        lines.append(
+            f"{name}: a Bundler file without the list of its photographs, and not read; put list.txt beside it"
+        )
+    return lines
 
 
 def _find_claims(folder: Path, formats: tuple[Format, ...]) -> list[Claim]:
@@ -191,6 +203,8 @@ def _relative_name(found: Path, folder: Path) -> str:
 
 def claim_of_file(path: Path, formats: tuple[Format, ...]) -> Claim:
     """The format of a calibration that is named as a file; CaptureError `calibration-unknown`, `format-ambiguous`."""
+    if len(formats) > 1 and path.name == DEEPVIEW_FILE and find_deepview(path.parent) == path:
+        return Claim(FORMATS_BY_NAME["deepview"], path)
     if len(formats) > 1 and path.suffix.lower() == ".json":
         return Claim(FORMATS_BY_NAME["transforms"], path)
     if FORMATS_BY_NAME["colmap"] in formats and path.stem in ("cameras", "images") and colmap.is_model(path.parent):

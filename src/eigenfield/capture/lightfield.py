@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
 
 from eigenfield.capture.layout import GridLayout
 from eigenfield.capture.photographs.decoded import decode_with_mask, size_on_disk
@@ -101,6 +104,7 @@ class LightField(StillCapture):
         problems: Lines for people: what was left out or corrected on reading.
         format: The reader's name ("transforms", "colmap", "hci", ...).
         layout: The array's grid, where the photographs' names state it too; None otherwise.
+        origin: As of `CalibratedObservations`.
     """
 
     root: Path
@@ -108,6 +112,7 @@ class LightField(StillCapture):
     problems: tuple[str, ...]
     format: str
     layout: GridLayout | None = None
+    origin: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
 
     @property
     def cameras(self) -> tuple[Camera, ...]:
@@ -164,6 +169,13 @@ class LightField(StillCapture):
         chosen = list(indices)
         layout = None if self.layout is None else self.layout.subset(chosen)
         return replace(self, views=tuple(self.views[i] for i in chosen), layout=layout)
+
+    def where_it_stood(self) -> LightField:
+        """The capture in the world of its calibration's files; itself where nothing was moved."""
+        if not self.origin.any():
+            return self
+        cameras = [replace(camera, t=camera.t - camera.R @ self.origin) for camera in self.cameras]
+        return replace(self.with_cameras(cameras), origin=np.zeros(3))
 
     def with_cameras(
         self, cameras: Sequence[Camera], lenses: Sequence[Lens | None] | None = None, problems: Sequence[str] = ()

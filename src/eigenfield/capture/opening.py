@@ -14,9 +14,12 @@ from eigenfield.capture.locate import IMAGES_FOLDER, photograph_root, photograph
 from eigenfield.capture.messages import list_names
 from eigenfield.capture.pairing import pair_photographs
 from eigenfield.capture.photoset import Capture, PhotoSet
+from eigenfield.capture.readers.grid_names import compile_pattern
+from eigenfield.capture.readers.video import is_video_rig, read_videos
 from eigenfield.core.errors import CaptureError, OptionError
 
 StrPath = str | os.PathLike[str]
+PATTERN_FORMAT = "grid"  # which --pattern means
 NAME_FORMATS = tuple(row for row in FORMATS if row.read_names is not None)
 
 
@@ -29,6 +32,7 @@ def open_capture(
     format: str | None = None,
     grid: tuple[int, int] | None = None,
     frame: int | str | None = None,
+    pattern: str | None = None,
 ) -> LightField:
     """Open a capture with cameras; photographs are decoded on demand, only their headers are read now.
 
@@ -43,6 +47,7 @@ def open_capture(
         format: The name of a format, where more than one fits.
         grid: As for `open_photographs`.
         frame: As for `open_photographs`.
+        pattern: As for `open_photographs`.
 
     Raises:
         CaptureError: There is no calibration (`calibration-missing`), or it is damaged; a camera is impossible; a
@@ -51,7 +56,7 @@ def open_capture(
             fits (`format-ambiguous`).
         OptionError: An option is impossible or would have no effect.
     """
-    source = _find_source(path, calibration, format, OpenOptions(_check_grid(grid), frame), FORMATS)
+    source = _find_source(path, calibration, format, OpenOptions(_check_grid(grid), frame, None, pattern), FORMATS)
     if source is None or not source.claim.format.cameras:
         raise _no_cameras(Path(path))
     opened = _open_source(source, masks, strict)
@@ -68,6 +73,7 @@ def open_photographs(
     format: str | None = None,
     grid: tuple[int, int] | None = None,
     frame: int | str | None = None,
+    pattern: str | None = None,
     work: StrPath | None = None,
 ) -> PhotoSet:
     """Open photographs without cameras, with the grid that their names state; a calibration beside them is not read.
@@ -79,6 +85,7 @@ def open_photographs(
         format: The name of a format of names.
         grid: (rows, columns) of numbered photographs, in row-major order.
         frame: Frame of each video: an index from 0, or seconds ("2.5s"); 0 by default.
+        pattern: How names state row and column of a grid: `view_{row}_{col}.png`; `*` stands for any text.
         work: A folder that keeps the frames of videos as PNG, so that they are decoded once; by default they last as
             long as the process.
 
@@ -88,7 +95,7 @@ def open_photographs(
             (`image-size`); `video-unreadable`, `video-short`, `too-few`.
         OptionError: An option is impossible or would have no effect.
     """
-    options = OpenOptions(_check_grid(grid), frame, None if work is None else Path(work))
+    options = OpenOptions(_check_grid(grid), frame, None if work is None else Path(work), pattern)
     source = _find_source(path, None, format, options, NAME_FORMATS)
     if source is None:
         raise _no_photographs(Path(path))
@@ -105,13 +112,14 @@ def open_any(
     format: str | None = None,
     grid: tuple[int, int] | None = None,
     frame: int | str | None = None,
+    pattern: str | None = None,
     work: StrPath | None = None,
 ) -> Capture:
     """Open a light field where a calibration or the names state the cameras, otherwise photographs.
 
     Arguments and errors are those of `open_capture` and `open_photographs`.
     """
-    options = OpenOptions(_check_grid(grid), frame, None if work is None else Path(work))
+    options = OpenOptions(_check_grid(grid), frame, None if work is None else Path(work), pattern)
     source = _find_source(path, calibration, format, options, FORMATS)
     if source is None:
         raise _no_photographs(Path(path))
@@ -127,18 +135,23 @@ class _Source:
         root: Folder of the photographs.
         apart: The calibration was named apart from the photographs.
         options: The caller's.
+        videos: The cameras are of videos, one a camera.
     """
 
     claim: Claim
     root: Path
     apart: bool
     options: OpenOptions
+    videos: bool
 
 
 def _find_source(
     path: StrPath, calibration: StrPath | None, name: str | None, options: OpenOptions, formats: tuple[Format, ...]
 ) -> _Source | None:
     root = Path(path)
+    if options.pattern is not None:
+        compile_pattern(options.pattern)
+        name = PATTERN_FORMAT if name is None else name
     if name is not None:
         formats = _restrict_formats(format_by_name(name), formats)
     if calibration is not None:
@@ -165,8 +178,9 @@ def _find_source(
             return None
         if claim.format.read_cameras is not None:
             root = photograph_root(root, claim.found)
-    _refuse_unused(claim, options)
-    return _Source(claim, root, calibration is not None, options)
+    videos = claim.format.read_cameras is not None and is_video_rig(root)
+    _refuse_unused(claim, replace(options, frame=None) if videos else options)
+    return _Source(claim, root, calibration is not None, options, videos)
 
 
 def _restrict_formats(row: Format, formats: tuple[Format, ...]) -> tuple[Format, ...]:
@@ -191,7 +205,7 @@ def _find_claim(path: Path, formats: tuple[Format, ...], options: OpenOptions) -
 
 def _refuse_unused(claim: Claim, options: OpenOptions) -> None:
     """Options that would change nothing are an error: who gives one expects something of it."""
-    for option, value in (("grid", options.grid), ("frame", options.frame)):
+    for option, value in (("grid", options.grid), ("frame", options.frame), ("pattern", options.pattern)):
         if value is not None and option not in claim.format.uses:
             raise OptionError(
                 f"{option}-unused",
@@ -216,9 +230,13 @@ def _open_source(source: _Source, masks: StrPath | None, strict: bool) -> Captur
     folder = None if masks is None else Path(masks)
     row = source.claim.format
     if row.read_cameras is not None:
-        read = row.read_cameras(source.claim.found, source.root)
-        read = replace(read, problems=(*source.claim.problems, *read.problems))
-        return pair_photographs(read, source.root, apart=source.apart, masks=folder, strict=strict)
+        root, lines = source.root, source.claim.problems
+        if source.videos:
+            frames = read_videos(root, source.options)
+            root, lines = frames.files[0].parent, (*lines, *frames.problems)
+        read = row.read_cameras(source.claim.found, root)
+        read = replace(read, problems=(*lines, *read.problems))
+        return pair_photographs(read, root, apart=source.apart, masks=folder, strict=strict)
     arrangement = _read_arrangement(source)
     if arrangement.calibration is None:
         return make_photo_set(arrangement, source.root, masks=folder, strict=strict)

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import logging
+import math
 import os
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from eigenfield.capture.calibration import Calibration, Entry, escape_name, or_error
 from eigenfield.capture.duplicates import describe_duplicates, find_duplicates
+from eigenfield.capture.far import move_to_origin
 from eigenfield.capture.lightfield import LightField, View
 from eigenfield.capture.locate import PhotographFinder, photographs_in, with_masks
 from eigenfield.capture.messages import describe, natural_key
@@ -24,6 +27,7 @@ from eigenfield.runtime.parallel import parallel_map
 log = logging.getLogger(__name__)
 
 LIGHT_FIELD_MIN_VIEWS = 3  # photographs that make a light field
+PINHOLE_MAX_ANGLE_DEGREES = 170.0  # of view, without a fisheye lens
 
 
 def pair_photographs(read: Calibration, root: Path, *, apart: bool, masks: Path | None, strict: bool) -> LightField:
@@ -39,6 +43,7 @@ def pair_photographs(read: Calibration, root: Path, *, apart: bool, masks: Path 
     Raises:
         CaptureError: As `open_capture` does.
     """
+    read, origin = move_to_origin(read)
     base = read.path if read.path.is_dir() else read.path.parent
     finder = PhotographFinder(root, base, apart)
     log.info("%s: %d calibration entries", read.path, len(read.entries))
@@ -48,8 +53,10 @@ def pair_photographs(read: Calibration, root: Path, *, apart: bool, masks: Path 
     views, bad, problems = _make_views(pairs, finder, read.path)
     errors += bad
     views, missing = with_masks(views, masks, root, strict)
-    if strict and errors:
-        raise errors[0]
+    # a camera of a model that is not read costs its own views alone, as long as others make a light field
+    grave = [error for error in errors if error.code != "camera-model" or len(views) < LIGHT_FIELD_MIN_VIEWS]
+    if strict and grave:
+        raise grave[0]
     copies = find_duplicates([view.path for view in views])
     problems = [
         *read.problems,
@@ -68,7 +75,7 @@ def pair_photographs(read: Calibration, root: Path, *, apart: bool, masks: Path 
             path=root,
             remedy="check that the photographs lie where the calibration says, or name it with --calibration",
         )
-    return LightField(root, _with_unique_names(views), tuple(problems), read.format)
+    return LightField(root, _with_unique_names(views), tuple(problems), read.format, origin=origin)
 
 
 def _match_entries(
@@ -101,27 +108,48 @@ def _match_entries(
 def _make_views(
     pairs: Sequence[tuple[Entry, Path]], finder: PhotographFinder, calibration: Path
 ) -> tuple[list[View], list[CaptureError], list[str]]:
-    def make(pair: tuple[Entry, Path]) -> tuple[View, bool]:
+    def make(pair: tuple[Entry, Path]) -> _Made:
         return _make_view(*pair, finder, calibration)
 
     outcomes = parallel_map(or_error(make), pairs)
     errors = [outcome for outcome in outcomes if isinstance(outcome, CaptureError)]
     made = [outcome for outcome in outcomes if not isinstance(outcome, CaptureError)]
-    views, rescaled = [view for view, _ in made], [view for view, scaled in made if scaled]
-    if not rescaled:
-        return views, errors, []
-    camera, name = rescaled[0].camera, escape_name(rescaled[0].path.name)
-    return views, errors, [
-        f"{len(rescaled)} cameras are for another size of the same picture and were scaled to the photographs "
-        f"(to {camera.width}x{camera.height} for {name})"
-    ]  # fmt: skip
+    problems = []
+    if rescaled := [one.view for one in made if one.scaled]:
+        camera, name = rescaled[0].camera, escape_name(rescaled[0].path.name)
+        problems.append(
+            f"{len(rescaled)} cameras are for another size of the same picture and were scaled to the photographs "
+            f"(to {camera.width}x{camera.height} for {name})"
+        )
+    if disagreeing := [(one.view, *one.focals) for one in made if one.focals is not None]:
+        view, stated, by_angle = disagreeing[0]
+        problems.append(
+            f"{len(disagreeing)} cameras have a focal length and an angle of view that contradict each other "
+            f"({stated:.4g} and {by_angle:.4g} pixels for {escape_name(view.path.name)}): the focal length is taken"
+        )
+    return [one.view for one in made], errors, problems
 
 
-def _make_view(entry: Entry, path: Path, finder: PhotographFinder, calibration: Path) -> tuple[View, bool]:
-    """The view, and whether its camera was scaled to the photograph's size."""
+class _Made(NamedTuple):
+    """A view, and what people may want to know of it.
+
+    Attributes:
+        view: The view.
+        scaled: Its camera was scaled to the photograph's size.
+        focals: As `Intrinsics.contradiction`.
+    """
+
+    view: View
+    scaled: bool
+    focals: tuple[float, float] | None
+
+
+def _make_view(entry: Entry, path: Path, finder: PhotographFinder, calibration: Path) -> _Made:
     header = read_header(path)
     claimed = entry.intrinsics.width, entry.intrinsics.height
-    ways = (True, header.upright_size), (False, header.stored_size)
+    ways = [(True, header.upright_size), (False, header.stored_size)]
+    if entry.stored:
+        ways.reverse()
     fitting = [way for way in ways if all(c is None or c == s for c, s in zip(claimed, way[1], strict=True))]
     scaled = not fitting
     if scaled and None not in claimed:
@@ -135,11 +163,31 @@ def _make_view(entry: Entry, path: Path, finder: PhotographFinder, calibration: 
             remedy=f"use the photographs that {calibration.name} was made from, undistorted and cropped alike",
         )
     upright, (width, height) = fitting[0]
-    camera = entry.camera(claimed[0] or width, claimed[1] or height, calibration)
+    size = claimed[0] or width, claimed[1] or height
+    camera = entry.camera(*size, calibration)
+    focals = None
+    if entry.lens is None or not entry.lens.is_fisheye:  # whose angle is stated in several ways
+        focals = entry.intrinsics.contradiction(*size)
+        _refuse_too_wide(entry, camera, focals, calibration)
     if scaled:
         camera = scale_camera(camera, width, height)
     mask = _find_own_mask(entry, finder, calibration)
-    return View(path.name, path, camera, entry.lens, mask, upright, entry.bounds), scaled
+    return _Made(View(path.name, path, camera, entry.lens, mask, upright, entry.bounds), scaled, focals)
+
+
+def _refuse_too_wide(entry: Entry, camera: Camera, focals: tuple[float, float] | None, calibration: Path) -> None:
+    """Raise CaptureError `camera-focal` for a focal length that no photograph without a fisheye lens has."""
+    focal = float(camera.K[0, 0])
+    degrees = 2 * math.degrees(math.atan(camera.width / (2 * focal)))
+    if degrees > PINHOLE_MAX_ANGLE_DEGREES:
+        also = "" if focals is None else f", although the angle that it states means {focals[1]:.4g} pixels"
+        raise CaptureError(
+            "camera-focal",
+            f"camera {entry.label} has a focal length of {focal:.4g} pixels for a width of {camera.width}, which is an "
+            f"angle of view of {degrees:.1f} degrees{also}",
+            path=calibration,
+            remedy="give the focal length in pixels, not millimetres",
+        )
 
 
 def _format_size(size: tuple[int | None, int | None]) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import _thread
 import contextlib
 import importlib
+import io
 import logging
 import os
 import signal
@@ -100,6 +101,9 @@ def _exit_interrupted() -> NoReturn:
 def main() -> None:
     """Entry point: exit code 0, 2 for an error that a person can correct, 130 when interrupted; a bug keeps its
     traceback and exits with 1."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # names that its encoding does not have are written as escapes
+            stream.reconfigure(errors="backslashreplace")
     logging.basicConfig(format="%(message)s", level=logging.WARNING)
     with contextlib.suppress(ValueError):  # not in the main thread
         signal.signal(signal.SIGTERM, _stop)  # clean up as for Ctrl-C

@@ -99,6 +99,8 @@ masks_option = click.option("--masks", type=PATH, metavar="FOLDER",
 grid_options = together(
     click.option("--grid", metavar="RxC", callback=_parse_grid,
                  help="Numbered photographs are R rows of C columns, row by row."),
+    click.option("--pattern", metavar="NAME",
+                 help="How names state row and column of a grid, as view_{row}_{col}.png; * is any text."),
     click.option("--frame", metavar="T", help="Frame of each video: an index from 0, or seconds (2.5s)."),
 )  # fmt: skip
 _place_options = together(
@@ -107,8 +109,9 @@ _place_options = together(
     masks_option,
     click.option("--format", metavar="NAME",
                  help="What the capture is, where it may be read in several ways: "
-                      "transforms, colmap, llff, middlebury, strecha, bundler, metashape, opencv, projections, "
-                      "positions, hci, stanford, grid, numbered, video or folder."),
+                      "transforms, colmap, llff, middlebury, strecha, bundler, metashape, opencv, "
+                      "realitycapture, deepview, projections, positions, hci, stanford, grid, numbered, video "
+                      "or folder."),
     grid_options,
 )  # fmt: skip
 
@@ -139,12 +142,12 @@ reconstruction_options = together(  # the arguments of `reconstruct`
 
 
 def capture_options(function: Callable[..., Any]) -> Any:
-    """Add --calibration, --masks, --format, --grid and --frame; the verb gets them as one `place`, the keyword
-    arguments of `open_capture` and `open_any`."""
+    """Add --calibration, --masks, --format, --grid, --pattern and --frame; the verb gets them as one `place`, the
+    keyword arguments of `open_capture` and `open_any`."""
 
     @functools.wraps(function)
     def collect(**given: Any) -> Any:
-        names = ("calibration", "masks", "format", "grid", "frame")
+        names = ("calibration", "masks", "format", "grid", "pattern", "frame")
         return function(place={name: given.pop(name) for name in names}, **given)
 
     return _place_options(collect)

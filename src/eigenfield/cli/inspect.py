@@ -78,10 +78,10 @@ def command(
             remedy=f"run `eigenfield calibrate {capture}` first",
         )
     mesh = None
-    if proxy is not None:
+    if proxy is not None and opened.light_field is not None:
         from eigenfield.proxy import read_mesh
 
-        mesh = read_mesh(proxy)
+        mesh = read_mesh(proxy, opened.light_field.origin)
     with progress_bars(quiet) as progress:
         damaged = decode_all(opened, progress)
     report = describe(opened, damaged)
@@ -126,6 +126,7 @@ def describe(capture: Capture, damaged: list[CaptureError]) -> dict[str, Any]:
         "array": None if array is None else _array(array),
         "problems": problems + [str(error) for error in damaged],
         "damaged": [{"file": error.path, "code": error.code, "message": error.message} for error in damaged],
+        "origin": [0.0, 0.0, 0.0] if capture.light_field is None else capture.light_field.origin.tolist(),
         "cameras": [_camera(view) for view in views],
         "proxy": None,
         "layout": None if capture.layout is None else _layout(capture.layout),

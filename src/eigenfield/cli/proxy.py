@@ -54,7 +54,8 @@ def command(
 ) -> None:
     """Make a proxy mesh from the photographs in CAPTURE, and their cameras where these are not known.
 
-    The mesh is in the world of the cameras, which are written beside it (OUTPUT.cameras) where they were estimated.
+    The mesh is in the world of the capture's calibration. Cameras that were estimated are written beside it
+    (OUTPUT.cameras), and it is in their world.
     """  # fmt: skip
     from eigenfield.capture.writers.save import save_calibration
     from eigenfield.proxy import check_mesh_name, write_mesh
@@ -71,7 +72,7 @@ def command(
         save_calibration(made.light_field, cameras, overwrite=True)
         note(f"cameras: {cameras}", quiet)
     mesh = made.proxy.mesh
-    write_mesh(mesh, output, overwrite=overwrite)
+    write_mesh(mesh, output, origin=made.light_field.origin, overwrite=overwrite)
     click.echo(
         f"{output}: {len(mesh.vertices)} vertices, {len(mesh.faces)} triangles for {len(made.light_field)} "
         f"photographs, {time.monotonic() - started:.0f} s"

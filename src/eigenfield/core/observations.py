@@ -73,6 +73,11 @@ class CalibratedObservations(Observations, Protocol):
     def metres_per_unit(self) -> float | None:
         """Metres in one unit of the cameras' world; None if unknown."""
 
+    @property
+    def origin(self) -> NDArray[np.float64]:
+        """(3,) the origin of the cameras' world in that of the files of calibration and mesh; zero but for worlds that
+        are far from their origin."""
+
     def bytes(self, index: int) -> int:
         """The size of an observation's file."""
 

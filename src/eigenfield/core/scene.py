@@ -97,6 +97,14 @@ class Scene:
         return np.where(found < 0, -1, found + time * int(encoded.sum()))
 
     @property
+    def origin(self) -> NDArray[np.float64]:
+        """(3,) the origin of the scene's world in that of the capture's files; zero unless that is far from its own."""
+        found = self.settings.get("origin")
+        is_place = isinstance(found, list) and len(found) == 3 and all(type(v) in (int, float) for v in found)
+        place = np.array(found if is_place else (0, 0, 0), np.float64)  # settings of a file may hold anything
+        return place if np.isfinite(place).all() else np.zeros(3)
+
+    @property
     def observations(self) -> int:
         """Number of rows of the weights."""
         return len(self.times) * int((~self.rig.held_out).sum())

@@ -38,7 +38,8 @@ def encode(
 
     Args:
         capture: Photographs with their cameras.
-        proxy: A triangle mesh in the cameras' world, its file, or a proxy with sheets.
+        proxy: A triangle mesh or a proxy with sheets in the world of `capture.cameras`, or a mesh file in the world of
+            the calibration's files, which is the same unless `capture.origin` says another.
         options: What is asked for; None for the defaults.
         work: Folder for scratch files, up to 17 bytes a pixel, and 10 for each sheet that it shows; or 4 bytes x
             channels x cameras x texels.

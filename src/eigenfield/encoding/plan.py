@@ -132,6 +132,7 @@ class EncodePlan:
             "holdOut": self.options.hold_out,
             **own,
             **_scale(views.capture, self.options.metres_per_unit),
+            **_origin(views.capture),
             **_lenses(views.capture),
             "photographs": {
                 "count": len(views.observations),
@@ -199,7 +200,7 @@ def _prepare(
             return _prepare_sheets(proxy, views, options, work, progress)
         proxy = proxy.mesh
     triangles = _triangles_by_pictures(views, options) if _simplifies(options) else options.triangles
-    mesh = prepare_proxy(proxy, cameras, triangles=triangles, progress=progress)
+    mesh = prepare_proxy(proxy, cameras, origin=views.capture.origin, triangles=triangles, progress=progress)
     _warn_of_rounding(views.capture.cameras, cameras, mesh)
     if options.fit == "none":
         return PreparedProxy(given, Proxy(mesh), views, by_quality=False)
@@ -295,6 +296,11 @@ def _scale(capture: CalibratedObservations, asked: float | None) -> dict[str, fl
     """The settings about the real size: as asked, or as in the capture."""
     scale = capture.metres_per_unit if asked is None else asked
     return {} if scale is None else {"metresPerUnit": scale}
+
+
+def _origin(capture: CalibratedObservations) -> dict[str, list[float]]:
+    """Where a capture that was far from its origin stood, so that what is exported stands there again."""
+    return {"origin": capture.origin.tolist()} if capture.origin.any() else {}
 
 
 def _lenses(capture: CalibratedObservations) -> dict[str, Any]:

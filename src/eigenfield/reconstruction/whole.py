@@ -174,7 +174,7 @@ def _identity(capture: Capture) -> list[Any]:
         own = [
             [view.camera.K.tolist(), view.camera.R.tolist(), view.camera.t.tolist(), str(view.lens)]
             for view in capture.views
-        ]
+        ] + ([capture.origin.tolist()] if capture.origin.any() else [])
 
     def digest(source: PhotographSource) -> list[Any]:
         mask = None if source.mask is None else file_digest(source.mask)
@@ -256,7 +256,7 @@ def _add_atlas(run: StageRunner, light_field: LightField, mesh: Mesh) -> Mesh:
 
 def _requested_primitives(run: StageRunner, light_field: LightField) -> list[Primitive]:
     """The primitives of the settings, with spheres fitted to their outlines."""
-    shapes = [parse_primitive(text) for text in run.settings.primitives]
+    shapes = [parse_primitive(text).moved(-light_field.origin) for text in run.settings.primitives]
     for text in run.settings.fit_spheres:
         region = parse_region(text)
         fitted = fit_sphere(

@@ -42,10 +42,14 @@ class Lens:
     coefficients: tuple[float, ...]
 
     @property
+    def is_fisheye(self) -> bool:
+        """Whether without coefficients it is no pinhole."""
+        return self.model in ("fisheye", "metashape-equidistant", "metashape-equisolid")
+
+    @property
     def is_identity(self) -> bool:
         """Whether there is no distortion at all; a fisheye always has some."""
-        flat = self.model in ("brown", "rational", "metashape")
-        return flat and all(abs(c) < LENS_NEGLIGIBLE_COEFFICIENT for c in self.coefficients)
+        return not self.is_fisheye and all(abs(c) < LENS_NEGLIGIBLE_COEFFICIENT for c in self.coefficients)
 
     def valid_radius(self) -> float:
         """The undistorted radius (tangent of the angle to the axis) up to which distortion grows with it.

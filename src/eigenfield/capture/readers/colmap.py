@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import mmap
 import struct
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,25 +17,34 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name, read_each
+from eigenfield.capture.messages import count_phrase, list_names
 from eigenfield.capture.photographs.lens import Lens
-from eigenfield.capture.readers.text import CALIBRATION_MAX_SIDE_PIXELS, unreadable_error
+from eigenfield.capture.readers.text import CALIBRATION_MAX_SIDE_PIXELS, excerpt, unreadable_error
 from eigenfield.core.errors import CaptureError
 
-COLMAP_FOLDERS = ("sparse/0", "sparse", ".", "colmap/sparse/0")
+COLMAP_FOLDERS = ("sparse/*", "sparse", ".", "colmap/sparse/*")  # * is a number: of several the one of most images
 # name: (number in the binary format, number of parameters); from colmap/src/colmap/sensor/models.h
 COLMAP_MODELS = {
     "SIMPLE_PINHOLE": (0, 3), "PINHOLE": (1, 4), "SIMPLE_RADIAL": (2, 4), "RADIAL": (3, 5), "OPENCV": (4, 8),
-    "OPENCV_FISHEYE": (5, 8), "FULL_OPENCV": (6, 12),
+    "OPENCV_FISHEYE": (5, 8), "FULL_OPENCV": (6, 12), "SIMPLE_RADIAL_FISHEYE": (8, 4), "RADIAL_FISHEYE": (9, 5),
+    "SIMPLE_FISHEYE": (14, 3), "FISHEYE": (15, 4),
 }  # fmt: skip
 COLMAP_UNREAD_MODELS = {
-    7: "FOV", 8: "SIMPLE_RADIAL_FISHEYE", 9: "RADIAL_FISHEYE", 10: "THIN_PRISM_FISHEYE",
-    11: "RAD_TAN_THIN_PRISM_FISHEYE", 12: "SIMPLE_DIVISION", 13: "DIVISION", 14: "SIMPLE_FISHEYE", 15: "FISHEYE",
-    16: "EUCM", 17: "EQUIRECTANGULAR",
+    "FOV": (7, 5), "THIN_PRISM_FISHEYE": (10, 12), "RAD_TAN_THIN_PRISM_FISHEYE": (11, 16), "SIMPLE_DIVISION": (12, 4),
+    "DIVISION": (13, 5), "EUCM": (16, 6), "EQUIRECTANGULAR": (17, 2),
 }  # fmt: skip
-COLMAP_MODEL_NAMES = {number: name for name, (number, _) in COLMAP_MODELS.items()}
+COLMAP_ALL_MODELS = COLMAP_MODELS | COLMAP_UNREAD_MODELS
+COLMAP_MODEL_NAMES = {number: name for name, (number, _) in COLMAP_ALL_MODELS.items()}
+COLMAP_FISHEYE_MODELS = ("OPENCV_FISHEYE", "SIMPLE_RADIAL_FISHEYE", "RADIAL_FISHEYE", "SIMPLE_FISHEYE", "FISHEYE")
+COLMAP_ONE_FOCAL_MODELS = (
+    "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "SIMPLE_RADIAL_FISHEYE", "RADIAL_FISHEYE", "SIMPLE_FISHEYE"
+)  # fmt: skip
 COLMAP_MAX_NAME_BYTES = 4096  # of an image's name
 COLMAP_POINT_BYTES = 24  # of a 2D point: x, y, point id
 COLMAP_QUATERNION_TOLERANCE = 1e-3
+
+
+_ListedCamera = tuple[Intrinsics, Lens | None] | str  # or the name of its model, if that is not read
 
 
 @dataclass(frozen=True)
@@ -63,8 +72,46 @@ def is_model(folder: Path) -> bool:
 
 
 def find_colmap(folder: Path) -> Path | None:
-    """The model in a folder, where COLMAP and tools with its layout write it."""
-    return next((folder / inner for inner in COLMAP_FOLDERS if is_model(folder / inner)), None)
+    """The model in a folder, where COLMAP and tools with its layout write it; of several beside each other the one of
+    most images."""
+    for inner in COLMAP_FOLDERS:
+        found = _numbered_models(folder / inner[:-2]) if inner.endswith("/*") else [folder / inner]
+        found = [model for model in found if is_model(model)]
+        if found:
+            return found[0] if len(found) == 1 else max(found, key=_count_images)
+    return None
+
+
+def _numbered_models(folder: Path) -> list[Path]:
+    """The folders with a number for a name, as COLMAP calls the models of photographs that do not hang together."""
+    if not folder.is_dir():
+        return []
+    numbered = (inner for inner in folder.iterdir() if inner.name.isdecimal() and inner.name.isascii())
+    return sorted(numbered, key=lambda inner: (int(inner.name), inner.name))
+
+
+def _count_images(folder: Path) -> int:
+    """How many images a model has; -1 where it is damaged."""
+    try:
+        return sum(1 for _ in _read_images(folder))
+    except CaptureError:
+        return -1
+
+
+def _count_text(images: int) -> str:
+    return "damaged" if images < 0 else f"{images} images"
+
+
+def _describe_others(folder: Path) -> list[str]:
+    """A line that names the models beside this one."""
+    beside = _numbered_models(folder.parent) if folder.name.isdecimal() else []
+    others = [other for other in beside if other != folder and is_model(other)]
+    if not others:
+        return []
+    counts = [f"{folder.parent.name}/{other.name} ({_count_text(_count_images(other))})" for other in others]
+    return [
+        f"{folder.parent.name}/{folder.name} is read, but not {list_names(counts)}: name its folder to read another"
+    ]
 
 
 def read_colmap(folder: Path) -> Calibration:
@@ -73,21 +120,32 @@ def read_colmap(folder: Path) -> Calibration:
     Raises CaptureError (`colmap-truncated`, `colmap-damaged`, `colmap-line`, `camera-model`, `calibration-empty`)
     that names the file.
     """
-    kind = "bin" if (folder / "cameras.bin").is_file() and (folder / "images.bin").is_file() else "txt"
-    images = folder / f"images.{kind}"
-    if kind == "bin":
-        cameras = _read_cameras_binary(folder / "cameras.bin")
-        shots = list(_read_images_binary(images))
-    else:
-        cameras = _read_cameras_text(folder / "cameras.txt")
-        shots = list(_read_images_text(images))
+    kind = _kind_of(folder)
+    images, listed = folder / f"images.{kind}", folder / f"cameras.{kind}"
+    cameras = (_read_cameras_binary if kind == "bin" else _read_cameras_text)(listed)
+    shots = list(_read_images(folder))
     if not shots:
         raise CaptureError("calibration-empty", "lists no image", path=images, remedy="name another model")
-    entries, errors = read_each(lambda shot: _make_entry(shot, cameras, images), shots)
-    return Calibration(folder, "colmap", entries, errors)
+    foreign: dict[int, list[str]] = {}
+    for shot in shots:
+        if isinstance(cameras.get(shot.camera), str):
+            foreign.setdefault(shot.camera, []).append(shot.name)
+    usable = [shot for shot in shots if shot.camera not in foreign]
+    entries, errors = read_each(lambda shot: _make_entry(shot, cameras, images), usable)
+    unread = [_unread_model_error(str(cameras[camera]), camera, listed, names) for camera, names in foreign.items()]
+    return Calibration(folder, "colmap", entries, (*errors, *unread), tuple(_describe_others(folder)))
 
 
-def _make_entry(shot: _ImageRecord, cameras: dict[int, tuple[Intrinsics, Lens | None]], path: Path) -> Entry:
+def _kind_of(folder: Path) -> str:
+    return "bin" if (folder / "cameras.bin").is_file() and (folder / "images.bin").is_file() else "txt"
+
+
+def _read_images(folder: Path) -> Iterator[_ImageRecord]:
+    kind = _kind_of(folder)
+    return (_read_images_binary if kind == "bin" else _read_images_text)(folder / f"images.{kind}")
+
+
+def _make_entry(shot: _ImageRecord, cameras: Mapping[int, _ListedCamera], path: Path) -> Entry:
     label = f"image {escape_name(shot.name)}"
     if shot.camera not in cameras:
         raise CaptureError(
@@ -96,7 +154,9 @@ def _make_entry(shot: _ImageRecord, cameras: dict[int, tuple[Intrinsics, Lens | 
             path=path,
             remedy="export the model again",
         )
-    intrinsics, lens = cameras[shot.camera]
+    listed = cameras[shot.camera]
+    assert not isinstance(listed, str), "images of cameras of unread models are left out"
+    intrinsics, lens = listed
     q, t = np.array(shot.quaternion), np.array(shot.translation)
     length = math.hypot(*q)
     if not np.isfinite(t).all() or not math.isfinite(length):
@@ -116,7 +176,7 @@ def _make_entry(shot: _ImageRecord, cameras: dict[int, tuple[Intrinsics, Lens | 
     R = _rotation_matrix(q / length)
     with np.errstate(over="ignore", invalid="ignore"):
         centre = -R.T @ t
-    return Entry(shot.name.replace("\\", "/"), label, intrinsics, R, centre, lens)
+    return Entry(shot.name.replace("\\", "/"), label, intrinsics, R, centre, lens, stored=True)
 
 
 def _rotation_matrix(q: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -140,13 +200,13 @@ def _make_intrinsics(
         raise CaptureError(
             "camera-size", f"camera {camera} has a size of {width}x{height}", path=path, remedy="mend its entry"
         )
-    if model in ("SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL"):
+    if model in COLMAP_ONE_FOCAL_MODELS:
         focal, principal, rest = (p[0], p[0]), (p[1], p[2]), p[3:]
     else:
         focal, principal, rest = (p[0], p[1]), (p[2], p[3]), p[4:]
     intrinsics = Intrinsics(width, height, focal, None, principal)
-    if model == "OPENCV_FISHEYE":
-        return intrinsics, Lens("fisheye", rest)
+    if model in COLMAP_FISHEYE_MODELS:
+        return intrinsics, Lens("fisheye", (*rest, 0.0, 0.0, 0.0, 0.0)[:4])
     if model == "FULL_OPENCV" and any(rest[5:]):
         return intrinsics, Lens("rational", rest)
     k1, k2, p1, p2, k3 = (*rest, 0.0, 0.0, 0.0, 0.0, 0.0)[:5]
@@ -154,10 +214,11 @@ def _make_intrinsics(
     return intrinsics, None if lens.is_identity else lens
 
 
-def _unread_model_error(name: str, camera: int, path: Path) -> CaptureError:
+def _unread_model_error(name: str, camera: int, path: Path, images: Sequence[str] = ()) -> CaptureError:
+    used = f" ({count_phrase(images, 'image', 'images')}: {list_names(images)})" if images else ""
     return CaptureError(
         "camera-model",
-        f"camera {camera} has the camera model {name}, which is not read",
+        f"camera {camera}{used} has the camera model {name}, which is not read",
         path=path,
         remedy=f"undistort with `colmap image_undistorter`, or use one of {', '.join(COLMAP_MODELS)}",
     )
@@ -229,16 +290,17 @@ def _map_file(path: Path) -> bytes | mmap.mmap:
         raise unreadable_error(path, error) from error
 
 
-def _read_cameras_binary(path: Path) -> dict[int, tuple[Intrinsics, Lens | None]]:
+def _read_cameras_binary(path: Path) -> dict[int, _ListedCamera]:
     source = _Bytes(_map_file(path), path)
-    cameras = {}
+    cameras: dict[int, _ListedCamera] = {}
     for _ in range(source.count(24)):
         camera, number, width, height = (int(v) for v in source.take("<IiQQ"))
         if number not in COLMAP_MODEL_NAMES:
-            raise _unread_model_error(COLMAP_UNREAD_MODELS.get(number, f"number {number}"), camera, path)
+            raise _unread_model_error(f"number {number}", camera, path)  # and it does not say where the next begins
         model = COLMAP_MODEL_NAMES[number]
-        parameters = source.take(f"<{COLMAP_MODELS[model][1]}d")
-        cameras[camera] = _make_intrinsics(model, width, height, parameters, path, camera)
+        parameters = source.take(f"<{COLMAP_ALL_MODELS[model][1]}d")
+        read = model in COLMAP_MODELS
+        cameras[camera] = _make_intrinsics(model, width, height, parameters, path, camera) if read else model
     source.end()
     return cameras
 
@@ -270,19 +332,21 @@ def _line_error(path: Path, number: int, message: str) -> CaptureError:
     return CaptureError("colmap-line", f"line {number}: {message}", path=path, remedy="export the model again")
 
 
-def _read_cameras_text(path: Path) -> dict[int, tuple[Intrinsics, Lens | None]]:
-    cameras = {}
+def _read_cameras_text(path: Path) -> dict[int, _ListedCamera]:
+    cameras: dict[int, _ListedCamera] = {}
     for number, line in _read_lines(path):
         if not line or line.startswith("#"):
             continue
         words = line.split()
         try:
-            camera, model, width, height = int(words[0]), words[1], int(words[2]), int(words[3])
+            camera, model = int(words[0]), words[1]
+            if model not in COLMAP_MODELS:
+                cameras[camera] = excerpt(model)
+                continue
+            width, height = int(words[2]), int(words[3])
             parameters = tuple(float(word) for word in words[4:])
         except (ValueError, IndexError):
             raise _line_error(path, number, "expected CAMERA_ID MODEL WIDTH HEIGHT PARAMS") from None
-        if model not in COLMAP_MODELS:
-            raise _unread_model_error(model, camera, path)
         count = COLMAP_MODELS[model][1]
         if len(parameters) != count:
             raise _line_error(path, number, f"{model} has {count} parameters, not {len(parameters)}")

@@ -64,7 +64,7 @@ def _make_entry(row: NDArray[np.float64], name: str, number: int, path: Path) ->
     intrinsics = Intrinsics(*size, (float(focal), float(focal)), None, (None, None))
     # bounds are a hint: those that cannot be are left out, and the pose stays
     bounds = (float(near), float(far)) if 0 < near <= far < np.inf else None
-    return Entry(name, label, intrinsics, np.stack([right, down, -back]), centre, bounds=bounds)
+    return Entry(name, label, intrinsics, np.stack([right, down, -back]), centre, bounds=bounds, stored=True)
 
 
 def _parse_npy(data: bytes, path: Path) -> NDArray[np.float64]:

@@ -5,12 +5,16 @@ of its component (else the chunk's) takes that to the world in which Metashape e
 `<sensor>` holds the size, f, b1, b2, cx, cy (**from the middle of the photograph**), k1..k4, p1..p4 of the manual's
 appendix "Camera models": fx = f + b1, fy = f, skew b2; **p1 and p2 are exchanged against OpenCV's**; pixel centres at
 +0.5. PhotoScan before 1.2 wrote fx, fy, skew, cx, cy from the corner, and p1, p2 as OpenCV.
+
+A camera of a multi-camera system has no matrix but `master_id`, another camera, and its sensor the offset
+x_camera = R x_master + t in the chunk's units (`<rotation>`, `<translation>`).
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from xml.etree.ElementTree import Element
@@ -53,7 +57,6 @@ METASHAPE_LENS_MODELS = {
 METASHAPE_PARAMETERS = {
     "f", "fx", "fy", "cx", "cy", "b1", "b2", "skew", "k1", "k2", "k3", "k4", "p1", "p2", "p3", "p4"
 }  # fmt: skip
-METASHAPE_FAR_EXTENTS = 1000.0  # cameras farther from the origin are shifted to it, because a file keeps float32
 METASHAPE_ROTATION_TOLERANCE = 1e-4
 
 
@@ -92,7 +95,9 @@ def read_metashape(path: Path) -> Calibration:
     if not cameras:
         raise CaptureError("calibration-empty", "lists no camera", path=path, remedy="name another calibration")
     frames = _read_frames(chunk, path)
-    usable, left_out = _split_usable(cameras, frames)
+    by_number = {camera.get("id", ""): camera for camera in cameras}
+    owners = {camera: _pose_owner(camera, by_number) for camera in cameras}
+    usable, left_out = _split_usable(owners, frames)
     sensors = {sensor.get("id", ""): sensor for sensor in chunk.iterfind("sensors/sensor")}
     lenses: dict[str, tuple[Intrinsics, Lens | None] | CaptureError] = {}
 
@@ -100,11 +105,15 @@ def read_metashape(path: Path) -> Calibration:
         number = camera.get("sensor_id", next(iter(sensors)) if len(sensors) == 1 else "")
         if number not in lenses:
             lenses[number] = or_error(partial(_read_calibration, number=number, path=path))(sensors.get(number))
-        return _make_entry(camera, lenses[number], _frame_of(camera, frames), path)
+        owner = owners[camera]
+        assert owner is not None, "such a camera is not usable"
+        pose = _read_pose(owner, path)
+        if owner is not camera:
+            pose = pose @ np.linalg.inv(_read_offset(sensors.get(number), _camera_label(camera), path))
+        return _make_entry(camera, lenses[number], pose, _frame_of(owner, frames), path)
 
     entries, errors = read_each(make_entry, usable)
-    entries, moved = _shift_to_origin(entries)
-    return Calibration(path, "metashape", entries, errors, (*problems, *left_out, *moved))
+    return Calibration(path, "metashape", entries, errors, (*problems, *left_out))
 
 
 def _find_chunk(root: Element, path: Path) -> tuple[Element, list[str]]:
@@ -120,20 +129,36 @@ def _camera_label(camera: Element) -> str:
     return escape_name(camera.get("label") or f"camera {excerpt(camera.get('id', '?'))}")
 
 
-def _split_usable(cameras: list[Element], frames: dict[str, _Frame]) -> tuple[list[Element], list[str]]:
+def _pose_owner(camera: Element, by_number: Mapping[str, Element]) -> Element | None:
+    """The camera that has the matrix: itself, or its system's master; None where neither was aligned."""
+    if camera.find("transform") is not None:
+        return camera
+    number = camera.get("master_id")
+    master = None if number is None else by_number.get(number)
+    return None if master is None or master.find("transform") is None else master
+
+
+def _split_usable(
+    owners: Mapping[Element, Element | None], frames: dict[str, _Frame]
+) -> tuple[list[Element], list[str]]:
     """Enabled and aligned cameras that share a frame, and lines that name the others."""
-    disabled = [c for c in cameras if c.get("enabled", "true").lower() in ("false", "0")]
-    enabled = [c for c in cameras if c not in set(disabled)]
-    lost = [c for c in enabled if c.find("transform") is None and c.get("master_id") is None]
+    disabled = [c for c in owners if c.get("enabled", "true").lower() in ("false", "0")]
+    enabled = [c for c in owners if c not in set(disabled)]
+    lost = [c for c in enabled if owners[c] is None]
     aligned = [c for c in enabled if c not in set(lost)]
     problems = [*_describe_cameras(disabled, "disabled"), *_describe_cameras(lost, "not aligned")]
-    components = Counter(c.get("component_id", "") for c in aligned)
-    if len(components) > 1 and not all(component in frames for component in components):
-        largest = max(components, key=lambda component: components[component])
-        apart = [c for c in aligned if c.get("component_id", "") != largest]
+
+    def component(camera: Element) -> str:
+        owner = owners[camera]
+        return "" if owner is None else owner.get("component_id", "")
+
+    components = Counter(map(component, aligned))
+    if len(components) > 1 and not all(number in frames for number in components):
+        largest = max(components, key=lambda number: components[number])
+        apart = [c for c in aligned if component(c) != largest]
         where = f"in another component than the largest ({excerpt(largest)}) without a common frame"
         problems += _describe_cameras(apart, where)
-        aligned = [c for c in aligned if c.get("component_id", "") == largest]
+        aligned = [c for c in aligned if component(c) == largest]
     return aligned, problems
 
 
@@ -187,49 +212,53 @@ def _read_frame(transform: Element, label: str, path: Path) -> _Frame:
     return _Frame(rotation, shift, scale)
 
 
+def _read_pose(camera: Element, path: Path) -> NDArray[np.float64]:
+    """(4, 4) camera to chunk."""
+    label, words = _camera_label(camera), (camera.findtext("transform") or "").split()
+    matrix = parse_numbers(words, 16, f"the transform of {label}", path).reshape(4, 4)
+    check_finite([matrix], label, path)
+    if not np.allclose(matrix[3], [0, 0, 0, 1], atol=1e-6):
+        raise damaged_error(path, f"the last row of the transform of {label} is not 0 0 0 1", "mend or remove it")
+    return matrix
+
+
+def _read_offset(sensor: Element | None, label: str, path: Path) -> NDArray[np.float64]:
+    """(4, 4) from the master's axes to those of a camera of its system, as the camera's sensor states it."""
+    rotation, shift = (None if sensor is None else sensor.findtext(tag) for tag in ("rotation", "translation"))
+    if rotation is None:
+        raise CaptureError(
+            "metashape-rig",
+            f"{label} belongs to a multi-camera system and has no transform, nor its sensor an offset to the master",
+            path=path,
+            remedy="make its cameras single ones in Metashape before exporting, or export another format",
+        )
+    offset = np.eye(4)
+    offset[:3, :3] = parse_numbers(rotation.split(), 9, f"the rotation of the sensor of {label}", path).reshape(3, 3)
+    if shift is not None:
+        offset[:3, 3] = parse_numbers(shift.split(), 3, f"the translation of the sensor of {label}", path)
+    check_finite([offset], label, path)
+    if not np.allclose(offset[:3, :3] @ offset[:3, :3].T, np.eye(3), atol=METASHAPE_ROTATION_TOLERANCE):
+        raise damaged_error(path, f"the rotation of the sensor of {label} is none", "export the cameras again")
+    return offset
+
+
 def _make_entry(
-    camera: Element, sensor: tuple[Intrinsics, Lens | None] | CaptureError, frame: _Frame, path: Path
+    camera: Element,
+    sensor: tuple[Intrinsics, Lens | None] | CaptureError,
+    matrix: NDArray[np.float64],
+    frame: _Frame,
+    path: Path,
 ) -> Entry:
     label, name = _camera_label(camera), camera.get("label")
     if not name:
         raise damaged_error(path, f"{label} has no label, which names its photograph", "mend or remove it")
-    transform = camera.find("transform")
-    if transform is None:
-        raise CaptureError(
-            "metashape-rig",
-            f"{label} belongs to a multi-camera system and has no transform of its own",
-            path=path,
-            remedy="make its cameras single ones in Metashape before exporting, or export another format",
-        )
     if isinstance(sensor, CaptureError):
         raise CaptureError(sensor.code, f"{label}: {sensor.message}", path=path, remedy=sensor.remedy)
-    matrix = parse_numbers((transform.text or "").split(), 16, f"the transform of {label}", path).reshape(4, 4)
-    check_finite([matrix], label, path)
-    if not np.allclose(matrix[3], [0, 0, 0, 1], atol=1e-6):
-        raise damaged_error(path, f"the last row of the transform of {label} is not 0 0 0 1", "mend or remove it")
     axes = frame.rotation @ matrix[:3, :3]
     with np.errstate(over="ignore", invalid="ignore"):
         centre = frame.scale * (frame.rotation @ matrix[:3, 3]) + frame.shift
     check_finite([centre], label, path)
-    return Entry(name.replace("\\", "/"), label, sensor[0], axes.T, centre, sensor[1])
-
-
-def _shift_to_origin(entries: tuple[Entry, ...]) -> tuple[tuple[Entry, ...], list[str]]:
-    """Shift georeferenced cameras, millions of metres from the origin, to it: there float32 resolves half metres."""
-    if len(entries) < 2:
-        return entries, []
-    centres = np.array([entry.centre for entry in entries])
-    middle = centres.mean(axis=0)
-    extent = float(np.ptp(centres, axis=0).max())
-    if not 0 < extent * METASHAPE_FAR_EXTENTS < np.abs(middle).max():
-        return entries, []
-    shift = np.round(middle)
-    moved = tuple(replace(entry, centre=entry.centre - shift) for entry in entries)
-    where = ", ".join(f"{-v:.0f}" for v in shift)
-    return moved, [
-        f"the cameras stand {np.linalg.norm(middle):.3g} units from the origin (georeferenced) and were moved by "
-        f"({where}): a mesh from the same project must be moved alike"
-    ]
+    return Entry(name.replace("\\", "/"), label, sensor[0], axes.T, centre, sensor[1], stored=True)
 
 
 def _read_calibration(sensor: Element | None, number: str, path: Path) -> tuple[Intrinsics, Lens | None]:

@@ -24,13 +24,23 @@ from eigenfield.core.errors import CaptureError
 
 TRANSFORMS_FILE = "transforms.json"
 TRANSFORMS_MAX_BYTES = 256 * 2**20
-TRANSFORMS_PERSPECTIVE_MODELS = ("PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV", "PERSPECTIVE")
-TRANSFORMS_FISHEYE_MODELS = ("OPENCV_FISHEYE",)
+TRANSFORMS_RATIONAL_MODEL = "FULL_OPENCV"
+TRANSFORMS_PERSPECTIVE_MODELS = (
+    "PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV", TRANSFORMS_RATIONAL_MODEL, "PERSPECTIVE"
+)  # fmt: skip
+TRANSFORMS_FISHEYE_MODELS = ("OPENCV_FISHEYE", "SIMPLE_RADIAL_FISHEYE", "RADIAL_FISHEYE")
+TRANSFORMS_LENS_KEYS = ("k1", "k2", "k3", "k4", "p1", "p2")  # in the order of nerfstudio's distortion_params
+# what other lenses have: of OpenCV's thin prism and tilt, COLMAP's models, and instant-ngp's other projections
+TRANSFORMS_UNREAD_KEYS = (
+    "s1", "s2", "s3", "s4", "sx1", "sy1", "tauX", "tauY", "omega", "xi", "ftheta_p0", "ftheta_p1",
+    "ftheta_p2", "ftheta_p3", "ftheta_p4", "latlong", "equirectangular", "orthographic",
+)  # fmt: skip
 # a lens that no other reader of this format knows: they refuse the name, as they should
 TRANSFORMS_OWN_MODEL = "EIGENFIELD"
 TRANSFORMS_OWN_COEFFICIENTS = {
     "rational": (8, 12, 14), "metashape": (9,), "metashape-equidistant": (9,), "metashape-equisolid": (9,)
 }  # fmt: skip
+TRANSFORMS_TURNED_KEY = "exif_orientation_applied"  # of a frame, our own: its photograph was turned upright
 Similarity = tuple[NDArray[np.float64], NDArray[np.float64], float]  # rotation, shift, scale
 OPENGL_TO_OPENCV_AXES = np.diag([1.0, -1.0, -1.0])  # OpenGL axes to OpenCV axes
 
@@ -166,7 +176,8 @@ def _make_entry(top: Mapping[str, Any], own: Any, number: int, path: Path, undo:
         axes = OPENGL_TO_OPENCV_AXES @ (rotation.T @ pose[:, :3]).T
         centre = rotation.T @ (pose[:, 3] / scale - shift)
     mask = mask and mask.replace("\\", "/")
-    return Entry(file.replace("\\", "/"), frame.label, intrinsics, axes, centre, lens, mask)
+    stored = frame.get(TRANSFORMS_TURNED_KEY) is not True
+    return Entry(file.replace("\\", "/"), frame.label, intrinsics, axes, centre, lens, mask, stored=stored)
 
 
 def _read_applied_transform(top: Mapping[str, Any], path: Path) -> Similarity:
@@ -187,23 +198,35 @@ def _read_applied_transform(top: Mapping[str, Any], path: Path) -> Similarity:
 
 def _read_intrinsics(frame: _Frame) -> Intrinsics:
     # focal length and angle come from the frame if it has any of them, and are not mixed with those of the file
-    own = {"fl_x", "fl_y", "camera_angle_x"} & frame.own.keys()
+    own = {"fl_x", "fl_y", "camera_angle_x", "x_fov"} & frame.own.keys()
     owner = replace(frame, own=frame.own if own else frame.top, top={})
     fx, fy = owner.number("fl_x"), owner.number("fl_y")
-    angles = owner.number("camera_angle_x"), owner.number("camera_angle_y")
-    focal, angle = None, None
+    focal = None
     if fx is not None or fy is not None:
         focal = (fx if fx is not None else fy, fy if fy is not None else fx)
-    elif angles[0] is not None:
-        if not all(0 < a < math.pi for a in angles if a is not None):
-            message = f"the camera angles of {frame.label} are not between 0 and pi"
-            raise frame.error("frame-angle", message, "mend them")
-        angle = (angles[0], angles[1])
-    else:
+    angle = _read_angle(owner, focal is None)
+    if focal is None and angle is None:
         message = f"{frame.label} has neither fl_x nor camera_angle_x"
         raise frame.error("frame-focal", message, "add the focal length, in pixels")
     size, principal = (frame.length("w"), frame.length("h")), (frame.number("cx"), frame.number("cy"))
     return Intrinsics(*size, focal, angle, principal)  # type: ignore[arg-type]
+
+
+def _read_angle(owner: _Frame, required: bool) -> tuple[float, float | None] | None:
+    """Full angles of view, radians; None where the horizontal one is not stated.
+
+    Those that are none are an error where they are `required`, and else left out: the focal length is there too.
+    """
+    for keys, unit in ((("camera_angle_x", "camera_angle_y"), 1.0), (("x_fov", "y_fov"), math.pi / 180)):
+        x, y = (None if angle is None else angle * unit for angle in map(owner.number, keys))
+        if x is None:
+            continue
+        if all(0 < angle < math.pi for angle in (x, y) if angle is not None):
+            return x, y
+        if required:
+            message = f"the camera angles of {owner.label} are not between 0 and 180 degrees"
+            raise owner.error("frame-angle", message, "mend them")
+    return None
 
 
 def _read_lens(frame: _Frame) -> Lens | None:
@@ -217,16 +240,52 @@ def _read_lens(frame: _Frame) -> Lens | None:
             f"{frame.label} has the camera model {model!r}, which is not read",
             f"undistort it to {', '.join(TRANSFORMS_PERSPECTIVE_MODELS[:5])} or {TRANSFORMS_FISHEYE_MODELS[0]}",
         )
-    k1, k2, k3, k4, p1, p2 = (frame.number(key) or 0.0 for key in ("k1", "k2", "k3", "k4", "p1", "p2"))
-    if not all(map(math.isfinite, (k1, k2, k3, k4, p1, p2))):
+    strange = (frame.own.keys() | frame.top.keys()).intersection(TRANSFORMS_UNREAD_KEYS)
+    unread = sorted(key for key in strange if frame.get(key))
+    k1, k2, k3, k4, p1, p2 = _read_coefficients(frame)
+    k5, k6 = (frame.number(key) or 0.0 for key in ("k5", "k6"))
+    if not all(map(math.isfinite, (k1, k2, k3, k4, k5, k6, p1, p2))):
         raise frame.error("lens", f"{frame.label} has lens coefficients that are not finite", "mend them")
     if fisheye:
+        unread += [key for key, value in (("k5", k5), ("k6", k6), ("p1", p1), ("p2", p2)) if value]
+    if unread:
+        raise frame.error(
+            "camera-model",
+            f"{frame.label} has the lens parameter {unread[0]}, which is not read with the camera model {model!r}",
+            "undistort the photographs, or remove it if it means nothing",
+        )
+    if fisheye:
         return Lens("fisheye", (k1, k2, k3, k4))
+    if k5 or k6 or (k4 and model == TRANSFORMS_RATIONAL_MODEL):
+        return Lens("rational", (k1, k2, p1, p2, k3, k4, k5, k6))
     if k4:
-        message = f"{frame.label} has k4 without camera_model OPENCV_FISHEYE"
+        message = f"{frame.label} has k4, but its camera_model is neither OPENCV_FISHEYE nor FULL_OPENCV"
         raise frame.error("camera-model", message, "name the camera model, or undistort")
     lens = Lens("brown", (k1, k2, p1, p2, k3))
     return None if lens.is_identity else lens
+
+
+def _read_coefficients(frame: _Frame) -> list[float]:
+    """k1, k2, k3, k4, p1, p2: each by its name, or all from a list; a frame's own go before the file's.
+
+    Raises CaptureError `lens` for a list that is none, or that names contradict.
+    """
+    named = [frame.number(key) or 0.0 for key in TRANSFORMS_LENS_KEYS]
+    for level in (frame.own, frame.top):
+        given = level.get("distortion_params")
+        beside = [level.get(key) for key in TRANSFORMS_LENS_KEYS]
+        if given is None and any(value is not None for value in beside):
+            break
+        if given is None:
+            continue
+        if not isinstance(given, list) or len(given) != len(named) or not all(map(_is_number, given)):
+            message = f"distortion_params of {frame.label} is not the six numbers {' '.join(TRANSFORMS_LENS_KEYS)}"
+            raise frame.error("lens", message, "give them in this order, or each by its name")
+        if any(beside) and any(value is not None and value != one for value, one in zip(beside, given, strict=True)):
+            message = f"distortion_params of {frame.label} contradicts its {', '.join(TRANSFORMS_LENS_KEYS)}"
+            raise frame.error("lens", message, "remove one of the two")
+        return [_as_float(number) for number in given]
+    return named
 
 
 def _read_own_lens(frame: _Frame) -> Lens:

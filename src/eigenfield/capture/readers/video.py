@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from eigenfield.capture.arrangement import Arrangement, OpenOptions, require_photographs
-from eigenfield.capture.locate import files_named
+from eigenfield.capture.locate import IMAGES_FOLDER, files_named, photographs_in
 from eigenfield.capture.messages import natural_key
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.runtime.parallel import parallel_map
@@ -52,6 +52,12 @@ def videos_of(folder: Path) -> list[Path]:
 def find_videos(folder: Path) -> Path | None:
     """The folder, if it or its `videos/` holds at least two videos."""
     return folder if len(videos_of(folder)) >= VIDEO_MIN_FILES else None
+
+
+def is_video_rig(folder: Path) -> bool:
+    """Whether a folder holds videos where other captures have photographs."""
+    none = not photographs_in(folder) and not photographs_in(folder / IMAGES_FOLDER)
+    return none and find_videos(folder) is not None
 
 
 def parse_frame(frame: int | str | None) -> int | float:
@@ -161,7 +167,21 @@ def _decode_frames(path: Path, frame: int | float) -> Iterator[av.VideoFrame]:
 
 def _to_rgb(frame: av.VideoFrame) -> NDArray[np.uint8]:
     pixels = _yuv420_to_rgb(frame) if frame.format.name in ("yuv420p", "yuvj420p") else frame.to_ndarray(format="rgb24")
-    return np.ascontiguousarray(np.rot90(pixels, round(frame.rotation / 90)))
+    return np.ascontiguousarray(_upright(pixels, frame))
+
+
+def _upright(pixels: NDArray[np.uint8], frame: av.VideoFrame) -> NDArray[np.uint8]:
+    """The picture as its display matrix shows it: turned by quarters, mirrored or both.
+
+    A stored point (x, y) is shown at (a x + c y, b x + d y); the matrix begins a b u c d (ISO/IEC 14496-12, 6.2.2).
+    """
+    found = frame.side_data.get("DISPLAYMATRIX")
+    if found is None:
+        return pixels
+    a, b, _, c, d = np.frombuffer(found, np.int32)[:5].astype(np.int64).tolist()
+    if abs(b) + abs(c) > abs(a) + abs(d):  # x is shown along y
+        pixels, a, d = pixels.swapaxes(0, 1), c, b
+    return pixels[:: -1 if d < 0 else 1, :: -1 if a < 0 else 1]
 
 
 def _yuv420_to_rgb(frame: av.VideoFrame) -> NDArray[np.uint8]:

@@ -1,6 +1,7 @@
 """Writing COLMAP's sparse models, binary (https://colmap.github.io/format.html): what `colmap.py` reads, and points.
 
-Image names are relative to the light field's root: `colmap gui --image_path ROOT` finds them.
+COLMAP works on pixels as they are stored: cameras of photographs that EXIF turns are turned
+back. Image names are relative to the light field's root: `colmap gui --image_path ROOT` finds them.
 """
 
 from __future__ import annotations
@@ -11,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from eigenfield.capture.lightfield import LightField
+from eigenfield.capture.lightfield import LightField, View
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.points import SparsePoints
 from eigenfield.capture.readers.colmap import COLMAP_MODELS
+from eigenfield.capture.writers.stored import stored_pixels, stored_view
 from eigenfield.capture.writers.transforms import relative_path
 from eigenfield.core.camera import Camera
 
@@ -44,13 +46,16 @@ def colmap_camera(camera: Camera, lens: Lens | None) -> tuple[str, tuple[float, 
 
 
 def colmap_model(light_field: LightField, points: SparsePoints | None) -> dict[str, bytes] | None:
-    """`cameras.bin`, `images.bin` and `points3D.bin`; None where COLMAP has no model for one of the lenses."""
+    """`cameras.bin`, `images.bin` and `points3D.bin`; None where COLMAP has no model for one of the lenses, or EXIF
+    mirrors a photograph."""
     numbers: dict[tuple[object, ...], int] = {}
-    records, owner = [], []
-    for view in light_field.views:
-        described = colmap_camera(view.camera, view.lens)
-        if described is None:
+    records, owner, views = [], [], []
+    for upright in light_field.views:
+        view = stored_view(upright)
+        described = None if view is None else colmap_camera(view.camera, view.lens)
+        if view is None or described is None:
             return None
+        views.append(view)
         key = (*described, view.camera.width, view.camera.height)
         if key not in numbers:
             numbers[key] = len(numbers) + 1
@@ -60,19 +65,21 @@ def colmap_model(light_field: LightField, points: SparsePoints | None) -> dict[s
         owner.append(numbers[key])
     return {
         "cameras.bin": struct.pack("<Q", len(records)) + b"".join(records),
-        "images.bin": _pack_images(light_field, owner, points),
+        "images.bin": _pack_images(light_field, views, owner, points),
         "points3D.bin": _pack_points(light_field, points),
     }
 
 
-def _pack_images(light_field: LightField, owner: list[int], points: SparsePoints | None) -> bytes:
+def _pack_images(light_field: LightField, stored: list[View], owner: list[int], points: SparsePoints | None) -> bytes:
     records = [struct.pack("<Q", len(light_field))]
-    for index, (view, camera) in enumerate(zip(light_field.views, owner, strict=True)):
+    for index, (view, camera) in enumerate(zip(stored, owner, strict=True)):
         record = np.zeros(0, np.dtype([("x", "<f8"), ("y", "<f8"), ("point", "<u8")]))
         if points is not None:
             here = np.flatnonzero(points.view == index)
             record = np.zeros(len(here), record.dtype)
-            record["x"], record["y"] = points.pixels[here].T
+            moved = stored_pixels(light_field.views[index])
+            assert moved is not None, "such a view has no model"
+            record["x"], record["y"] = moved[:2, :2] @ points.pixels[here].T + moved[:2, 2:]
             record["point"] = points.point[here] + 1
         pose = struct.pack("<I7dI", index + 1, *quaternion(view.camera.R), *view.camera.t, camera)
         name = relative_path(view.path, light_field.root).encode("utf-8", "surrogateescape") + b"\0"

@@ -37,8 +37,9 @@ def save_calibration(
 ) -> None:
     """Write cameras into a folder: `transforms.json` (nerfstudio, instant-ngp) and `sparse/0` (COLMAP, binary).
 
-    `open_capture` reads both forms back to the same cameras. If COLMAP has no model for a lens, `sparse` is left out,
-    with a warning. Skew is refused.
+    They are written in the world of the capture's own calibration, where that stands far from its origin, points too.
+    `open_capture` reads both forms back to the same cameras. If COLMAP has no model for a lens, or EXIF mirrors a
+    photograph, `sparse` is left out, with a warning. Skew is refused.
 
     Args:
         light_field: The cameras.
@@ -88,23 +89,30 @@ def refuse_folder(folder: Path, overwrite: bool) -> None:
 
 
 def _make_files(light_field: LightField, place: Path, points: SparsePoints | None) -> dict[str, bytes]:
+    is_far = bool(light_field.origin.any())
+    if points is not None and is_far:
+        points = points.transform(1.0, np.eye(3), light_field.origin)
+    light_field = light_field.where_it_stood()
     document = transforms_document(light_field, place, POINTS_FILE if points is not None else None)
     files = {TRANSFORMS_FILE: (json.dumps(document, indent=1, allow_nan=False) + "\n").encode()}
     model = colmap_model(light_field, points)
     if model is None:
-        log.warning("%s: COLMAP has no model for the lens: only %s is written", place, TRANSFORMS_FILE)
+        log.warning(
+            "%s: COLMAP has no model for the lens, or for photographs that EXIF mirrors: only %s is written",
+            place, TRANSFORMS_FILE,
+        )  # fmt: skip
     else:
         files |= {f"{COLMAP_MODEL_FOLDER}/{name}": data for name, data in model.items()}
     if points is not None:
-        files[POINTS_FILE] = _pack_ply(points)
+        files[POINTS_FILE] = _pack_ply(points, is_far)
     return files
 
 
-def _pack_ply(points: SparsePoints) -> bytes:
-    record = np.zeros(len(points), [("position", "<f4", 3), ("colour", "u1", 3)])
+def _pack_ply(points: SparsePoints, is_far: bool) -> bytes:
+    record = np.zeros(len(points), [("position", "<f8" if is_far else "<f4", 3), ("colour", "u1", 3)])
     record["position"], record["colour"] = points.positions, points.colours
     lines = ["ply", "format binary_little_endian 1.0", f"element vertex {len(points)}"]
-    lines += [f"property float {axis}" for axis in "xyz"]
+    lines += [f"property {'double' if is_far else 'float'} {axis}" for axis in "xyz"]
     lines += [f"property uchar {name}" for name in ("red", "green", "blue")]
     return ("\n".join([*lines, "end_header"]) + "\n").encode() + record.tobytes()
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from eigenfield.capture.lightfield import LightField, View
 from eigenfield.capture.photographs.lens import Lens
-from eigenfield.capture.readers.transforms import OPENGL_TO_OPENCV_AXES, TRANSFORMS_OWN_MODEL
+from eigenfield.capture.readers.transforms import OPENGL_TO_OPENCV_AXES, TRANSFORMS_OWN_MODEL, TRANSFORMS_TURNED_KEY
+from eigenfield.capture.writers.stored import turned_orientation
 
 NERFSTUDIO_LENSES = ("brown", "fisheye")  # lenses that nerfstudio's keys describe
 
@@ -74,6 +75,8 @@ def _frame(view: View, folder: Path) -> dict[str, Any]:
     frame: dict[str, Any] = {"file_path": relative_path(view.path, folder), "transform_matrix": pose.tolist()}
     if view.mask is not None:
         frame["mask_path"] = relative_path(view.mask, folder)
+    if turned_orientation(view) != 1:
+        frame[TRANSFORMS_TURNED_KEY] = True
     return frame
 
 

@@ -26,14 +26,16 @@ def prepare_proxy(
     path_or_mesh: str | os.PathLike[str] | Mesh,
     cameras: Sequence[Camera],
     *,
+    origin: NDArray[np.float64] | None = None,
     triangles: int | Callable[[Mesh], int | None] | None = None,
     progress: Progress | None = None,
 ) -> Mesh:
     """Read (or check) a mesh, make sure that a camera sees it, and give it an atlas.
 
     Args:
-        path_or_mesh: A mesh file, or a mesh.
+        path_or_mesh: A mesh file, or a mesh in the cameras' world.
         cameras: All cameras.
+        origin: (3,) the origin of the cameras' world in that of a mesh file. None: they are the same.
         triangles: As in `unwrap_mesh`, or a function that returns it for the mesh.
         progress: Called for each step.
 
@@ -42,7 +44,7 @@ def prepare_proxy(
         OptionError: As `unwrap_mesh`.
     """
     path = None if isinstance(path_or_mesh, Mesh) else Path(path_or_mesh)
-    mesh = _from_memory(path_or_mesh) if isinstance(path_or_mesh, Mesh) else read_mesh(path_or_mesh)
+    mesh = _from_memory(path_or_mesh) if isinstance(path_or_mesh, Mesh) else read_mesh(path_or_mesh, origin)
     _check_seen(mesh, cameras, path)
     try:
         count = triangles(mesh) if callable(triangles) else triangles

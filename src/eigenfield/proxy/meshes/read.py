@@ -35,7 +35,7 @@ MESH_SLIVER_RATIO = 1e-9  # area over the square of the longest edge: below, a t
 MESH_MAX_ROUNDING_RATIO = 1e-5  # float32 spacing over the mesh's extent: above, rounding is noticeable
 
 
-def read_mesh(path: str | os.PathLike[str]) -> Mesh:
+def read_mesh(path: str | os.PathLike[str], origin: NDArray[np.float64] | None = None) -> Mesh:
     """Read a PLY, OBJ, GLB/glTF, STL or OFF file.
 
     The mesh has the file's own UVs (a valid atlas or not: see `unwrap_mesh`), one a vertex, with vertices duplicated on
@@ -45,6 +45,7 @@ def read_mesh(path: str | os.PathLike[str]) -> Mesh:
 
     Args:
         path: The file.
+        origin: (3,) taken off every position before they become float32: the `origin` of a capture. None: nothing.
 
     Raises:
         ProxyError: `proxy-missing`, `proxy-format`, `proxy-unreadable`, `proxy-extension`, `proxy-nodes`,
@@ -72,7 +73,8 @@ def read_mesh(path: str | os.PathLike[str]) -> Mesh:
             path=file,
             remedy="check the file and its permissions",
         ) from error
-    return check_mesh(_parse(data, suffix, file), file)
+    raw = _parse(data, suffix, file)
+    return check_mesh(raw if origin is None else raw._replace(vertices=raw.vertices - origin), file)
 
 
 def _parse(data: bytes, suffix: str, file: Path) -> RawMesh:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +49,11 @@ class SpherePrimitive:
     def size(self) -> float:
         """The radius."""
         return self.radius
+
+    def moved(self, shift: NDArray[np.float64]) -> SpherePrimitive:
+        """The sphere elsewhere, by (3,)."""
+        x, y, z = (np.array(self.centre) + shift).tolist()
+        return replace(self, centre=(x, y, z))
 
     def distance(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
         """(n,) signed distance from the sphere, negative inside.
@@ -94,6 +99,11 @@ class PlanePrimitive:
     def size(self) -> float:
         """Half the side."""
         return self.extent
+
+    def moved(self, shift: NDArray[np.float64]) -> PlanePrimitive:
+        """The plane elsewhere, by (3,)."""
+        x, y, z = (np.array(self.middle) + shift).tolist()
+        return replace(self, middle=(x, y, z))
 
     def axes(self) -> NDArray[np.float64]:
         """(3, 3): two directions along the sides, the first as level as possible (y is vertical), and the normal."""

@@ -105,7 +105,9 @@ def write_colmap(
             View(redrawn.name, images / file, redrawn.camera)
             for redrawn, file in zip(redrawn_views, files, strict=True)
         )
-        model = colmap_model(LightField(images, views, (), "colmap"), sparse)
+        origin = job.scene.origin
+        moved = LightField(images, views, (), "colmap", origin=origin).where_it_stood()
+        model = colmap_model(moved, sparse.transform(1.0, np.eye(3), origin) if origin.any() else sparse)
         assert model is not None, "pinholes without skew have a model"
         for name, data in model.items():
             write_file(part / "sparse" / "0" / name, data)

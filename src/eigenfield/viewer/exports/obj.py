@@ -160,18 +160,20 @@ def _has_plain_atlas(scene: Scene) -> bool:
 def _mesh(scene: Scene, material: str) -> bytes:
     mesh = scene.proxy.mesh
     assert mesh.uv is not None
-    turned = mesh.vertices.astype(np.float64) @ capture_to_gltf(scene.rig.view_plane).T
+    places = mesh.vertices.astype(np.float64) + scene.origin
+    turned = places @ capture_to_gltf(scene.rig.view_plane).T
+    digits = 15 if scene.origin.any() else 9
     lines = [
         f"# eigenfield {__version__}",
         "# x right, y up, the cameras look along -z; lengths as in the capture",
         f"mtllib {material}",
         "o proxy",
     ]
-    lines += [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in turned.tolist()]
+    lines += [f"v {x:.{digits}g} {y:.{digits}g} {z:.{digits}g}" for x, y, z in turned.tolist()]
     lines += [f"vt {u!r} {1 - v!r}" for u, v in mesh.uv.astype(np.float64).tolist()]
     lines += ["usemtl mean", "s off"]
     lines += [f"f {a}/{a} {b}/{b} {c}/{c}" for a, b, c in (mesh.faces + 1).tolist()]
-    return ("\n".join(lines) + "\n").encode("ascii")
+    return ("\n".join(lines) + "\n").encode()
 
 
 def _material(scene: Scene, picture: str) -> bytes:
