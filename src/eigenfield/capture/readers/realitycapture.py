@@ -54,13 +54,16 @@ def read_realitycapture(path: Path, photographs: Path | None = None) -> Calibrat
     if first is None:
         raise damaged_error(path, "has no line of columns that begins with #name", "export it again")
     separator = ";" if lines[first].count(";") > lines[first].count(",") else ","
-    rows = list(csv.reader((line for line in lines[first:]), delimiter=separator, skipinitialspace=True))
+    try:
+        rows = list(csv.reader(lines[first:], delimiter=separator, skipinitialspace=True))
+    except csv.Error as error:
+        raise damaged_error(path, f"is no CSV: {error}", "export it again") from None
     columns = [word.strip().lower().lstrip("#") for word in rows[0]]
-    missing = [name for name in (*REALITYCAPTURE_POSE, "f") if name not in columns]
+    missing = [name for name in ("name", *REALITYCAPTURE_POSE, "f") if name not in columns]
     if missing:
         remedy = "export Internal/External camera parameters in a Cartesian coordinate system"
         raise damaged_error(path, f"has no column {', '.join(missing)}", remedy)
-    cameras = [row for row in rows[1:] if not row[0].lstrip().startswith("#")]
+    cameras = [row for row in rows[1:] if row and not row[0].lstrip().startswith("#")]
     if not cameras:
         raise CaptureError("calibration-empty", "lists no camera", path=path, remedy="name another calibration")
     finder = PhotographFinder(path.parent if photographs is None else photographs, path.parent, False)
@@ -69,7 +72,8 @@ def read_realitycapture(path: Path, photographs: Path | None = None) -> Calibrat
 
 
 def _make_entry(row: list[str], columns: list[str], finder: PhotographFinder, path: Path) -> Entry:
-    name = row[columns.index("name")].strip().replace("\\", "/")
+    first = columns.index("name")
+    name = row[first].strip().replace("\\", "/") if first < len(row) else ""
     label = f"camera {escape_name(name)}"
     if not name or "\0" in name or len(row) < len(columns):
         raise damaged_error(path, f"{label} has {len(row)} values, not {len(columns)}", "export it again")
