@@ -15,6 +15,7 @@ import pytest
 from eigenfield.core.errors import ProxyError
 from eigenfield.proxy import read_mesh
 from eigenfield.proxy.meshes.formats import RawMesh, table_of_formats
+from eigenfield.proxy.meshes.polygons import Polygons, triangulate_polygons
 from eigenfield.proxy.meshes.read import MESH_FORMATS, check_mesh
 from support.mesh_files import GltfFile, ply_file
 
@@ -599,3 +600,14 @@ def test_sound_meshes_stay_as_they_are(caplog):
     np.testing.assert_array_equal(seams.faces, np.arange(216).reshape(-1, 3))
     np.testing.assert_array_equal(seams.uv, uv[faces].reshape(-1, 2))
     assert not caplog.records
+
+
+def test_a_corner_on_the_border_of_an_ear_is_in_it_however_it_is_rounded():
+    low, high = -np.array([6, 4, 2, 2, 1, 1, 1]), np.array([0, 0, 0, 0, 0, 0, 1])  # many corners on one line
+    outline = np.stack([np.r_[:7, 6:-1:-1], np.r_[high, low[::-1]]], axis=1).astype(np.float64)
+    turn = np.linalg.qr(3 * np.eye(3) + np.array([[0, 0.5, 0], [2**-52, 0.25, 0], [1, -0.509765625, 0]]))[0]
+    points = outline @ turn[:, :2].T
+    faces, _ = triangulate_polygons(Polygons(np.arange(14), np.array([14])), None, points)
+    corners = points[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert np.linalg.norm(normals, axis=1).sum() / 2 == pytest.approx(14)

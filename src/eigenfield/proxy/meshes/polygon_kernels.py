@@ -24,15 +24,19 @@ def _turn(x, y, a, b, c):
 
 
 @kernel()
-def _is_ear(x, y, reflex, before, corner, after, following):
-    """Whether no reflex corner of the rest lies in the triangle before, corner, after or on its border."""
+def _is_ear(x, y, reflex, before, corner, after, following, least):
+    """Whether no reflex corner of the rest lies in the triangle before, corner, after.
+
+    least: twice the signed area that a corner inside makes with each side; a little below 0, the border is inside too,
+    however it is rounded.
+    """
     at = following[after]
     while at != before:
         other = reflex[at]
         for end in (before, corner, after):
             other = other and not (x[at] == x[end] and y[at] == y[end])
-        other = other and _turn(x, y, before, corner, at) >= 0 and _turn(x, y, corner, after, at) >= 0
-        if other and _turn(x, y, after, before, at) >= 0:
+        other = other and _turn(x, y, before, corner, at) >= least and _turn(x, y, corner, after, at) >= least
+        if other and _turn(x, y, after, before, at) >= least:
             return False
         at = following[at]
     return True
@@ -57,7 +61,7 @@ def _clip(x, y, first, triangles, begin):
         at = corner
         for _ in range(n - k):
             turn = _turn(x, y, preceding[at], at, following[at])
-            if turn > flat and _is_ear(x, y, reflex, preceding[at], at, following[at], following):
+            if turn > flat and _is_ear(x, y, reflex, preceding[at], at, following[at], following, -flat):
                 ear = at
                 break
             if straight < 0 and abs(turn) <= flat:
