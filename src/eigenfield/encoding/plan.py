@@ -32,7 +32,7 @@ from eigenfield.encoding.geometry.simplify_relief import simplify_proxy_rd
 from eigenfield.encoding.geometry.triangle_count import triangle_count_rd
 from eigenfield.encoding.options import EncodeOptions, resolved_value
 from eigenfield.encoding.projected.atlas import atlas_side, texels_per_pixel
-from eigenfield.encoding.views import CaptureViews, grid_of, select_views
+from eigenfield.encoding.views import CaptureViews, grid_of, select_views, usual_reference
 from eigenfield.proxy import prepare_proxy
 from eigenfield.proxy.relief.find_lattice import relief_lattice, relief_proxy
 
@@ -202,6 +202,8 @@ def _prepare(
     triangles = _triangles_by_pictures(views, options) if _simplifies(options) else options.triangles
     mesh = prepare_proxy(proxy, cameras, origin=views.capture.origin, triangles=triangles, progress=progress)
     _warn_of_rounding(views.capture.cameras, cameras, mesh)
+    if options.reference is None:
+        views = views.with_reference(usual_reference(views, mesh.vertices))
     if options.fit == "none":
         return PreparedProxy(given, Proxy(mesh), views, by_quality=False)
     lattice, side = relief_lattice(mesh, cameras, DEPTH_ERROR_PX), atlas_side(mesh, cameras[views.rig.reference], 1.0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -18,6 +18,10 @@ from eigenfield.core.rig import Rig
 from eigenfield.core.viewplane import find_grid, fit_view_plane
 from eigenfield.encoding.options import EncodeOptions
 from eigenfield.rendering import delaunay_triangles
+
+REFERENCE_MAX_POINTS = 2000  # by which the scale of a view is measured
+REFERENCE_SCALE_PERCENTILE = 25.0  # of the views' scales, which is that of the wider ones
+REFERENCE_MAX_SCALE_RATIO = 1.5  # to it
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +61,14 @@ class CaptureViews:
         """Those of the encoded cameras, which are counted among themselves."""
         return select_cameras(self.capture, self.rig.encoded.tolist())
 
+    def with_reference(self, reference: int) -> CaptureViews:
+        """The same with another reference camera.
+
+        Args:
+            reference: Index of an encoded camera.
+        """
+        return CaptureViews(self.capture, replace(self.rig, reference=reference))
+
     @cached_property
     def taken_by(self) -> NDArray[np.int64]:
         """(No,) the camera of each of `observations`, whose rows of texture maps and weights these are."""
@@ -85,6 +97,34 @@ def select_views(capture: CalibratedObservations, options: EncodeOptions) -> Cap
     places = fit_view_plane(cameras).coordinates([camera.centre for camera in cameras])
     held, reference = _held_and_reference(options, capture.names, places)
     return CaptureViews(capture, make_rig(capture.names, cameras, held, reference))
+
+
+def usual_reference(views: CaptureViews, points: NDArray[np.float32]) -> int:
+    """The encoded camera nearest the centre of those that do not see a scene much larger than others do.
+
+    What an atlas made for a close view holds, a wide view shows in so few pixels that it cannot determine it.
+
+    Args:
+        views: The views.
+        points: (n, 3) of the scene.
+    """
+    rig = views.rig
+    few = points[:: max(1, len(points) // REFERENCE_MAX_POINTS)]
+    scales = np.array([_pixels_per_unit(camera, few) for camera in rig.encoded_cameras])
+    if not (scales > 0).any():
+        return rig.reference
+    usual = REFERENCE_MAX_SCALE_RATIO * float(np.percentile(scales[scales > 0], REFERENCE_SCALE_PERCENTILE))
+    places = rig.view_plane.coordinates([camera.centre for camera in rig.encoded_cameras])
+    distance = np.where((scales > 0) & (scales <= usual), np.linalg.norm(places, axis=1), np.inf)
+    return rig.reference if scales[rig.encoded_reference] <= usual else int(rig.encoded[np.argmin(distance)])
+
+
+def _pixels_per_unit(camera: Camera, points: NDArray[np.float32]) -> float:
+    """Pixels of a unit of the scene at the median depth of what a camera sees of it; 0 where it sees nothing."""
+    pixels, depth = camera.project(points)
+    with np.errstate(invalid="ignore"):
+        inside = (depth > 0) & (pixels >= 0).all(axis=1) & (pixels < (camera.width, camera.height)).all(axis=1)
+    return float(np.sqrt(camera.K[0, 0] * camera.K[1, 1]) / np.median(depth[inside])) if inside.any() else 0.0
 
 
 def check_selection(capture: Capture, options: EncodeOptions) -> None:
