@@ -9,9 +9,10 @@ import numpy as np
 import eigenfield as ef
 from eigenfield.encoding.options import EncodeOptions
 from eigenfield.encoding.views import select_views, usual_reference
-from eigenfield.rendering import draw_texture
+from eigenfield.rendering import Renderer, ViewWeights, draw_texture
 from support.observations import CalibratedInMemory, InMemory
 from support.scenes import bumpy_square, row_grid, smooth_pictures
+from support.soft_scenes import soft_scene
 
 TELE = np.diag([3.0, 3.0, 1.0])
 MIDDLE = 4  # of nine cameras
@@ -64,3 +65,13 @@ def test_wide_views_are_as_good_beside_tele_views():
     made, asked = (ef.encode(capture, bumpy_square(12), **few, **more) for more in ({}, {"reference": "camera 4"}))
     assert made.rig.reference != MIDDLE and asked.rig.reference == MIDDLE
     assert np.prod(made.appearance.atlas) < 0.5 * np.prod(asked.appearance.atlas)
+
+
+def test_sheets_have_such_a_reference_too():
+    scene = soft_scene()
+    cameras = list(scene.rig.cameras)
+    cameras[MIDDLE] = replace(cameras[MIDDLE], K=TELE @ cameras[MIDDLE].K)
+    pictures = [Renderer(scene).draw(camera, ViewWeights()).image for camera in cameras]
+    capture = CalibratedInMemory(InMemory(pictures), cameras, (0.0,))
+    made = ef.encode(capture, scene.proxy, textures=1, preset="small")
+    assert made.proxy.sheets is not None and made.rig.reference != MIDDLE

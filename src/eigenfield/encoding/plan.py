@@ -202,8 +202,7 @@ def _prepare(
     triangles = _triangles_by_pictures(views, options) if _simplifies(options) else options.triangles
     mesh = prepare_proxy(proxy, cameras, origin=views.capture.origin, triangles=triangles, progress=progress)
     _warn_of_rounding(views.capture.cameras, cameras, mesh)
-    if options.reference is None:
-        views = views.with_reference(usual_reference(views, mesh.vertices))
+    views = _at_usual_reference(views, options, mesh)
     if options.fit == "none":
         return PreparedProxy(given, Proxy(mesh), views, by_quality=False)
     lattice, side = relief_lattice(mesh, cameras, DEPTH_ERROR_PX), atlas_side(mesh, cameras[views.rig.reference], 1.0)
@@ -227,12 +226,18 @@ def _prepare_sheets(
         message = "texture maps of several sheets, which only a fit can make"
         raise OptionError("sheets", message, remedy="leave out --fit none, or use another --surface")
     _warn_of_rounding(views.capture.cameras, views.rig.cameras, proxy.mesh)
+    views = _at_usual_reference(views, options, proxy.mesh)
     given, cameras, observations = proxy, views.rig.encoded_cameras, views.observations
     side = 0 if proxy.sheets is None else max(proxy.sheets.opacity.shape)
     proxy = fit_opacity(proxy, cameras, observations, work, progress)
     proxy = fit_surface(proxy, cameras, observations, side, work, progress)
     proxy = fit_opacity(proxy, cameras, observations, work, progress)
     return PreparedProxy(given, proxy, views, by_quality=False)
+
+
+def _at_usual_reference(views: CaptureViews, options: EncodeOptions, mesh: Mesh) -> CaptureViews:
+    """The views with the reference camera that was asked for, or that of `usual_reference`."""
+    return views if options.reference else views.with_reference(usual_reference(views, mesh.vertices))
 
 
 def _triangles_by_pictures(views: CaptureViews, options: EncodeOptions) -> Callable[[Mesh], int | None]:
