@@ -1,7 +1,8 @@
 """Descent of layers with colour and opacity, one photograph a step.
 
 What is minimised is the mean squared error of the photographs, plus the total variation of colour and opacity, plus a
-price for opacity, which empties what no photograph asks for.
+price for opacity, which empties what no photograph asks for. Of few photographs, the total variation weighs more, as it
+would beside the sum of their errors.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ log = logging.getLogger("eigenfield.stereo")
 
 CHANNELS = 4
 LOG_STEPS = 60
+FEW_VIEWS = 16  # number of photographs from which on the total variation weighs as its constants say
 
 
 @dataclass(frozen=True)
@@ -66,19 +68,21 @@ class Descent:
         tuning: Constants.
     """
 
-    def __init__(self, labels: Labels, layers: NDArray[np.float32], tuning: DescentTuning) -> None:
+    def __init__(self, labels: Labels, layers: NDArray[np.float32], tuning: DescentTuning, views: int) -> None:
         """Prepare the first step.
 
         Args:
             labels: (D,) of planes, or (D, h, w) of height fields.
             layers: (D, h, w, 4) float32, contiguous.
             tuning: Constants.
+            views: Number of photographs.
         """
         self.labels, self.layers, self.tuning = labels, layers, tuning
         _, height, width, channels = layers.shape
         self._pyramids = [Pyramid((height, width), channels, tuning.levels) for _ in layers]
         texels = height * width
-        self._variation = _columns(tuning.colour_variation / (3 * texels), tuning.opacity_variation / texels, width)
+        smooth = max(FEW_VIEWS / views, 1.0) / texels
+        self._variation = _columns(tuning.colour_variation / 3 * smooth, tuning.opacity_variation * smooth, width)
         self._price, self._doubt = (_columns(0, x / texels, width) for x in (tuning.opacity_price, tuning.doubt_price))
         low, high = -tuning.colour_margin, 1 + tuning.colour_margin
         self._low, self._opaque, self._high = (_columns(*pair, width) for pair in ((low, 0), (low, 1), (high, 1)))

@@ -101,7 +101,7 @@ def fit_multiplane(
     if labels.ndim != 1 or len(labels) < 2 or not (np.diff(labels) > 0).all():
         raise ValueError("labels must be at least two, ascending")
     layers = start_layers(packed, matrices, shape, labels, tuning)
-    Descent(labels, layers, tuning).run(packed, matrices, _ticker(progress, "planes", tuning.steps))
+    Descent(labels, layers, tuning, len(packed)).run(packed, matrices, _ticker(progress, "planes", tuning.steps))
     return MultiplaneImage(labels, layers)
 
 
@@ -151,7 +151,9 @@ def fit_sheets(
         sheets = sheets_of(image, count)
         for packed, views, size in rounds:
             sheets = enlarged(sheets, size)
-            _SheetDescent(sheets, spacing, tuning).run(packed, views, _ticker(progress, "sheets", total, before))
+            _SheetDescent(sheets, spacing, tuning, len(packed)).run(
+                packed, views, _ticker(progress, "sheets", total, before)
+            )
             before += tuning.steps
         found.append(sheets)
     return found
@@ -179,15 +181,16 @@ class _SheetDescent(Descent):
 
     tuning: SheetTuning
 
-    def __init__(self, sheets: SoftSheets, spacing: float, tuning: SheetTuning) -> None:
+    def __init__(self, sheets: SoftSheets, spacing: float, tuning: SheetTuning, views: int) -> None:
         """Prepare the first step.
 
         Args:
             sheets: Are changed in place.
             spacing: Distance of the planes, in labels.
             tuning: Constants.
+            views: Number of photographs.
         """
-        super().__init__(sheets.labels, sheets.layers, tuning)
+        super().__init__(sheets.labels, sheets.layers, tuning, views)
         self._spacing = spacing
         height, width = sheets.labels.shape[1:]
         self._label_pyramids = [Pyramid((height, width), 1, tuning.levels) for _ in sheets.labels]
