@@ -275,7 +275,7 @@ def test_photographs_that_may_be_a_grid_are_told_of_it(tmp_path, number, code, h
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", None)])
 def test_an_interrupted_run_ends_soon_and_leaves_no_output(array, tmp_path, number):
     out = tmp_path / "scene.glb"
     process = subprocess.Popen(
