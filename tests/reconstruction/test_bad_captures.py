@@ -178,7 +178,7 @@ def test_a_damaged_photograph_is_named_and_inspect_goes_on(array, tmp_path, run,
     error = refused(lambda: reconstruct(open_any(folder)))
     assert error.path == str(folder / "view_01_02.png")
     code, out, _ = run("inspect", folder, "--json")
-    assert code == 0
+    assert code == 2 and json.loads(out)["refused"]["file"] == error.path
     assert any("view_01_02.png" in problem for problem in json.loads(out)["problems"])
 
 
