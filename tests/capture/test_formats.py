@@ -28,6 +28,7 @@ from eigenfield.capture.format_table import FORMAT_NOTES, table_of_formats
 from eigenfield.capture.photographs.exif import read_focal_length
 from eigenfield.core.errors import CaptureError, EigenfieldError
 from eigenfield.core.observations import select_cameras
+from support import inspected
 from support.captures import frame_of
 from support.named import CFG, hci, refused, write, write_video
 from support.scenes import row_grid
@@ -37,12 +38,14 @@ GRID = [f"v_{r}_{c}.png" for r in range(3) for c in range(3)]
 
 @pytest.fixture
 def inspect(run):
-    """What the verb finds; EigenfieldErrors come through."""
+    """What the verb finds, which keeps to the schema; EigenfieldErrors come through."""
 
     def found(*words):
         code, out, err = run("inspect", *words, "--json", "--traceback")
-        assert code == 0, err
-        return json.loads(out)
+        report = json.loads(out)
+        assert inspected.violation(report) is None
+        assert code == (0 if report["refused"] is None else 2), err
+        return report
 
     return found
 
@@ -389,7 +392,7 @@ def test_inspect_decodes_photographs_without_cameras(tmp_path, inspect):
     whole = (folder / GRID[4]).read_bytes()
     (folder / GRID[4]).write_bytes(whole[: len(whole) // 2])
     report = inspect(folder)
-    assert [item["code"] for item in report["damaged"]] == ["image-truncated"]
+    assert [item["code"] for item in report["damaged"]] == [report["refused"]["code"]] == ["image-truncated"]
     assert any("v_1_1.png" in problem for problem in report["problems"])
     with pytest.raises(EigenfieldError, match="calibrate"):
         inspect(folder, "--proxy", "mesh.ply")

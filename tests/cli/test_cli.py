@@ -247,9 +247,11 @@ def test_unknown_options_and_traceback(run, scene, tmp_path):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are POSIX")
 @pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL], ids=lambda n: n.name)
+@pytest.mark.parametrize(
+    "number", [signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", None), signal.SIGKILL], ids=lambda n: n.name
+)
 def test_a_stopped_encode_leaves_no_debris(folder, tmp_path, number):
-    """Stopped at several moments: the output is whole or absent, and nothing else is there."""
+    """At several moments: the output is whole or absent, and nothing else is there, or the next run removes it."""
     output = tmp_path / "scene.glb"
     command = [sys.executable, "-m", "eigenfield", "encode", str(folder), "--proxy", str(folder / "proxy.ply"),
                "-o", str(output), "--atlas", "512", "-q", "--overwrite"]  # fmt: skip
@@ -266,6 +268,56 @@ def test_a_stopped_encode_leaves_no_debris(folder, tmp_path, number):
             from eigenfield import load
 
             load(output)
+    subprocess.run(command, check=True)
+    assert [path.name for path in tmp_path.iterdir()] == ["scene.glb"]
+
+
+STOPPED = """
+import os, signal, sys, threading
+import eigenfield.cli as cli
+
+def waits(*arguments, **options):
+    try:
+        threading.Event().wait(20)
+    finally:  # as a worker that is waited for
+        print("stopping", flush=True)
+        threading.Event().wait(20)
+
+cli.group.invoke = waits
+sys.argv = ["eigenfield", "info", "x.glb"]
+print("ready", flush=True)
+cli.main()
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are POSIX")
+@pytest.mark.parametrize("second", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_a_second_signal_does_not_wait(second):
+    with subprocess.Popen([sys.executable, "-c", STOPPED], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdout is not None and process.stdout.readline() == b"ready\n"
+        time.sleep(0.3)
+        process.send_signal(signal.SIGHUP)
+        assert process.stdout.readline() == b"stopping\n"
+        start = time.monotonic()
+        process.send_signal(getattr(signal, second))
+        _, err = process.communicate(timeout=15)
+    assert process.returncode == 130 and err == b"eigenfield: interrupted\n"
+    assert time.monotonic() - start < 5
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are POSIX")
+@pytest.mark.parametrize("name", ["SIGHUP", "SIGINT"])
+def test_a_signal_that_is_ignored_stays_ignored(name):
+    """As `nohup` and a shell's `&` want it."""
+    program = f"""
+import os, signal, sys
+import eigenfield.cli as cli
+signal.signal(signal.{name}, signal.SIG_IGN)
+cli.group.invoke = lambda *arguments, **options: os.kill(os.getpid(), signal.{name})
+sys.argv = ["eigenfield", "info", "x.glb"]
+cli.main()
+"""
+    assert subprocess.run([sys.executable, "-c", program]).returncode == 0
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are POSIX")

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from jsonschema import Draft202012Validator
 from PIL import Image
 
 from eigenfield.capture import open_capture
@@ -17,13 +18,11 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, OptionError, OutputError
 from eigenfield.core.mesh import Mesh
 from eigenfield.proxy import write_ply
+from support import inspected
 from support.captures import write_capture
 from support.scenes import bumpy_square, row_grid
 
-KEYS = {
-    "schema", "root", "format", "views", "bytes", "sizes", "files", "distorted", "masks", "array", "problems",
-    "damaged", "origin", "cameras", "proxy", "layout", "photographs", "next",
-}  # fmt: skip
+DOCUMENT = Path(__file__).parents[2] / "docs" / "captures.md"
 
 
 @pytest.fixture(scope="module")
@@ -33,11 +32,19 @@ def capture(tmp_path_factory) -> Path:
 
 @pytest.fixture
 def inspect(run):
-    """What the verb says; EigenfieldErrors come through."""
+    """What the verb says, and with which exit code; EigenfieldErrors come through. JSON keeps to the schema."""
 
-    def said(*words):
-        code, out, err = run("inspect", *words, "--traceback")
-        assert code == 0, err
+    def said(*words, code=0):
+        found, out, err = run("inspect", *words, "--traceback")
+        assert found == code, err
+        if "--json" in words:
+            report = json.loads(out)
+            assert inspected.violation(report) is None
+            assert (report["refused"] is None) == (code == 0)
+            assert bool(report["next"]) == (code == 0)
+        else:
+            assert ("  encode     would run" in out) == (code == 0)
+            assert ("  encode     is refused: " in out) == (code == 2)
         return out
 
     return said
@@ -51,7 +58,7 @@ def test_words(capture, inspect):
 
 def test_json(capture, inspect):
     report = json.loads(inspect(capture, "--json"))
-    assert set(report) == KEYS and report["schema"] == "eigenfield.inspect/1"
+    assert report["schema"] == "eigenfield.inspect/1" and report["refused"] is None
     assert report["views"] == 9 and report["proxy"] is None and report["damaged"] == []
     assert report["bytes"] == sum(p.stat().st_size for p in (capture / "images").iterdir())
     array = report["array"]
@@ -69,7 +76,7 @@ def test_all_damaged_files_are_listed_together(tmp_path, inspect):
     (images / "view_07.png").unlink()
     Image.new("RGB", (64, 41)).save(images / "view_08.png")
     Image.new("RGB", (64, 56)).save(images / "stranger.jpg")
-    report = json.loads(inspect(folder, "--json", "--proxy", folder / "proxy.ply"))
+    report = json.loads(inspect(folder, "--json", "--proxy", folder / "proxy.ply", code=2))
     problems = "\n".join(report["problems"])
     assert report["views"] == 6
     expected = (
@@ -81,14 +88,89 @@ def test_all_damaged_files_are_listed_together(tmp_path, inspect):
     assert report["damaged"] == [
         {"file": str(images / "view_03.png"), "code": "image-truncated", "message": "is cut short"}
     ]
-    with pytest.raises(CaptureError):
+    with pytest.raises(CaptureError) as caught:
         open_capture(folder)
+    assert report["refused"] == {
+        "file": caught.value.path, "code": caught.value.code, "message": caught.value.message,
+        "remedy": caught.value.remedy,
+    }  # fmt: skip
 
 
 def test_too_few_views_are_a_problem_here_and_not_an_error(tmp_path, inspect):
     folder = write_capture(tmp_path / "c", row_grid(2))
-    text = inspect(folder)
+    text = inspect(folder, code=2)
     assert "2 photographs with a camera are too few" in text and "array" not in text
+    assert json.loads(inspect(folder, "--json", code=2))["refused"]["code"] == "too-few"
+
+
+def test_the_schema_is_one_and_the_document_names_its_keys():
+    Draft202012Validator.check_schema(inspected.SCHEMA)
+    text = DOCUMENT.read_text(encoding="utf-8")
+    section = text[text.index("## `inspect --json`") :]
+    assert inspected.PATH.name in section
+    assert [key for key in inspected.keys() if f"`{key}`" not in section] == []  # noqa: SIM118
+
+
+@pytest.mark.parametrize(
+    ("key", "value"), [("views", -1), ("views", "9"), ("array", 3), ("refused", {"code": "a"}), ("more", 1)]
+)
+def test_a_report_that_breaks_the_schema_is_found(capture, inspect, key, value):
+    report = json.loads(inspect(capture, "--json"))
+    assert inspected.violation(report | {key: value}) is not None
+    del report["views"]
+    assert "views" in inspected.violation(report)
+
+
+def test_what_cannot_be_decoded_is_refused_though_it_opens(tmp_path, run, inspect):
+    folder = write_capture(tmp_path / "c")
+    victim = folder / "images" / "view_03.png"
+    victim.write_bytes(victim.read_bytes()[:-600])
+    open_capture(folder)
+    refused = json.loads(inspect(folder, "--json", code=2))["refused"]
+    assert refused["code"] == "image-truncated" and refused["file"] == str(victim)
+    code, _, err = run("encode", folder, "--proxy", folder / "proxy.ply", "-o", tmp_path / "a.glb", "--atlas", 64)
+    assert code == 2 and f"{victim}: {refused['message']}" in err
+
+
+def test_cameras_in_one_place_are_refused_where_no_mesh_is_given(tmp_path, run, inspect):
+    """Before, `encode` ended with a traceback."""
+    camera = row_grid(9)[4]
+    turn = np.array([[0.8, 0, 0.6], [0, 1, 0], [-0.6, 0, 0.8]])
+    turned = Camera(camera.K, turn @ camera.R, -turn @ camera.R @ camera.centre, camera.width, camera.height)
+    folder = write_capture(tmp_path / "c", [camera, turned, camera])
+    assert json.loads(inspect(folder, "--json", code=2))["refused"]["code"] == "one-place"
+    code, _, err = run("encode", folder, "-o", tmp_path / "a.glb")
+    assert code == 2 and "in one place" in err.splitlines()[-1]
+    inspect(folder, "--proxy", folder / "proxy.ply")
+
+
+@pytest.mark.parametrize("name", ["a_{:02d}_{:02d}.png", "b{}{}.png", "IMG_{:02d}{:02d}.jpg"])
+def test_photographs_without_cameras(tmp_path, inspect, name):
+    for row in range(3):
+        for column in range(3):
+            noise = np.random.default_rng(3 * row + column).integers(0, 255, (20, 30, 3), np.uint8)
+            Image.fromarray(noise).save(tmp_path / name.format(row, column))
+    report = json.loads(inspect(tmp_path, "--json"))
+    assert report["views"] == 0 and len(report["photographs"]) == 9
+    assert (report["layout"] is not None) == (name == "a_{:02d}_{:02d}.png")
+    (tmp_path / "odd.png").write_bytes(b"no picture")
+    inspect(tmp_path, "--json", code=0 if report["layout"] else 2)
+
+
+def test_masks_lenses_and_far_worlds_keep_to_the_schema(tmp_path, inspect):
+    folder = write_capture(tmp_path / "c")
+    document = json.loads((folder / "transforms.json").read_text())
+    document |= {"k1": 0.1, "p1": 0.01}
+    for frame in document["frames"]:
+        frame["transform_matrix"][0][3] += 4e6
+    (folder / "transforms.json").write_text(json.dumps(document))
+    (folder / "masks").mkdir()
+    for path in (folder / "images").iterdir():
+        with Image.open(path) as picture:
+            Image.new("L", picture.size, 255).save(folder / "masks" / path.name)
+    report = json.loads(inspect(folder, "--json", "--masks", folder / "masks"))
+    assert report["distorted"] == report["masks"] == 9 and report["origin"][0] > 3e6
+    assert report["cameras"][0]["lens"]["model"] and report["cameras"][0]["mask"]
 
 
 def test_overlay(capture, tmp_path, inspect):
@@ -199,3 +281,11 @@ def test_real_captures(data, tmp_path, name, proxy, grid, coverage, inspect):
     assert min(report["proxy"]["coverage"].values()) > coverage
     if grid:
         assert np.allclose(report["array"]["focus"], [0, 0, -1], atol=1e-3) and 26 < report["array"]["cone"] < 27
+
+
+@pytest.mark.parametrize(
+    "name", ["fountain_P11_half", "fox_transforms_half", "hci_boxes_9x9", "llff_fern", "temple_ring16"]
+)
+def test_reports_of_real_captures_keep_to_the_schema(data, name, inspect):
+    report = json.loads(inspect(data / name, "--json", "--quiet"))
+    assert report["views"] or report["photographs"]

@@ -178,7 +178,7 @@ def test_a_damaged_photograph_is_named_and_inspect_goes_on(array, tmp_path, run,
     error = refused(lambda: reconstruct(open_any(folder)))
     assert error.path == str(folder / "view_01_02.png")
     code, out, _ = run("inspect", folder, "--json")
-    assert code == 0
+    assert code == 2 and json.loads(out)["refused"]["file"] == error.path
     assert any("view_01_02.png" in problem for problem in json.loads(out)["problems"])
 
 
@@ -275,7 +275,7 @@ def test_photographs_that_may_be_a_grid_are_told_of_it(tmp_path, number, code, h
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", None)])
 def test_an_interrupted_run_ends_soon_and_leaves_no_output(array, tmp_path, number):
     out = tmp_path / "scene.glb"
     process = subprocess.Popen(

@@ -7,6 +7,8 @@ import sys
 from typing import NamedTuple
 from unittest import mock
 
+from eigenfield.runtime.signals import STOP_SIGNALS
+
 
 class Ran(NamedTuple):
     """What a call of the program left."""
@@ -23,7 +25,7 @@ def call(*words: object) -> int:
     """
     from eigenfield.cli import main
 
-    before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGINT)}
+    before = {number: signal.getsignal(number) for number in STOP_SIGNALS}
     try:
         with mock.patch.object(sys, "argv", ["eigenfield", *map(str, words)]):
             main()

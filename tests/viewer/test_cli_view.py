@@ -112,7 +112,9 @@ def port_of(process):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are POSIX")
 @pytest.mark.parametrize(
-    "number", [pytest.param(signal.SIGINT, marks=pytest.mark.slow), signal.SIGTERM], ids=lambda n: n.name
+    "number",
+    [pytest.param(signal.SIGINT, marks=pytest.mark.slow), signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)],
+    ids=lambda n: n.name,
 )
 def test_the_command_serves_until_it_is_stopped(scene, capture, number):
     with command(scene, capture, "--no-browser", "--metres-per-unit", "0.5") as process:

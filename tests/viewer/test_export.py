@@ -6,6 +6,8 @@ import errno
 import json
 import os
 import re
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path, PurePosixPath
 
@@ -172,6 +174,51 @@ def test_pictures_that_cannot_all_be_placed_are_taken_back(tmp_path, monkeypatch
         targets[2].mkdir()  # what came meanwhile
     targets[2].rmdir()
     assert contents(tmp_path) == {"a": b"old"} and len(list(tmp_path.iterdir())) == 1
+
+
+KILLED_EXPORTS = """
+import os, sys
+from pathlib import Path
+from eigenfield.viewer.exports.folder import atomic_folder, write_listing
+
+folder, replace = Path(sys.argv[1]), Path.replace
+
+def export(names, killed_after=None):
+    if os.fork() == 0:
+        left = [killed_after]
+        def counted(path, target):
+            answer = replace(path, target)
+            if left[0] is not None:
+                left[0] -= 1
+                if left[0] == 0:
+                    os._exit(9)
+            return answer
+        Path.replace = counted
+        with atomic_folder(folder, overwrite=True) as place:
+            for name in names:
+                (place / name).write_text(names)
+            write_listing(place, "test", {})
+        os._exit(0)
+    return os.waitstatus_to_exitcode(os.wait()[1])
+
+for moment in range(1, 100):
+    assert export("abc") == 0
+    code = export("bcd", moment)
+    if code == 0:
+        break
+    assert code == 9 and export("cde") == 0, moment
+    assert sorted(path.name for path in folder.iterdir()) == ["c", "d", "e", "eigenfield.json"], moment
+    assert {(folder / name).read_text() for name in "cde"} == {"cde"}
+print(moment)
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="fork")
+def test_an_export_that_was_killed_while_it_replaced_another_is_replaced_by_the_next(tmp_path):
+    command = [sys.executable, "-c", KILLED_EXPORTS, str(tmp_path / "export")]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert int(done.stdout) == 3 + 3 + 2 + 1  # three files out, three in, two listings: then none is killed
 
 
 @pytest.mark.parametrize(

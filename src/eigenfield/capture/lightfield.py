@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from eigenfield.capture.layout import GridLayout
 from eigenfield.capture.photographs.decoded import decode_with_mask, size_on_disk
 from eigenfield.capture.photographs.lens import Lens, remove_lens
+from eigenfield.capture.photographs.read import read_header
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError
 from eigenfield.core.observations import Photograph
@@ -142,6 +143,12 @@ class LightField(StillCapture):
         """Model and coefficients of the lens that is removed from each photograph; None where there is none."""
         lenses = (view.lens for view in self.views)
         return tuple(None if lens is None else (lens.model, tuple(lens.coefficients)) for lens in lenses)
+
+    @property
+    def as_stored(self) -> tuple[int, ...]:
+        """Views whose photograph's EXIF orientation is not applied, although its size would be the same."""
+        headers = {index: read_header(view.path) for index, view in enumerate(self.views) if not view.upright}
+        return tuple(i for i, h in headers.items() if h.orientation != 1 and h.upright_size == h.stored_size)
 
     @property
     def metres_per_unit(self) -> float | None:

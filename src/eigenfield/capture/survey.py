@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.photographs.read import read_header
 from eigenfield.capture.photoset import Capture
 from eigenfield.core.camera import Camera
@@ -17,6 +18,7 @@ from eigenfield.core.progress import Progress, track
 from eigenfield.core.viewplane import Grid, ViewPlane, find_grid, fit_view_plane
 from eigenfield.runtime.parallel import parallel_stream
 
+ONE_PLACE_ROUNDING = 1e-9  # of the cameras' distance from the origin
 FOCUS_MIN_EIGENVALUE = 1e-7  # rays whose normal matrix has a smaller eigenvalue than this meet nowhere
 
 
@@ -41,6 +43,24 @@ class CameraArray:
     focus: NDArray[np.float64] | None
     distance: float | None
     cone: float | None
+
+
+def in_one_place(light_field: LightField) -> bool:
+    """Whether all cameras stand in one place, up to rounding: they show no depth."""
+    centres = np.array([camera.centre for camera in light_field.cameras])
+    away = max(np.abs(centres).max(), np.abs(light_field.origin).max())
+    return bool(np.ptp(centres, axis=0).max() <= ONE_PLACE_ROUNDING * away)
+
+
+def refuse_one_place(capture: Capture) -> None:
+    """Raise CaptureError `one-place` where known cameras stand in one place: no surface can be estimated from there."""
+    if capture.light_field is not None and in_one_place(capture.light_field):
+        raise CaptureError(
+            "one-place",
+            "all cameras stand in one place, and photographs from there show no depth",
+            path=capture.root,
+            remedy="take photographs from several places, or give a mesh with --proxy",
+        )
 
 
 def measure_array(cameras: Sequence[Camera]) -> CameraArray:

@@ -18,6 +18,9 @@ import click
 
 from eigenfield.core.errors import EigenfieldError
 from eigenfield.core.version import __version__
+from eigenfield.runtime.children import kill_children
+from eigenfield.runtime.signals import STOP_SIGNALS
+from eigenfield.runtime.temporary import remove_temporaries
 
 VERBS = {
     "demo": "Make a capture, encode it, draw and measure it: the whole way in one command.",
@@ -81,7 +84,10 @@ def _stop(number: int, frame: FrameType | None) -> None:
             again.start()
             return
         frame = frame.f_back
+    if _signals:  # a second one, while the first is being obeyed
+        _exit_interrupted()
     _signals.append(number)
+    kill_children()  # a thread may wait for one
     raise KeyboardInterrupt
 
 
@@ -93,9 +99,15 @@ def _signal_main_thread(number: int) -> None:
 
 
 def _exit_interrupted() -> NoReturn:
-    click.echo("eigenfield: interrupted", err=True)
-    sys.stdout.flush()
-    os._exit(130)  # everything is cleaned up; threads in the middle of a kernel or a codec are not waited for
+    with contextlib.suppress(ValueError):  # not in the main thread
+        for number in STOP_SIGNALS:
+            signal.signal(number, signal.SIG_IGN)
+    kill_children()
+    remove_temporaries()
+    with contextlib.suppress(OSError):  # the terminal has gone
+        click.echo("eigenfield: interrupted", err=True)
+        sys.stdout.flush()
+    os._exit(130)  # threads in the middle of a kernel or a codec are not waited for
 
 
 def main() -> None:
@@ -106,9 +118,9 @@ def main() -> None:
             stream.reconfigure(errors="backslashreplace")
     logging.basicConfig(format="%(message)s", level=logging.WARNING)
     with contextlib.suppress(ValueError):  # not in the main thread
-        signal.signal(signal.SIGTERM, _stop)  # clean up as for Ctrl-C
-        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # in the background it may be ignored
-            signal.signal(signal.SIGINT, _stop)
+        for number in STOP_SIGNALS:
+            if signal.getsignal(number) is not signal.SIG_IGN:  # SIGINT is in the background, SIGHUP by nohup
+                signal.signal(number, _stop)
     context: dict[str, object] = {}
     try:
         with group.make_context("eigenfield", sys.argv[1:]) as root:
@@ -129,6 +141,8 @@ def main() -> None:
     except (KeyboardInterrupt, click.Abort):
         _exit_interrupted()
     except BrokenPipeError:
+        if _signals:
+            _exit_interrupted()
         sys.stderr.close()
         sys.exit(141)
     except Exception:

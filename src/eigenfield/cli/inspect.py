@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import shlex
 from collections import Counter
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from eigenfield.cli.common import PATH, capture_options, common_options, echo_json, note, progress_bars
-from eigenfield.core.errors import OptionError
+from eigenfield.core.errors import EigenfieldError, OptionError
 
 if TYPE_CHECKING:
     from eigenfield.capture import Capture, GridLayout, LightField, PhotoSet
@@ -55,8 +56,8 @@ def command(
 ) -> None:
     """Say what CAPTURE holds: views or photographs without cameras, sizes, grid, extent, problems, what to run next.
 
-    Every photograph is decoded once, so that damaged ones are listed all together. Finding problems is success:
-    the exit code is 0 unless the capture cannot be opened at all.
+    Every photograph is decoded once, so that damaged ones are listed all together. The exit code is 0 where
+    `eigenfield encode` would run (with --proxy: with this mesh), and 2 where it would end at once.
     """
     if overlay is not None and proxy is None:
         raise OptionError(
@@ -84,7 +85,9 @@ def command(
         mesh = read_mesh(proxy, opened.light_field.origin)
     with progress_bars(quiet) as progress:
         damaged = decode_all(opened, progress)
+    refusal = _refusal(capture, place, opened, damaged, proxy)
     report = describe(opened, damaged)
+    report["refused"] = None if refusal is None else _error(refusal)
     report["next"] = _next_commands(report, capture, place)
     if mesh is not None and opened.light_field is not None:
         report["proxy"] = _proxy(mesh, opened, damaged, overlay, overwrite)
@@ -94,12 +97,36 @@ def command(
         echo_json(report)
     else:
         click.echo("\n".join(report_lines(report)))
+    if refusal is not None:
+        click.get_current_context().exit(2)
+
+
+def _refusal(
+    capture: Path, place: Mapping[str, Any], opened: Capture, damaged: Sequence[CaptureError], proxy: Path | None
+) -> CaptureError | None:
+    """The error with which `encode` would end before any long work; None where it would run."""
+    from eigenfield.capture import open_any
+    from eigenfield.capture.survey import refuse_one_place
+    from eigenfield.core.errors import CaptureError
+
+    try:
+        if opened.problems or len(opened) < 3:
+            open_any(capture, **place)
+        if proxy is None:
+            refuse_one_place(opened)
+    except CaptureError as error:
+        return error
+    return damaged[0] if damaged else None
+
+
+def _error(error: CaptureError) -> dict[str, Any]:
+    return {"file": error.path, "code": error.code, "message": error.message, "remedy": error.remedy}
 
 
 def describe(capture: Capture, damaged: list[CaptureError]) -> dict[str, Any]:
     """The report, as `--json` prints it; `docs/captures.md` documents the keys."""
     from eigenfield.capture.messages import count_phrase
-    from eigenfield.capture.survey import file_kinds, measure_array
+    from eigenfield.capture.survey import file_kinds, in_one_place, measure_array
 
     views = () if capture.light_field is None else capture.light_field.views
     sizes = Counter(capture.sizes)
@@ -111,7 +138,7 @@ def describe(capture: Capture, damaged: list[CaptureError]) -> dict[str, Any]:
         what = f"{len(views)} photographs with a camera are" if capture.light_field is not None else bare
         problems.append(f"{what} too few, at least 3 are needed")
     array = measure_array([view.camera for view in views]) if len(views) >= 3 else None
-    if array is not None and array.plane.extent[0] == 0:
+    if array is not None and capture.light_field is not None and in_one_place(capture.light_field):
         problems.append("all cameras stand in one place")
     return {
         "schema": SCHEMA,
@@ -131,6 +158,7 @@ def describe(capture: Capture, damaged: list[CaptureError]) -> dict[str, Any]:
         "proxy": None,
         "layout": None if capture.layout is None else _layout(capture.layout),
         "photographs": [] if capture.light_field is not None else _photographs(capture),
+        "refused": None,
         "next": [],
     }
 
@@ -168,7 +196,7 @@ def _photographs(photo_set: PhotoSet) -> list[dict[str, Any]]:
 
 def _next_commands(report: dict[str, Any], capture: Path, place: dict[str, Any]) -> list[str]:
     """Commands that make sense now, with the options that this one had, most useful first."""
-    if max(report["views"], len(report["photographs"])) < 3:
+    if report["refused"] is not None:
         return []
     grid = None if place["grid"] is None else "x".join(map(str, place["grid"]))
     given = {**place, "grid": grid}.items()
@@ -261,7 +289,13 @@ def report_lines(report: dict[str, Any]) -> list[str]:
         lines += _proxy_lines(report["proxy"])
     lines.append(f"  problems   {len(report['problems']) or 'none'}")
     lines += [f"    - {problem}" for problem in report["problems"]]
+    lines.append(f"  encode     {'would run' if report['refused'] is None else _refusal_text(report['refused'])}")
     return lines + [f"  next       {command}" for command in report["next"]]
+
+
+def _refusal_text(refused: dict[str, Any]) -> str:
+    error = EigenfieldError(refused["code"], refused["message"], path=refused["file"], remedy=refused["remedy"])
+    return f"is refused: {error}"
 
 
 def _focal_text(photographs: list[dict[str, Any]]) -> str:

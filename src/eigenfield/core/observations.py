@@ -70,6 +70,10 @@ class CalibratedObservations(Observations, Protocol):
         """(Nc,) model and coefficients of the lens that was removed; None where there was none."""
 
     @property
+    def as_stored(self) -> Sequence[int]:
+        """Cameras whose photograph's EXIF orientation is not applied, although its size would be the same."""
+
+    @property
     def metres_per_unit(self) -> float | None:
         """Metres in one unit of the cameras' world; None if unknown."""
 

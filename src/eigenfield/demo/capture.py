@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
-import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +23,7 @@ from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy import write_ply
 from eigenfield.runtime.files import output_errors
 from eigenfield.runtime.parallel import parallel_stream
+from eigenfield.runtime.temporary import temporary_folder
 
 DEMO_SAMPLES_PER_SIDE = 3  # of a pixel
 DEMO_EXPOSURE = 1.05
@@ -62,15 +61,10 @@ def draw_demo_capture(
     parent = folder.absolute().parent
     if not parent.is_dir():
         raise OutputError("no-folder", "its folder does not exist", path=folder, remedy=f"create {parent}")
-    with output_errors(folder):
-        work = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", suffix=".part", dir=parent))
-        try:
-            _draw_into(work, rows, columns, size, progress)
-            work.chmod(0o755)  # mkdtemp's 0700 would hide the capture from other users
-            work.replace(folder)
-        except BaseException:
-            shutil.rmtree(work, ignore_errors=True)
-            raise
+    with output_errors(folder), temporary_folder(folder.name, parent) as work:
+        _draw_into(work, rows, columns, size, progress)
+        work.chmod(0o755)  # it was its maker's alone
+        work.replace(folder)
 
 
 def _draw_into(folder: Path, rows: int, columns: int, size: int, progress: Progress | None) -> None:

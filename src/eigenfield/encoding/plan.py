@@ -134,6 +134,7 @@ class EncodePlan:
             **_scale(views.capture, self.options.metres_per_unit),
             **_origin(views.capture),
             **_lenses(views.capture),
+            **_as_stored(views.capture),
             "photographs": {
                 "count": len(views.observations),
                 "bytes": sum(views.capture.bytes(index) for index in used),
@@ -314,6 +315,12 @@ def _lenses(capture: CalibratedObservations) -> dict[str, Any]:
     """The lenses that were removed, so that the photographs alone are enough to measure the scene by."""
     lenses = [None if lens is None else [lens[0], list(lens[1])] for lens in capture.lenses]
     return {"lenses": lenses} if any(lenses) else {}
+
+
+def _as_stored(capture: CalibratedObservations) -> dict[str, list[int]]:
+    """The photographs that are not turned by their EXIF orientation, where no size tells: for the same purpose."""
+    indices = list(capture.as_stored)
+    return {"asStored": indices} if indices else {}
 
 
 def _warn_of_rounding(exact: Sequence[Camera], kept: Sequence[Camera], mesh: Mesh) -> None:

@@ -11,6 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.capture import Capture, Lens, LightField, Photograph
+from eigenfield.capture.photographs.read import read_header
+from eigenfield.capture.photoset import Shot
+from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.scene import Scene
 from eigenfield.encoding.projected.align import align_map
@@ -271,6 +274,8 @@ def start_session(
 def with_scene_cameras(scene: Scene, photographs: Capture) -> LightField:
     """A light field unchanged, or photographs without a calibration with the scene's cameras and lenses, by name.
 
+    Photographs are turned by their EXIF orientation if those that were encoded were.
+
     Args:
         scene: The scene.
         photographs: With or without cameras.
@@ -285,10 +290,20 @@ def with_scene_cameras(scene: Scene, photographs: Capture) -> LightField:
     chosen = photographs.subset([i for i, name in enumerate(photographs.names) if name in index])
     if not len(chosen):
         raise _no_photographs(scene, photographs.root, photographs.names)
-    lenses = _recorded_lenses(scene)
-    return chosen.with_cameras(
-        [scene.rig.cameras[index[name]] for name in chosen.names], [lenses[index[name]] for name in chosen.names]
-    )
+    lenses, stored = _recorded_lenses(scene), scene.settings.get("asStored")
+    numbers = [index[name] for name in chosen.names]
+    cameras = [scene.rig.cameras[number] for number in numbers]
+    marked = [isinstance(stored, list) and number in stored for number in numbers]  # a file may hold anything here
+    shots = tuple(_orient(*known) for known in zip(chosen.shots, cameras, marked, strict=True))
+    return replace(chosen, shots=shots).with_cameras(cameras, [lenses[number] for number in numbers])
+
+
+def _orient(shot: Shot, camera: Camera, stored: bool) -> Shot:
+    """The photograph turned as the scene has it: by its camera's size, and where both ways fit by its record."""
+    header, size = read_header(shot.path), (camera.width, camera.height)
+    if header.stored_size == size and (stored or header.upright_size != size):
+        return replace(shot, upright=False, width=camera.width, height=camera.height)
+    return shot
 
 
 def _recorded_lenses(scene: Scene) -> list[Lens | None]:

@@ -14,12 +14,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.errors import ProxyError
+from eigenfield.runtime.children import child_process
 
 CHILD_POLL_SECONDS = 0.2  # between two calls of `on_wait`
 
 
 def run_child(
-    script: Path, arrays: Sequence[NDArray[Any]], on_wait: Callable[[], None], code: str, name: str, remedy: str
+    script: Path,
+    arrays: Sequence[NDArray[Any]],
+    on_wait: Callable[[], None],
+    code: str,
+    name: str,
+    remedy: str,
+    words: Sequence[str] = (),
 ) -> bytes:
     """What a script writes to standard output when arrays come in (as `numpy.save` writes).
 
@@ -30,30 +37,25 @@ def run_child(
         code: Of the error.
         name: Of the library, for the error.
         remedy: Of the error.
+        words: Arguments of the script.
 
     Raises:
         ProxyError: `code`: the child failed.
     """
-    command = [sys.executable, "-P", str(script)]
+    command = [sys.executable, "-P", str(script), *words]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
     with tempfile.TemporaryFile() as message:  # `communicate` would leave a pipe half sent at its timeout
         for array in arrays:
             np.save(message, array, allow_pickle=False)
         message.seek(0)
-        process = subprocess.Popen(
-            command, stdin=message, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment
-        )
-    try:
-        while True:
-            try:
-                answer, complaint = process.communicate(timeout=CHILD_POLL_SECONDS)
-                break
-            except subprocess.TimeoutExpired:
-                on_wait()
-    except BaseException:
-        process.kill()
-        process.communicate()
-        raise
+        pipes: dict[str, Any] = {"stdin": message, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+        with child_process(command, **pipes, env=environment) as process:
+            while True:
+                try:
+                    answer, complaint = process.communicate(timeout=CHILD_POLL_SECONDS)
+                    break
+                except subprocess.TimeoutExpired:
+                    on_wait()
     if process.returncode != 0:
         last = complaint.decode(errors="replace").strip().splitlines()[-1:]
         raise ProxyError(code, f"{name} ended with {process.returncode}{': ' + last[0] if last else ''}", remedy=remedy)

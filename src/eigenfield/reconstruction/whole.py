@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from eigenfield.calibrate import structure_from_motion, triangulate_points
 from eigenfield.capture import Capture, LightField, PhotoSet
 from eigenfield.capture.lightfield import PhotographSource
+from eigenfield.capture.survey import refuse_one_place
 from eigenfield.capture.writers.save import save_calibration
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
@@ -124,6 +125,7 @@ def reconstruct(
     )
     for text in fit_spheres:  # before the long stages
         find_view(parse_region(text), capture.names)
+    refuse_one_place(capture)
     if surface == "layers":
         check_capture(capture)
     with Stages(work) as stages:

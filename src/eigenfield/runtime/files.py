@@ -16,6 +16,8 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from eigenfield.core.errors import OutputError
+from eigenfield.runtime.signals import hold_signals
+from eigenfield.runtime.temporary import temporary_file, temporary_folder
 
 _NUMBER_PLACE = re.compile(r"%0?\d{0,2}d")
 _DISK_FULL_ERRORS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
@@ -68,19 +70,13 @@ def numbered_files(path: Path, count: int) -> list[Path]:
 def atomic_writer(path: Path, *, overwrite: bool = False) -> Iterator[IO[bytes]]:
     """A binary file that appears as `path` by rename, after fsync, when the block succeeds; else nothing is left."""
     refuse_existing(path, overwrite)
-    with output_errors(path):
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.absolute().parent)
-        try:
-            with os.fdopen(handle, "wb") as file:
-                yield file
-                file.flush()
-                os.fsync(file.fileno())
-            Path(name).chmod(0o666 & ~current_umask())  # mkstemp's 0600 would hide the result from other users
-            Path(name).replace(path)
-        except BaseException:
-            with contextlib.suppress(OSError):
-                Path(name).unlink()
-            raise
+    with output_errors(path), temporary_file(path.name, path.absolute().parent) as part:
+        with part.open("wb") as file:
+            yield file
+            file.flush()
+            os.fsync(file.fileno())
+        part.chmod(0o666 & ~current_umask())  # it was its maker's alone
+        part.replace(path)
 
 
 def write_bytes(path: Path, data: bytes, *, overwrite: bool = False) -> None:
@@ -97,32 +93,34 @@ def atomic_files(targets: Sequence[Path], *, overwrite: bool = False) -> Iterato
     """
     for target in targets:
         refuse_existing(target, overwrite)
-    with output_errors(targets[0]):
-        part = Path(tempfile.mkdtemp(prefix=".eigenfield-", suffix=".part", dir=targets[0].absolute().parent))
-        old = part / "old"
+    with output_errors(targets[0]), temporary_folder(folder=targets[0].absolute().parent) as part:
+        (part / "new").mkdir()
+        (part / "old").mkdir()
         places = [part / "new" / target.name for target in targets]
-        done: list[Path] = []
-        try:
-            (part / "new").mkdir()
-            old.mkdir()
-            yield places
-            flush_folder(part)
-            for place, target in zip(places, targets, strict=True):
-                if target.exists():
-                    _link_or_copy(target, old / target.name)
-                done.append(target)
-                place.replace(target)
-        except BaseException:
-            for target in done:
-                before = old / target.name
-                with contextlib.suppress(OSError):
-                    if before.exists():
-                        before.replace(target)
-                    else:
-                        target.unlink()
-            raise
-        finally:
-            shutil.rmtree(part, ignore_errors=True)
+        yield places
+        flush_folder(part)
+        with hold_signals():
+            _replace_all(places, targets, part / "old")
+
+
+def _replace_all(places: Sequence[Path], targets: Sequence[Path], old: Path) -> None:
+    """Rename each place to its target; undone if any fails. `old` keeps what was there until then."""
+    done: list[Path] = []
+    try:
+        for place, target in zip(places, targets, strict=True):
+            if target.exists():
+                _link_or_copy(target, old / target.name)
+            done.append(target)
+            place.replace(target)
+    except BaseException:
+        for target in done:
+            before = old / target.name
+            with contextlib.suppress(OSError):
+                if before.exists():
+                    before.replace(target)
+                else:
+                    target.unlink()
+        raise
 
 
 def _link_or_copy(path: Path, copy: Path) -> None:

@@ -10,9 +10,7 @@ import contextlib
 import hashlib
 import json
 import logging
-import os
-import shutil
-import tempfile
+import weakref
 from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
@@ -20,6 +18,7 @@ from typing import Any
 
 from eigenfield.core.errors import OutputError
 from eigenfield.runtime.files import flush_folder, output_errors
+from eigenfield.runtime.temporary import temporary_folder
 
 log = logging.getLogger("eigenfield.stages")
 
@@ -57,8 +56,9 @@ class Stages:
 
     def __init__(self, folder: Path | None) -> None:
         """Make the folder; None keeps nothing: every stage is built in a temporary folder."""
-        self._temporary = tempfile.TemporaryDirectory(prefix="eigenfield-") if folder is None else None
-        self.folder = Path(self._temporary.name) if self._temporary else Path(folder or ".")
+        opened = contextlib.ExitStack()
+        self.close = weakref.finalize(self, opened.close)  # removes the folder if it is temporary
+        self.folder = opened.enter_context(temporary_folder()) if folder is None else Path(folder)
         if self.folder.exists() and not self.folder.is_dir():
             raise OutputError("work-is-file", "is a file", path=self.folder, remedy="name a folder as --work")
         with output_errors(self.folder):
@@ -83,53 +83,19 @@ class Stages:
         if place.is_dir():
             log.info("%s: taken up from %s", name, place)
             return place
-        with output_errors(self.folder):
-            _remove_unfinished(self.folder, name)
-            part = Path(tempfile.mkdtemp(prefix=f".{name}-{os.getpid()}-", suffix=".part", dir=self.folder))
+        with output_errors(self.folder), temporary_folder(name, self.folder) as part:
+            build(part)
+            part.chmod(0o755)
+            flush_folder(part)
             try:
-                build(part)
-                part.chmod(0o755)
-                flush_folder(part)
-                try:
-                    part.replace(place)
-                except OSError:
-                    if not place.is_dir():  # another run may have finished the same stage meanwhile
-                        raise
-                    shutil.rmtree(part, ignore_errors=True)
-            except BaseException:
-                shutil.rmtree(part, ignore_errors=True)
-                raise
+                part.replace(place)
+            except OSError:
+                if not place.is_dir():  # another run may have finished the same stage meanwhile
+                    raise
         return place
-
-    def close(self) -> None:
-        """Remove the folder if it is temporary."""
-        if self._temporary is not None:
-            with contextlib.suppress(OSError):
-                self._temporary.cleanup()
 
     def __enter__(self) -> Stages:
         return self
 
     def __exit__(self, *_: object) -> None:
         self.close()
-
-
-def _remove_unfinished(folder: Path, name: str) -> None:
-    """Remove unfinished stages of killed runs; those of running processes stay."""
-    for part in folder.glob(f".{name}-*.part"):
-        process = part.name.removeprefix(f".{name}-").split("-")[0]
-        if process.isdecimal() and not _is_alive(int(process)):
-            log.info("removed what a killed run left: %s", part)
-            shutil.rmtree(part, ignore_errors=True)
-
-
-def _is_alive(process: int) -> bool:
-    if os.name != "posix":  # elsewhere signal 0 is no question
-        return True
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    except OSError:
-        return True
-    return True

@@ -6,11 +6,11 @@ to the main thread, between its own instructions. Long calls therefore run in an
 
 from __future__ import annotations
 
-import contextlib
-import signal
 import threading
-from collections.abc import Callable, Iterator
-from typing import Any, TypeVar
+from collections.abc import Callable
+from typing import TypeVar
+
+from eigenfield.runtime.signals import hold_signals
 
 T = TypeVar("T")
 
@@ -18,28 +18,8 @@ COLMAP_LOG_FATAL = 3  # severity of glog
 COLMAP_POLL_SECONDS = 0.1
 
 
-@contextlib.contextmanager
-def _hold_back_signals() -> Iterator[None]:
-    """Deliver Ctrl-C and SIGTERM at the end of the block.
-
-    Inside pycolmap's initialisation, Ctrl-C hangs, and glog takes SIGTERM for itself and dies without cleaning up.
-    """
-    caught: list[int] = []
-    handlers: dict[int, Any] = {}
-    with contextlib.suppress(ValueError):  # not in the main thread, where none arrive
-        for number in (signal.SIGINT, signal.SIGTERM):
-            if signal.getsignal(number) is not None:
-                handlers[number] = signal.signal(number, lambda number, _: caught.append(number))
-    try:
-        yield
-    finally:
-        for taken, handler in handlers.items():
-            signal.signal(taken, handler)
-    for late in caught:
-        signal.raise_signal(late)
-
-
-with _hold_back_signals():
+# Inside pycolmap's initialisation, Ctrl-C hangs, and glog takes SIGTERM for itself and dies without cleaning up.
+with hold_signals():
     import pycolmap as pycolmap  # the other modules import it from here
 
 pycolmap.logging.minloglevel = COLMAP_LOG_FATAL

@@ -6,12 +6,10 @@ Zisserman, CVPR 2012); with domain-size pooling where there is little texture (D
 
 from __future__ import annotations
 
-import tempfile
 import threading
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 
 import cv2
 import numpy as np
@@ -26,6 +24,7 @@ from eigenfield.capture.photoset import PhotoSet, Shot
 from eigenfield.core.errors import CaptureError
 from eigenfield.core.progress import Progress
 from eigenfield.runtime.parallel import tracked_map
+from eigenfield.runtime.temporary import temporary_folder
 
 FEATURE_LUMA_WEIGHTS = np.array([0.299, 0.587, 0.114], np.float32)
 FEATURE_MASK_THRESHOLD = 0.5
@@ -139,8 +138,7 @@ def _sift(grey: NDArray[np.uint8], options: FeatureOptions) -> tuple[NDArray[np.
     settings.sift.max_num_features = 2 * options.max_features  # COLMAP drops whole octaves: ask for more than are kept
     settings.sift.peak_threshold = options.peak_threshold
     settings.sift.domain_size_pooling = options.domain_size_pooling
-    with tempfile.TemporaryDirectory(prefix="eigenfield-") as folder:
-        place = Path(folder)
+    with temporary_folder() as place:
         Image.fromarray(grey).save(place / "grey.png", compress_level=1)
         with FEATURE_EXTRACTION_SLOTS:
             pycolmap.extract_features(

@@ -5,7 +5,6 @@ It runs in one thread: with more, COLMAP's bundle adjustment sums in another ord
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 from eigenfield.calibrate.motion.colmap_core import pycolmap, run_interruptibly
 from eigenfield.calibrate.motion.matching import MATCHING_TUNING, Match
 from eigenfield.core.progress import Progress
+from eigenfield.runtime.temporary import temporary_folder
 
 
 @dataclass(frozen=True)
@@ -194,7 +194,7 @@ def _register_leftovers(
     loose.mapper.abs_pose_min_inlier_ratio = MAPPING_TUNING.relaxed_min_inlier_ratio
     loose.triangulation.ignore_two_view_tracks = False
     manager = pycolmap.ReconstructionManager()
-    with tempfile.TemporaryDirectory(prefix="eigenfield-") as folder:  # a manager reads models only from files
+    with temporary_folder() as folder:  # a manager reads models only from files
         model.write(folder)
         manager.read(folder)
     _run(loose, database, manager, count, "cameras left over", check, progress)

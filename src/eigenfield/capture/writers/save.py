@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import logging
 import os
-import shutil
-import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +16,9 @@ from eigenfield.capture.readers.transforms import TRANSFORMS_FILE
 from eigenfield.capture.writers.colmap import colmap_model
 from eigenfield.capture.writers.transforms import transforms_document
 from eigenfield.core.errors import OutputError
-from eigenfield.runtime.files import current_umask, output_errors
+from eigenfield.runtime.files import current_umask, flush_folder, output_errors
+from eigenfield.runtime.signals import hold_signals
+from eigenfield.runtime.temporary import temporary_folder
 
 log = logging.getLogger("eigenfield.capture")
 
@@ -63,14 +62,16 @@ def save_calibration(
                 remedy="remove it from the photographs",
             )
     files = _make_files(light_field, place, points) | dict(more or {})
-    with output_errors(place), _temporary_folder(place) as part:
-        for name, data in files.items():
-            (part / name).parent.mkdir(parents=True, exist_ok=True)
-            with (part / name).open("wb") as file:
-                file.write(data)
-                file.flush()
-                os.fsync(file.fileno())
-        _move_into_place(part, place)
+    parent = place.absolute().parent
+    with output_errors(place):
+        parent.mkdir(parents=True, exist_ok=True)
+        with temporary_folder(place.name, parent) as part:
+            for name, data in files.items():
+                (part / name).parent.mkdir(parents=True, exist_ok=True)
+                (part / name).write_bytes(data)
+            flush_folder(part)
+            with hold_signals():
+                _move_into_place(part, place)
 
 
 def refuse_folder(folder: Path, overwrite: bool) -> None:
@@ -115,18 +116,6 @@ def _pack_ply(points: SparsePoints, is_far: bool) -> bytes:
     lines += [f"property {'double' if is_far else 'float'} {axis}" for axis in "xyz"]
     lines += [f"property uchar {name}" for name in ("red", "green", "blue")]
     return ("\n".join([*lines, "end_header"]) + "\n").encode() + record.tobytes()
-
-
-@contextlib.contextmanager
-def _temporary_folder(place: Path) -> Iterator[Path]:
-    """A folder beside `place`, on the same disk, deleted after the block."""
-    parent = place.absolute().parent
-    parent.mkdir(parents=True, exist_ok=True)
-    part = Path(tempfile.mkdtemp(prefix=f".{place.name}-", suffix=".part", dir=parent))
-    try:
-        yield part
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
 
 
 def _move_into_place(part: Path, place: Path) -> None:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from eigenfield.coding.pictures.av1_units import picture_units
 from eigenfield.coding.pictures.pictures_10bit import MIDDLE_CODE, MIN_SIDE_TEXELS, PIXEL_FORMAT, SVT_CODER
+from eigenfield.runtime.children import child_process
 
 log = logging.getLogger("eigenfield.encode")
 
@@ -62,9 +63,11 @@ def _run(program: str, codes: NDArray[np.uint16], crf: int) -> bytes:
     source = ("-f", "rawvideo", "-pix_fmt", PIXEL_FORMAT, "-color_range", "pc", "-s", f"{width}x{height}", "-i", "-")
     command = [program, "-loglevel", "error", *source, "-frames:v", "1", "-crf", str(crf), *_OPTIONS, "-"]
     values = codes.astype("<u2").tobytes() + flat.tobytes()
-    done = subprocess.run(command, input=values, capture_output=True, check=False)
-    if done.returncode == FFMPEG_INTERRUPTED_STATUS:
+    pipe = subprocess.PIPE
+    with child_process(command, stdin=pipe, stdout=pipe, stderr=pipe) as process:
+        answer, complaint = process.communicate(values)
+    if process.returncode == FFMPEG_INTERRUPTED_STATUS:
         raise KeyboardInterrupt
-    if done.returncode or not done.stdout:
-        raise RuntimeError(" ".join(done.stderr.decode(errors="replace").split())[-200:] or str(done.returncode))
-    return picture_units(done.stdout)
+    if process.returncode or not answer:
+        raise RuntimeError(" ".join(complaint.decode(errors="replace").split())[-200:] or str(process.returncode))
+    return picture_units(answer)

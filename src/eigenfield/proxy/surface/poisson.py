@@ -13,6 +13,7 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress
 from eigenfield.proxy.child import run_child
 from eigenfield.proxy.surface.fusion import OrientedPoints
+from eigenfield.runtime.temporary import temporary_folder
 
 log = logging.getLogger("eigenfield.proxy")
 
@@ -46,11 +47,12 @@ def poisson_surface(points: OrientedPoints, *, progress: Progress | None = None)
     table = np.hstack([(points.positions - centre) / scale, points.normals]).astype(np.float32)
     report = progress or (lambda stage, done, total: None)
     report("surface", 0, 1)
-    answer = run_child(
-        Path(__file__).with_name("poisson_process.py"), [table, np.array([depth])], lambda: report("surface", 0, 1),
-        "surface-poisson", "the Poisson reconstruction",
-        "ask for smaller photographs if memory ran out; else report it with these photographs",
-    )  # fmt: skip
+    with temporary_folder() as folder:  # a child that is killed removes nothing
+        answer = run_child(
+            Path(__file__).with_name("poisson_process.py"), [table, np.array([depth])], lambda: report("surface", 0, 1),
+            "surface-poisson", "the Poisson reconstruction",
+            "ask for smaller photographs if memory ran out; else report it with these photographs", [str(folder)],
+        )  # fmt: skip
     report("surface", 1, 1)
     written = io.BytesIO(answer)
     vertices, faces = (np.load(written, allow_pickle=False) for _ in range(2))

@@ -6,7 +6,6 @@ import contextlib
 import json
 import os
 import shutil
-import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,8 @@ from typing import Any
 from eigenfield.core.errors import OutputError
 from eigenfield.core.version import __version__
 from eigenfield.runtime.files import flush_folder, output_errors
+from eigenfield.runtime.signals import hold_signals
+from eigenfield.runtime.temporary import is_temporary, temporary_folder
 
 LISTING_FILE = "eigenfield.json"
 LISTING_MAX_BYTES = 16 * 2**20  # larger ones are not read back
@@ -37,7 +38,7 @@ def refuse_folder(folder: Path, overwrite: bool) -> None:
     if not os.access(folder if folder.is_dir() else parent, os.W_OK):
         raise OutputError("not-writable", "cannot be written to", path=folder, remedy="name another place")
     with output_errors(folder):
-        if not folder.is_dir() or not any(folder.iterdir()):
+        if not folder.is_dir() or all(is_temporary(entry) for entry in folder.iterdir()):
             return
         if not overwrite:
             raise OutputError(
@@ -70,18 +71,16 @@ def atomic_folder(folder: Path, overwrite: bool) -> Iterator[Path]:
     with output_errors(folder):
         there = folder.is_dir()
         beside = folder if there else folder.absolute().parent
-        part = Path(tempfile.mkdtemp(prefix=".eigenfield-", suffix=".part", dir=beside))
-        try:
+        with temporary_folder(folder=beside) as part:
             new = part / "new"
             new.mkdir()
             yield new
             flush_folder(new)
             if there:
-                _exchange(folder, part)
+                with hold_signals():
+                    _exchange(folder, part)
             else:
                 new.replace(folder)
-        finally:
-            shutil.rmtree(part, ignore_errors=True)
 
 
 def write_file(path: Path, data: bytes) -> None:
@@ -113,29 +112,49 @@ def write_listing(folder: Path, kind: str, more: Mapping[str, Any]) -> None:
 
 def _not_ours(folder: Path) -> str | None:
     """A file in `folder` that its listing does not name."""
-    listing, ours = folder / LISTING_FILE, set[str]()
-    with contextlib.suppress(OSError, ValueError, AttributeError, TypeError, RecursionError):
-        if listing.stat().st_size <= LISTING_MAX_BYTES:
-            ours = set(json.loads(listing.read_text(encoding="utf-8")).get("files", []))
+    ours = _listed(folder)
     for path in sorted(folder.rglob("*")):
-        name = path.relative_to(folder).as_posix()
-        if name not in ours and (path.is_symlink() or not path.is_dir()):
-            return name
+        place = path.relative_to(folder)
+        if is_temporary(Path(place.parts[0])):  # of a killed run
+            continue
+        if place.as_posix() not in ours and (path.is_symlink() or not path.is_dir()):
+            return place.as_posix()
     return None
 
 
+def _listed(folder: Path) -> set[str]:
+    """The files that the folder's listing names."""
+    listing = folder / LISTING_FILE
+    with contextlib.suppress(OSError, ValueError, AttributeError, TypeError, RecursionError):
+        if listing.stat().st_size <= LISTING_MAX_BYTES:
+            return set(json.loads(listing.read_text(encoding="utf-8")).get("files", []))
+    return set()
+
+
 def _exchange(folder: Path, part: Path) -> None:
-    """Move what is in `folder` to part / "old", and what is in part / "new" to `folder`; undone if anything fails."""
-    (part / "old").mkdir()
+    """Move what is in `folder` to part / "old", and what is in part / "new" to `folder`; undone if anything fails.
+
+    Meanwhile the listing names the files of both: a process that is killed midway leaves what `_not_ours` accepts.
+    """
+    new, old, listing, both = part / "new", part / "old", folder / LISTING_FILE, part / LISTING_FILE
+    old.mkdir()
     moved: list[tuple[Path, Path]] = []
+    if listing.exists():
+        shutil.copy2(listing, old)
+    both.write_text(json.dumps({"files": sorted(_listed(folder) | _listed(new))}), encoding="utf-8")
     try:
-        for source, target in ((folder, part / "old"), (part / "new", folder)):
+        both.replace(listing)
+        for source, target in ((folder, old), (new, folder)):
             for entry in sorted(source.iterdir()):
-                if entry.name != part.name:
+                if entry.name not in (part.name, LISTING_FILE):
                     moved.append((entry, target / entry.name))
                     entry.replace(target / entry.name)
+        (new / LISTING_FILE).replace(listing)
     except BaseException:
         for before, now in reversed(moved):
             with contextlib.suppress(OSError):
                 now.replace(before)
+        with contextlib.suppress(OSError):
+            listing.unlink()
+            (old / LISTING_FILE).replace(listing)
         raise

@@ -1,0 +1,29 @@
+"""Signals that wait until a step is done."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+from collections.abc import Iterator
+from typing import Any
+
+# those that ask a process to stop; Windows has no SIGHUP
+STOP_SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+
+
+@contextlib.contextmanager
+def hold_signals() -> Iterator[None]:
+    """Deliver Ctrl-C, SIGTERM and SIGHUP at the end of the block."""
+    caught: list[int] = []
+    handlers: dict[int, Any] = {}
+    try:
+        with contextlib.suppress(ValueError):  # not in the main thread, where none arrive
+            for number in STOP_SIGNALS:
+                if signal.getsignal(number) is not None:
+                    handlers[number] = signal.signal(number, lambda number, _: caught.append(number))
+        yield
+    finally:
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+    for number in caught:
+        signal.raise_signal(number)
