@@ -15,6 +15,7 @@ from eigenfield.capture.calibration import Calibration, escape_name
 from eigenfield.capture.layout import GridLayout
 from eigenfield.capture.locate import IMAGES_FOLDER, photographs_in
 from eigenfield.capture.messages import describe, natural_key
+from eigenfield.capture.unread import describe_unread
 from eigenfield.core.errors import CaptureError
 
 NAMES_MIN_PHOTOGRAPHS = 3  # photographs that must bear a format's names
@@ -101,11 +102,12 @@ def find_by_names(pattern: re.Pattern[str]) -> Callable[[Path], Path | None]:
 def require_photographs(fitting: Sequence[object], folder: Path, what: str) -> None:
     """Raise CaptureError `names-unknown` where no photograph of the folder is named as `what` describes."""
     if not fitting:
+        unread = describe_unread((folder, folder / IMAGES_FOLDER))
         raise CaptureError(
             "names-unknown",
             f"holds no photograph named {what}",
             path=folder,
-            remedy="name the right folder, or another --format",
+            remedy="; ".join(unread) or "name the right folder, or another --format",
         )
 
 

@@ -6,11 +6,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from eigenfield.capture.formats import FORMATS
+from eigenfield.capture.photographs.kinds import VIDEO_EXTENSIONS
 from eigenfield.capture.readers import colmap, transforms
 from eigenfield.capture.readers.bundler import BUNDLER_LISTS
 from eigenfield.capture.readers.grid_names import GRID_MAX_NODE_NUMBER, GRID_WORDS
 from eigenfield.capture.readers.metashape import METASHAPE_LENS_MODELS, METASHAPE_PARAMETERS
-from eigenfield.capture.readers.video import VIDEO_EXTENSIONS
 
 
 @dataclass(frozen=True)

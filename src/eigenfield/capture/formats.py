@@ -9,6 +9,7 @@ from pathlib import Path
 from eigenfield.capture.arrangement import Arrangement, OpenOptions
 from eigenfield.capture.calibration import Calibration, escape_name
 from eigenfield.capture.messages import list_names
+from eigenfield.capture.photographs.kinds import ALL_EXTENSIONS, MESH_KIND, OTHER_KINDS
 from eigenfield.capture.readers import colmap, transforms
 from eigenfield.capture.readers.bundler import find_bundler, find_unlisted, read_bundler
 from eigenfield.capture.readers.deepview import DEEPVIEW_FILE, find_deepview, read_deepview
@@ -216,10 +217,18 @@ def claim_of_file(path: Path, formats: tuple[Format, ...]) -> Claim:
     if len(certain or fitting) > 1:
         raise _ambiguous_error(path, " or ".join(row.name for row in certain or fitting), certain or fitting)
     if not fitting:
-        raise CaptureError(
-            "calibration-unknown",
-            "is no calibration",
-            path=path,
-            remedy="name a transforms.json, a COLMAP model, another that docs/captures.md lists, or a folder with one",
-        )
+        raise _not_a_calibration(path)
     return Claim((certain or fitting)[0], path)
+
+
+def _not_a_calibration(path: Path) -> CaptureError:
+    """The error for a file that is named and of no format, which says what it is as far as its name does."""
+    lower = path.name.lower()
+    kind = next((kind for kind in (*OTHER_KINDS, MESH_KIND) if lower.endswith(kind.endings)), None)
+    message, remedy = "is no calibration", "name a transforms.json, a COLMAP model, another that docs/captures.md lists"
+    remedy += ", or a folder with one"
+    if lower.endswith(ALL_EXTENSIONS):
+        message, remedy = "is one photograph, and no calibration", "name the folder of all photographs"
+    elif kind is not None:
+        message, remedy = f"is {kind.what}, and no calibration", kind.remedy
+    return CaptureError("calibration-unknown", message, path=path, remedy=remedy)

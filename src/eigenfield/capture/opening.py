@@ -16,6 +16,7 @@ from eigenfield.capture.pairing import pair_photographs
 from eigenfield.capture.photoset import Capture, PhotoSet
 from eigenfield.capture.readers.grid_names import compile_pattern
 from eigenfield.capture.readers.video import is_video_rig, read_videos
+from eigenfield.capture.unread import describe_unread
 from eigenfield.core.errors import CaptureError, OptionError
 
 StrPath = str | os.PathLike[str]
@@ -62,7 +63,7 @@ def open_capture(
     opened = _open_source(source, masks, strict)
     if opened.light_field is None:
         raise _no_cameras(Path(path), opened.problems)
-    return opened.light_field
+    return replace(opened.light_field, problems=(*opened.problems, *_unread_lines(opened)))
 
 
 def open_photographs(
@@ -100,7 +101,8 @@ def open_photographs(
     if source is None:
         raise _no_photographs(Path(path))
     arrangement = _read_arrangement(source)
-    return make_photo_set(arrangement, source.root, masks=None if masks is None else Path(masks), strict=strict)
+    made = make_photo_set(arrangement, source.root, masks=None if masks is None else Path(masks), strict=strict)
+    return replace(made, problems=(*made.problems, *_unread_lines(made)))
 
 
 def open_any(
@@ -123,7 +125,14 @@ def open_any(
     source = _find_source(path, calibration, format, options, FORMATS)
     if source is None:
         raise _no_photographs(Path(path))
-    return _open_source(source, masks, strict)
+    opened = _open_source(source, masks, strict)
+    return replace(opened, problems=(*opened.problems, *_unread_lines(opened)))
+
+
+def _unread_lines(opened: Capture) -> list[str]:
+    """Lines about files beside the photographs; beside a calibration, or videos, only other photographs are missed."""
+    folders = {opened.root, opened.root / IMAGES_FOLDER, *(source.path.parent for source in opened.sources)}
+    return describe_unread(folders, photographs_only=opened.light_field is not None or opened.format == "video")
 
 
 @dataclass(frozen=True)
@@ -263,7 +272,11 @@ def _no_cameras(path: Path, problems: tuple[str, ...] = ()) -> CaptureError:
 
 
 def _no_photographs(path: Path) -> CaptureError:
-    """The error for a folder in which nothing is found; it names folders inside that hold photographs."""
+    """The error for a folder in which nothing is found; it names what is there, or folders inside with photographs."""
+    unread = describe_unread((path, path / IMAGES_FOLDER))
+    if unread:
+        message = "holds no photographs that are read"
+        return CaptureError("photographs-missing", message, path=path, remedy="; ".join(unread))
     inner = [p.name for p in sorted(path.iterdir()) if p.is_dir() and photographs_in(p)] if path.is_dir() else []
     remedy = f"name one of the folders inside: {list_names(inner)}" if inner else "name a folder of photographs"
     return CaptureError("photographs-missing", "holds no photographs", path=path, remedy=remedy)

@@ -22,11 +22,11 @@ from PIL import Image
 from eigenfield.capture.arrangement import Arrangement, OpenOptions, require_photographs
 from eigenfield.capture.locate import IMAGES_FOLDER, files_named, photographs_in
 from eigenfield.capture.messages import natural_key
+from eigenfield.capture.photographs.kinds import VIDEO_EXTENSIONS
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.runtime.parallel import parallel_map
 from eigenfield.runtime.stages import Stages, stage_key
 
-VIDEO_EXTENSIONS = (".mp4", ".mov", ".mkv", ".avi", ".webm", ".m4v", ".mpg", ".mpeg", ".mts", ".m2ts")
 VIDEO_FOLDER = "videos"
 VIDEO_MIN_FILES = 2  # of a rig
 VIDEO_TIME_PATTERN = re.compile(r"(\d+(?:\.\d*)?|\.\d+)s")
@@ -44,8 +44,11 @@ def videos_in(folder: Path) -> list[Path]:
 
 
 def videos_of(folder: Path) -> list[Path]:
-    """The videos of a rig: those in the folder, or in its `videos/`, whichever are more."""
-    here, inner = videos_in(folder), videos_in(folder / VIDEO_FOLDER)
+    """The videos of a rig: those in the folder, or in its `videos/`, whichever are more. The film of a live photograph,
+    which lies beside it under its name, is none."""
+    stems = {path.stem.casefold() for path in photographs_in(folder)}
+    here = [path for path in videos_in(folder) if path.stem.casefold() not in stems]
+    inner = videos_in(folder / VIDEO_FOLDER)
     return here if len(here) >= len(inner) else inner
 
 
