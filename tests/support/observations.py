@@ -68,6 +68,10 @@ class CalibratedInMemory:
         return [None] * len(self.cameras)
 
     @property
+    def exposure(self) -> None:
+        return None
+
+    @property
     def metres_per_unit(self) -> None:
         return None
 

@@ -5,20 +5,24 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TypeVar
 
 from eigenfield.capture.arrangement import Arrangement, OpenOptions
 from eigenfield.capture.formats import FORMATS, Claim, Format, claim_of_file, detect_format, format_by_name
 from eigenfield.capture.inspect_photographs import common_focal_length, make_photo_set
 from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.locate import IMAGES_FOLDER, photograph_root, photographs_in
-from eigenfield.capture.messages import list_names
+from eigenfield.capture.messages import count_phrase, list_names
 from eigenfield.capture.pairing import pair_photographs
+from eigenfield.capture.photographs.exr import choose_exposure
+from eigenfield.capture.photographs.kinds import is_linear
 from eigenfield.capture.photoset import Capture, PhotoSet
 from eigenfield.capture.readers.grid_names import compile_pattern
 from eigenfield.capture.readers.video import is_video_rig, read_videos
 from eigenfield.capture.unread import describe_unread
 from eigenfield.core.errors import CaptureError, OptionError
 
+C = TypeVar("C", LightField, PhotoSet, Capture)
 StrPath = str | os.PathLike[str]
 PATTERN_FORMAT = "grid"  # which --pattern means
 NAME_FORMATS = tuple(row for row in FORMATS if row.read_names is not None)
@@ -63,7 +67,7 @@ def open_capture(
     opened = _open_source(source, masks, strict)
     if opened.light_field is None:
         raise _no_cameras(Path(path), opened.problems)
-    return replace(opened.light_field, problems=(*opened.problems, *_unread_lines(opened)))
+    return _finish(opened.light_field)
 
 
 def open_photographs(
@@ -102,7 +106,7 @@ def open_photographs(
         raise _no_photographs(Path(path))
     arrangement = _read_arrangement(source)
     made = make_photo_set(arrangement, source.root, masks=None if masks is None else Path(masks), strict=strict)
-    return replace(made, problems=(*made.problems, *_unread_lines(made)))
+    return _finish(made)
 
 
 def open_any(
@@ -125,8 +129,19 @@ def open_any(
     source = _find_source(path, calibration, format, options, FORMATS)
     if source is None:
         raise _no_photographs(Path(path))
-    opened = _open_source(source, masks, strict)
-    return replace(opened, problems=(*opened.problems, *_unread_lines(opened)))
+    return _finish(_open_source(source, masks, strict))
+
+
+def _finish(opened: C) -> C:
+    """The capture with one exposure for its linear values, and lines about that and about what lies beside it."""
+    lines: list[str] = _unread_lines(opened)
+    linear = [source.path for source in opened.sources if is_linear(source.path)]
+    if linear:
+        exposure = choose_exposure(linear)
+        opened = opened.with_exposure(exposure)
+        which = count_phrase(linear, "photograph has", "photographs have")
+        lines.append(f"{which} linear values (OpenEXR): taken times {exposure:.4g}, then by the sRGB curve")
+    return replace(opened, problems=(*opened.problems, *lines))
 
 
 def _unread_lines(opened: Capture) -> list[str]:

@@ -70,6 +70,10 @@ class CalibratedObservations(Observations, Protocol):
         """(Nc,) model and coefficients of the lens that was removed; None where there was none."""
 
     @property
+    def exposure(self) -> float | None:
+        """Factor of the photographs' linear values before the sRGB curve; None where they were coded already."""
+
+    @property
     def metres_per_unit(self) -> float | None:
         """Metres in one unit of the cameras' world; None if unknown."""
 

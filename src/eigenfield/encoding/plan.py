@@ -134,6 +134,7 @@ class EncodePlan:
             **_scale(views.capture, self.options.metres_per_unit),
             **_origin(views.capture),
             **_lenses(views.capture),
+            **_tone(views.capture),
             "photographs": {
                 "count": len(views.observations),
                 "bytes": sum(views.capture.bytes(index) for index in used),
@@ -314,6 +315,11 @@ def _lenses(capture: CalibratedObservations) -> dict[str, Any]:
     """The lenses that were removed, so that the photographs alone are enough to measure the scene by."""
     lenses = [None if lens is None else [lens[0], list(lens[1])] for lens in capture.lenses]
     return {"lenses": lenses} if any(lenses) else {}
+
+
+def _tone(capture: CalibratedObservations) -> dict[str, Any]:
+    """How linear values became the photographs' own numbers."""
+    return {} if capture.exposure is None else {"tone": {"curve": "sRGB", "exposure": capture.exposure}}
 
 
 def _warn_of_rounding(exact: Sequence[Camera], kept: Sequence[Camera], mesh: Mesh) -> None:

@@ -30,10 +30,19 @@ class Kind:
 
 
 PHOTOS_REMEDY = "pip install 'eigenfield[photos]'"
+RAW_REMEDY = "pip install 'eigenfield[raw]'"
+RENDERS_REMEDY = "pip install 'eigenfield[renders]'"
+RAW_EXTENSIONS = (
+    ".dng", ".nef", ".nrw", ".cr2", ".cr3", ".crw", ".arw", ".sr2", ".raf", ".rw2", ".orf", ".pef", ".srw", ".3fr",
+    ".iiq", ".rwl",
+)  # fmt: skip
+LINEAR_EXTENSIONS = (".exr",)  # of photographs whose values are linear light
 # the earlier of two with the same stem is the photograph, and the later a copy of it
 OPTIONAL_KINDS = (
     Kind((".heic", ".heif", ".hif"), "HEIC", PHOTOS_REMEDY, "pillow_heif"),
     Kind((".jxl",), "JPEG XL", PHOTOS_REMEDY, "pillow_jxl"),
+    Kind(RAW_EXTENSIONS, "a camera's RAW", RAW_REMEDY, "rawpy"),
+    Kind(LINEAR_EXTENSIONS, "OpenEXR", RENDERS_REMEDY, "OpenEXR"),
 )
 ALL_EXTENSIONS = (*PHOTOGRAPH_EXTENSIONS, *(ending for kind in OPTIONAL_KINDS for ending in kind.endings))
 OTHER_KINDS = (
@@ -65,6 +74,11 @@ def unread_kind(name: str) -> Kind | None:
     if lower.endswith(read_extensions()):
         return None
     return next((kind for kind in (*OPTIONAL_KINDS, *OTHER_KINDS) if lower.endswith(kind.endings)), None)
+
+
+def is_linear(path: Path) -> bool:
+    """Whether a photograph's name says that its values are linear light."""
+    return path.suffix.lower() in LINEAR_EXTENSIONS
 
 
 def without_copies(files: Iterable[Path]) -> list[Path]:

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import AvifImagePlugin, Image, ImageCms, JpegImagePlugin, PngImagePlugin, TiffImagePlugin, WebPImagePlugin
 
+from eigenfield.capture.photographs.exr import EXR_MAGIC, decode_exr, read_exr_header
 from eigenfield.capture.photographs.header import (
     DECODER_ERRORS,
     EXIF_ORIENTATION_TAG,
@@ -30,9 +31,10 @@ from eigenfield.capture.photographs.header import (
     refuse_size,
     unreadable_error,
 )
-from eigenfield.capture.photographs.icc import BrokenProfileError, read_profile
+from eigenfield.capture.photographs.icc import BrokenProfileError, encode_srgb, read_profile
 from eigenfield.capture.photographs.jxl import JXL_CODESTREAM, JXL_CONTAINER, read_jxl_header
-from eigenfield.capture.photographs.kinds import PHOTOS_REMEDY
+from eigenfield.capture.photographs.kinds import PHOTOS_REMEDY, RAW_EXTENSIONS
+from eigenfield.capture.photographs.raw import decode_raw, read_raw_header
 from eigenfield.core.errors import CaptureError
 
 log = logging.getLogger(__name__)
@@ -55,7 +57,12 @@ def read_header(path: Path) -> Header:
     """
     try:
         with path.open("rb") as file:
-            if _format_of(read_at(file, 0, FORMAT_HEAD_BYTES)) == "JPEG XL":
+            name = format_of(path, read_at(file, 0, FORMAT_HEAD_BYTES))
+            if name == "RAW":
+                return read_raw_header(path)
+            if name == "EXR":
+                return read_exr_header(path)
+            if name == "JPEG XL":
                 return _jxl_header(file, path)
             name, image = open_picture(file, path)
             return _make_header(name, image, file, path)
@@ -63,20 +70,25 @@ def read_header(path: Path) -> Header:
         raise open_error(path, error) from error
 
 
-def decode(path: Path, upright: bool = True) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
+def decode(
+    path: Path, upright: bool = True, exposure: float | None = None
+) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
     """A photograph as (H, W, 3) float32 sRGB-coded values in 0..1, and its alpha (H, W) or None.
 
     Args:
         path: The file.
         upright: Apply the EXIF orientation.
+        exposure: Factor of linear values (OpenEXR) before the sRGB curve; None for 1.
 
     Raises:
         CaptureError: As `read_header` does, and `image-truncated`.
     """
-    values, profile = _decode_values(path, upright)
+    values, profile, is_linear = _decode_values(path, upright)
     colours = values[..., :3] if values.shape[2] >= 3 else np.repeat(values[..., :1], 3, axis=2)
     alpha = np.ascontiguousarray(values[..., -1]) if values.shape[2] in (2, 4) else None
-    if profile is not None:
+    if is_linear:
+        colours = encode_srgb(colours * np.float32(1.0 if exposure is None else exposure))
+    elif profile is not None:
         colours = _to_srgb(colours, profile, values.shape[2] < 3, path)
     return np.ascontiguousarray(colours), alpha
 
@@ -86,7 +98,7 @@ def decode_mask(path: Path) -> NDArray[np.float32]:
 
     Raises CaptureError as `decode`, and `mask-dark` where nothing is white though something is not black.
     """
-    values, _ = _decode_values(path, True)
+    values = np.clip(_decode_values(path, True)[0], 0, 1)
     grey = values[..., :3].mean(axis=2) if values.shape[2] >= 3 else values[..., 0]
     if values.shape[2] in (2, 4):
         grey = grey * values[..., -1]
@@ -108,7 +120,7 @@ def open_picture(file: Any, path: Path) -> tuple[str, Image.Image]:
 
     Raises CaptureError: `image-unreadable`, `image-truncated`, `image-kind`, `image-too-large`.
     """
-    name = _format_of(read_at(file, 0, FORMAT_HEAD_BYTES))
+    name = format_of(path, read_at(file, 0, FORMAT_HEAD_BYTES))
     try:
         if name == "PNG":
             return name, PngImagePlugin.PngImageFile(file)
@@ -130,14 +142,19 @@ def open_picture(file: Any, path: Path) -> tuple[str, Image.Image]:
         raise unreadable_error(path, "it is empty")
     raise CaptureError(
         "image-kind",
-        "is no PNG, JPEG, WebP, TIFF, AVIF, HEIC or JPEG XL",
+        "is no PNG, JPEG, WebP, TIFF, AVIF, HEIC, JPEG XL, RAW or OpenEXR",
         path=path,
         remedy="convert it, or take it out of the capture",
     )
 
 
-def _format_of(start: bytes) -> str | None:
-    """The format of a file that begins so."""
+def format_of(path: Path, start: bytes) -> str | None:
+    """The format of a file that begins so; None for one that is not read. RAW is known by its name: most are TIFF with
+    a small picture."""
+    if start and path.suffix.lower() in RAW_EXTENSIONS:
+        return "RAW"
+    if start.startswith(EXR_MAGIC):
+        return "EXR"
     if start.startswith(b"\x89PNG\r\n\x1a\n"):
         return "PNG"
     if start.startswith(b"\xff\xd8\xff"):
@@ -255,12 +272,19 @@ def _avif_depth(head: bytes) -> int:
     return depth
 
 
-def _decode_values(path: Path, upright: bool) -> tuple[NDArray[np.float32], bytes | None]:
-    """(H, W, 1 | 2 | 3 | 4) values in 0..1 as the file has them, and the ICC profile that is still to be applied."""
+def _decode_values(path: Path, upright: bool) -> tuple[NDArray[np.float32], bytes | None, bool]:
+    """(H, W, 1 | 2 | 3 | 4) values as the file has them, the ICC profile that is still to be applied, and whether they
+    are linear; others are in 0..1."""
     try:
         data = path.read_bytes()
     except OSError as error:
         raise open_error(path, error) from error
+    kind = format_of(path, data[:FORMAT_HEAD_BYTES])
+    if kind == "EXR":
+        return decode_exr(path), None, True
+    if kind == "RAW":
+        pixels, header = decode_raw(path)
+        return _apply_orientation(pixels, header.orientation if upright else 1), None, False
     file = io.BytesIO(data)
     name, image = open_picture(file, path)
     header = _make_header(name, image, file, path)
@@ -279,7 +303,7 @@ def _decode_values(path: Path, upright: bool) -> tuple[NDArray[np.float32], byte
     wanted = header.orientation if upright else 1
     if name == "TIFF":
         wanted = 1 if upright else {6: 8, 8: 6}.get(header.orientation, header.orientation)
-    return _apply_orientation(values, wanted), profile
+    return _apply_orientation(values, wanted), profile, False
 
 
 def _apply_orientation(values: NDArray[np.float32], orientation: int) -> NDArray[np.float32]:
