@@ -31,12 +31,14 @@ class OpenOptions:
         frame: Frame of each video: an index from 0, or seconds ("2.5s").
         work: Folder that keeps the frames taken from videos; None for a temporary one.
         pattern: How names state row and column: `view_{row}_{col}.png`.
+        frames: How many frames of the video of a walk are taken.
     """
 
     grid: tuple[int, int] | None = None
     frame: int | str | None = None
     work: Path | None = None
     pattern: str | None = None
+    frames: int | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from pathlib import Path
 from eigenfield.capture.arrangement import Arrangement, OpenOptions
 from eigenfield.capture.calibration import Calibration, escape_name
 from eigenfield.capture.messages import list_names
-from eigenfield.capture.photographs.kinds import ALL_EXTENSIONS, MESH_KIND, OTHER_KINDS
+from eigenfield.capture.photographs.kinds import ALL_EXTENSIONS, MESH_KIND, OTHER_KINDS, VIDEO_EXTENSIONS
 from eigenfield.capture.readers import colmap, transforms
 from eigenfield.capture.readers.bundler import find_bundler, find_unlisted, read_bundler
 from eigenfield.capture.readers.deepview import DEEPVIEW_FILE, find_deepview, read_deepview
@@ -27,6 +27,7 @@ from eigenfield.capture.readers.realitycapture import find_realitycapture, read_
 from eigenfield.capture.readers.stanford import find_stanford, read_stanford
 from eigenfield.capture.readers.strecha import find_strecha, read_strecha
 from eigenfield.capture.readers.video import find_videos, read_videos
+from eigenfield.capture.readers.walk import find_walk, read_walk
 from eigenfield.core.errors import CaptureError, OptionError
 
 # of the formats that claim a folder, the one of lowest rank is read; two of one rank are ambiguous
@@ -45,7 +46,7 @@ class Format:
         read_cameras: From what `find` returned and the folder of the photographs to the calibration.
         read_names: From what `find` returned and the caller's options to the arrangement.
         endings: Of file names that may be named directly as a calibration of this format.
-        uses: Those of "grid", "frame" and "pattern" that the reader uses.
+        uses: Those of "grid", "frame", "frames" and "pattern" that the reader uses.
         cameras: Whether it may yield cameras at all.
     """
 
@@ -110,6 +111,7 @@ FORMATS = (
     _name_format("numbered", "numbered frames with --grid", lambda folder: None, read_numbered, "grid",
                  rank=RANK_ON_REQUEST),  # it must be asked for
     _name_format("video", "one video a camera", find_videos, read_videos, "frame", rank=RANK_ANY),
+    _name_format("walk", "one video of a walk", find_walk, read_walk, "frames", rank=RANK_ANY),
     _name_format("folder", "plain folder of photographs", find_photographs, read_photographs, rank=RANK_ANY),
 )  # fmt: skip
 # files that a folder does not hold by chance: if no reader claims one of these, it is damaged or incomplete
@@ -203,7 +205,12 @@ def _relative_name(found: Path, folder: Path) -> str:
 
 
 def claim_of_file(path: Path, formats: tuple[Format, ...]) -> Claim:
-    """The format of a calibration that is named as a file; CaptureError `calibration-unknown`, `format-ambiguous`."""
+    """The format of a file that is named: a calibration, or the video of a walk.
+
+    Raises CaptureError: `calibration-unknown`, `format-ambiguous`.
+    """
+    if FORMATS_BY_NAME["walk"] in formats and path.name.lower().endswith(VIDEO_EXTENSIONS):
+        return Claim(FORMATS_BY_NAME["walk"], path)
     if len(formats) > 1 and path.name == DEEPVIEW_FILE and find_deepview(path.parent) == path:
         return Claim(FORMATS_BY_NAME["deepview"], path)
     if len(formats) > 1 and path.suffix.lower() == ".json":

@@ -38,6 +38,7 @@ def open_capture(
     grid: tuple[int, int] | None = None,
     frame: int | str | None = None,
     pattern: str | None = None,
+    frames: int | None = None,
 ) -> LightField:
     """Open a capture with cameras; photographs are decoded on demand, only their headers are read now.
 
@@ -53,6 +54,7 @@ def open_capture(
         grid: As for `open_photographs`.
         frame: As for `open_photographs`.
         pattern: As for `open_photographs`.
+        frames: As for `open_photographs`.
 
     Raises:
         CaptureError: There is no calibration (`calibration-missing`), or it is damaged; a camera is impossible; a
@@ -61,7 +63,9 @@ def open_capture(
             fits (`format-ambiguous`).
         OptionError: An option is impossible or would have no effect.
     """
-    source = _find_source(path, calibration, format, OpenOptions(_check_grid(grid), frame, None, pattern), FORMATS)
+    source = _find_source(
+        path, calibration, format, OpenOptions(_check_grid(grid), frame, None, pattern, frames), FORMATS
+    )
     if source is None or not source.claim.format.cameras:
         raise _no_cameras(Path(path))
     opened = _open_source(source, masks, strict)
@@ -79,28 +83,30 @@ def open_photographs(
     grid: tuple[int, int] | None = None,
     frame: int | str | None = None,
     pattern: str | None = None,
+    frames: int | None = None,
     work: StrPath | None = None,
 ) -> PhotoSet:
     """Open photographs without cameras, with the grid that their names state; a calibration beside them is not read.
 
     Args:
-        path: A folder of photographs (in itself or in its `images/`), or of one video a camera.
+        path: A folder of photographs (in itself or in its `images/`), or of one video a camera; or one video of a walk.
         masks: As for `open_capture`.
         strict: As for `open_capture`.
         format: The name of a format of names.
         grid: (rows, columns) of numbered photographs, in row-major order.
         frame: Frame of each video: an index from 0, or seconds ("2.5s"); 0 by default.
         pattern: How names state row and column of a grid: `view_{row}_{col}.png`; `*` stands for any text.
+        frames: How many frames of the video of a walk are taken.
         work: A folder that keeps the frames of videos as PNG, so that they are decoded once; by default they last as
             long as the process.
 
     Raises:
         CaptureError: `photographs-missing`, `photographs-twice`, `format-ambiguous`, `names-unknown`, `node-twice`,
             `grid-size`, `grid-positions`; a photograph is unreadable, or has another size than the rest of its grid
-            (`image-size`); `video-unreadable`, `video-short`, `too-few`.
+            (`image-size`); `video-unreadable`, `video-short`, `video-long`, `video-large`, `video-still`, `too-few`.
         OptionError: An option is impossible or would have no effect.
     """
-    options = OpenOptions(_check_grid(grid), frame, None if work is None else Path(work), pattern)
+    options = OpenOptions(_check_grid(grid), frame, None if work is None else Path(work), pattern, frames)
     source = _find_source(path, None, format, options, NAME_FORMATS)
     if source is None:
         raise _no_photographs(Path(path))
@@ -119,13 +125,14 @@ def open_any(
     grid: tuple[int, int] | None = None,
     frame: int | str | None = None,
     pattern: str | None = None,
+    frames: int | None = None,
     work: StrPath | None = None,
 ) -> Capture:
     """Open a light field where a calibration or the names state the cameras, otherwise photographs.
 
     Arguments and errors are those of `open_capture` and `open_photographs`.
     """
-    options = OpenOptions(_check_grid(grid), frame, None if work is None else Path(work), pattern)
+    options = OpenOptions(_check_grid(grid), frame, None if work is None else Path(work), pattern, frames)
     source = _find_source(path, calibration, format, options, FORMATS)
     if source is None:
         raise _no_photographs(Path(path))
@@ -147,7 +154,9 @@ def _finish(opened: C) -> C:
 def _unread_lines(opened: Capture) -> list[str]:
     """Lines about files beside the photographs; beside a calibration, or videos, only other photographs are missed."""
     folders = {opened.root, opened.root / IMAGES_FOLDER, *(source.path.parent for source in opened.sources)}
-    return describe_unread(folders, photographs_only=opened.light_field is not None or opened.format == "video")
+    return describe_unread(
+        folders, photographs_only=opened.light_field is not None or opened.format in ("video", "walk")
+    )
 
 
 @dataclass(frozen=True)
@@ -229,7 +238,8 @@ def _find_claim(path: Path, formats: tuple[Format, ...], options: OpenOptions) -
 
 def _refuse_unused(claim: Claim, options: OpenOptions) -> None:
     """Options that would change nothing are an error: who gives one expects something of it."""
-    for option, value in (("grid", options.grid), ("frame", options.frame), ("pattern", options.pattern)):
+    asked = {"grid": options.grid, "frame": options.frame, "frames": options.frames, "pattern": options.pattern}
+    for option, value in asked.items():
         if value is not None and option not in claim.format.uses:
             raise OptionError(
                 f"{option}-unused",

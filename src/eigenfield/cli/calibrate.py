@@ -111,7 +111,7 @@ def command(
     from eigenfield.capture.writers.save import save_calibration
 
     photos = open_photographs(folder, strict=False, work=work, **names)
-    if photos.format == "video" and work is None:
+    if photos.format in ("video", "walk") and work is None:
         raise OptionError(
             "video-work", "the frames of videos must stay for the calibration to name them", remedy="add --work DIR"
         )

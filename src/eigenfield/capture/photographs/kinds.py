@@ -49,7 +49,7 @@ OTHER_KINDS = (
     Kind((".gif", ".bmp", ".jp2", ".j2k", ".psd", ".ppm", ".pgm", ".tga", ".hdr", ".jfif", ".mpo", ".heics", ".avifs"),
          "a picture of another format", "convert it to PNG or JPEG"),
     Kind((".insp", ".insv", ".360"), "a panorama", "cut it into perspective views"),
-    Kind(VIDEO_EXTENSIONS, "a video", "take frames out of it, and name their folder"),
+    Kind(VIDEO_EXTENSIONS, "a video", "name it alone, or take frames out of it"),
     Kind((".zip", ".7z", ".rar", ".tar", ".tgz", ".gz", ".bz2", ".xz"), "an archive",
          "unpack it, and name the folder"),
 )  # fmt: skip
