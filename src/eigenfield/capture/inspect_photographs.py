@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 
 from eigenfield.capture.arrangement import Arrangement
-from eigenfield.capture.calibration import escape_name, or_error
+from eigenfield.capture.calibration import or_error
 from eigenfield.capture.duplicates import describe_duplicates, find_duplicates, refuse_duplicates
 from eigenfield.capture.locate import with_masks
-from eigenfield.capture.messages import count_phrase, describe, natural_key
+from eigenfield.capture.messages import count_phrase, describe, natural_key, unique_names
 from eigenfield.capture.photographs.exif import read_focal_length
 from eigenfield.capture.photographs.panorama import refuse_panorama
 from eigenfield.capture.photographs.read import read_header
@@ -42,12 +42,13 @@ def make_photo_set(arrangement: Arrangement, root: Path, *, masks: Path | None, 
         CaptureError: As `open_photographs` does.
     """
     files = arrangement.files
+    names = unique_names(files)
 
-    def make(path: Path) -> Shot:
-        return _make_shot(path, free=arrangement.layout is None)
+    def make(index: int) -> Shot:
+        return _make_shot(files[index], names[index], free=arrangement.layout is None)
 
-    order = sorted(range(len(files)), key=lambda i: natural_key(files[i].name))
-    outcomes = parallel_map(or_error(make), [files[i] for i in order])
+    order = sorted(range(len(files)), key=lambda i: natural_key(names[i]))
+    outcomes = parallel_map(or_error(make), order)
     found = [(i, outcome) for i, outcome in zip(order, outcomes, strict=True) if isinstance(outcome, Shot)]
     errors = [outcome for outcome in outcomes if isinstance(outcome, CaptureError)]
     if arrangement.layout is not None:
@@ -86,11 +87,11 @@ def make_photo_set(arrangement: Arrangement, root: Path, *, masks: Path | None, 
     return PhotoSet(root, tuple(shots), layout, tuple(problems), arrangement.format)
 
 
-def _make_shot(path: Path, free: bool) -> Shot:
+def _make_shot(path: Path, name: str, *, free: bool) -> Shot:
     header = read_header(path)
     focal = read_focal_length(path, header)
     refuse_panorama(path, header, focal, by_shape=free)
-    return Shot(escape_name(path.name), path, *header.upright_size, focal)
+    return Shot(name, path, *header.upright_size, focal)
 
 
 def _split_by_size(found: Sequence[tuple[int, Shot]]) -> tuple[list[tuple[int, Shot]], list[CaptureError]]:

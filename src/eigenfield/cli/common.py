@@ -143,14 +143,22 @@ reconstruction_options = together(  # the arguments of `reconstruct`
 )  # fmt: skip
 
 
+def capture_argument(required: bool = True) -> Decorator:
+    """CAPTURE, which may be several folders."""
+    metavar = "CAPTURE..." if required else "[CAPTURE]..."
+    return click.argument("capture", type=PATH, nargs=-1, required=required, metavar=metavar)
+
+
 def capture_options(function: Callable[..., Any]) -> Any:
     """Add --calibration, --masks, --format, --grid, --pattern, --frame and --frames; the verb gets them as one `place`,
-    the keyword arguments of `open_capture` and `open_any`."""
+    the keyword arguments of `open_capture` and `open_any`, with further folders of the argument CAPTURE (`also`)."""
 
     @functools.wraps(function)
     def collect(**given: Any) -> Any:
         names = ("calibration", "masks", "format", "grid", "pattern", "frame", "frames")
-        return function(place={name: given.pop(name) for name in names}, **given)
+        place = {name: given.pop(name) for name in names}
+        capture, *also = given.pop("capture") or [None]
+        return function(capture=capture, place={**place, "also": also or None}, **given)
 
     return _place_options(collect)
 

@@ -50,7 +50,8 @@ OTHER_KINDS = (
          "a picture of another format", "convert it to PNG or JPEG"),
     Kind((".insp", ".insv", ".360"), "a panorama", "cut it into perspective views"),
     Kind(VIDEO_EXTENSIONS, "a video", "name it alone, or take frames out of it"),
-    Kind((".zip", ".7z", ".rar", ".tar", ".tgz", ".gz", ".bz2", ".xz"), "an archive",
+    Kind((".zip",), "an archive", "name it alone, or unpack it"),
+    Kind((".7z", ".rar", ".tar", ".tgz", ".gz", ".bz2", ".xz"), "an archive",
          "unpack it, and name the folder"),
 )  # fmt: skip
 MESH_KIND = Kind((".ply", ".obj", ".glb", ".gltf", ".stl", ".off"), "a mesh", "name it with --proxy")
