@@ -140,6 +140,8 @@ def _channel_names(part: Any, path: Path) -> dict[str, str]:
     names = _find_colours(listed)
     if not names or len(listed) > EXR_MAX_CHANNELS:
         raise _kind_error(path, f"no channels R, G, B (it has {', '.join(listed)[:60]})")
+    if "deep" in str(header.get("type", "")):
+        raise _kind_error(path, "several samples a pixel (deep)")
     if str(header.get("envmap", "")).endswith("LATLONG"):
         raise _kind_error(path, "a picture of all directions (envmap)")
     primaries = header.get("chromaticities")
