@@ -15,7 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image, ImageCms
 
-from eigenfield.capture.photographs import read as photographs
+from eigenfield.capture.photographs import header as photographs
 from eigenfield.capture.photographs.icc import ICC_SRGB_TO_XYZ, BrokenProfileError, encode_srgb, read_profile
 from eigenfield.capture.photographs.read import decode, decode_mask, read_header
 from eigenfield.core.errors import CaptureError

@@ -72,6 +72,10 @@ class CalibratedInMemory:
         return ()
 
     @property
+    def exposure(self) -> None:
+        return None
+
+    @property
     def metres_per_unit(self) -> None:
         return None
 

@@ -15,6 +15,7 @@ from eigenfield.capture.calibration import Calibration, escape_name
 from eigenfield.capture.layout import GridLayout
 from eigenfield.capture.locate import IMAGES_FOLDER, photographs_in
 from eigenfield.capture.messages import describe, natural_key
+from eigenfield.capture.unread import describe_unread
 from eigenfield.core.errors import CaptureError
 
 NAMES_MIN_PHOTOGRAPHS = 3  # photographs that must bear a format's names
@@ -30,12 +31,14 @@ class OpenOptions:
         frame: Frame of each video: an index from 0, or seconds ("2.5s").
         work: Folder that keeps the frames taken from videos; None for a temporary one.
         pattern: How names state row and column: `view_{row}_{col}.png`.
+        frames: How many frames of the video of a walk are taken.
     """
 
     grid: tuple[int, int] | None = None
     frame: int | str | None = None
     work: Path | None = None
     pattern: str | None = None
+    frames: int | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,11 +104,12 @@ def find_by_names(pattern: re.Pattern[str]) -> Callable[[Path], Path | None]:
 def require_photographs(fitting: Sequence[object], folder: Path, what: str) -> None:
     """Raise CaptureError `names-unknown` where no photograph of the folder is named as `what` describes."""
     if not fitting:
+        unread = describe_unread((folder, folder / IMAGES_FOLDER))
         raise CaptureError(
             "names-unknown",
             f"holds no photograph named {what}",
             path=folder,
-            remedy="name the right folder, or another --format",
+            remedy="; ".join(unread) or "name the right folder, or another --format",
         )
 
 

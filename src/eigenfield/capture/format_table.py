@@ -6,11 +6,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from eigenfield.capture.formats import FORMATS
+from eigenfield.capture.photographs.kinds import VIDEO_EXTENSIONS
 from eigenfield.capture.readers import colmap, transforms
 from eigenfield.capture.readers.bundler import BUNDLER_LISTS
 from eigenfield.capture.readers.grid_names import GRID_MAX_NODE_NUMBER, GRID_WORDS
 from eigenfield.capture.readers.metashape import METASHAPE_LENS_MODELS, METASHAPE_PARAMETERS
-from eigenfield.capture.readers.video import VIDEO_EXTENSIONS
+from eigenfield.capture.readers.walk import WALK_MAX_FRAMES
 
 
 @dataclass(frozen=True)
@@ -184,6 +185,14 @@ FORMAT_NOTES = {
         "one frame of each (`--frame 12`, `--frame 2.5s`), turned and mirrored as the display matrix says",
         "videos that are shorter",
         "they must start together; beside a calibration they take the photographs' place",
+    ),
+    "walk": FormatNotes(
+        "one video that is named, or alone in a folder",
+        "no",
+        "phones, cameras",
+        "sharp frames, evenly spread by how far the picture moves (`--frames N`)",
+        f"more than {WALK_MAX_FRAMES} frames, cameras that stand still",
+        "turning on the spot moves the picture too, and gives no depth: walk",
     ),
     "folder": FormatNotes(
         "photographs, any names",

@@ -9,6 +9,7 @@ from pathlib import Path
 from eigenfield.capture.arrangement import Arrangement, OpenOptions
 from eigenfield.capture.calibration import Calibration, escape_name
 from eigenfield.capture.messages import list_names
+from eigenfield.capture.photographs.kinds import ALL_EXTENSIONS, MESH_KIND, OTHER_KINDS, VIDEO_EXTENSIONS
 from eigenfield.capture.readers import colmap, transforms
 from eigenfield.capture.readers.bundler import find_bundler, find_unlisted, read_bundler
 from eigenfield.capture.readers.deepview import DEEPVIEW_FILE, find_deepview, read_deepview
@@ -26,6 +27,7 @@ from eigenfield.capture.readers.realitycapture import find_realitycapture, read_
 from eigenfield.capture.readers.stanford import find_stanford, read_stanford
 from eigenfield.capture.readers.strecha import find_strecha, read_strecha
 from eigenfield.capture.readers.video import find_videos, read_videos
+from eigenfield.capture.readers.walk import find_walk, read_walk
 from eigenfield.core.errors import CaptureError, OptionError
 
 # of the formats that claim a folder, the one of lowest rank is read; two of one rank are ambiguous
@@ -44,7 +46,7 @@ class Format:
         read_cameras: From what `find` returned and the folder of the photographs to the calibration.
         read_names: From what `find` returned and the caller's options to the arrangement.
         endings: Of file names that may be named directly as a calibration of this format.
-        uses: Those of "grid", "frame" and "pattern" that the reader uses.
+        uses: Those of "grid", "frame", "frames" and "pattern" that the reader uses.
         cameras: Whether it may yield cameras at all.
     """
 
@@ -109,6 +111,7 @@ FORMATS = (
     _name_format("numbered", "numbered frames with --grid", lambda folder: None, read_numbered, "grid",
                  rank=RANK_ON_REQUEST),  # it must be asked for
     _name_format("video", "one video a camera", find_videos, read_videos, "frame", rank=RANK_ANY),
+    _name_format("walk", "one video of a walk", find_walk, read_walk, "frames", rank=RANK_ANY),
     _name_format("folder", "plain folder of photographs", find_photographs, read_photographs, rank=RANK_ANY),
 )  # fmt: skip
 # files that a folder does not hold by chance: if no reader claims one of these, it is damaged or incomplete
@@ -202,7 +205,12 @@ def _relative_name(found: Path, folder: Path) -> str:
 
 
 def claim_of_file(path: Path, formats: tuple[Format, ...]) -> Claim:
-    """The format of a calibration that is named as a file; CaptureError `calibration-unknown`, `format-ambiguous`."""
+    """The format of a file that is named: a calibration, or the video of a walk.
+
+    Raises CaptureError: `calibration-unknown`, `format-ambiguous`.
+    """
+    if FORMATS_BY_NAME["walk"] in formats and path.name.lower().endswith(VIDEO_EXTENSIONS):
+        return Claim(FORMATS_BY_NAME["walk"], path)
     if len(formats) > 1 and path.name == DEEPVIEW_FILE and find_deepview(path.parent) == path:
         return Claim(FORMATS_BY_NAME["deepview"], path)
     if len(formats) > 1 and path.suffix.lower() == ".json":
@@ -216,10 +224,18 @@ def claim_of_file(path: Path, formats: tuple[Format, ...]) -> Claim:
     if len(certain or fitting) > 1:
         raise _ambiguous_error(path, " or ".join(row.name for row in certain or fitting), certain or fitting)
     if not fitting:
-        raise CaptureError(
-            "calibration-unknown",
-            "is no calibration",
-            path=path,
-            remedy="name a transforms.json, a COLMAP model, another that docs/captures.md lists, or a folder with one",
-        )
+        raise _not_a_calibration(path)
     return Claim((certain or fitting)[0], path)
+
+
+def _not_a_calibration(path: Path) -> CaptureError:
+    """The error for a file that is named and of no format, which says what it is as far as its name does."""
+    lower = path.name.lower()
+    kind = next((kind for kind in (*OTHER_KINDS, MESH_KIND) if lower.endswith(kind.endings)), None)
+    message, remedy = "is no calibration", "name a transforms.json, a COLMAP model, another that docs/captures.md lists"
+    remedy += ", or a folder with one"
+    if lower.endswith(ALL_EXTENSIONS):
+        message, remedy = "is one photograph, and no calibration", "name the folder of all photographs"
+    elif kind is not None:
+        message, remedy = f"is {kind.what}, and no calibration", kind.remedy
+    return CaptureError("calibration-unknown", message, path=path, remedy=remedy)

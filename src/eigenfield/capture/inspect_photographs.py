@@ -11,13 +11,15 @@ from pathlib import Path
 import numpy as np
 
 from eigenfield.capture.arrangement import Arrangement
-from eigenfield.capture.calibration import escape_name, or_error
+from eigenfield.capture.calibration import or_error
 from eigenfield.capture.duplicates import describe_duplicates, find_duplicates, refuse_duplicates
 from eigenfield.capture.locate import with_masks
-from eigenfield.capture.messages import count_phrase, describe, natural_key
+from eigenfield.capture.messages import count_phrase, describe, natural_key, unique_names
 from eigenfield.capture.photographs.exif import read_focal_length
+from eigenfield.capture.photographs.panorama import refuse_panorama
 from eigenfield.capture.photographs.read import read_header
 from eigenfield.capture.photoset import PhotoSet, Shot
+from eigenfield.capture.unread import describe_unread
 from eigenfield.core.errors import CaptureError
 from eigenfield.runtime.parallel import parallel_map
 
@@ -40,8 +42,13 @@ def make_photo_set(arrangement: Arrangement, root: Path, *, masks: Path | None, 
         CaptureError: As `open_photographs` does.
     """
     files = arrangement.files
-    order = sorted(range(len(files)), key=lambda i: natural_key(files[i].name))
-    outcomes = parallel_map(or_error(_make_shot), [files[i] for i in order])
+    names = unique_names(files)
+
+    def make(index: int) -> Shot:
+        return _make_shot(files[index], names[index], free=arrangement.layout is None)
+
+    order = sorted(range(len(files)), key=lambda i: natural_key(names[i]))
+    outcomes = parallel_map(or_error(make), order)
     found = [(i, outcome) for i, outcome in zip(order, outcomes, strict=True) if isinstance(outcome, Shot)]
     errors = [outcome for outcome in outcomes if isinstance(outcome, CaptureError)]
     if arrangement.layout is not None:
@@ -63,11 +70,13 @@ def make_photo_set(arrangement: Arrangement, root: Path, *, masks: Path | None, 
     shots, missing = with_masks(shots, masks, root, strict)
     problems += missing
     if strict and len(shots) < PHOTO_SET_MIN_PHOTOGRAPHS:
+        unread = describe_unread((root, *(file.parent for file in files)))
         raise CaptureError(
             "too-few",
             f"holds {count_phrase(shots, 'photograph', 'photographs')}; {PHOTO_SET_MIN_PHOTOGRAPHS} are needed",
             path=root,
-            remedy="add photographs of the scene from other places, or name the folder that holds them all",
+            remedy="; ".join(unread)
+            or "add photographs of the scene from other places, or name the folder that holds them all",
         )
     for problem in problems:
         log.info("%s", problem)
@@ -78,9 +87,11 @@ def make_photo_set(arrangement: Arrangement, root: Path, *, masks: Path | None, 
     return PhotoSet(root, tuple(shots), layout, tuple(problems), arrangement.format)
 
 
-def _make_shot(path: Path) -> Shot:
+def _make_shot(path: Path, name: str, *, free: bool) -> Shot:
     header = read_header(path)
-    return Shot(escape_name(path.name), path, *header.upright_size, read_focal_length(path, header))
+    focal = read_focal_length(path, header)
+    refuse_panorama(path, header, focal, by_shape=free)
+    return Shot(name, path, *header.upright_size, focal)
 
 
 def _split_by_size(found: Sequence[tuple[int, Shot]]) -> tuple[list[tuple[int, Shot]], list[CaptureError]]:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from eigenfield.capture.layout import GridLayout
 from eigenfield.capture.photographs.decoded import decode_with_mask, size_on_disk
+from eigenfield.capture.photographs.kinds import is_linear
 from eigenfield.capture.photographs.lens import Lens, remove_lens
 from eigenfield.capture.photographs.read import read_header
 from eigenfield.core.camera import Camera
@@ -29,6 +30,7 @@ class PhotographSource(Protocol):
         lens: The distortion that is removed on reading; None where there is none.
         mask: A mask's file, white where the photograph counts.
         upright: Whether the photograph's EXIF orientation is applied on reading.
+        exposure: Factor of linear values before the sRGB curve; None where the file's values are coded.
     """
 
     @property
@@ -41,6 +43,8 @@ class PhotographSource(Protocol):
     def mask(self) -> Path | None: ...
     @property
     def upright(self) -> bool: ...
+    @property
+    def exposure(self) -> float | None: ...
 
 
 class StillCapture(ABC):
@@ -57,6 +61,11 @@ class StillCapture(ABC):
     @property
     def names(self) -> tuple[str, ...]:
         return tuple(source.name for source in self.sources)
+
+    @property
+    def exposure(self) -> float | None:
+        """The factor that the photographs of linear values have in common; None where there are none."""
+        return next((source.exposure for source in self.sources if source.exposure is not None), None)
 
     def camera_of(self, index: int) -> int:
         """Each photograph has a camera of its own."""
@@ -84,6 +93,7 @@ class View:
         upright: Likewise.
         bounds: Nearest and farthest depth of the scene along z in world units, a hint, where the calibration states
             them.
+        exposure: As of `PhotographSource`.
     """
 
     name: str
@@ -93,6 +103,7 @@ class View:
     mask: Path | None = None
     upright: bool = True
     bounds: tuple[float, float] | None = None
+    exposure: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,13 +174,18 @@ class LightField(StillCapture):
         """
         view = self.views[index]
         camera = view.camera
-        pixels, mask = decode_with_mask(view.path, view.upright, camera.width, camera.height, view.mask)
+        pixels, mask = decode_with_mask(view.path, view.upright, camera.width, camera.height, view.mask, view.exposure)
         if view.lens is not None:
             try:
                 pixels, mask = remove_lens(pixels, mask, camera.K, view.lens)
             except CaptureError as error:
                 raise CaptureError(error.code, error.message, path=view.path, remedy=error.remedy) from None
         return Photograph.of(pixels, mask)
+
+    def with_exposure(self, exposure: float) -> LightField:
+        """The same capture with another factor of linear values."""
+        views = (replace(view, exposure=exposure) if is_linear(view.path) else view for view in self.views)
+        return replace(self, views=tuple(views))
 
     def subset(self, indices: Iterable[int]) -> LightField:
         """The same capture with some of its views, in the order given."""

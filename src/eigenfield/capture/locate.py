@@ -12,7 +12,8 @@ from typing import TypeVar
 
 from eigenfield.capture.lightfield import View
 from eigenfield.capture.messages import describe
-from eigenfield.capture.photographs.read import PHOTOGRAPH_EXTENSIONS, decode_mask
+from eigenfield.capture.photographs.kinds import read_extensions, without_copies
+from eigenfield.capture.photographs.read import decode_mask
 from eigenfield.capture.photoset import Shot
 from eigenfield.core.errors import CaptureError
 
@@ -55,8 +56,9 @@ def is_file(path: Path) -> bool:
 def _with_extensions(path: Path) -> Iterator[Path]:
     """The path, and with each extension if it has none: original NeRF sets leave it out."""
     yield path
-    if not path.name.lower().endswith(PHOTOGRAPH_EXTENSIONS):
-        for extension in (*PHOTOGRAPH_EXTENSIONS, *(e.upper() for e in PHOTOGRAPH_EXTENSIONS)):
+    extensions = read_extensions()
+    if not path.name.lower().endswith(extensions):
+        for extension in (*extensions, *(e.upper() for e in extensions)):
             yield path.with_name(path.name + extension)
 
 
@@ -118,8 +120,8 @@ def _candidate_files(root: Path) -> Iterator[Path]:
 
 
 def photographs_in(folder: Path) -> list[Path]:
-    """The files of one folder that are named like photographs, sorted."""
-    return files_named(folder, PHOTOGRAPH_EXTENSIONS)
+    """The files of one folder that are named like photographs which are read, sorted, each photograph once."""
+    return without_copies(files_named(folder, read_extensions()))
 
 
 def files_named(folder: Path, endings: tuple[str, ...]) -> list[Path]:

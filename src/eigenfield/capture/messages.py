@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import re
+from collections import Counter
 from collections.abc import Sequence
+from pathlib import Path
 
 from eigenfield.capture.calibration import escape_name
 
@@ -30,3 +33,11 @@ def natural_key(name: str) -> tuple[list[tuple[int, str]], str]:
     """A key that sorts view_2 before view_10, and the same names with leading zeros as plain text."""
     parts = re.split(r"([0-9]+)", name.casefold())
     return [(int(part), "") if part.isdecimal() else (-1, part) for part in parts], name
+
+
+def unique_names(paths: Sequence[Path]) -> list[str]:
+    """File names, or where several files have one name their paths relative to the folder above all of these."""
+    times = Counter(path.name for path in paths)
+    shared = [path for path in paths if times[path.name] > 1]
+    common = Path(os.path.commonpath([path.parent for path in shared])) if shared else Path()
+    return [escape_name(path.name if times[path.name] == 1 else path.relative_to(common).as_posix()) for path in paths]

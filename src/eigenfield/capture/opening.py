@@ -3,21 +3,29 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TypeVar
 
+from eigenfield.capture.archive import is_zip, unpack
 from eigenfield.capture.arrangement import Arrangement, OpenOptions
 from eigenfield.capture.formats import FORMATS, Claim, Format, claim_of_file, detect_format, format_by_name
 from eigenfield.capture.inspect_photographs import common_focal_length, make_photo_set
 from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.locate import IMAGES_FOLDER, photograph_root, photographs_in
-from eigenfield.capture.messages import list_names
+from eigenfield.capture.messages import count_phrase, list_names
 from eigenfield.capture.pairing import pair_photographs
+from eigenfield.capture.photographs.exr import choose_exposure
+from eigenfield.capture.photographs.kinds import is_linear
 from eigenfield.capture.photoset import Capture, PhotoSet
+from eigenfield.capture.readers.folder import read_folders
 from eigenfield.capture.readers.grid_names import compile_pattern
 from eigenfield.capture.readers.video import is_video_rig, read_videos
+from eigenfield.capture.unread import describe_unread
 from eigenfield.core.errors import CaptureError, OptionError
 
+C = TypeVar("C", LightField, PhotoSet, Capture)
 StrPath = str | os.PathLike[str]
 PATTERN_FORMAT = "grid"  # which --pattern means
 NAME_FORMATS = tuple(row for row in FORMATS if row.read_names is not None)
@@ -33,13 +41,15 @@ def open_capture(
     grid: tuple[int, int] | None = None,
     frame: int | str | None = None,
     pattern: str | None = None,
+    frames: int | None = None,
+    also: Sequence[StrPath] | None = None,
 ) -> LightField:
     """Open a capture with cameras; photographs are decoded on demand, only their headers are read now.
 
     Calibration entries without a photograph, and the reverse, are no error: they are named in `problems`.
 
     Args:
-        path: A folder with a calibration of any format of `formats.FORMATS`, or the calibration itself.
+        path: A folder with a calibration of any format of `formats.FORMATS`, a zip of one, or the calibration itself.
         calibration: A calibration that lies elsewhere than the photographs in `path`; its entries find them by relative
             path or by file name.
         masks: A folder of masks, named as the photographs, white where they count; preferred to the calibration's own.
@@ -48,6 +58,8 @@ def open_capture(
         grid: As for `open_photographs`.
         frame: As for `open_photographs`.
         pattern: As for `open_photographs`.
+        frames: As for `open_photographs`.
+        also: None; several folders have no calibration.
 
     Raises:
         CaptureError: There is no calibration (`calibration-missing`), or it is damaged; a camera is impossible; a
@@ -56,13 +68,18 @@ def open_capture(
             fits (`format-ambiguous`).
         OptionError: An option is impossible or would have no effect.
     """
-    source = _find_source(path, calibration, format, OpenOptions(_check_grid(grid), frame, None, pattern), FORMATS)
+    if also:
+        raise OptionError(
+            "folders-cameras", "several folders have no calibration", remedy="name one folder that holds them all"
+        )
+    options = OpenOptions(_check_grid(grid), frame, None, pattern, frames)
+    source = _find_source(path, calibration, format, options, FORMATS)
     if source is None or not source.claim.format.cameras:
         raise _no_cameras(Path(path))
     opened = _open_source(source, masks, strict)
     if opened.light_field is None:
         raise _no_cameras(Path(path), opened.problems)
-    return opened.light_field
+    return _finish(opened.light_field)
 
 
 def open_photographs(
@@ -74,33 +91,42 @@ def open_photographs(
     grid: tuple[int, int] | None = None,
     frame: int | str | None = None,
     pattern: str | None = None,
+    frames: int | None = None,
+    also: Sequence[StrPath] | None = None,
     work: StrPath | None = None,
 ) -> PhotoSet:
     """Open photographs without cameras, with the grid that their names state; a calibration beside them is not read.
 
     Args:
-        path: A folder of photographs (in itself or in its `images/`), or of one video a camera.
+        path: A folder of photographs (in itself or in its `images/`), or of one video a camera; one video of a walk; a
+            zip of any of these.
         masks: As for `open_capture`.
         strict: As for `open_capture`.
         format: The name of a format of names.
         grid: (rows, columns) of numbered photographs, in row-major order.
         frame: Frame of each video: an index from 0, or seconds ("2.5s"); 0 by default.
         pattern: How names state row and column of a grid: `view_{row}_{col}.png`; `*` stands for any text.
-        work: A folder that keeps the frames of videos as PNG, so that they are decoded once; by default they last as
-            long as the process.
+        frames: How many frames of the video of a walk are taken.
+        also: Further folders with photographs of the same capture.
+        work: A folder that keeps the frames of videos as PNG, and what a zip holds, so that they are unpacked once; by
+            default they last as long as the process.
 
     Raises:
         CaptureError: `photographs-missing`, `photographs-twice`, `format-ambiguous`, `names-unknown`, `node-twice`,
             `grid-size`, `grid-positions`; a photograph is unreadable, or has another size than the rest of its grid
-            (`image-size`); `video-unreadable`, `video-short`, `too-few`.
+            (`image-size`); `video-unreadable`, `video-short`, `video-long`, `video-large`, `video-still`, `too-few`;
+            those of `archive.unpack`.
         OptionError: An option is impossible or would have no effect.
     """
-    options = OpenOptions(_check_grid(grid), frame, None if work is None else Path(work), pattern)
+    options = OpenOptions(_check_grid(grid), frame, None if work is None else Path(work), pattern, frames)
+    if also:
+        return _open_folders([path, *also], options, format, masks, strict)
     source = _find_source(path, None, format, options, NAME_FORMATS)
     if source is None:
         raise _no_photographs(Path(path))
     arrangement = _read_arrangement(source)
-    return make_photo_set(arrangement, source.root, masks=None if masks is None else Path(masks), strict=strict)
+    made = make_photo_set(arrangement, source.root, masks=None if masks is None else Path(masks), strict=strict)
+    return _finish(made)
 
 
 def open_any(
@@ -113,17 +139,57 @@ def open_any(
     grid: tuple[int, int] | None = None,
     frame: int | str | None = None,
     pattern: str | None = None,
+    frames: int | None = None,
+    also: Sequence[StrPath] | None = None,
     work: StrPath | None = None,
 ) -> Capture:
     """Open a light field where a calibration or the names state the cameras, otherwise photographs.
 
     Arguments and errors are those of `open_capture` and `open_photographs`.
     """
-    options = OpenOptions(_check_grid(grid), frame, None if work is None else Path(work), pattern)
+    options = OpenOptions(_check_grid(grid), frame, None if work is None else Path(work), pattern, frames)
+    if also:
+        return _open_folders([path, *also], options, format or calibration, masks, strict)
     source = _find_source(path, calibration, format, options, FORMATS)
     if source is None:
         raise _no_photographs(Path(path))
-    return _open_source(source, masks, strict)
+    return _finish(_open_source(source, masks, strict))
+
+
+def _open_folders(
+    paths: Sequence[StrPath], options: OpenOptions, other: StrPath | None, masks: StrPath | None, strict: bool
+) -> PhotoSet:
+    """The photographs of several folders, without any option that is for one."""
+    if other is not None or replace(options, work=None) != OpenOptions():
+        raise OptionError(
+            "folders-options",
+            "several folders are photographs alone: calibrations, formats and grids are of one",
+            remedy="name one folder that holds them all, or leave out the other options",
+        )
+    folders = [Path(path) for path in paths]
+    arrangement = read_folders(folders)
+    root = Path(os.path.commonpath([folder.absolute() for folder in folders]))
+    return _finish(make_photo_set(arrangement, root, masks=None if masks is None else Path(masks), strict=strict))
+
+
+def _finish(opened: C) -> C:
+    """The capture with one exposure for its linear values, and lines about that and about what lies beside it."""
+    lines: list[str] = _unread_lines(opened)
+    linear = [source.path for source in opened.sources if is_linear(source.path)]
+    if linear:
+        exposure = choose_exposure(linear)
+        opened = opened.with_exposure(exposure)
+        which = count_phrase(linear, "photograph has", "photographs have")
+        lines.append(f"{which} linear values (OpenEXR): taken times {exposure:.4g}, then by the sRGB curve")
+    return replace(opened, problems=(*opened.problems, *lines))
+
+
+def _unread_lines(opened: Capture) -> list[str]:
+    """Lines about files beside the photographs; beside a calibration, or videos, only other photographs are missed."""
+    folders = {opened.root, opened.root / IMAGES_FOLDER, *(source.path.parent for source in opened.sources)}
+    return describe_unread(
+        folders, photographs_only=opened.light_field is not None or opened.format in ("video", "walk")
+    )
 
 
 @dataclass(frozen=True)
@@ -148,7 +214,7 @@ class _Source:
 def _find_source(
     path: StrPath, calibration: StrPath | None, name: str | None, options: OpenOptions, formats: tuple[Format, ...]
 ) -> _Source | None:
-    root = Path(path)
+    root = unpack(Path(path), options.work) if is_zip(Path(path)) else Path(path)
     if options.pattern is not None:
         compile_pattern(options.pattern)
         name = PATTERN_FORMAT if name is None else name
@@ -205,7 +271,8 @@ def _find_claim(path: Path, formats: tuple[Format, ...], options: OpenOptions) -
 
 def _refuse_unused(claim: Claim, options: OpenOptions) -> None:
     """Options that would change nothing are an error: who gives one expects something of it."""
-    for option, value in (("grid", options.grid), ("frame", options.frame), ("pattern", options.pattern)):
+    asked = {"grid": options.grid, "frame": options.frame, "frames": options.frames, "pattern": options.pattern}
+    for option, value in asked.items():
         if value is not None and option not in claim.format.uses:
             raise OptionError(
                 f"{option}-unused",
@@ -263,7 +330,13 @@ def _no_cameras(path: Path, problems: tuple[str, ...] = ()) -> CaptureError:
 
 
 def _no_photographs(path: Path) -> CaptureError:
-    """The error for a folder in which nothing is found; it names folders inside that hold photographs."""
+    """The error for a folder in which nothing is found; it names what is there, or folders inside with photographs."""
+    unread = describe_unread((path, path / IMAGES_FOLDER))
+    if unread:
+        message = "holds no photographs that are read"
+        return CaptureError("photographs-missing", message, path=path, remedy="; ".join(unread))
     inner = [p.name for p in sorted(path.iterdir()) if p.is_dir() and photographs_in(p)] if path.is_dir() else []
     remedy = f"name one of the folders inside: {list_names(inner)}" if inner else "name a folder of photographs"
+    if len(inner) > 1:
+        remedy += "; or several, if they are one capture"
     return CaptureError("photographs-missing", "holds no photographs", path=path, remedy=remedy)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import logging
 import math
-import os
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -18,7 +16,7 @@ from eigenfield.capture.duplicates import describe_duplicates, find_duplicates
 from eigenfield.capture.far import move_to_origin
 from eigenfield.capture.lightfield import LightField, View
 from eigenfield.capture.locate import PhotographFinder, photographs_in, with_masks
-from eigenfield.capture.messages import describe, natural_key
+from eigenfield.capture.messages import describe, natural_key, unique_names
 from eigenfield.capture.photographs.read import read_header
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError
@@ -231,12 +229,6 @@ def _unused(pairs: Sequence[tuple[Entry, Path]], views: Sequence[View]) -> list[
 
 def _with_unique_names(views: Sequence[View]) -> tuple[View, ...]:
     """Views with unique names, in natural order: view_2 before view_10."""
-    times = Counter(view.path.name for view in views)
-    shared = [view.path for view in views if times[view.path.name] > 1]
-    common = Path(os.path.commonpath([path.parent for path in shared])) if shared else Path()
-
-    def unique_name(path: Path) -> str:
-        return escape_name(path.name if times[path.name] == 1 else path.relative_to(common).as_posix())
-
-    named = [replace(view, name=unique_name(view.path)) for view in views]
+    names = unique_names([view.path for view in views])
+    named = [replace(view, name=name) for view, name in zip(views, names, strict=True)]
     return tuple(sorted(named, key=lambda view: natural_key(view.name)))

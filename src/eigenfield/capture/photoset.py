@@ -9,6 +9,7 @@ from pathlib import Path
 from eigenfield.capture.layout import GridLayout
 from eigenfield.capture.lightfield import LightField, PhotographSource, StillCapture, View
 from eigenfield.capture.photographs.decoded import decode_with_mask
+from eigenfield.capture.photographs.kinds import is_linear
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.core.camera import Camera
 from eigenfield.core.observations import Photograph
@@ -26,6 +27,7 @@ class Shot:
         focal: Focal length in pixels, where EXIF or the format states it; None otherwise.
         mask: As of `PhotographSource`.
         upright: Likewise.
+        exposure: Likewise.
     """
 
     name: str
@@ -35,6 +37,7 @@ class Shot:
     focal: float | None = None
     mask: Path | None = None
     upright: bool = True
+    exposure: float | None = None
 
     @property
     def lens(self) -> Lens | None:
@@ -80,7 +83,13 @@ class PhotoSet(StillCapture):
         Raises CaptureError as `LightField.photograph` does.
         """
         shot = self.shots[index]
-        return Photograph.of(*decode_with_mask(shot.path, shot.upright, shot.width, shot.height, shot.mask))
+        size = shot.width, shot.height
+        return Photograph.of(*decode_with_mask(shot.path, shot.upright, *size, shot.mask, shot.exposure))
+
+    def with_exposure(self, exposure: float) -> PhotoSet:
+        """The same set with another factor of linear values."""
+        shots = (replace(shot, exposure=exposure) if is_linear(shot.path) else shot for shot in self.shots)
+        return replace(self, shots=tuple(shots))
 
     def subset(self, indices: Iterable[int]) -> PhotoSet:
         """The same set with some of its shots, in the order given."""
@@ -100,7 +109,7 @@ class PhotoSet(StillCapture):
         """
         lenses = [None] * len(self.shots) if lenses is None else lenses
         views = tuple(
-            View(shot.name, shot.path, camera, lens, shot.mask, shot.upright)
+            View(shot.name, shot.path, camera, lens, shot.mask, shot.upright, exposure=shot.exposure)
             for shot, camera, lens in zip(self.shots, cameras, lenses, strict=True)
         )
         return LightField(self.root, views, (*self.problems, *problems), self.format, self.layout)

@@ -108,13 +108,13 @@ def command(
     from eigenfield.calibrate import read_known_lenses, structure_from_motion
     from eigenfield.calibrate.motion.report import describe_motion, report_lines
     from eigenfield.capture import open_photographs
+    from eigenfield.capture.archive import is_zip
     from eigenfield.capture.writers.save import save_calibration
 
     photos = open_photographs(folder, strict=False, work=work, **names)
-    if photos.format == "video" and work is None:
-        raise OptionError(
-            "video-work", "the frames of videos must stay for the calibration to name them", remedy="add --work DIR"
-        )
+    if work is None and (photos.format in ("video", "walk") or is_zip(folder)):
+        message = "what is taken out of a video or a zip must stay for the calibration to name it"
+        raise OptionError("video-work", message, remedy="add --work DIR")
     note_all(photos.problems, quiet)
     known = None if intrinsics is None else read_known_lenses(intrinsics, photos)
     with progress_bars(quiet) as progress:

@@ -102,6 +102,8 @@ grid_options = together(
     click.option("--pattern", metavar="NAME",
                  help="How names state row and column of a grid, as view_{row}_{col}.png; * is any text."),
     click.option("--frame", metavar="T", help="Frame of each video: an index from 0, or seconds (2.5s)."),
+    click.option("--frames", type=int, metavar="N", help="How many frames of the one video of a walk are taken.  "
+                 "[default: by how far the camera goes]"),
 )  # fmt: skip
 _place_options = together(
     click.option("--calibration", type=PATH, metavar="PATH",
@@ -110,8 +112,8 @@ _place_options = together(
     click.option("--format", metavar="NAME",
                  help="What the capture is, where it may be read in several ways: "
                       "transforms, colmap, llff, middlebury, strecha, bundler, metashape, opencv, "
-                      "realitycapture, deepview, projections, positions, hci, stanford, grid, numbered, video "
-                      "or folder."),
+                      "realitycapture, deepview, projections, positions, hci, stanford, grid, numbered, video, "
+                      "walk or folder."),
     grid_options,
 )  # fmt: skip
 
@@ -141,14 +143,22 @@ reconstruction_options = together(  # the arguments of `reconstruct`
 )  # fmt: skip
 
 
+def capture_argument(required: bool = True) -> Decorator:
+    """CAPTURE, which may be several folders."""
+    metavar = "CAPTURE..." if required else "[CAPTURE]..."
+    return click.argument("capture", type=PATH, nargs=-1, required=required, metavar=metavar)
+
+
 def capture_options(function: Callable[..., Any]) -> Any:
-    """Add --calibration, --masks, --format, --grid, --pattern and --frame; the verb gets them as one `place`, the
-    keyword arguments of `open_capture` and `open_any`."""
+    """Add --calibration, --masks, --format, --grid, --pattern, --frame and --frames; the verb gets them as one `place`,
+    the keyword arguments of `open_capture` and `open_any`, with further folders of the argument CAPTURE (`also`)."""
 
     @functools.wraps(function)
     def collect(**given: Any) -> Any:
-        names = ("calibration", "masks", "format", "grid", "pattern", "frame")
-        return function(place={name: given.pop(name) for name in names}, **given)
+        names = ("calibration", "masks", "format", "grid", "pattern", "frame", "frames")
+        place = {name: given.pop(name) for name in names}
+        capture, *also = given.pop("capture") or [None]
+        return function(capture=capture, place={**place, "also": also or None}, **given)
 
     return _place_options(collect)
 

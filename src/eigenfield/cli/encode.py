@@ -13,6 +13,7 @@ import click
 
 from eigenfield.cli.common import (
     PATH,
+    capture_argument,
     capture_options,
     common_options,
     note_all,
@@ -50,6 +51,7 @@ def _parse_size(context: click.Context, parameter: click.Parameter, value: str |
     epilog="""\b
 Examples:
   eigenfield encode photos/ -o scene.glb
+  eigenfield encode walk.mp4 --frames 60 -o scene.glb
   eigenfield encode photos/ --grid 5x4 --hold-out every:5 -o scene.glb
   eigenfield encode capture/ --proxy capture/proxy.ply -o scene.glb
   eigenfield encode photos/ --calibration refined.json --proxy proxy.ply --atlas 1024 -o scene.glb
@@ -59,7 +61,7 @@ Examples:
   eigenfield encode photos/ --proxy mesh.glb --target-size 300kB -o small.glb
   eigenfield encode photos/ --proxy mesh.glb --residual 70 -o archive.glb"""
 )
-@click.argument("capture", type=PATH)
+@capture_argument()
 @click.option(
     "--proxy",
     type=PATH,
@@ -99,7 +101,7 @@ def command(
     """Turn the photographs in CAPTURE into one .glb.
 
     Cameras and proxy mesh are estimated where they are not given: CAPTURE is a folder of photographs, with or without a
-    calibration (eigenfield inspect CAPTURE says what is found in it).
+    calibration, several such folders, a zip, or one video of a walk (eigenfield inspect CAPTURE says what is found).
     """  # fmt: skip
     from eigenfield.encoding import encode
     from eigenfield.encoding.views import check_selection

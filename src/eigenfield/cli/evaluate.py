@@ -8,7 +8,16 @@ from typing import Any
 
 import click
 
-from eigenfield.cli.common import PATH, capture_options, common_options, echo_json, first_names, note, progress_bars
+from eigenfield.cli.common import (
+    PATH,
+    capture_argument,
+    capture_options,
+    common_options,
+    echo_json,
+    first_names,
+    note,
+    progress_bars,
+)
 
 Column = tuple[str, str, str]  # key, heading, format
 
@@ -33,7 +42,7 @@ Examples:
   eigenfield evaluate scene.glb capture/ --store --exclude-circles ball.json"""
 )
 @click.argument("scene", type=PATH)
-@click.argument("capture", type=PATH)
+@capture_argument()
 @capture_options
 @click.option("--json", "as_json", is_flag=True, help="The figures as JSON on standard output, every camera's too.")
 @click.option(

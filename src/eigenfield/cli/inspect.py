@@ -10,7 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eigenfield.cli.common import PATH, capture_options, common_options, echo_json, note, progress_bars
+from eigenfield.cli.common import (
+    PATH,
+    capture_argument,
+    capture_options,
+    common_options,
+    echo_json,
+    note,
+    progress_bars,
+)
 from eigenfield.core.errors import EigenfieldError, OptionError
 
 if TYPE_CHECKING:
@@ -33,7 +41,7 @@ Examples:
   eigenfield inspect videos/ --frame 2.5s
   eigenfield inspect capture/ --proxy mesh.ply --overlay overlay.png""",
 )
-@click.argument("capture", type=PATH)
+@capture_argument()
 @capture_options
 @click.option("--proxy", type=PATH, metavar="MESH", help="The proxy mesh to draw with --overlay.")
 @click.option(
@@ -199,11 +207,12 @@ def _next_commands(report: dict[str, Any], capture: Path, place: dict[str, Any])
     if report["refused"] is not None:
         return []
     grid = None if place["grid"] is None else "x".join(map(str, place["grid"]))
-    given = {**place, "grid": grid}.items()
+    given = {**place, "grid": grid, "also": None}.items()
     said = [f"--{name} {shlex.quote(str(value))}" for name, value in given if value is not None]
-    words = " ".join([shlex.quote(str(capture)), *said])
+    folders = [capture, *(place["also"] or ())]
+    words = " ".join([*(shlex.quote(str(folder)) for folder in folders), *said])
     encode = f"eigenfield encode {words} -o scene.glb"
-    return [encode] if report["views"] else [encode, f"eigenfield calibrate {words}"]
+    return [encode] if report["views"] or place["also"] else [encode, f"eigenfield calibrate {words}"]
 
 
 def _array(array: CameraArray) -> dict[str, Any]:

@@ -10,6 +10,7 @@ import click
 
 from eigenfield.cli.common import (
     PATH,
+    capture_argument,
     capture_options,
     common_options,
     mesh_options,
@@ -28,7 +29,7 @@ Examples:
   eigenfield proxy photos/ --fit-sphere out_08_08.jpg:150,180,200,210 -o mesh.glb
   eigenfield encode photos/ --calibration mesh.cameras/transforms.json --proxy mesh.glb -o scene.glb"""
 )
-@click.argument("capture", type=PATH)
+@capture_argument()
 @click.option("--output", "-o", required=True, type=PATH, metavar="FILE", help="The .glb or .ply to write.")
 @capture_options
 @mesh_options

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eigenfield.cli.common import PATH, capture_options, common_options, note
+from eigenfield.cli.common import PATH, capture_argument, capture_options, common_options, note
 from eigenfield.core.errors import FormatError, OptionError
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ Examples:
   eigenfield view scene.glb --no-browser --port 8000"""
 )
 @click.argument("scene", type=PATH)
-@click.argument("capture", type=PATH, required=False)
+@capture_argument(required=False)
 @capture_options
 @click.option(
     "--port", type=click.IntRange(0, 65535), default=0, metavar="N", help="Port.  [default: one that is free]"

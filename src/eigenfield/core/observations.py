@@ -74,6 +74,10 @@ class CalibratedObservations(Observations, Protocol):
         """Cameras whose photograph's EXIF orientation is not applied, although its size would be the same."""
 
     @property
+    def exposure(self) -> float | None:
+        """Factor of the photographs' linear values before the sRGB curve; None where they were coded already."""
+
+    @property
     def metres_per_unit(self) -> float | None:
         """Metres in one unit of the cameras' world; None if unknown."""
 

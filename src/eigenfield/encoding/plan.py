@@ -135,6 +135,7 @@ class EncodePlan:
             **_origin(views.capture),
             **_lenses(views.capture),
             **_as_stored(views.capture),
+            **_tone(views.capture),
             "photographs": {
                 "count": len(views.observations),
                 "bytes": sum(views.capture.bytes(index) for index in used),
@@ -321,6 +322,11 @@ def _as_stored(capture: CalibratedObservations) -> dict[str, list[int]]:
     """The photographs that are not turned by their EXIF orientation, where no size tells: for the same purpose."""
     indices = list(capture.as_stored)
     return {"asStored": indices} if indices else {}
+
+
+def _tone(capture: CalibratedObservations) -> dict[str, Any]:
+    """How linear values became the photographs' own numbers."""
+    return {} if capture.exposure is None else {"tone": {"curve": "sRGB", "exposure": capture.exposure}}
 
 
 def _warn_of_rounding(exact: Sequence[Camera], kept: Sequence[Camera], mesh: Mesh) -> None:

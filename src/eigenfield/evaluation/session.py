@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -272,7 +273,8 @@ def start_session(
 
 
 def with_scene_cameras(scene: Scene, photographs: Capture) -> LightField:
-    """A light field unchanged, or photographs without a calibration with the scene's cameras and lenses, by name.
+    """A light field as it is, or photographs without a calibration with the scene's cameras and lenses, by name; linear
+    values with the scene's exposure.
 
     Photographs are turned by their EXIF orientation if those that were encoded were.
 
@@ -284,8 +286,11 @@ def with_scene_cameras(scene: Scene, photographs: Capture) -> LightField:
         CaptureError: `no-photographs`: no name fits.
         OptionError: `settings-unknown`.
     """
+    exposure = _recorded_exposure(scene)
+    if exposure is not None:
+        photographs = photographs.with_exposure(exposure)
     if photographs.light_field is not None:
-        return photographs
+        return photographs.light_field
     index = {name: i for i, name in enumerate(scene.rig.names)}
     chosen = photographs.subset([i for i, name in enumerate(photographs.names) if name in index])
     if not len(chosen):
@@ -304,6 +309,12 @@ def _orient(shot: Shot, camera: Camera, stored: bool) -> Shot:
     if header.stored_size == size and (stored or header.upright_size != size):
         return replace(shot, upright=False, width=camera.width, height=camera.height)
     return shot
+
+
+def _recorded_exposure(scene: Scene) -> float | None:
+    tone = scene.settings.get("tone")
+    found = tone.get("exposure") if isinstance(tone, dict) else None
+    return float(found) if isinstance(found, int | float) and 0 < found < math.inf else None
 
 
 def _recorded_lenses(scene: Scene) -> list[Lens | None]:

@@ -180,7 +180,7 @@ def _identity(capture: Capture) -> list[Any]:
 
     def digest(source: PhotographSource) -> list[Any]:
         mask = None if source.mask is None else file_digest(source.mask)
-        return [source.name, file_digest(source.path), mask, source.upright]
+        return [source.name, file_digest(source.path), mask, source.upright, source.exposure]
 
     return [parallel_map(digest, capture.sources), own]
 

@@ -12,7 +12,7 @@ from eigenfield.core.errors import CaptureError
 
 
 def decode_with_mask(
-    path: Path, upright: bool, width: int, height: int, mask: Path | None
+    path: Path, upright: bool, width: int, height: int, mask: Path | None, exposure: float | None = None
 ) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
     """Decode a photograph with its mask.
 
@@ -22,6 +22,7 @@ def decode_with_mask(
         width: As the capture was opened, pixels.
         height: Likewise.
         mask: The mask's file, or None.
+        exposure: As for `decode`.
 
     Returns:
         (H, W, 3) pixels, and (H, W) the lesser of alpha and mask; None where there is neither.
@@ -29,7 +30,7 @@ def decode_with_mask(
     Raises:
         CaptureError: As `LightField.photograph` does.
     """
-    pixels, alpha = decode(path, upright)
+    pixels, alpha = decode(path, upright, exposure)
     if pixels.shape[:2] != (height, width):
         raise CaptureError(
             "image-size",

@@ -6,16 +6,14 @@ import math
 from pathlib import Path
 from typing import Any
 
-from PIL import AvifImagePlugin, JpegImagePlugin, TiffImagePlugin, WebPImagePlugin
+from PIL import Image
 
-from eigenfield.capture.photographs.read import DECODER_ERRORS, Header
+from eigenfield.capture.photographs.header import DECODER_ERRORS, Header
+from eigenfield.capture.photographs.jxl import read_jxl_header
+from eigenfield.capture.photographs.read import open_picture
+from eigenfield.core.errors import CaptureError
 
-EXIF_READERS: dict[str, Any] = {
-    "JPEG": JpegImagePlugin.JpegImageFile,
-    "WebP": WebPImagePlugin.WebPImageFile,
-    "TIFF": TiffImagePlugin.TiffImageFile,
-    "AVIF": AvifImagePlugin.AvifImageFile,
-}
+EXIF_FORMATS = ("JPEG", "WebP", "TIFF", "AVIF", "HEIC", "JPEG XL", "RAW")  # Pillow would decode a PNG to find it
 EXIF_PHOTO_IFD = 0x8769  # the IFD of the tags below
 EXIF_FOCAL_TAG = 0x920A  # FocalLength, millimetres
 EXIF_FOCAL_35MM_TAG = 0xA405  # FocalLengthIn35mmFilm, millimetres
@@ -32,12 +30,12 @@ def read_focal_length(path: Path, header: Header) -> float | None:
 
     None where neither is there, or the value is impossible. EXIF does not state a crop, which makes it too short.
     """
-    if header.format not in EXIF_READERS:
+    if header.format not in EXIF_FORMATS:
         return None
     try:
         with path.open("rb") as file:
-            tags = dict(EXIF_READERS[header.format](file).getexif().get_ifd(EXIF_PHOTO_IFD))
-    except (*DECODER_ERRORS, ZeroDivisionError, OverflowError):
+            tags = dict(_read_exif(file, path, header.format).get_ifd(EXIF_PHOTO_IFD))
+    except (*DECODER_ERRORS, CaptureError, ZeroDivisionError, OverflowError):
         return None
     equivalent, plane, millimetres = (
         _read_positive(tags, tag) for tag in (EXIF_FOCAL_35MM_TAG, EXIF_PLANE_X_TAG, EXIF_FOCAL_TAG)
@@ -51,6 +49,16 @@ def read_focal_length(path: Path, header: Header) -> float | None:
         focal = millimetres * plane / unit * header.width / (_read_positive(tags, EXIF_PIXELS_X_TAG) or header.width)
     low, high = (bound * max(header.stored_size) for bound in EXIF_FOCAL_RANGE_SIDES)
     return focal if focal is not None and low <= focal <= high else None
+
+
+def _read_exif(file: Any, path: Path, kind: str) -> Image.Exif:
+    if kind == "JPEG XL":
+        return read_jxl_header(file).exif
+    if kind == "RAW":  # most are TIFF
+        exif = Image.Exif()
+        exif.load_from_fp(file)
+        return exif
+    return open_picture(file, path)[1].getexif()
 
 
 def _read_positive(tags: dict[int, Any], tag: int) -> float | None:

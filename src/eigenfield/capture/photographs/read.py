@@ -1,6 +1,7 @@
-"""Photographs from files: PNG, JPEG, WebP, TIFF and AVIF, at their full depth, turned upright, in sRGB.
+"""Photographs from files of every kind, at their full depth, turned upright, in sRGB.
 
 8 bit is decoded by Pillow; deeper PNG, TIFF and AVIF, which Pillow would cut to 8, by OpenCV from the same bytes.
+Pillow's plug-ins for HEIC and JPEG XL are wheels of their own.
 """
 
 from __future__ import annotations
@@ -8,8 +9,7 @@ from __future__ import annotations
 import io
 import logging
 import struct
-import zlib
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,84 +18,77 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import AvifImagePlugin, Image, ImageCms, JpegImagePlugin, PngImagePlugin, TiffImagePlugin, WebPImagePlugin
 
-from eigenfield.capture.photographs.icc import BrokenProfileError, read_profile
+from eigenfield.capture.photographs.exr import EXR_MAGIC, decode_exr, read_exr_header
+from eigenfield.capture.photographs.header import (
+    DECODER_ERRORS,
+    EXIF_ORIENTATION_TAG,
+    Header,
+    decoder_error,
+    missing_module_error,
+    one_line,
+    open_error,
+    read_at,
+    refuse_size,
+    unreadable_error,
+)
+from eigenfield.capture.photographs.icc import BrokenProfileError, encode_srgb, read_profile
+from eigenfield.capture.photographs.jxl import JXL_CODESTREAM, JXL_CONTAINER, read_jxl_header
+from eigenfield.capture.photographs.kinds import PHOTOS_REMEDY, RAW_EXTENSIONS
+from eigenfield.capture.photographs.raw import decode_raw, read_raw_header
 from eigenfield.core.errors import CaptureError
 
 log = logging.getLogger(__name__)
 
-PHOTOGRAPH_EXTENSIONS = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff", ".avif")
-PHOTOGRAPH_MAX_PIXELS = 400_000_000  # a photograph of more pixels is refused before it is decoded
-PHOTOGRAPH_HEAD_BYTES = 64 * 1024  # in which AVIF states its depth
-EXIF_ORIENTATION_TAG = 0x0112
+FORMAT_HEAD_BYTES = 64  # by which a format is recognised
+PHOTOGRAPH_HEAD_BYTES = 64 * 1024  # in which AVIF and HEIC state their depth and sizes
+AVIF_BRANDS = (b"avif", b"avis")
+HEIF_BRANDS = (b"heic", b"heix", b"heim", b"heis", b"hevc", b"hevx", b"hevm", b"hevs", b"mif1", b"msf1", b"miaf")
+HEIC_HDR_CURVES = {16: "HDR by the curve PQ", 18: "HDR by the curve HLG"}  # transfer characteristics, ITU-T H.273
+PANORAMA_MARKS = (b"GPano:ProjectionType", b"GPano:FullPanoWidthPixels", b"GPano:CroppedAreaImageWidthPixels")
 TIFF_DEPTH_TAG, TIFF_PHOTOMETRIC_TAG, TIFF_PLANES_TAG, TIFF_EXTRA_TAG = 258, 262, 284, 338
 MASK_MIN_BRIGHTEST_FRACTION = 0.5  # of white, which the brightest pixel of a mask must reach
-
-# what Pillow's decoders are known to raise on damaged bytes
-DECODER_ERRORS = (
-    OSError, SyntaxError, ValueError, EOFError, IndexError, KeyError, TypeError, RuntimeError, struct.error, zlib.error,
-    Image.DecompressionBombError,
-)  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Header:
-    """Properties of a photograph that are known without decoding it.
-
-    Attributes:
-        format: "PNG", "JPEG", "WebP", "TIFF" or "AVIF".
-        width: As stored, before the orientation is applied, pixels.
-        height: Likewise.
-        depth: Bits a channel, 8, 10, 12 or 16.
-        orientation: EXIF's, 1 to 8; 1 is as stored.
-        alpha: Whether there is transparency.
-    """
-
-    format: str
-    width: int
-    height: int
-    depth: int
-    orientation: int
-    alpha: bool
-
-    @property
-    def stored_size(self) -> tuple[int, int]:
-        """Width and height as stored."""
-        return self.width, self.height
-
-    @property
-    def upright_size(self) -> tuple[int, int]:
-        """Width and height once the orientation is applied."""
-        return (self.height, self.width) if self.orientation >= 5 else (self.width, self.height)
 
 
 def read_header(path: Path) -> Header:
     """Format, size, depth and orientation of a photograph, without decoding it.
 
     Raises CaptureError: `image-missing`, `image-unreadable`, `image-kind` (no format or pixel type that is read),
-    `image-too-large` (more than PIXEL_LIMIT pixels).
+    `image-too-large` (more than PHOTOGRAPH_MAX_PIXELS pixels).
     """
     try:
         with path.open("rb") as file:
-            name, image = _identify(file, path)
+            name = format_of(path, read_at(file, 0, FORMAT_HEAD_BYTES))
+            if name == "RAW":
+                return read_raw_header(path)
+            if name == "EXR":
+                return read_exr_header(path)
+            if name == "JPEG XL":
+                return _jxl_header(file, path)
+            name, image = open_picture(file, path)
             return _make_header(name, image, file, path)
     except OSError as error:
-        raise _open_error(path, error) from error
+        raise open_error(path, error) from error
 
 
-def decode(path: Path, upright: bool = True) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
+def decode(
+    path: Path, upright: bool = True, exposure: float | None = None
+) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
     """A photograph as (H, W, 3) float32 sRGB-coded values in 0..1, and its alpha (H, W) or None.
 
     Args:
         path: The file.
         upright: Apply the EXIF orientation.
+        exposure: Factor of linear values (OpenEXR) before the sRGB curve; None for 1.
 
     Raises:
         CaptureError: As `read_header` does, and `image-truncated`.
     """
-    values, profile = _decode_values(path, upright)
+    values, profile, is_linear = _decode_values(path, upright)
     colours = values[..., :3] if values.shape[2] >= 3 else np.repeat(values[..., :1], 3, axis=2)
     alpha = np.ascontiguousarray(values[..., -1]) if values.shape[2] in (2, 4) else None
-    if profile is not None:
+    if is_linear:
+        colours = encode_srgb(colours * np.float32(1.0 if exposure is None else exposure))
+    elif profile is not None:
         colours = _to_srgb(colours, profile, values.shape[2] < 3, path)
     return np.ascontiguousarray(colours), alpha
 
@@ -105,7 +98,7 @@ def decode_mask(path: Path) -> NDArray[np.float32]:
 
     Raises CaptureError as `decode`, and `mask-dark` where nothing is white though something is not black.
     """
-    values, _ = _decode_values(path, True)
+    values = np.clip(_decode_values(path, True)[0], 0, 1)
     grey = values[..., :3].mean(axis=2) if values.shape[2] >= 3 else values[..., 0]
     if values.shape[2] in (2, 4):
         grey = grey * values[..., -1]
@@ -120,118 +113,153 @@ def decode_mask(path: Path) -> NDArray[np.float32]:
     return np.ascontiguousarray(grey, dtype=np.float32)
 
 
-def _open_error(path: Path, error: OSError) -> CaptureError:
-    code = "image-missing" if isinstance(error, FileNotFoundError) else "image-unreadable"
-    return CaptureError(
-        code, error.strerror or "cannot be read", path=path, remedy="check the path and its permissions"
-    )
-
-
-def _unreadable_error(path: Path, why: str) -> CaptureError:
-    return CaptureError(
-        "image-unreadable", f"is damaged ({why})", path=path, remedy="copy it again, or take it out of the capture"
-    )
-
-
-def _decoder_error(path: Path, error: Exception) -> CaptureError:
-    """The error for an exception of one of Pillow's decoders."""
-    if isinstance(error, Image.DecompressionBombError):  # some plug-ins ask for Pillow's own limit all the same
-        return CaptureError("image-too-large", _one_line(error), path=path, remedy="make it smaller")
-    if "truncated" in str(error).lower():
-        return CaptureError(
-            "image-truncated", "is cut short", path=path, remedy="copy it again, or take it out of the capture"
-        )
-    return _unreadable_error(path, _one_line(error))
-
-
-def _identify(file: Any, path: Path) -> tuple[str, Image.Image]:
-    """Format by content, not by name, and Pillow's image, not decoded.
+def open_picture(file: Any, path: Path) -> tuple[str, Image.Image]:
+    """Format by content, not by name, and Pillow's image, not decoded but for JPEG XL, whose plug-in decodes at once.
 
     The plug-ins are called directly: `Image.open` has a limit of its own, a global that is the caller's to set.
+
+    Raises CaptureError: `image-unreadable`, `image-truncated`, `image-kind`, `image-too-large`.
     """
-    start = file.read(32)
-    file.seek(0)
+    name = format_of(path, read_at(file, 0, FORMAT_HEAD_BYTES))
     try:
-        if start.startswith(b"\x89PNG\r\n\x1a\n"):
-            return "PNG", PngImagePlugin.PngImageFile(file)
-        if start.startswith(b"\xff\xd8\xff"):
-            return "JPEG", JpegImagePlugin.JpegImageFile(file)
-        if start[:4] == b"RIFF" and start[8:12] == b"WEBP":
-            return "WebP", WebPImagePlugin.WebPImageFile(file)
-        if start[:4] in (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"):
-            return "TIFF", TiffImagePlugin.TiffImageFile(file)
-        if start[4:8] == b"ftyp" and start[8:12] in (b"avif", b"avis", b"mif1", b"miaf"):
-            return "AVIF", AvifImagePlugin.AvifImageFile(file)
+        if name == "PNG":
+            return name, PngImagePlugin.PngImageFile(file)
+        if name == "JPEG":
+            return name, JpegImagePlugin.JpegImageFile(file)
+        if name == "WebP":
+            return name, WebPImagePlugin.WebPImageFile(file)
+        if name == "TIFF":
+            return name, TiffImagePlugin.TiffImageFile(file)
+        if name == "AVIF":
+            return name, AvifImagePlugin.AvifImageFile(file)
+        if name == "HEIC":
+            return name, _open_heic(file, path)
+        if name == "JPEG XL":
+            return name, _open_jxl(file, path)
     except DECODER_ERRORS as error:
-        raise _decoder_error(path, error) from error
-    if not start:
-        raise _unreadable_error(path, "it is empty")
+        raise decoder_error(path, error) from error
+    if not read_at(file, 0, 1):
+        raise unreadable_error(path, "it is empty")
     raise CaptureError(
         "image-kind",
-        "is no PNG, JPEG, WebP, TIFF or AVIF",
+        "is no PNG, JPEG, WebP, TIFF, AVIF, HEIC, JPEG XL, RAW or OpenEXR",
         path=path,
         remedy="convert it, or take it out of the capture",
     )
 
 
-def _one_line(error: BaseException) -> str:
-    text = str(error) or type(error).__name__
-    return text.splitlines()[0][:120]
+def format_of(path: Path, start: bytes) -> str | None:
+    """The format of a file that begins so; None for one that is not read. RAW is known by its name: most are TIFF with
+    a small picture."""
+    if start and path.suffix.lower() in RAW_EXTENSIONS:
+        return "RAW"
+    if start.startswith(EXR_MAGIC):
+        return "EXR"
+    if start.startswith(b"\x89PNG\r\n\x1a\n"):
+        return "PNG"
+    if start.startswith(b"\xff\xd8\xff"):
+        return "JPEG"
+    if start[:4] == b"RIFF" and start[8:12] == b"WEBP":
+        return "WebP"
+    if start[:4] in (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"):
+        return "TIFF"
+    if start.startswith((JXL_CODESTREAM, JXL_CONTAINER)):
+        return "JPEG XL"
+    if start[4:8] == b"ftyp":
+        brands = start[8:12], *(start[at : at + 4] for at in range(16, min(start[3], 64), 4))
+        if any(brand in AVIF_BRANDS for brand in brands):
+            return "AVIF"
+        if brands[0] in HEIF_BRANDS:
+            return "HEIC"
+    return None
+
+
+def _open_heic(file: Any, path: Path) -> Image.Image:
+    """Pillow's image, turned by the decoder as HEIC's own properties say; EXIF's orientation does not count."""
+    try:
+        from pillow_heif.as_plugin import HeifImageFile
+    except ImportError as error:
+        raise missing_module_error(path, "HEIC", PHOTOS_REMEDY) from error
+    head = read_at(file, 0, PHOTOGRAPH_HEAD_BYTES)
+    at = head.find(b"ispe")  # a box of each item's size: what is decoded may be larger than what is shown
+    while 0 <= at <= len(head) - 16:
+        width, height = struct.unpack(">II", head[at + 8 : at + 16])
+        refuse_size(width, height, path)
+        at = head.find(b"ispe", at + 4)
+    image: Image.Image = HeifImageFile(file)
+    return image
+
+
+def _open_jxl(file: Any, path: Path) -> Image.Image:
+    try:
+        from pillow_jxl.JpegXLImagePlugin import JXLImageFile
+    except ImportError as error:
+        raise missing_module_error(path, "JPEG XL", PHOTOS_REMEDY) from error
+    _jxl_header(file, path)
+    image: Image.Image = JXLImageFile(file)
+    return image
+
+
+def _jxl_header(file: Any, path: Path) -> Header:
+    """Whether there is transparency is not known before it is decoded."""
+    try:
+        found = read_jxl_header(file)
+    except DECODER_ERRORS as error:
+        raise decoder_error(path, error) from error
+    refuse_size(found.width, found.height, path)
+    header = Header("JPEG XL", found.width, found.height, 8, found.orientation, False)
+    width, height = header.upright_size
+    return header if found.jpeg else replace(header, width=width, height=height, orientation=1)  # turned by the decoder
 
 
 def _make_header(name: str, image: Image.Image, file: Any, path: Path) -> Header:
     """From an image that is not decoded yet: Pillow turns a TIFF, and forgets its orientation, on decoding."""
+    if name == "JPEG XL":
+        return _jxl_header(file, path)
     width, height = image.size
-    if width * height > PHOTOGRAPH_MAX_PIXELS:
-        raise CaptureError(
-            "image-too-large",
-            f"is {width}x{height}, more than the {PHOTOGRAPH_MAX_PIXELS // 10**6} million pixels that are read",
-            path=path,
-            remedy="make it smaller",
-        )
-    if width < 1 or height < 1:
-        raise _unreadable_error(path, f"its size is {width}x{height}")
+    refuse_size(width, height, path)
     try:
         depth = 8
         if isinstance(image, TiffImagePlugin.TiffImageFile):
             depth = max(np.atleast_1d(image.tag_v2.get(TIFF_DEPTH_TAG, 1)).tolist())
             orientation = image.tag_v2.get(EXIF_ORIENTATION_TAG, 1)
         elif name == "PNG":
-            depth = _read_at(file, 24, 1)[0]
+            depth = read_at(file, 24, 1)[0]
             orientation = _png_orientation(file)
         else:
             orientation = image.getexif().get(EXIF_ORIENTATION_TAG, 1)
         if name == "AVIF":
-            depth = _avif_depth(_read_at(file, 0, PHOTOGRAPH_HEAD_BYTES))
+            depth = _avif_depth(read_at(file, 0, PHOTOGRAPH_HEAD_BYTES))
+        if name == "HEIC":
+            depth = image.info.get("bit_depth", 8)
     except DECODER_ERRORS as error:
-        raise _decoder_error(path, error) from error
+        raise decoder_error(path, error) from error
     if orientation not in range(1, 9):
         orientation = 1
     if name == "TIFF" and orientation >= 5:
         width, height = height, width  # Pillow says the turned size
-    return Header(name, width, height, max(8, depth), int(orientation), image.has_transparency_data)
+    panorama = _says_panorama(image)
+    return Header(name, width, height, max(8, depth), int(orientation), image.has_transparency_data, panorama)
+
+
+def _says_panorama(image: Image.Image) -> bool:
+    """Whether the XMP has Google's tags of a panorama, which phones, 360-degree cameras and stitchers write."""
+    found = image.info.get("xmp") or image.info.get("XML:com.adobe.xmp") or b""
+    text = found.encode("utf-8", "replace") if isinstance(found, str) else bytes(found)
+    return any(mark in text for mark in PANORAMA_MARKS)
 
 
 def _png_orientation(file: Any) -> Any:
     """From the eXIf chunk, which may follow the pixels: Pillow would decode them to find it."""
     at = 8
-    while len(start := _read_at(file, at, 8)) == 8:
+    while len(start := read_at(file, at, 8)) == 8:
         size, kind = struct.unpack(">I4s", start)
         if kind == b"eXIf" and size <= PHOTOGRAPH_HEAD_BYTES:
             exif = Image.Exif()
-            exif.load(b"Exif\0\0" + _read_at(file, at + 8, size))
+            exif.load(b"Exif\0\0" + read_at(file, at + 8, size))
             return exif.get(EXIF_ORIENTATION_TAG, 1)
         at += 12 + size
     return 1
-
-
-def _read_at(file: Any, offset: int, size: int) -> bytes:
-    """Bytes of the file; its position is restored, since Pillow is reading it too."""
-    place = file.tell()
-    file.seek(offset)
-    data: bytes = file.read(size)
-    file.seek(place)
-    return data
 
 
 def _avif_depth(head: bytes) -> int:
@@ -244,20 +272,27 @@ def _avif_depth(head: bytes) -> int:
     return depth
 
 
-def _decode_values(path: Path, upright: bool) -> tuple[NDArray[np.float32], bytes | None]:
-    """(H, W, 1 | 2 | 3 | 4) values in 0..1 as the file has them, and the ICC profile that is still to be applied."""
+def _decode_values(path: Path, upright: bool) -> tuple[NDArray[np.float32], bytes | None, bool]:
+    """(H, W, 1 | 2 | 3 | 4) values as the file has them, the ICC profile that is still to be applied, and whether they
+    are linear; others are in 0..1."""
     try:
         data = path.read_bytes()
     except OSError as error:
-        raise _open_error(path, error) from error
+        raise open_error(path, error) from error
+    kind = format_of(path, data[:FORMAT_HEAD_BYTES])
+    if kind == "EXR":
+        return decode_exr(path), None, True
+    if kind == "RAW":
+        pixels, header = decode_raw(path)
+        return _apply_orientation(pixels, header.orientation if upright else 1), None, False
     file = io.BytesIO(data)
-    name, image = _identify(file, path)
+    name, image = open_picture(file, path)
     header = _make_header(name, image, file, path)
     try:
         image.load()
         profile = image.info.get("icc_profile")
     except DECODER_ERRORS as error:
-        raise _decoder_error(path, error) from error
+        raise decoder_error(path, error) from error
     values = _decode_over_8bit(data, header, image, path) if header.depth > 8 else None
     if values is None:
         image, profile = _convert_8bit_mode(image, profile, path)
@@ -268,7 +303,7 @@ def _decode_values(path: Path, upright: bool) -> tuple[NDArray[np.float32], byte
     wanted = header.orientation if upright else 1
     if name == "TIFF":
         wanted = 1 if upright else {6: 8, 8: 6}.get(header.orientation, header.orientation)
-    return _apply_orientation(values, wanted), profile
+    return _apply_orientation(values, wanted), profile, False
 
 
 def _apply_orientation(values: NDArray[np.float32], orientation: int) -> NDArray[np.float32]:
@@ -283,7 +318,9 @@ def _apply_orientation(values: NDArray[np.float32], orientation: int) -> NDArray
 
 
 def _decode_over_8bit(data: bytes, header: Header, image: Image.Image, path: Path) -> NDArray[np.float32] | None:
-    """More than 8 bit a channel, by OpenCV; None where OpenCV cannot, so that 8 bit are read."""
+    """More than 8 bit a channel, by OpenCV or libheif; None where OpenCV cannot, so that 8 bit are read."""
+    if header.format == "HEIC":
+        return _decode_deep_heic(data, header, path)
     tiff = image.tag_v2 if isinstance(image, TiffImagePlugin.TiffImageFile) else None
     if tiff is not None and (
         header.depth != 16 or tiff.get(TIFF_PLANES_TAG, 1) != 1 or tiff.get(TIFF_PHOTOMETRIC_TAG) not in (0, 1, 2)
@@ -297,7 +334,7 @@ def _decode_over_8bit(data: bytes, header: Header, image: Image.Image, path: Pat
     try:
         stored = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
     except cv2.error as error:
-        raise _unreadable_error(path, _one_line(error)) from error
+        raise unreadable_error(path, one_line(error)) from error
     if stored is None or stored.dtype != np.uint16:
         log.warning("%s: its %d bits cannot be had here, read at 8 bit", path, header.depth)
         return None
@@ -310,6 +347,20 @@ def _decode_over_8bit(data: bytes, header: Header, image: Image.Image, path: Pat
     if is_premultiplied and values.shape[2] == 4:
         np.divide(values[..., :3], values[..., 3:], out=values[..., :3], where=values[..., 3:] > 0)
         np.clip(values, 0, 1, out=values)
+    return values
+
+
+def _decode_deep_heic(data: bytes, header: Header, path: Path) -> NDArray[np.float32]:
+    import pillow_heif
+
+    try:
+        found = pillow_heif.open_heif(io.BytesIO(data), convert_hdr_to_8bit=False, hdr_to_16bit=False)
+        values = np.asarray(found).astype(np.float32) / np.float32((1 << header.depth) - 1)
+    except DECODER_ERRORS as error:
+        raise decoder_error(path, error) from error
+    curve = found.info.get("nclx_profile", {}).get("transfer_characteristics")
+    if curve in HEIC_HDR_CURVES:
+        log.warning("%s: its values are %s, which is not converted", path, HEIC_HDR_CURVES[curve])
     return values
 
 
@@ -339,7 +390,7 @@ def _print_colours_to_srgb(image: Image.Image, profile: bytes | None, path: Path
         try:
             return _apply_profile(image, ImageCms.ImageCmsProfile(io.BytesIO(profile)))
         except (ImageCms.PyCMSError, OSError) as error:
-            log.warning("%s: its colour profile cannot be used (%s): plain CMYK is taken", path, _one_line(error))
+            log.warning("%s: its colour profile cannot be used (%s): plain CMYK is taken", path, one_line(error))
     return image.convert("RGB")
 
 
@@ -373,7 +424,7 @@ def _apply_table_profile(colours: NDArray[np.float32], data: bytes, space: str, 
     try:
         converted = _apply_profile(image, ImageCms.ImageCmsProfile(io.BytesIO(data)))
     except (ImageCms.PyCMSError, OSError) as error:
-        log.warning("%s: its colour profile cannot be used (%s) and is ignored", path, _one_line(error))
+        log.warning("%s: its colour profile cannot be used (%s) and is ignored", path, one_line(error))
         return colours
     if not np.array_equal(eight, colours * 255):
         log.warning("%s: its colour profile has tables: converted at 8 bit", path)

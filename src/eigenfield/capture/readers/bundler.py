@@ -17,8 +17,8 @@ import numpy as np
 
 from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name
 from eigenfield.capture.messages import describe
+from eigenfield.capture.photographs.kinds import ALL_EXTENSIONS
 from eigenfield.capture.photographs.lens import Lens
-from eigenfield.capture.photographs.read import PHOTOGRAPH_EXTENSIONS
 from eigenfield.capture.readers.text import (
     camera_centre,
     check_finite,
@@ -78,9 +78,7 @@ def _is_list(place: Path, path: Path) -> bool:
     """Whether a text has a photograph's name on each line, and as many lines as a Bundler file has cameras."""
     try:
         lines = [line for line in read_text(place, BUNDLER_MAX_LIST_BYTES).split("\n") if line.strip()]
-        named = all(
-            any(word.strip('"').lower().endswith(PHOTOGRAPH_EXTENSIONS) for word in line.split()) for line in lines
-        )
+        named = all(any(word.strip('"').lower().endswith(ALL_EXTENSIONS) for word in line.split()) for line in lines)
         return named and len(lines) == _read_count(_read_lines(path), path)
     except CaptureError:
         return False
@@ -146,7 +144,7 @@ def _parse_name(line: str) -> str:
     """The name of a line `name [0 focal]`: names may hold spaces, and end in an extension."""
     words = line.replace('"', " ").split()  # some quote paths with spaces
     for end in range(len(words), 0, -1):
-        if words[end - 1].lower().endswith(PHOTOGRAPH_EXTENSIONS):
+        if words[end - 1].lower().endswith(ALL_EXTENSIONS):
             return " ".join(words[:end]).replace("\\", "/").removeprefix("./")
     return words[0].replace("\\", "/").removeprefix("./")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 from eigenfield.capture.arrangement import (
@@ -14,7 +15,9 @@ from eigenfield.capture.arrangement import (
 )
 from eigenfield.capture.readers.grid_names import largest_name_group
 from eigenfield.capture.readers.video import find_videos
+from eigenfield.core.errors import CaptureError, OptionError
 
+FOLDER_WORDS = "like one (.png, .jpg, .webp, .tif, .avif)"
 FOLDER_MIN_SQUARE_SIDE_PHOTOGRAPHS = 5
 
 
@@ -27,8 +30,26 @@ def find_photographs(folder: Path) -> Path | None:
 def read_photographs(folder: Path, options: OpenOptions) -> Arrangement:
     """All photographs of a folder. Raises CaptureError `names-unknown` where there is none."""
     files = photographs_of(folder)
-    require_photographs(files, folder, "like one (.png, .jpg, .webp, .tif, .avif)")
+    require_photographs(files, folder, FOLDER_WORDS)
     return Arrangement("folder", tuple(files), problems=tuple(_suggest_grid(folder)))
+
+
+def read_folders(folders: Sequence[Path]) -> Arrangement:
+    """All photographs of several folders, which are one capture.
+
+    Raises CaptureError: `capture-missing`, `names-unknown` where one holds none; OptionError `folders-twice`.
+    """
+    files: list[Path] = []
+    for folder in folders:
+        if not folder.is_dir():
+            message = "is no folder of photographs" if folder.exists() else "does not exist"
+            raise CaptureError("capture-missing", message, path=folder, remedy="name folders of photographs")
+        found = photographs_of(folder)
+        require_photographs(found, folder, FOLDER_WORDS)
+        files += found
+    if len({path.resolve() for path in files}) < len(files):
+        raise OptionError("folders-twice", "a folder is named twice", remedy="name each once")
+    return Arrangement("folder", tuple(files))
 
 
 def _suggest_grid(folder: Path) -> list[str]:

@@ -11,6 +11,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import av
 import av.error
@@ -22,16 +23,17 @@ from PIL import Image
 from eigenfield.capture.arrangement import Arrangement, OpenOptions, require_photographs
 from eigenfield.capture.locate import IMAGES_FOLDER, files_named, photographs_in
 from eigenfield.capture.messages import natural_key
+from eigenfield.capture.photographs.kinds import VIDEO_EXTENSIONS
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.runtime.parallel import parallel_map
 from eigenfield.runtime.stages import Stages, stage_key
 
-VIDEO_EXTENSIONS = (".mp4", ".mov", ".mkv", ".avi", ".webm", ".m4v", ".mpg", ".mpeg", ".mts", ".m2ts")
 VIDEO_FOLDER = "videos"
 VIDEO_MIN_FILES = 2  # of a rig
 VIDEO_TIME_PATTERN = re.compile(r"(\d+(?:\.\d*)?|\.\d+)s")
 # red and blue of Y' by AVColorSpace: BT.709, BT.601 (three numbers), BT.2020
 VIDEO_LUMA_WEIGHTS = {1: (0.2126, 0.0722), 4: (0.30, 0.11), 5: (0.299, 0.114), 6: (0.299, 0.114), 9: (0.2627, 0.0593)}
+VIDEO_MAX_PIXELS = 80_000_000  # of a frame
 VIDEO_FULL_RANGE = 2  # AVColorRange
 VIDEO_MAX_SD_ROWS = 576  # an unmarked video of more rows is BT.709, as players take it
 
@@ -44,8 +46,11 @@ def videos_in(folder: Path) -> list[Path]:
 
 
 def videos_of(folder: Path) -> list[Path]:
-    """The videos of a rig: those in the folder, or in its `videos/`, whichever are more."""
-    here, inner = videos_in(folder), videos_in(folder / VIDEO_FOLDER)
+    """The videos of a rig: those in the folder, or in its `videos/`, whichever are more. The film of a live photograph,
+    which lies beside it under its name, is none."""
+    stems = {path.stem.casefold() for path in photographs_in(folder)}
+    here = [path for path in videos_in(folder) if path.stem.casefold() not in stems]
+    inner = videos_in(folder / VIDEO_FOLDER)
     return here if len(here) >= len(inner) else inner
 
 
@@ -85,7 +90,7 @@ def read_videos(folder: Path, options: OpenOptions) -> Arrangement:
     frame = parse_frame(options.frame)
     times = Counter(path.stem for path in videos)
     names = [f"{path.stem if times[path.stem] == 1 else path.name}.png" for path in videos]
-    described = [[str(p.resolve()), p.stat().st_size, p.stat().st_mtime_ns] for p in videos]
+    described = [video_identity(path) for path in videos]
 
     def build(place: Path) -> None:
         def extract(index: int) -> None:
@@ -93,13 +98,23 @@ def read_videos(folder: Path, options: OpenOptions) -> Arrangement:
 
         parallel_map(extract, range(len(videos)))
 
-    stages = Stages(options.work)
-    if options.work is None:
-        _temporary.append(stages)
-    place = stages.run("frames", stage_key([described, frame]), build)
+    place = frames_stage(options.work).run("frames", stage_key([described, frame]), build)
     shown = f"{frame:g} s" if isinstance(frame, float) else f"frame {frame}"
     problems = [] if options.frame is not None else [f"{shown} of each video is used; --frame names another"]
     return Arrangement("video", tuple(place / name for name in names), None, tuple(problems))
+
+
+def video_identity(path: Path) -> list[Any]:
+    """What the frames of a video depend on."""
+    return [str(path.resolve()), path.stat().st_size, path.stat().st_mtime_ns]
+
+
+def frames_stage(work: Path | None) -> Stages:
+    """Where frames are kept: a folder, or a temporary one that goes with the process."""
+    stages = Stages(work)
+    if work is None:
+        _temporary.append(stages)
+    return stages
 
 
 def read_frame(path: Path, frame: int | float) -> NDArray[np.uint8]:
@@ -116,26 +131,18 @@ def read_frame(path: Path, frame: int | float) -> NDArray[np.uint8]:
         CaptureError: `video-unreadable`, `video-short`.
     """
     last, number = None, -1
-    try:
-        for number, shown in enumerate(_decode_frames(path, frame)):
-            if isinstance(frame, int):
-                if number == frame:
-                    return _to_rgb(shown)
-            elif last is not None and shown.time is not None and shown.time > frame + 1e-9:
-                return _to_rgb(last)
-            last = shown
-    except (av.error.FFmpegError, OSError) as error:
-        raise CaptureError(
-            "video-unreadable",
-            f"is damaged or no video ({str(error).splitlines()[0][:120]})",
-            path=path,
-            remedy="copy it again, or take it out of the folder",
-        ) from error
+    for number, shown in enumerate(decode_video(path, frame)):
+        if isinstance(frame, int):
+            if number == frame:
+                return to_rgb(shown)
+        elif last is not None and shown.time is not None and shown.time > frame + 1e-9:
+            return to_rgb(last)
+        last = shown
     if last is None:
         raise CaptureError("video-unreadable", "holds no frame", path=path, remedy="take it out of the folder")
     end = (last.time or 0.0) + (float(last.duration * last.time_base) if last.duration and last.time_base else 0.0)
     if isinstance(frame, float) and frame <= end:
-        return _to_rgb(last)
+        return to_rgb(last)
     length = f"{number + 1} frames" if isinstance(frame, int) else f"{end:.3g} s"
     raise CaptureError(
         "video-short",
@@ -145,12 +152,35 @@ def read_frame(path: Path, frame: int | float) -> NDArray[np.uint8]:
     )
 
 
+def decode_video(path: Path, frame: int | float = 0) -> Iterator[av.VideoFrame]:
+    """Decoded frames: all of them for an index, from the key frame before it for a time.
+
+    Raises CaptureError: `video-unreadable`, `video-large`.
+    """
+    try:
+        yield from _decode_frames(path, frame)
+    except (av.error.FFmpegError, OSError) as error:
+        raise CaptureError(
+            "video-unreadable",
+            f"is damaged or no video ({str(error).splitlines()[0][:120]})",
+            path=path,
+            remedy="copy it again, or take it out of the folder",
+        ) from error
+
+
 def _decode_frames(path: Path, frame: int | float) -> Iterator[av.VideoFrame]:
-    """Decoded frames: all of them for an index, from the key frame before it for a time."""
     with av.open(str(path)) as container:
         if not container.streams.video:
             return
         stream = container.streams.video[0]
+        size = stream.codec_context
+        if size.width * size.height > VIDEO_MAX_PIXELS:
+            raise CaptureError(
+                "video-large",
+                f"has frames of {size.width}x{size.height}, more than {VIDEO_MAX_PIXELS // 10**6} million pixels",
+                path=path,
+                remedy="make it smaller",
+            )
         stream.thread_type = "AUTO"
         start = stream.start_time or 0
         if isinstance(frame, float) and stream.time_base:
@@ -165,7 +195,8 @@ def _decode_frames(path: Path, frame: int | float) -> Iterator[av.VideoFrame]:
             yield shown
 
 
-def _to_rgb(frame: av.VideoFrame) -> NDArray[np.uint8]:
+def to_rgb(frame: av.VideoFrame) -> NDArray[np.uint8]:
+    """A frame as (H, W, 3) uint8 sRGB-coded values, upright."""
     pixels = _yuv420_to_rgb(frame) if frame.format.name in ("yuv420p", "yuvj420p") else frame.to_ndarray(format="rgb24")
     return np.ascontiguousarray(_upright(pixels, frame))
 

@@ -6,7 +6,7 @@ import re
 import unicodedata
 from collections.abc import Sequence
 
-from eigenfield.capture.photographs.read import PHOTOGRAPH_EXTENSIONS
+from eigenfield.capture.photographs.kinds import ALL_EXTENSIONS
 
 NAME_MAX_BYTES = 120  # of a folder's or file's name, without its ending
 PATH_MAX_PARTS = 6  # folders and file of a path
@@ -45,7 +45,7 @@ def file_name(name: str, otherwise: str) -> str:
 
 
 def _parts(name: str) -> list[str]:
-    extension = next((ending for ending in PHOTOGRAPH_EXTENSIONS if name.lower().endswith(ending)), "")
+    extension = next((ending for ending in ALL_EXTENSIONS if name.lower().endswith(ending)), "")
     stem = name[: len(name) - len(extension)]
     parts = list(filter(None, (file_name(part, "") for part in re.split(r"[/\\]", stem)))) or ["camera"]
     last = PATH_MAX_PARTS - 1

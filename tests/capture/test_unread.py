@@ -1,0 +1,138 @@
+"""What lies among photographs and is not read: named with its count and the remedy, or refused by what it is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pillow_heif
+import pytest
+from PIL import Image
+
+from eigenfield.capture import open_any, open_capture
+from eigenfield.capture.photographs import kinds
+from support.captures import write_capture
+from support.named import picture, refused, write, write_video
+
+HEIC_LINE = "4 files were not read: .heic (pip install 'eigenfield[photos]')"
+
+
+@pytest.fixture
+def bare(monkeypatch):
+    """Nothing of the extras is installed."""
+    monkeypatch.setattr(kinds, "is_installed", lambda module: False)
+
+
+def write_heic(path, seed=0, **options):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    pillow_heif.from_pillow(picture(seed, 64, 48)).save(path, **options)
+
+
+def mixed(folder):
+    """Four PNG and four HEIC."""
+    write(folder, ["a.png", "b.png", "c.png", "d.png"])
+    for i in range(4):
+        write_heic(folder / f"IMG_{i}.HEIC", i)
+    return folder
+
+
+def test_photographs_without_their_package_are_counted(tmp_path, bare, run):
+    opened = open_any(mixed(tmp_path / "m"))
+    assert len(opened) == 4 and opened.problems[-1] == HEIC_LINE
+    code, out, _ = run("inspect", tmp_path / "m")
+    assert code == 0 and HEIC_LINE in out
+    for i in range(4):
+        write_heic(tmp_path / "h" / f"IMG_{i}.heic")
+    error = refused("photographs-missing", tmp_path / "h")
+    assert "no photographs" in error.message and error.remedy == HEIC_LINE
+    refused("names-unknown", tmp_path / "h", format="folder")
+    write(tmp_path / "h", ["poster.png"])
+    assert refused("too-few", tmp_path / "h").remedy == HEIC_LINE
+
+
+def test_with_their_package_they_are_read(tmp_path):
+    opened = open_any(mixed(tmp_path / "m"))
+    assert len(opened) == 8 and not opened.problems
+
+
+def test_a_calibration_names_missed_photographs_only(tmp_path, bare):
+    folder = write_capture(tmp_path / "c")
+    write_heic(folder / "images" / "more.heic")
+    (folder / "images" / "notes.zip").write_bytes(b"PK")
+    assert open_capture(folder).problems == ("1 file was not read: .heic (pip install 'eigenfield[photos]')",)
+
+
+def test_copies_are_left_out(tmp_path):
+    folder = write(tmp_path / "c", ["IMG_1.png", "IMG_2.png", "IMG_3.png"])
+    for i in (1, 2):
+        write_heic(folder / f"img_{i}.heic", i)
+    (folder / "IMG_3.mov").write_bytes(b"of a live photograph")
+    opened = open_any(folder)
+    assert opened.names == ("IMG_1.png", "IMG_2.png", "IMG_3.png")
+    assert opened.problems == ("3 files were not read: .heic, .mov (they are of photographs that are read)",)
+
+
+def test_other_files_are_named_by_what_they_are(tmp_path):
+    folder = write(tmp_path / "c", ["a.png", "b.png", "c.png"])
+    for name in ("walk.mp4", "more.zip", "x.insp", "old.bmp", "notes.txt", "mesh.ply"):
+        (folder / name).write_bytes(b"")
+    lines = "\n".join(open_any(folder).problems)
+    for words in (".mp4 (a video: ", ".zip (an archive: ", ".insp (a panorama: ", ".bmp (a picture of another format"):
+        assert words in lines
+    assert ".txt" not in lines and ".ply" not in lines
+    for name, what in (("a.png", "one photograph"), ("mesh.ply", "--proxy"), ("old.bmp", "convert it")):
+        assert what in str(refused("calibration-unknown", folder / name))
+
+
+# panoramas
+
+
+def equirectangular(width: int = 512) -> Image.Image:
+    """A ball of noise that is smooth over directions, seen from its middle."""
+    height = width // 2
+    v, u = np.mgrid[:height, :width]
+    angle, up = (u + 0.5) / width * 2 * np.pi, (0.5 - (v + 0.5) / height) * np.pi
+    ways = np.stack([np.cos(up) * np.cos(angle), np.cos(up) * np.sin(angle), np.sin(up)], axis=-1)
+    random = np.random.default_rng(3)
+    values = sum(np.sin(ways @ random.normal(size=3) * 20 + random.uniform(0, 6)) for _ in range(12))
+    grey = np.clip(127 + 20 * values, 0, 255).astype(np.uint8)
+    return Image.fromarray(np.repeat(grey[..., None], 3, axis=2))
+
+
+def test_panoramas_are_refused_by_what_they_show(tmp_path):
+    folder = write(tmp_path / "c", ["a.png", "b.png", "c.png"], width=512, height=256)
+    assert len(open_any(folder)) == 3  # twice as wide as high, and noise
+    ball = equirectangular()
+    ball.save(folder / "p.png")
+    error = refused("image-panorama", folder)
+    assert "p.png" in str(error) and "perspective" in error.remedy
+    opened = open_any(folder, strict=False)
+    assert len(opened) == 3 and "is a panorama" in opened.problems[-1]
+    cut = Image.fromarray(np.asarray(ball)[64:192, 100:356])  # a part of it is none
+    cut.save(folder / "p.png")
+    assert len(open_any(folder)) == 4
+    white = np.full((256, 512, 3), 255, np.uint8)
+    white[60:200, 150:380] = np.random.default_rng(0).integers(0, 256, (140, 230, 3))
+    Image.fromarray(white).save(folder / "p.png")  # a thing before a white background
+    assert len(open_any(folder)) == 4
+
+
+def test_panoramas_are_refused_by_their_metadata(tmp_path):
+    folder = write(tmp_path / "c", ["a.png", "b.png", "c.png"])
+    xmp = (
+        b'<x:xmpmeta xmlns:x="adobe:ns:meta/"><GPano:ProjectionType>equirectangular</GPano:ProjectionType></x:xmpmeta>'
+    )
+    picture(1, 60, 40).save(folder / "d.jpg", xmp=xmp)
+    assert "GPano" in str(refused("image-panorama", folder))
+
+
+def test_wide_views_with_cameras_are_no_panoramas(tmp_path):
+    folder = write_capture(tmp_path / "c")
+    for path in (folder / "images").iterdir():
+        equirectangular().resize((64, 56)).save(path)
+    assert len(open_capture(folder)) == 9
+
+
+def test_videos_of_live_photographs_make_no_rig(tmp_path):
+    folder = write(tmp_path / "c", ["a.png", "b.png", "c.png"])
+    for name in "abc":
+        write_video(folder / f"{name}.mov", 2)
+    assert open_any(folder).format == "folder"
