@@ -95,8 +95,11 @@ def of_capture(
     ready = prepared.prepare(capture, work)
     views = range(len(ready.light_field))
     photographs = parallel_map(lambda index: prepared.codes(ready.light_field, index), views)
-    mine, covered = ours.fitted(ready, ready.light_field, views, photographs, asked=FITS)
-    patient = ours.fitted(ready, ready.light_field, views, photographs, covered, BEST, "best")[0] if best else None
+    proxy = prepared.own_proxy(capture, work)
+    mine, covered = ours.fitted(ready, ready.light_field, views, photographs, asked=FITS, proxy=proxy)
+    patient = None
+    if best:
+        patient, _ = ours.fitted(ready, ready.light_field, views, photographs, covered, BEST, "best", proxy)
     for one in [*mine["points"], *(patient["points"] if patient else [])]:
         print(f"{capture.name}: {one['preset']}, quality {one['parameter']}: {line(one)}", flush=True)
     others = [peer_curve(codec, ready, photographs, covered) for codec in chosen if codecs.missing(codec) is None]

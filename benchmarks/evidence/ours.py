@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 import eigenfield as ef
 from eigenfield.capture import LightField
+from eigenfield.core.proxy import Proxy
 from eigenfield.encoding import EncodeOptions
 from eigenfield.encoding.fitted.encoder import open_fitted
 from eigenfield.encoding.options import DEFAULT_PRESET
@@ -46,12 +47,13 @@ def fitted(
     covered: Covered | None = None,
     asked: Sequence[Fit] = QUALITIES,
     stem: str = "quality",
+    proxy: Proxy | None = None,
 ) -> tuple[dict[str, Any], Covered]:
     """The curve of what `encode` makes: fits coded at some qualities, every byte of the real .glb counted, each camera
     drawn with its own weights; and the pixels that count.
 
     order: views of the light field; photographs, covered: theirs; None: what the proxy covers as it is first coded.
-    stem: of the files' names.
+    stem: of the files' names. proxy: what `encode` makes by itself; None: the mesh of the proxy's file.
     """
     points: list[dict[str, Any]] = []
     names = [light_field.names[index] for index in order]
@@ -59,7 +61,7 @@ def fitted(
     for options, some in asked:
         preset = options.preset or DEFAULT_PRESET
         started = time.perf_counter()
-        with open_fitted(light_field, ready.mesh, options, work=ready.work) as encoder:
+        with open_fitted(light_field, proxy or ready.mesh, options, work=ready.work) as encoder:
             fit = time.perf_counter() - started
             for quality in some:
                 started = time.perf_counter()

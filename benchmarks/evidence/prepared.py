@@ -17,6 +17,7 @@ import eigenfield as ef
 import measure
 from eigenfield.capture import LightField, View
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import Scene
 from eigenfield.core.viewplane import Grid, find_grid, fit_view_plane
 from eigenfield.demo import draw_demo_capture
@@ -72,6 +73,16 @@ def estimate(capture: Capture, work: Path) -> dict[str, Any]:
             "command": f"eigenfield {' '.join(command)}",
         }  # fmt: skip
     return figures
+
+
+def own_proxy(capture: Capture, work: Path) -> Proxy | None:
+    """What `encode` estimates, which may be soft sheets; None where the capture comes with a mesh.
+
+    capture, work: as of `estimate`, whose stages are taken up.
+    """
+    if capture.proxy is not None:
+        return None
+    return ef.reconstruct(ef.open_any(capture.folder, calibration=capture.calibration), work=work / "stages").proxy
 
 
 def prepare(capture: Capture, work: Path, quick: bool = False) -> Prepared:
