@@ -61,8 +61,9 @@ def find_videos(folder: Path) -> Path | None:
 
 def is_video_rig(folder: Path) -> bool:
     """Whether a folder holds videos where other captures have photographs."""
-    none = not photographs_in(folder) and not photographs_in(folder / IMAGES_FOLDER)
-    return none and find_videos(folder) is not None
+    if find_videos(folder) is None:  # sooner said than that there are no photographs
+        return False
+    return not photographs_in(folder) and not photographs_in(folder / IMAGES_FOLDER)
 
 
 def parse_frame(frame: int | str | None) -> int | float:
