@@ -111,11 +111,12 @@ def video_identity(path: Path) -> list[Any]:
 
 
 def frames_stage(work: Path | None) -> Stages:
-    """Where frames are kept: a folder, or a temporary one that goes with the process."""
-    stages = Stages(work)
-    if work is None:
-        _temporary.append(stages)
-    return stages
+    """Where frames are kept: a folder, or a temporary one that goes with the process, in which they are found again."""
+    if work is not None:
+        return Stages(work)
+    if not _temporary or not _temporary[-1].folder.is_dir():
+        _temporary.append(Stages(None))
+    return _temporary[-1]
 
 
 def read_frame(path: Path, frame: int | float) -> NDArray[np.uint8]:
