@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+
 import numpy as np
 import pytest
 
@@ -80,3 +82,14 @@ def test_a_video_is_shown_as_its_display_matrix_says(tmp_path, name):
     data[at : at + 36] = b"".join(v.to_bytes(4, "big", signed=True) for v in matrix)
     (tmp_path / "a.mp4").write_bytes(data)
     assert np.array_equal(read_frame(tmp_path / "a.mp4", 1), shown(flat))
+
+
+def test_frames_without_a_work_folder_are_taken_out_once_a_process(tmp_path):
+    for i in range(3):
+        write_video(tmp_path / f"cam_{i}.mp4", 3, camera=i)
+    first, again = open_any(tmp_path), open_any(tmp_path, strict=False)
+    assert first.shots == again.shots
+    other = open_any(tmp_path, frame=2)
+    assert other.shots[0].path != first.shots[0].path and first.shots[0].path.exists()
+    shutil.rmtree(first.shots[0].path.parents[1])  # by what clears the system's temporary folder
+    assert open_any(tmp_path).shots[0].path.exists()

@@ -306,6 +306,34 @@ def test_a_second_signal_does_not_wait(second):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are POSIX")
+def test_threads_that_do_not_end_are_not_waited_for_and_a_replacement_is():
+    program = """
+import os, signal, sys, threading, time
+import eigenfield.cli as cli
+from eigenfield.runtime.signals import hold_signals
+
+def waits(*arguments, **options):
+    try:
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(20)
+    finally:
+        with hold_signals():
+            time.sleep(2)
+            print("replaced", flush=True)
+        threading.Event().wait(30)
+
+cli.STOP_SECONDS = 0.5
+cli.group.invoke = waits
+sys.argv = ["eigenfield", "info", "x.glb"]
+cli.main()
+"""
+    start = time.monotonic()
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert done.returncode == 130 and done.stdout == "replaced\n" and done.stderr == "eigenfield: interrupted\n"
+    assert time.monotonic() - start < 15
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are POSIX")
 @pytest.mark.parametrize("name", ["SIGHUP", "SIGINT"])
 def test_a_signal_that_is_ignored_stays_ignored(name):
     """As `nohup` and a shell's `&` want it."""

@@ -8,36 +8,18 @@ from urllib.parse import quote
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import assume
 from hypothesis import strategies as st
 
 from eigenfield.proxy import read_mesh
 from eigenfield.proxy.meshes.formats import RawMesh
 from eigenfield.proxy.meshes.read import check_mesh
+from support.fuzzed import fuzzed
 from support.mesh_files import GltfFile, ply_file
 
-FEW, MANY = 12, 2_000
-QUIET = {"deadline": None, "suppress_health_check": list(HealthCheck)}
 NEWLINES = st.sampled_from(["\n", "\r\n", "\r"])
 SPACES = st.sampled_from([" ", "  ", "\t"])
 WORDS = st.sampled_from(["", "plain", "two words", "v 1 2 3", "Straße", "C:\\folder\\", "vertex 1 2 3", "ends\\"])
-
-
-def fuzzed(check):
-    """`check(folder, data)` on a few files, and on many as a slow test."""
-
-    def few(tmp_path_factory):
-        run(tmp_path_factory, FEW)
-
-    def run(tmp_path_factory, count):
-        folder = tmp_path_factory.mktemp("fuzz")
-        settings(max_examples=count, derandomize=True, **QUIET)(given(st.data())(lambda data: check(folder, data)))()
-
-    @pytest.mark.slow
-    def many(tmp_path_factory):
-        run(tmp_path_factory, MANY)
-
-    return few, many
 
 
 def assert_same(path, data, positions, faces, uv=None, atol=0.0):

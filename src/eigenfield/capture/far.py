@@ -22,9 +22,9 @@ def move_to_origin(read: Calibration) -> tuple[Calibration, NDArray[np.float64]]
     stay = read, np.zeros(3)
     if len(centres) < 2:
         return stay
-    middle = np.median(centres, axis=0)
+    middle = _median(centres)
     # by the median distance: a camera that stands apart, at the origin say, does not hide that the others are far
-    extent = 4 * float(np.median(np.abs(centres - middle), axis=0).max()) or float(np.ptp(centres, axis=0).max())
+    extent = 4 * float(_median(np.abs(centres - middle)).max()) or float(np.ptp(centres, axis=0).max())
     if not 0 < extent * FAR_MIN_EXTENTS < np.abs(middle).max():
         return stay
     unit = 10.0 ** np.floor(np.log10(extent))
@@ -36,3 +36,10 @@ def move_to_origin(read: Calibration) -> tuple[Calibration, NDArray[np.float64]]
         f"moved by minus ({where}) while they are worked on; calibrations and meshes that are written are moved back"
     )
     return replace(read, entries=entries, problems=(*read.problems, line)), origin
+
+
+def _median(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Of each column, as `np.median` has it, which loads numpy.ma: a sixth of the time that a capture takes to open."""
+    ordered = np.sort(rows, axis=0)
+    middle: NDArray[np.float64] = (ordered[(len(rows) - 1) // 2] + ordered[len(rows) // 2]) / 2
+    return middle

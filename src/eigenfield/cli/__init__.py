@@ -19,7 +19,7 @@ import click
 from eigenfield.core.errors import EigenfieldError
 from eigenfield.core.version import __version__
 from eigenfield.runtime.children import kill_children
-from eigenfield.runtime.signals import STOP_SIGNALS
+from eigenfield.runtime.signals import STOP_SIGNALS, held
 from eigenfield.runtime.temporary import remove_temporaries
 
 VERBS = {
@@ -71,6 +71,7 @@ def group() -> None:
 
 
 SIGNAL_RETRY_SECONDS = 0.05
+STOP_SECONDS = 5.0  # from a signal to the end of the process at the latest
 _signals: list[int] = []  # those that have stopped this process
 
 
@@ -88,6 +89,9 @@ def _stop(number: int, frame: FrameType | None) -> None:
         _exit_interrupted()
     _signals.append(number)
     kill_children()  # a thread may wait for one
+    late = threading.Timer(STOP_SECONDS, _exit_interrupted)  # others compute in a library for long
+    late.daemon = True
+    late.start()
     raise KeyboardInterrupt
 
 
@@ -102,6 +106,7 @@ def _exit_interrupted() -> NoReturn:
     with contextlib.suppress(ValueError):  # not in the main thread
         for number in STOP_SIGNALS:
             signal.signal(number, signal.SIG_IGN)
+    held.acquire()
     kill_children()
     remove_temporaries()
     with contextlib.suppress(OSError):  # the terminal has gone

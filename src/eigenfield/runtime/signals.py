@@ -1,14 +1,18 @@
-"""Signals that wait until a step is done."""
+"""Signals, and an end of the process, that wait until a step is done."""
 
 from __future__ import annotations
 
 import contextlib
 import signal
+import threading
 from collections.abc import Iterator
 from typing import Any
 
 # those that ask a process to stop; Windows has no SIGHUP
 STOP_SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+
+
+held = threading.RLock()  # whoever ends the process takes it first
 
 
 @contextlib.contextmanager
@@ -21,7 +25,8 @@ def hold_signals() -> Iterator[None]:
             for number in STOP_SIGNALS:
                 if signal.getsignal(number) is not None:
                     handlers[number] = signal.signal(number, lambda number, _: caught.append(number))
-        yield
+        with held:
+            yield
     finally:
         for number, handler in handlers.items():
             signal.signal(number, handler)

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name, read_each
 from eigenfield.capture.photographs.lens import Lens
@@ -59,6 +58,8 @@ def read_deepview(path: Path) -> Calibration:
 
 
 def _make_entry(camera: Any, number: int, path: Path) -> Entry:
+    from scipy.spatial.transform import Rotation  # not where another format is read
+
     name = camera.get("name") if isinstance(camera, dict) else None
     if not isinstance(name, str) or not name.strip("./") or "\0" in name:
         raise damaged_error(path, f"camera {number} has no name", "mend or remove its entry")

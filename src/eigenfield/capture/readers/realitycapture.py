@@ -14,7 +14,6 @@ import csv
 from pathlib import Path
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name, read_each
 from eigenfield.capture.locate import PhotographFinder
@@ -72,6 +71,8 @@ def read_realitycapture(path: Path, photographs: Path | None = None) -> Calibrat
 
 
 def _make_entry(row: list[str], columns: list[str], finder: PhotographFinder, path: Path) -> Entry:
+    from scipy.spatial.transform import Rotation  # not where another format is read
+
     first = columns.index("name")
     name = row[first].strip().replace("\\", "/") if first < len(row) else ""
     label = f"camera {escape_name(name)}"

@@ -111,7 +111,7 @@ class _Frame:
     path: Path
 
     def get(self, key: str, default: Any = None) -> Any:
-        return self.own.get(key, self.top.get(key, default))
+        return self.own[key] if key in self.own else self.top.get(key, default)
 
     def number(self, key: str) -> float | None:
         value = self.get(key)
@@ -198,8 +198,8 @@ def _read_applied_transform(top: Mapping[str, Any], path: Path) -> Similarity:
 
 def _read_intrinsics(frame: _Frame) -> Intrinsics:
     # focal length and angle come from the frame if it has any of them, and are not mixed with those of the file
-    own = {"fl_x", "fl_y", "camera_angle_x", "x_fov"} & frame.own.keys()
-    owner = replace(frame, own=frame.own if own else frame.top, top={})
+    own = any(key in frame.own for key in ("fl_x", "fl_y", "camera_angle_x", "x_fov"))
+    owner = _Frame(frame.own if own else frame.top, {}, frame.label, frame.path)
     fx, fy = owner.number("fl_x"), owner.number("fl_y")
     focal = None
     if fx is not None or fy is not None:
@@ -273,11 +273,11 @@ def _read_coefficients(frame: _Frame) -> list[float]:
     named = [frame.number(key) or 0.0 for key in TRANSFORMS_LENS_KEYS]
     for level in (frame.own, frame.top):
         given = level.get("distortion_params")
-        beside = [level.get(key) for key in TRANSFORMS_LENS_KEYS]
-        if given is None and any(value is not None for value in beside):
-            break
         if given is None:
+            if any(level.get(key) is not None for key in TRANSFORMS_LENS_KEYS):
+                break
             continue
+        beside = [level.get(key) for key in TRANSFORMS_LENS_KEYS]
         if not isinstance(given, list) or len(given) != len(named) or not all(map(_is_number, given)):
             message = f"distortion_params of {frame.label} is not the six numbers {' '.join(TRANSFORMS_LENS_KEYS)}"
             raise frame.error("lens", message, "give them in this order, or each by its name")

@@ -61,8 +61,9 @@ def find_videos(folder: Path) -> Path | None:
 
 def is_video_rig(folder: Path) -> bool:
     """Whether a folder holds videos where other captures have photographs."""
-    none = not photographs_in(folder) and not photographs_in(folder / IMAGES_FOLDER)
-    return none and find_videos(folder) is not None
+    if find_videos(folder) is None:  # sooner said than that there are no photographs
+        return False
+    return not photographs_in(folder) and not photographs_in(folder / IMAGES_FOLDER)
 
 
 def parse_frame(frame: int | str | None) -> int | float:
@@ -110,11 +111,12 @@ def video_identity(path: Path) -> list[Any]:
 
 
 def frames_stage(work: Path | None) -> Stages:
-    """Where frames are kept: a folder, or a temporary one that goes with the process."""
-    stages = Stages(work)
-    if work is None:
-        _temporary.append(stages)
-    return stages
+    """Where frames are kept: a folder, or a temporary one that goes with the process, in which they are found again."""
+    if work is not None:
+        return Stages(work)
+    if not _temporary or not _temporary[-1].folder.is_dir():
+        _temporary.append(Stages(None))
+    return _temporary[-1]
 
 
 def read_frame(path: Path, frame: int | float) -> NDArray[np.uint8]:
