@@ -6,22 +6,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eigenfield as ef
-from eigenfield.coding.pictures.pictures_10bit import svt_coder
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import FormatError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Payloads, cameras_key, mesh_key
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import EncodedScene
-from eigenfield.encoding.fitted.code_planes import coded_plane
 from eigenfield.encoding.geometry.coded import CAMERA_STEP_PX, DEPTH_ERROR_PX, MESH_STEP_PX, coded_cameras, coded_mesh
 from eigenfield.gltf import parts, save, validate
-from eigenfield.gltf.coarse import coarse_mesh, shown_mesh
+from eigenfield.gltf.coarse import coarse_mesh
 from eigenfield.gltf.container import parse_glb, read_file
 from eigenfield.gltf.document import Document
 from eigenfield.gltf.findings import Findings
@@ -30,7 +27,6 @@ from eigenfield.gltf.packed import unpack
 from eigenfield.proxy.atlas.unwrap import unwrap_mesh
 from eigenfield.proxy.relief.find_lattice import _column_spacing, relief_lattice, relief_proxy
 from support.coded_scenes import coded
-from support.composed import encoded
 from support.scenes import bumpy_square, row_grid, tiny_scene
 from support.schema import extension_of
 from support.soft_scenes import soft_scene
@@ -195,30 +191,7 @@ def test_the_mesh_for_other_viewers_is_coarse_and_textured():
     coarse = coarse_mesh(mesh, 200)
     assert 100 < len(coarse.faces) <= 200 and coarse.uv is not None
     assert np.abs(coarse.vertices[:, :2] - (2 * coarse.uv - 1)).max() < 0.2  # about as in the fine one
-    assert coarse_mesh(bumpy_square(4)).faces.shape == bumpy_square(4).faces.shape
-
-
-def test_small_files_have_a_smaller_mesh_for_other_viewers():
-    mesh = bumpy_square(40)
-    faces = [len(shown_mesh(Proxy(mesh), coded).faces) for coded in (100, 8_000, 16_000, 10**6)]
-    assert faces == sorted(faces) and faces[0] <= 16 < faces[1] <= 32 < faces[2] <= 64 < faces[3] <= 128
-    assert len(shown_mesh(Proxy(bumpy_square(2)), 10).faces) == 2
-
-
-def test_small_files_have_a_smaller_picture_for_other_viewers(tmp_path):
-    path, random = tmp_path / "scene.glb", np.random.default_rng(3)
-    mean = np.kron(random.random((64, 64, 3)), np.ones((4, 4, 1))).astype(np.float32)
-    for contrast, side in ((0.0, 48), (1.0, 128)):
-        shown = 0.5 + contrast * (mean - 0.5)
-        planes = [coded_plane(shown[..., k : k + 1].copy(), (), 0.002, svt_coder(8)) for k in range(3)]
-        values = tuple(plane.value for plane in planes)
-        scene = replace(
-            tiny_scene(cameras=4),
-            appearance=replace(tiny_scene(cameras=4).appearance, planes=values, to_rgb=np.eye(3, dtype=np.float32)),
-        )
-        save(encoded(scene, Payloads.merge(plane.payloads for plane in planes)), path, overwrite=True)
-        (mesh,) = trimesh.load(path).geometry.values()
-        assert mesh.visual.material.baseColorTexture.size == (side, side)
+    assert coarse_mesh(bumpy_square(4), 128).faces.shape == bumpy_square(4).faces.shape
 
 
 def measured_scene() -> EncodedScene:
@@ -323,9 +296,3 @@ def test_what_pictures_of_several_textures_share_is_said_once(tmp_path):
     assert len(basis["textures"]) > 1 and all("mimeType" not in entry for entry in basis["textures"])
     back = ef.load(path).appearance.planes[0].bases[0]
     np.testing.assert_array_equal(back.values(), scene.appearance.planes[0].bases[0].values())
-
-
-def test_sheets_have_more_triangles_for_other_viewers_where_they_can():
-    proxy = soft_scene().proxy
-    faces = [len(shown_mesh(proxy, coded).faces) for coded in (100, 10**6)]
-    assert faces[0] <= 24 and 128 < faces[1] <= 256

@@ -192,7 +192,7 @@ def test_fewer_textures_are_coded_anew_and_the_rest_is_kept(scene):
     )
     kept = cached_payloads(fewer)
     assert kept.lost.keys() == {"planes[0].bases[0].textures", "planes[0].bases[0].weights"}
-    assert kept.payloads.keys() == {"mesh", "cameras", "planes[0].mean", "preview"}
+    assert kept.payloads.keys() == {"mesh", "cameras", "planes[0].mean"}
     assert read_scene(encode_scene(fewer)).appearance.textures == 2
 
 

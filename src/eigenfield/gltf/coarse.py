@@ -1,51 +1,15 @@
-"""A coarse proxy and its picture for viewers without a decoder of ours: in a small file they are small."""
+"""A mesh with fewer triangles, each corner with the texture coordinates of a corner of the whole mesh."""
 
 from __future__ import annotations
-
-from collections.abc import Callable, Iterable
-from typing import TypeVar
 
 import numpy as np
 
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.proxy import Proxy
 
-T = TypeVar("T")
-
-COARSE_TRIANGLES = (128, 64, 32, 16)  # with fewer than the first the rim of Tarot's ball comes apart
-SHEETS_COARSE_TRIANGLES = (256, *COARSE_TRIANGLES)  # with 128 the floor of Fern, of eight sheets, is not there
-PREVIEW_MAX_BYTES_RATIO = 0.1  # of the mesh to what is coded, and of the picture
 COARSE_MAX_EXCESS_RATIO = 1.5  # of the triangles of a simplified mesh to those asked for; beyond, it is clustered
 
 
-def first_affordable(ways: Iterable[T], size: Callable[[T], int], coded: int) -> T:
-    """The first of some candidates, in falling order, within PREVIEW_MAX_BYTES_RATIO x `coded` bytes; else the last.
-
-    Args:
-        ways: The candidates.
-        size: Bytes of one.
-        coded: Bytes of the coded parts.
-    """
-    ways = iter(ways)
-    found = next(ways)
-    while size(found) > PREVIEW_MAX_BYTES_RATIO * coded and (smaller := next(ways, None)) is not None:
-        found = smaller
-    return found
-
-
-def shown_mesh(proxy: Proxy, coded: int) -> Mesh:
-    """The mesh in as many triangles as `coded`, the bytes of the coded parts, allow."""
-    counts = COARSE_TRIANGLES if proxy.sheets is None else SHEETS_COARSE_TRIANGLES
-    return first_affordable((coarse_mesh(proxy.mesh, triangles) for triangles in counts), _plain_bytes, coded)
-
-
-def _plain_bytes(mesh: Mesh) -> int:
-    """Bytes of a small mesh as plain floats with a byte a corner."""
-    assert mesh.uv is not None
-    return mesh.vertices.nbytes + mesh.uv.nbytes + mesh.faces.size
-
-
-def coarse_mesh(mesh: Mesh, triangles: int = COARSE_TRIANGLES[0]) -> Mesh:
+def coarse_mesh(mesh: Mesh, triangles: int) -> Mesh:
     """The mesh simplified; of collapsed vertices the nearest to their common place gives the texture coordinates."""
     import fast_simplification
 

@@ -15,7 +15,6 @@ from eigenfield.coding.pictures.pictures_8bit import (
     PREVIEW_MAX_SIDE_TEXELS,
     encode_masked_preview,
     encode_preview,
-    encode_small_preview,
 )
 from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, encode, stacked_picture
 from eigenfield.core.appearance import Basis, Plane
@@ -23,11 +22,9 @@ from eigenfield.core.payloads import Affine, Payload, PicturePayload, size_of
 from eigenfield.core.progress import Progress
 from eigenfield.core.scene import Scene
 from eigenfield.gltf.cached import CachedPayloads
-from eigenfield.gltf.coarse import first_affordable
 from eigenfield.runtime.parallel import tracked_map
 
-MASKED_PREVIEWS = (128, 64), (96, 32), (64, 32), (48, 16)  # texels a side and colours, of sheets
-SMALL_PREVIEWS = (128, 50), (96, 40), (64, 30), (48, 30)  # texels a side and quality, beside a fit's pictures
+MASKED_PREVIEW_COLOURS = 256
 MEAN_QUALITY_RATIO = 0.3  # of the mean's distance to quality 100 to the textures': there a byte gains as much (Tarot)
 
 
@@ -49,7 +46,7 @@ class ScenePictures:
     """All pictures of a file.
 
     Attributes:
-        preview: For `images[0]`; None where the first plane's mean itself is shown.
+        preview: For `images[0]`, of a mesh that is not coded; None where the first plane's mean itself is shown.
         planes: Those of each plane.
         opacity: Of sheets.
     """
@@ -114,10 +111,10 @@ def code_pictures(
         planes.append(PlanePictures(files[0][0], files[1:]))
     first, made = planes[0].mean, ScenePictures(None, planes, next(done, None))
     plain = sheets is None and to_rgb is None and scene.appearance.planes[0].mean.shape[2] in (1, 3)
-    if plain and first.codec == "png" and first.affine is None:
-        return made  # the mean itself serves
+    if cached.one("mesh") is not None or (plain and first.codec == "png" and first.affine is None):
+        return made  # other viewers are shown another mesh, or the mean itself
     preview = cached.one("preview") if codec is None else None
-    return replace(made, preview=preview or _preview(scene, made.bytes))
+    return replace(made, preview=preview or _preview(scene))
 
 
 def _mean(scene: Scene, plane: Plane, codec: str, quality: int) -> list[Callable[[], PicturePayload]]:
@@ -154,11 +151,20 @@ def _code_texture(
     return _code(quantise.texture_codes(basis, index, scale, zero), codec, quality, affine)
 
 
-def _preview(scene: Scene, coded: int) -> Payload:
-    """A picture for every glTF viewer: R, G, B as they are; else the first one or three channels, stretched. Of sheets
-    it is a PNG with holes where they are less than half opaque.
+def _preview(scene: Scene) -> Payload:
+    """A picture for every glTF viewer. Of sheets it is a PNG with holes where they are less than half opaque."""
+    picture, sheets = shown_mean(scene), scene.proxy.sheets
+    if sheets is None:
+        return Payload("jpeg", encode_preview(picture))
+    opacity = quantise.opacity_codes(sheets.opacity)[..., 0]
+    return Payload("png", encode_masked_preview(picture, opacity, PREVIEW_MAX_SIDE_TEXELS, MASKED_PREVIEW_COLOURS))
 
-    coded: bytes of all other pictures.
+
+def shown_mean(scene: Scene) -> NDArray[np.uint8]:
+    """(H, W) or (H, W, 3) codes: R, G, B of the mean as they are; else its first one or three channels, stretched.
+
+    Args:
+        scene: Whose mean is shown.
     """
     to_rgb = scene.appearance.to_rgb
     mean = scene.appearance.planes[0].mean if to_rgb is None else _rgb_mean(scene, to_rgb)
@@ -168,17 +174,7 @@ def _preview(scene: Scene, coded: int) -> Payload:
     if not quantise.is_photographic(mean) and not quantise.is_unit_range(shown):
         low, high = shown.min(axis=(0, 1)), shown.max(axis=(0, 1))
         shown = (shown - low) / np.where(high > low, high - low, 1)
-    codes = np.rint(shown * 255).clip(0, 255).astype(np.uint8)
-    picture, sheets = stacked_picture(codes), scene.proxy.sheets
-    if sheets is not None:
-        opacity = quantise.opacity_codes(sheets.opacity)[..., 0]
-        sizes = ((PREVIEW_MAX_SIDE_TEXELS, 256),) if to_rgb is None else MASKED_PREVIEWS
-        masked = (encode_masked_preview(picture, opacity, *size) for size in sizes)
-        return Payload("png", first_affordable(masked, len, coded))
-    if to_rgb is None:
-        return Payload("jpeg", encode_preview(picture))
-    small = (encode_small_preview(picture, *size) for size in SMALL_PREVIEWS)
-    return Payload("jpeg", first_affordable(small, len, coded))
+    return stacked_picture(np.rint(shown * 255).clip(0, 255).astype(np.uint8))
 
 
 def _rgb_mean(scene: Scene, to_rgb: NDArray[np.float32]) -> NDArray[np.float32]:

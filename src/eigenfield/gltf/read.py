@@ -137,7 +137,7 @@ def _scene(
         payloads |= sheets.payloads
     if given.payload is not None:
         payloads |= {cameras_key(given.cameras): [given.payload]}
-    if planes and preview is not None:
+    if planes and preview is not None and layout.mesh_payload is None:
         sources = [next(key for key in plane.payloads if key[0] == "mean") for plane in planes]
         sources += [] if sheets is None else [*sheets.payloads]
         payloads |= {preview_key(sources, layout.to_rgb, given.colours is not None): [preview]}

@@ -28,9 +28,9 @@ from eigenfield.gltf.accessors import FLOAT, UINT8, UINT16, UINT32
 from eigenfield.gltf.axes import NEAR_PLANE_RATIO, capture_to_gltf, opening_view, quaternion
 from eigenfield.gltf.buffer import Buffer
 from eigenfield.gltf.cached import CachedPayloads, cached_payloads
-from eigenfield.gltf.coarse import shown_mesh
-from eigenfield.gltf.coded_pictures import PlanePictures, ScenePictures, code_pictures, shortest_decimals
+from eigenfield.gltf.coded_pictures import PlanePictures, ScenePictures, code_pictures, shortest_decimals, shown_mean
 from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, Glb, file_head, json_bytes
+from eigenfield.gltf.fallback import fallback
 from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.layout import read_layout, unpacked_document
 from eigenfield.gltf.name_pattern import name_pattern
@@ -156,9 +156,10 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayl
     """The JSON, while `buffer` fills: mesh, opacity, mean, weights, calibration, textures; if packed, all accessors
     first."""
     mesh, poses = cached.one("mesh"), cached.one("cameras")
-    shown = scene.proxy.mesh if mesh is None else shown_mesh(scene.proxy, coded.bytes + len(mesh.data))
+    shown, preview = scene.proxy.mesh, coded.preview or coded.planes[0].mean
+    if mesh is not None:
+        shown, preview = fallback(scene, shown_mean(scene), coded.bytes + len(mesh.data))
     primitive = _primitive(shown, buffer, mesh is not None)
-    preview = coded.preview or coded.planes[0].mean
     image = {"bufferView": buffer.view(preview.data), "mimeType": PICTURES[preview.codec].mime}
     plain = buffer.packed is None
     order = {} if plain or scene.residual is None else _frame_order(scene.residual, buffer)
@@ -169,7 +170,9 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayl
     planes = []
     for index, (plane, made) in enumerate(zip(scene.appearance.planes, coded.planes, strict=True)):
         weights = [cached.one(f"planes[{index}].bases[{b}].weights") for b in range(len(plane.bases))]
-        planes.append(_plane(plane, made, weights, buffer, inline=index > 0 or coded.preview is not None))
+        planes.append(
+            _plane(plane, made, weights, buffer, inline=index > 0 or mesh is not None or coded.preview is not None)
+        )
     cameras = cameras or _cameras(scene, buffer, poses)
     view_plane = _view_plane(scene, buffer, poses is not None)
     entries = _by_gain_per_byte(scene, coded, planes)
@@ -198,6 +201,7 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayl
         extension = {"version": version} | extension
     else:
         extension = {"version": version, "needs": [packed.FEATURE], packed.FEATURE: packed.write(extension, buffer)}
+    has_holes = mesh is None and scene.proxy.sheets is not None
     perspective, nodes = _nodes(scene, NODE_DIGITS if plain else PACKED_NODE_DIGITS)
     named = partial(_named, plain)
     return {
@@ -215,7 +219,7 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayl
                 {
                     "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0.0},
                     "extensions": {"KHR_materials_unlit": {}},
-                    **({} if scene.proxy.sheets is None else {"alphaMode": "MASK"}),  # below glTF's default of 0.5
+                    **({"alphaMode": "MASK"} if has_holes else {}),  # below glTF's default of 0.5
                     "doubleSided": True,
                 },
             )

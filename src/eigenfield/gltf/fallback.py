@@ -1,0 +1,221 @@
+"""What viewers without a decoder of ours show of a coded mesh: a relief of the middle view, and its picture.
+
+Of cameras that look one way, the reference camera's view is drawn from the means and laid over a smooth height field of
+its depth: it has no holes, and shows the scene best where it was photographed. Fine depth would need many triangles,
+since a picture bends on a large triangle that recedes. Cameras that look several ways get the mesh itself with fewer
+triangles, and its atlas.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.coding.pictures.pictures_8bit import encode_small_preview
+from eigenfield.core.camera import Camera
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.payloads import Payload
+from eigenfield.core.scene import Scene
+from eigenfield.gltf.coarse import coarse_mesh
+
+MAX_BYTES_RATIO = 0.05  # of mesh and picture to what is coded
+MAX_AXIS_ANGLE_DEGREES = 25.0  # between a camera's axis and the mean axis, of cameras that look one way
+MAX_MARGIN_FRACTION = 0.12  # by which the view is widened, of the reference camera's side
+VIEW_SIDE_PIXELS = 256  # in which it is drawn
+DEPTH_MEDIAN_PIXELS = 5
+DEPTH_BLUR_RATIO = 0.5  # of the spacing of the height field's points
+HALF_COVERED = 0.5  # from which on a part of the view is shown
+
+
+@dataclass(frozen=True)
+class Size:
+    """How much of a scene other viewers show.
+
+    Attributes:
+        points: Of the relief.
+        side: Of the picture, in texels.
+        quality: Of the picture, as a JPEG.
+    """
+
+    points: int
+    side: int
+    quality: int
+
+
+SIZES = (
+    Size(200, 384, 55),
+    Size(160, 288, 55),
+    Size(128, 224, 50),
+    Size(100, 160, 45),
+    Size(80, 128, 40),
+    Size(48, 80, 35),
+    Size(30, 48, 30),
+    Size(16, 40, 30),
+)
+
+
+def fallback(scene: Scene, atlas: NDArray[np.uint8], coded: int) -> tuple[Mesh, Payload]:
+    """A mesh and its picture, of the first of SIZES within MAX_BYTES_RATIO x `coded` bytes, else of the last.
+
+    Args:
+        scene: To be written.
+        atlas: (H, W) or (H, W, 3) codes of its mean.
+        coded: Bytes of the coded parts.
+    """
+    drawn = _draw_middle(scene, atlas) if look_one_way(scene.rig.cameras) else None
+    for size in SIZES:
+        if drawn is None:
+            mesh, picture = coarse_mesh(scene.proxy.mesh, 2 * size.points), atlas
+        else:
+            mesh, picture = _relief(drawn, size.points), drawn.picture
+        payload = Payload("jpeg", encode_small_preview(picture, size.side, size.quality))
+        if plain_bytes(mesh) + len(payload.data) <= MAX_BYTES_RATIO * coded:
+            break
+    return mesh, payload
+
+
+def plain_bytes(mesh: Mesh) -> int:
+    """Bytes of a small mesh as plain floats with a byte a corner."""
+    assert mesh.uv is not None
+    return mesh.vertices.nbytes + mesh.uv.nbytes + mesh.faces.size
+
+
+def look_one_way(cameras: tuple[Camera, ...]) -> bool:
+    """Whether the axes of all cameras are about the same.
+
+    Args:
+        cameras: All cameras.
+    """
+    axes = np.array([camera.R[2] for camera in cameras])
+    mean = axes.mean(axis=0)
+    least = math.cos(math.radians(MAX_AXIS_ANGLE_DEGREES)) * float(np.linalg.norm(mean))
+    return bool(least > 0 and (axes @ mean).min() >= least)
+
+
+@dataclass(frozen=True, eq=False)
+class _Drawn:
+    """The middle view.
+
+    Attributes:
+        camera: Whose view it is.
+        picture: (h, w) or (h, w, 3) codes; beside what is covered those of the nearest covered pixel.
+        inverse_depth: (h, w), likewise.
+        covered: (h, w) where there is a surface.
+    """
+
+    camera: Camera
+    picture: NDArray[np.uint8]
+    inverse_depth: NDArray[np.float32]
+    covered: NDArray[np.bool_]
+
+
+def _draw_middle(scene: Scene, atlas: NDArray[np.uint8]) -> _Drawn | None:
+    """None where the reference camera sees nothing."""
+    mesh, sheets = scene.proxy.mesh, scene.proxy.sheets
+    camera = _middle_camera(scene.rig.cameras[scene.rig.reference], mesh)
+    if camera is None:
+        return None
+    counts = (len(mesh.faces),) if sheets is None else sheets.faces
+    shape = camera.height, camera.width
+    picture, depth = np.zeros((*shape, *atlas.shape[2:]), np.float32), np.zeros(shape, np.float32)
+    shown = np.zeros(shape, np.float32)
+    for first, last in zip(np.cumsum((0, *counts)), np.cumsum(counts), strict=False):
+        part = replace(mesh, faces=mesh.faces[first:last])
+        inverse, uv = _places(part, camera)
+        opacity = (inverse > 0).astype(np.float32)
+        if sheets is not None:
+            opacity *= np.clip(_sample(sheets.opacity, uv), 0, 1)
+        over = opacity if picture.ndim == 2 else opacity[..., None]
+        picture += over * (_sample(atlas.astype(np.float32), uv) - picture)
+        depth = np.where(opacity >= HALF_COVERED, inverse, depth)
+        shown += opacity * (1 - shown)
+    covered = depth > 0
+    if not covered.any():
+        return None
+    picture /= np.maximum(shown if picture.ndim == 2 else shown[..., None], HALF_COVERED)
+    nearest = _nearest(covered)
+    codes = np.rint(picture.clip(0, 255)).astype(np.uint8)
+    return _Drawn(camera, codes.reshape(-1, *codes.shape[2:])[nearest], depth.reshape(-1)[nearest], covered)
+
+
+def _middle_camera(camera: Camera, mesh: Mesh) -> Camera | None:
+    """The camera with the frame of the mesh in its view, at most MAX_MARGIN_FRACTION wider, in VIEW_SIDE_PIXELS."""
+    pixels, depth = camera.project(mesh.vertices.astype(np.float64))
+    if not (depth > 0).any():
+        return None
+    size = np.array((camera.width, camera.height), np.float64)
+    margin = MAX_MARGIN_FRACTION * size
+    low = np.clip(pixels[depth > 0].min(axis=0), -margin, size + margin)
+    high = np.clip(pixels[depth > 0].max(axis=0), -margin, size + margin)
+    if (high - low).min() < 1:
+        return None
+    scale = VIEW_SIDE_PIXELS / (high - low).max()
+    width, height = np.maximum(np.rint(scale * (high - low)).astype(int), 2).tolist()
+    frame = np.array([(scale, 0, -scale * low[0]), (0, scale, -scale * low[1]), (0, 0, 1)])
+    return replace(camera, K=frame @ camera.K, width=width, height=height)
+
+
+def _places(mesh: Mesh, camera: Camera) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """(h, w) inverse depth, 0 where the camera sees nothing, and (h, w, 2) texture coordinates."""
+    from eigenfield.imaging.raster import rasterise_view
+
+    raster = rasterise_view(mesh, camera)
+    covered = raster.face >= 0
+    uv = np.zeros((*covered.shape, 2), np.float32)
+    if covered.any():
+        assert mesh.uv is not None
+        row, column = np.nonzero(covered)
+        found = raster.face[covered]
+        at = np.stack([column + 0.5, row + 0.5, np.ones(len(row))], axis=1)
+        corners = np.einsum("nij,nj->ni", raster.edges[found], at)
+        corners /= corners.sum(axis=1, keepdims=True)
+        uv[covered] = np.einsum("ni,nij->nj", corners, mesh.uv[mesh.faces[found]])
+    return np.where(covered, raster.inverse_depth, np.float32(0)), uv
+
+
+def _sample(picture: NDArray[np.float32], uv: NDArray[np.float32]) -> NDArray[np.float32]:
+    import cv2
+
+    height, width = picture.shape[:2]
+    at = uv * np.array((width, height), np.float32) - np.float32(0.5)
+    found = cv2.remap(picture, at[..., 0], at[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    return np.asarray(found, np.float32)
+
+
+def _nearest(covered: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """(h, w) of each pixel the nearest covered one, by its index."""
+    from scipy.ndimage import distance_transform_edt
+
+    rows, columns = distance_transform_edt(~covered, return_distances=False, return_indices=True)
+    return np.asarray(rows, np.int64) * covered.shape[1] + columns
+
+
+def _relief(drawn: _Drawn, count: int) -> Mesh:
+    """The view as a height field of about `count` points, without the squares that are mostly not covered."""
+    import cv2
+
+    height, width = drawn.inverse_depth.shape
+    spacing = math.sqrt(width * height / count)
+    columns, rows = (max(1, round(side / spacing) - 1) for side in (width, height))
+    smooth = cv2.GaussianBlur(
+        cv2.medianBlur(drawn.inverse_depth, DEPTH_MEDIAN_PIXELS), (0, 0), DEPTH_BLUR_RATIO * spacing
+    )
+    x, y = np.meshgrid(np.linspace(0, width, columns + 1), np.linspace(0, height, rows + 1))
+    inverse = np.asarray(smooth, np.float64)[
+        np.minimum(y.astype(int), height - 1), np.minimum(x.astype(int), width - 1)
+    ]
+    corners = np.stack([x, y, np.ones_like(x)], axis=2).reshape(-1, 3) / inverse.reshape(-1, 1)
+    part = cv2.resize(drawn.covered.astype(np.float32), (columns, rows), interpolation=cv2.INTER_AREA)
+    row, column = np.nonzero(np.asarray(part) >= min(HALF_COVERED, float(np.max(part))))
+    first = row * (columns + 1) + column
+    below = first + columns + 1
+    faces = np.concatenate(
+        [np.stack([first, below, first + 1], axis=1), np.stack([first + 1, below, below + 1], axis=1)]
+    )
+    used, corner = np.unique(faces, return_inverse=True)
+    vertices = (corners[used] @ np.linalg.inv(drawn.camera.K).T - drawn.camera.t) @ drawn.camera.R
+    uv = np.stack([x / width, y / height], axis=2).reshape(-1, 2)[used]
+    return Mesh(vertices.astype(np.float32), corner.reshape(-1, 3).astype(np.int32), uv.astype(np.float32))

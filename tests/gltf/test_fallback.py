@@ -1,0 +1,142 @@
+"""What other viewers show of a coded mesh."""
+
+import io
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+import trimesh
+from PIL import Image
+
+import eigenfield as ef
+from eigenfield.core.camera import Camera
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.proxy import Proxy
+from eigenfield.gltf import encode_scene, save, validate
+from eigenfield.gltf.coded_pictures import shown_mean
+from eigenfield.gltf.fallback import SIZES, fallback, look_one_way, plain_bytes
+from eigenfield.imaging.metrics import ssim
+from eigenfield.imaging.raster import rasterise_view
+from support.coded_scenes import coded_scene
+from support.soft_scenes import coded_soft_scene
+
+PLENTY = 10**6  # bytes of coded parts
+SIDE = 256
+
+
+def drawn(mesh: Mesh, picture: np.ndarray, camera: Camera) -> tuple[np.ndarray, np.ndarray]:
+    """The mesh with a picture as a viewer shows it, and where there is any of it."""
+    raster = rasterise_view(mesh, camera)
+    covered = raster.face >= 0
+    row, column = np.nonzero(covered)
+    share = np.einsum(
+        "nij,nj->ni", raster.edges[raster.face[covered]], np.column_stack([column + 0.5, row + 0.5, np.ones(len(row))])
+    )
+    share /= share.sum(axis=1, keepdims=True)
+    uv = np.einsum("ni,nij->nj", share, mesh.uv[mesh.faces[raster.face[covered]]])
+    height, width = picture.shape[:2]
+    found = np.zeros((*covered.shape, 3))
+    at = np.clip(uv * (width, height), 0, (width - 1, height - 1)).astype(int)
+    found[covered] = picture.reshape(height, width, -1)[at[:, 1], at[:, 0]] / 255
+    return found, covered
+
+
+def smooth_scene():
+    """The coded scene, whose mean has one grain a texel, as pictures are: with shapes of a few texels."""
+    scene = coded_scene()
+    planes = tuple(
+        replace(plane, mean=np.atleast_3d(cv2.GaussianBlur(plane.mean, (0, 0), 2.5)).astype(np.float32))
+        for plane in scene.appearance.planes
+    )
+    return replace(scene, appearance=replace(scene.appearance, planes=planes))
+
+
+def middle(scene, side: int = SIDE) -> Camera:
+    camera = scene.rig.cameras[scene.rig.reference]
+    scale = side / max(camera.width, camera.height)
+    return replace(
+        camera, K=np.diag([scale, scale, 1]) @ camera.K, width=round(camera.width * scale),
+        height=round(camera.height * scale),
+    )  # fmt: skip
+
+
+def pieces_and_border(mesh: Mesh) -> tuple[int, int]:
+    """Connected pieces, and closed lines of edges that one triangle has alone: 1 and 1 of a surface without holes."""
+    whole = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
+    lonely = whole.edges[trimesh.grouping.group_rows(whole.edges_sorted, require_count=1)]
+    return len(whole.split(only_watertight=False)), len(trimesh.graph.connected_components(lonely))
+
+
+@pytest.mark.parametrize("coded", [PLENTY, 100_000, 60_000])
+def test_it_looks_like_the_mean_from_the_middle_and_has_no_holes(coded):
+    scene = smooth_scene()
+    atlas = shown_mean(scene)
+    mesh, picture = fallback(scene, atlas, coded)
+    camera = middle(scene)
+    shown, there = drawn(mesh, np.asarray(Image.open(io.BytesIO(picture.data)).convert("RGB")), camera)
+    meant, covered = drawn(scene.proxy.mesh, atlas, camera)
+    assert (there & covered).sum() > 0.97 * covered.sum()
+    assert ssim(shown, meant, there & covered) > 0.8
+    assert pieces_and_border(mesh) == (1, 1)
+
+
+def test_it_takes_its_part_of_the_bytes():
+    scene = coded_scene()
+    sizes = []
+    for coded in (10, 50_000, 100_000, PLENTY):
+        mesh, picture = fallback(scene, shown_mean(scene), coded)
+        sizes.append(plain_bytes(mesh) + len(picture.data))
+        assert len(mesh.vertices) <= 1.4 * SIZES[0].points
+        if coded > 10:
+            assert sizes[-1] <= 0.05 * coded
+    assert sizes == sorted(sizes) and sizes[0] < 2_500 < sizes[-1]
+
+
+def test_a_far_view_of_it_lies_where_the_surface_lies():
+    """Its points are on the surface, up to what smoothing takes off."""
+    scene = coded_scene()
+    mesh, _ = fallback(scene, shown_mean(scene), PLENTY)
+    fine = scene.proxy.mesh
+    distance = np.linalg.norm(mesh.vertices[:, None] - fine.vertices[fine.faces].mean(axis=1), axis=2).min(axis=1)
+    assert np.quantile(distance, 0.9) < 0.05 * np.ptp(scene.proxy.mesh.vertices, axis=0).max()
+
+
+def test_sheets_are_one_surface_without_holes(tmp_path):
+    path = tmp_path / "sheets.glb"
+    save(coded_soft_scene(), path)
+    assert validate(path) == []
+    (shown,) = trimesh.load(path).geometry.values()
+    mesh = Mesh(np.asarray(shown.vertices, np.float32), np.asarray(shown.faces, np.int32))
+    assert pieces_and_border(mesh) == (1, 1)
+    assert shown.visual.material.alphaMode in (None, "OPAQUE")
+
+
+def test_cameras_that_look_several_ways_get_the_mesh_itself():
+    scene = coded_scene()
+    around = np.array([(0.0, 0, 1), (0, 1, 0), (-1, 0, 0)])
+    turned = (*scene.rig.cameras[:-1], replace(scene.rig.cameras[-1], R=around @ scene.rig.cameras[-1].R))
+    assert look_one_way(scene.rig.cameras) and not look_one_way(turned)
+    walk = replace(scene, rig=replace(scene.rig, cameras=turned))
+    atlas = shown_mean(walk)
+    mesh, picture = fallback(walk, atlas, PLENTY)
+    corners = {tuple(corner) for corner in scene.proxy.mesh.uv.tolist()}
+    assert {tuple(corner) for corner in mesh.uv.tolist()} <= corners
+    height, width = Image.open(io.BytesIO(picture.data)).size[::-1]
+    assert height * atlas.shape[1] == pytest.approx(width * atlas.shape[0], rel=0.05)
+
+
+def test_a_reference_camera_that_sees_nothing_is_no_error():
+    scene = coded_scene()
+    behind = scene.proxy.mesh.vertices.copy()
+    centre = scene.rig.cameras[scene.rig.reference].centre
+    mesh = replace(scene.proxy.mesh, vertices=(2 * centre - behind).astype(np.float32))
+    found, picture = fallback(replace(scene, proxy=Proxy(mesh)), shown_mean(scene), PLENTY)
+    assert len(found.faces) and picture.data
+
+
+def test_a_file_that_is_written_again_keeps_it(tmp_path):
+    first = encode_scene(coded_scene())
+    path = tmp_path / "scene.glb"
+    path.write_bytes(first)
+    assert encode_scene(ef.load(path)) == first
