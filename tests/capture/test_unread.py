@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 import pillow_heif
 import pytest
@@ -9,6 +11,8 @@ from PIL import Image
 
 from eigenfield.capture import open_any, open_capture
 from eigenfield.capture.photographs import kinds
+from eigenfield.capture.photographs.read import decode
+from eigenfield.core.errors import CaptureError
 from support.captures import write_capture
 from support.named import picture, refused, write, write_video
 
@@ -136,3 +140,20 @@ def test_videos_of_live_photographs_make_no_rig(tmp_path):
     for name in "abc":
         write_video(folder / f"{name}.mov", 2)
     assert open_any(folder).format == "folder"
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "module", "extra"),
+    [
+        ("a.heic", b"\0\0\0\x18ftypheic\0\0\0\0mif1heic", "pillow_heif.as_plugin", "photos"),
+        ("a.jxl", b"\xff\x0a" + bytes(40), "pillow_jxl.JpegXLImagePlugin", "photos"),
+        ("a.nef", b"MM\0*" + bytes(40), "rawpy", "raw"),
+        ("a.exr", b"\x76\x2f\x31\x01" + bytes(40), "OpenEXR", "renders"),
+    ],
+)
+def test_a_file_without_its_package_is_refused_by_name(tmp_path, monkeypatch, name, data, module, extra):
+    monkeypatch.setitem(sys.modules, module, None)
+    (tmp_path / name).write_bytes(data)
+    with pytest.raises(CaptureError) as caught:
+        decode(tmp_path / name)
+    assert caught.value.code == "image-kind" and caught.value.remedy == f"pip install 'eigenfield[{extra}]'"

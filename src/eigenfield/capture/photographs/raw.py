@@ -36,9 +36,9 @@ def decode_raw(path: Path) -> tuple[NDArray[np.float32], Header]:
     White balance is the camera's, white its sensor's: LibRaw's own brightness and its white from a picture's maximum
     would differ from photograph to photograph.
     """
-    import rawpy
-
     with _open(path) as raw:
+        import rawpy
+
         header = _header(raw, path)
         try:
             pixels = raw.postprocess(
