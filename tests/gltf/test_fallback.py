@@ -89,7 +89,7 @@ def test_it_takes_its_part_of_the_bytes():
         sizes.append(plain_bytes(mesh) + len(picture.data))
         assert len(mesh.vertices) <= 1.4 * SIZES[0].points
         if coded > 10:
-            assert sizes[-1] <= 0.05 * coded
+            assert sizes[-1] <= 0.06 * coded
     assert sizes == sorted(sizes) and sizes[0] < 2_500 < sizes[-1]
 
 

@@ -21,13 +21,14 @@ from eigenfield.core.payloads import Payload
 from eigenfield.core.scene import Scene
 from eigenfield.gltf.coarse import coarse_mesh
 
-MAX_BYTES_RATIO = 0.05  # of mesh and picture to what is coded
+MAX_BYTES_RATIO = 0.06  # of mesh and picture to what is coded
 MAX_AXIS_ANGLE_DEGREES = 25.0  # between a camera's axis and the mean axis, of cameras that look one way
 MAX_MARGIN_FRACTION = 0.12  # by which the view is widened, of the reference camera's side
 VIEW_SIDE_PIXELS = 256  # in which it is drawn
 DEPTH_MEDIAN_PIXELS = 5
 DEPTH_BLUR_RATIO = 0.5  # of the spacing of the height field's points
-HALF_COVERED = 0.5  # from which on a part of the view is shown
+HALF_COVERED = 0.5  # opacity from which on a sheet is there
+SQUARE_COVERED = 0.25  # of a square of the height field, from which on it is shown
 
 
 @dataclass(frozen=True)
@@ -194,7 +195,7 @@ def _nearest(covered: NDArray[np.bool_]) -> NDArray[np.int64]:
 
 
 def _relief(drawn: _Drawn, count: int) -> Mesh:
-    """The view as a height field of about `count` points, without the squares that are mostly not covered."""
+    """The view as a height field of about `count` points, without the squares that show next to nothing."""
     import cv2
 
     height, width = drawn.inverse_depth.shape
@@ -209,7 +210,7 @@ def _relief(drawn: _Drawn, count: int) -> Mesh:
     ]
     corners = np.stack([x, y, np.ones_like(x)], axis=2).reshape(-1, 3) / inverse.reshape(-1, 1)
     part = cv2.resize(drawn.covered.astype(np.float32), (columns, rows), interpolation=cv2.INTER_AREA)
-    row, column = np.nonzero(np.asarray(part) >= min(HALF_COVERED, float(np.max(part))))
+    row, column = np.nonzero(np.asarray(part) >= min(SQUARE_COVERED, float(np.max(part))))
     first = row * (columns + 1) + column
     below = first + columns + 1
     faces = np.concatenate(
