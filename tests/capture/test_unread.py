@@ -145,7 +145,7 @@ def test_videos_of_live_photographs_make_no_rig(tmp_path):
 @pytest.mark.parametrize(
     ("name", "data", "module", "extra"),
     [
-        ("a.heic", b"\0\0\0\x18ftypheic\0\0\0\0mif1heic", "pillow_heif.as_plugin", "photos"),
+        ("a.heic", b"\0\0\0\x18ftypheic\0\0\0\0mif1heic", "pi_heif.as_plugin", "photos"),
         ("a.jxl", b"\xff\x0a" + bytes(40), "pillow_jxl.JpegXLImagePlugin", "photos"),
         ("a.nef", b"MM\0*" + bytes(40), "rawpy", "raw"),
         ("a.exr", b"\x76\x2f\x31\x01" + bytes(40), "OpenEXR", "renders"),

@@ -70,9 +70,7 @@ def unpack(path: Path, work: Path | None) -> Path:
     return folder
 
 
-def _error(
-    code: str, message: str, path: Path, remedy: str = "unpack it yourself, and name the folder"
-) -> CaptureError:
+def _error(code: str, message: str, path: Path, remedy: str = ZIP_REMEDY) -> CaptureError:
     return CaptureError(f"zip-{code}", message, path=path, remedy=remedy)
 
 

@@ -39,7 +39,7 @@ RAW_EXTENSIONS = (
 LINEAR_EXTENSIONS = (".exr",)  # of photographs whose values are linear light
 # the earlier of two with the same stem is the photograph, and the later a copy of it
 OPTIONAL_KINDS = (
-    Kind((".heic", ".heif", ".hif"), "HEIC", PHOTOS_REMEDY, "pillow_heif"),
+    Kind((".heic", ".heif", ".hif"), "HEIC", PHOTOS_REMEDY, "pi_heif"),
     Kind((".jxl",), "JPEG XL", PHOTOS_REMEDY, "pillow_jxl"),
     Kind(RAW_EXTENSIONS, "a camera's RAW", RAW_REMEDY, "rawpy"),
     Kind(LINEAR_EXTENSIONS, "OpenEXR", RENDERS_REMEDY, "OpenEXR"),

@@ -177,7 +177,7 @@ def format_of(path: Path, start: bytes) -> str | None:
 def _open_heic(file: Any, path: Path) -> Image.Image:
     """Pillow's image, turned by the decoder as HEIC's own properties say; EXIF's orientation does not count."""
     try:
-        from pillow_heif.as_plugin import HeifImageFile
+        from pi_heif.as_plugin import HeifImageFile
     except ImportError as error:
         raise missing_module_error(path, "HEIC", PHOTOS_REMEDY) from error
     head = read_at(file, 0, PHOTOGRAPH_HEAD_BYTES)
@@ -351,10 +351,10 @@ def _decode_over_8bit(data: bytes, header: Header, image: Image.Image, path: Pat
 
 
 def _decode_deep_heic(data: bytes, header: Header, path: Path) -> NDArray[np.float32]:
-    import pillow_heif
+    import pi_heif
 
     try:
-        found = pillow_heif.open_heif(io.BytesIO(data), convert_hdr_to_8bit=False, hdr_to_16bit=False)
+        found = pi_heif.open_heif(io.BytesIO(data), convert_hdr_to_8bit=False, hdr_to_16bit=False)
         values = np.asarray(found).astype(np.float32) / np.float32((1 << header.depth) - 1)
     except DECODER_ERRORS as error:
         raise decoder_error(path, error) from error
