@@ -47,7 +47,37 @@ def _parse_size(context: click.Context, parameter: click.Parameter, value: str |
     return round(float(found[1]) * {"": 1, "k": 1e3, "m": 1e6, "g": 1e9}[found[2]])
 
 
+GROUPS = {  # of options in the help, the common ones first; what is named in none is of the last
+    "Common options": (
+        "output", "proxy", "preset", "target_size", "hold_out", "work", "overwrite", "quiet", "threads",
+    ),
+    "What the capture is": (
+        "calibration", "masks", "format", "grid", "pattern", "frame", "frames", "reference", "metres_per_unit",
+    ),
+    "Estimated cameras and mesh": (
+        "surface", "layers", "refine", "background", "primitives", "fit_spheres", "blind", "triangles",
+    ),
+    "Quality and size": (
+        "quality", "target_psnr", "target_ssim", "textures", "density", "atlas", "residual", "fit",
+    ),
+    "Texture maps, as the paper makes them (--fit none)": ("uv_ssim", "align", "harmonise", "codec", "keep_maps"),
+    "Other options": (),
+}  # fmt: skip
+
+
+class _Grouped(click.Command):
+    """Shows its options by `GROUPS`."""
+
+    def format_options(self, context: click.Context, formatter: click.HelpFormatter) -> None:
+        lines = {option.name: option.get_help_record(context) for option in self.get_params(context)}
+        for title, names in GROUPS.items():
+            shown = [lines.pop(name) for name in names or tuple(lines)]
+            with formatter.section(title):
+                formatter.write_dl([line for line in shown if line is not None])
+
+
 @click.command(
+    cls=_Grouped,
     epilog="""\b
 Examples:
   eigenfield encode photos/ -o scene.glb
@@ -59,7 +89,7 @@ Examples:
   eigenfield encode photos/ --proxy mesh.glb --fit none --codec png -o scene.glb
   eigenfield encode photos/ --proxy mesh.glb --preset small -o small.glb
   eigenfield encode photos/ --proxy mesh.glb --target-size 300kB -o small.glb
-  eigenfield encode photos/ --proxy mesh.glb --residual 70 -o archive.glb"""
+  eigenfield encode photos/ --proxy mesh.glb --residual 70 -o archive.glb""",
 )
 @capture_argument()
 @click.option(
@@ -101,16 +131,17 @@ def command(
     """Turn the photographs in CAPTURE into one .glb.
 
     Cameras and proxy mesh are estimated where they are not given: CAPTURE is a folder of photographs, with or without a
-    calibration, several such folders, a zip, or one video of a walk (eigenfield inspect CAPTURE says what is found).
+    calibration, several such folders, a zip, or one video of a walk (`eigenfield inspect CAPTURE` says what is found).
     """  # fmt: skip
     from eigenfield.encoding import encode
     from eigenfield.encoding.views import check_selection
-    from eigenfield.gltf import parts, save
-    from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES
-    from eigenfield.runtime.files import refuse_existing
+    from eigenfield.gltf import parts, refuse_output, save
+    from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES, refuse_no_mesh
 
     started = time.monotonic()
-    refuse_existing(output, overwrite)
+    refuse_output(output, overwrite)
+    if proxy is not None:
+        refuse_no_mesh(proxy)
     options = from_fields(EncodeOptions, settings)
     if blind and options.hold_out is None:
         raise OptionError("blind", "--blind is about held-out photographs", remedy="say which with --hold-out")

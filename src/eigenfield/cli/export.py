@@ -177,7 +177,7 @@ def _chosen_kind(output: Path, kind: str | None, numbered: bool) -> str:
                 "output-kind",
                 f"{output}: one .png may be many things",
                 remedy="put %04d into its name for the pictures of a path, or say --as quilt; "
-                "`eigenfield render` draws one view",
+                "`eigenfield render SCENE -o view.png` draws one view",
             )
         by_ending = {".html": "html", ".htm": "html", ".mp4": "mp4", ".obj": "obj",
                      ".png": "png" if numbered else "quilt"}  # fmt: skip
