@@ -24,22 +24,8 @@ from support.program import call
 
 ROOT = Path(__file__).parents[2]
 COMMAND = re.compile(r"`(eigenfield [^`]+)`")
-SPLAT_PROPERTIES = [
-    "x",
-    "y",
-    "z",
-    "f_dc_0",
-    "f_dc_1",
-    "f_dc_2",
-    "opacity",
-    "scale_0",
-    "scale_1",
-    "scale_2",
-    "rot_0",
-    "rot_1",
-    "rot_2",
-    "rot_3",
-]
+SPLAT_PROPERTIES = ["x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2",
+                    "rot_0", "rot_1", "rot_2", "rot_3"]  # fmt: skip
 
 
 def flat(node: ast.AST) -> str:

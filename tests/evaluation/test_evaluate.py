@@ -286,7 +286,8 @@ def test_missing_photographs_are_named_and_left_out(scene, tmp_path):
 
 def test_photographs_with_other_endings_are_matched_by_stem(scene, tmp_path):
     scene, capture = named_as_files(scene), write_capture(scene, tmp_path / "c")
-    named = [f"{Path(name).stem}{ending}" for name, ending in zip(scene.rig.names, [".JPG", ".heic", *[".png"] * 7])]
+    endings = [".JPG", ".heic", *[".png"] * 7]
+    named = [Path(name).stem + ending for name, ending in zip(scene.rig.names, endings, strict=True)]
     views = [dataclasses.replace(view, name=name) for view, name in zip(capture.views, named, strict=True)]
     found = match_photographs(scene, dataclasses.replace(capture, views=tuple(views)))
     assert found == {index: index for index in range(9)}

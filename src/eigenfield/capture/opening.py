@@ -24,6 +24,7 @@ from eigenfield.capture.readers.folder import read_folders
 from eigenfield.capture.readers.grid_names import compile_pattern
 from eigenfield.capture.readers.video import is_video_rig, read_videos
 from eigenfield.capture.unread import describe_unread
+from eigenfield.core.arguments import checked
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.recognise import refuse_address
 
@@ -131,6 +132,7 @@ def open_photographs(
     return _finish(made)
 
 
+@checked
 def open_any(
     path: StrPath,
     *,

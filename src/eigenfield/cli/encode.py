@@ -22,7 +22,6 @@ from eigenfield.cli.common import (
     reconstruction_options,
 )
 from eigenfield.cli.field_options import field_options, from_fields
-from eigenfield.core.errors import OptionError
 from eigenfield.encoding import EncodeOptions
 
 if TYPE_CHECKING:
@@ -134,29 +133,27 @@ def command(
     calibration, several such folders, a zip, or one video of a walk (`eigenfield inspect CAPTURE` says what is found).
     """  # fmt: skip
     from eigenfield.encoding import encode
+    from eigenfield.encoding.estimated import reconstruction_settings, refuse_unused
     from eigenfield.encoding.views import check_selection
     from eigenfield.gltf import parts, refuse_output, save
-    from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES, refuse_no_mesh
+    from eigenfield.proxy import refuse_no_mesh
 
     started = time.monotonic()
     refuse_output(output, overwrite)
     if proxy is not None:
         refuse_no_mesh(proxy)
     options = from_fields(EncodeOptions, settings)
-    if blind and options.hold_out is None:
-        raise OptionError("blind", "--blind is about held-out photographs", remedy="say which with --hold-out")
+    if proxy is None:
+        settings = reconstruction_settings(options, settings, blind)
+    else:
+        refuse_unused(settings, blind)
     with progress_bars(quiet) as progress:
         if proxy is not None:
-            _refuse_unused(settings, blind)
             scratch = output.absolute().parent if work is None else work
             light_field = _open_capture(capture, place, scratch, quiet)
             scene = encode(light_field, proxy, options, work=scratch, progress=progress)
         else:
             scratch = output.with_suffix(".work") if work is None else work
-            settings["triangles"] = PROXY_DEFAULT_TRIANGLES if options.triangles is None else options.triangles
-            settings["blind"], settings["hold_out"] = options.hold_out if blind else None, options.hold_out
-            if options.resolved().fit == "none":
-                _leave_out_layers(settings)
             check = partial(check_selection, options=options)
             made = reconstruct_capture(capture, place, scratch, progress, quiet, check, **settings)
             scene = encode(made.light_field, made.proxy, options, triangles=None, work=scratch, progress=progress)
@@ -169,25 +166,6 @@ def command(
         f"atlas {width}x{height}, for {photographs['count']} photographs ({photographs['bytes'] / 1e6:.1f} MB), "
         f"{len(scene.proxy.mesh.faces)} triangles, {time.monotonic() - started:.0f} s"
     )
-
-
-def _refuse_unused(settings: Mapping[str, Any], blind: bool) -> None:
-    """Refuse the options of `reconstruct`, and --blind, where the proxy is given."""
-    asked = [name for name, value in settings.items() if value not in (None, "auto", ())] + ["blind"] * blind
-    if asked:
-        raise OptionError(
-            "proxy-given",
-            f"--{asked[0].replace('_', '-').removesuffix('s')} is for making a proxy, but --proxy gives one",
-            remedy="leave out one of the two",
-        )
-
-
-def _leave_out_layers(settings: dict[str, Any]) -> None:
-    """One opaque surface, since texture maps know no other; refuse layers that were asked for."""
-    if settings["surface"] == "layers" or (settings["layers"] or 1) > 1:
-        message = "texture maps of several layers, which only a fit can make"
-        raise OptionError("sheets", message, remedy="leave out --fit none, or the layers")
-    settings["layers"] = 1
 
 
 def _open_capture(capture: Path, place: Mapping[str, Any], scratch: Path, quiet: bool) -> LightField:

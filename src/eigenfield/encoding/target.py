@@ -6,6 +6,7 @@ import logging
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from numbers import Real
 from typing import Generic, TypeVar
 
 from eigenfield.core.errors import OptionError
@@ -44,9 +45,10 @@ class Target:
             raise OptionError("target", f"{names} at a time", remedy="say one: size, psnr or ssim")
         name, value = given[0]
         low, high, unit = TARGET_RANGES[name]
-        if not low < value < high:
+        if isinstance(value, bool) or not isinstance(value, Real) or not low < value < high:
             between = f"between {low:g} and {high:g}" if high < math.inf else f"above {low:g}"
-            message = f"a target {name} of {value:g}{unit} is out of range"
+            shown = f"{value:g}{unit}" if isinstance(value, Real) else value
+            message = f"a target {name} of {shown} is out of range"
             raise OptionError("target", message, remedy=f"say one {between}{unit}")
 
     def is_met(self, tried: Attempt[T]) -> bool:

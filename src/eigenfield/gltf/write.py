@@ -16,8 +16,10 @@ from eigenfield.coding import limits
 from eigenfield.coding.codecs import CODECS, encoder
 from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, PICTURES, check_codec, dimensions
 from eigenfield.core.appearance import Plane
+from eigenfield.core.arguments import checked
 from eigenfield.core.errors import OptionError, OutputError
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.notebook import notebook_progress
 from eigenfield.core.payloads import Payload, PicturePayload
 from eigenfield.core.progress import Progress
 from eigenfield.core.proxy import Sheets
@@ -47,6 +49,7 @@ PACKED_NODE_DIGITS = 6
 CODED_NAMES_MIN_SAVING_BYTES = 256  # with their two entries in the JSON
 
 
+@checked
 def save(
     scene: Scene,
     path: str | os.PathLike[str],
@@ -54,7 +57,7 @@ def save(
     codec: str | None = None,
     quality: int | None = None,
     overwrite: bool = False,
-    progress: Progress | None = None,
+    progress: Progress | None = notebook_progress,
 ) -> None:
     """Write `scene` as a .glb, atomically.
 
@@ -69,7 +72,7 @@ def save(
             becomes AVIF.
         quality: 0..100 for avif, by default DEFAULT_AVIF_QUALITY; the mean is coded finer (MEAN_QUALITY_RATIO).
         overwrite: Whether an existing file is replaced.
-        progress: Reports each picture.
+        progress: Reports each picture; by default a bar in a notebook.
 
     Raises:
         OutputError: `output-exists`, `disk-full`, `file-too-large`, `scene-limit`, ...

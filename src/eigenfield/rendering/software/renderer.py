@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.arguments import checked
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
@@ -255,6 +256,7 @@ def renderer_of(scene: Scene) -> Renderer:
     return scene.derive("software renderer", lambda: Renderer(scene))
 
 
+@checked
 def render(
     scene: Scene,
     *,
