@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import types
+import urllib.request
 from dataclasses import replace
 from pathlib import Path
 
@@ -77,6 +78,22 @@ def test_a_picture_is_shown_in_a_notebook_and_saved(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.png"]
 
 
+def test_a_scene_is_exported_and_viewed(tmp_path):
+    scene = tiny_scene()
+    ef.save(scene, tmp_path / "a.glb")
+    for given in (scene, ef.load(tmp_path / "a.glb"), tmp_path / "a.glb"):
+        written, what = ef.export(given, tmp_path / "a.html", title="A", overwrite=True)
+        assert written == tmp_path / "a.html" and what.endswith(" MB")
+    assert ef.export(scene, tmp_path / "%d.png", path="grid", frames=2, samples=1)[1] == "2 pictures"
+    assert "use one of html, mp4" in error(ef.export, scene, tmp_path / "b", "pdf")
+    assert "--title is not for maps" in error(ef.export, scene, tmp_path / "b", "maps", title="B")
+    for given in (scene, tmp_path / "a.glb"):
+        with ef.view(given, browser=False) as server, urllib.request.urlopen(server.address, timeout=20) as answer:
+            assert b"<html" in answer.read()
+    with pytest.raises(ef.EigenfieldError):
+        ef.view(tmp_path / "nothing.glb", browser=False)
+
+
 class Kernel:
     """What stands for IPython: a shell with a kernel, and what is displayed."""
 
@@ -125,6 +142,8 @@ def test_a_notebook_shows_progress_unless_told_otherwise(nine, monkeypatch):
         ("reconstruct", ["photos"], {}, "capture of reconstruct is 'photos'"),
         ("set_threads", ["all"], {}, "count of set_threads is 'all'"),
         ("validate", [None], {}, "path of validate"),
+        ("view", [3], {}, "scene of view is 3"),
+        ("export", [3, "a.html"], {}, "scene of export is 3"),
         ("encode", [3], {}, "makes no proxy"),
         ("encode", ["a", 3], {}, "is no proxy"),
         ("encode", ["a"], {"preste": "small"}, "did you mean preset?"),

@@ -43,6 +43,8 @@ if TYPE_CHECKING:
     from eigenfield.reconstruction import reconstruct as reconstruct
     from eigenfield.rendering import render as render
     from eigenfield.runtime.parallel import set_threads as set_threads
+    from eigenfield.viewer import view as view
+    from eigenfield.viewer.exports import export as export
 
     open = _opening.open_any
 
@@ -65,6 +67,7 @@ _HOME = {  # a room, or a name in a room where that is another
     "Target": "encoding",
     "encode": "encoding",
     "evaluate": "evaluation",
+    "export": "viewer.exports",
     "load": "gltf",
     "open": "capture:open_any",
     "reconstruct": "reconstruction",
@@ -72,6 +75,7 @@ _HOME = {  # a room, or a name in a room where that is another
     "save": "gltf",
     "set_threads": "runtime.parallel",
     "validate": "gltf",
+    "view": "viewer",
 }
 __all__ = ["__version__", *_HOME]
 

@@ -64,7 +64,10 @@ def places(tmp_path_factory, fitted):
     return {"CAPTURE": capture, "MESH": capture / "proxy.ply", "SCENE": scene, **bare}
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+SLOW = pytest.mark.slow
+
+
+@pytest.mark.parametrize("command", [pytest.param(each, marks=[SLOW] * (" encode " in each)) for each in COMMANDS])
 def test_a_command_that_a_message_gives_runs(command, places, run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("eigenfield.calibrate.motion.features.FEATURE_MIN_MEDIAN_COUNT", 0)  # of small photographs
@@ -93,7 +96,7 @@ def test_options_pages_and_extras_that_messages_name_exist():
     options = {word for verb in VERBS for option in group.get_command(None, verb).params
                for word in (*option.opts, *option.secondary_opts)} | {"--help", "--version"}  # fmt: skip
     others = {"--image_path", "--overlay"}  # of other programs
-    named = {word for text in TEXTS for word in re.findall(r"(?<![\w-])--[a-z][a-z-]*[a-z]", text)}
+    named = {word for text in TEXTS for word in re.findall(r"(?<![\w-])--[a-z][a-z-]*[a-z](?![\w-])", text)}
     assert named - options - others == set()
     extras = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
     assert {name for text in TEXTS for name in re.findall(r"eigenfield\[(\w+)\]", text)} <= set(extras)

@@ -18,12 +18,12 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from eigenfield.capture import open_capture
-from eigenfield.cli.export import OPTIONS
 from eigenfield.core.errors import OutputError
 from eigenfield.gltf import save
 from eigenfield.rendering import RenderJob
 from eigenfield.runtime.files import atomic_files
 from eigenfield.viewer import exports
+from eigenfield.viewer.exports import OPTIONS
 from support.scenes import tiny_scene
 
 KINDS = {  # output, options, and a file that must be there

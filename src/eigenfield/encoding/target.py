@@ -45,7 +45,7 @@ class Target:
             raise OptionError("target", f"{names} at a time", remedy="say one: size, psnr or ssim")
         name, value = given[0]
         low, high, unit = TARGET_RANGES[name]
-        if isinstance(value, bool) or not isinstance(value, Real) or not low < value < high:
+        if isinstance(value, bool) or not isinstance(value, Real) or not low < float(value) < high:
             between = f"between {low:g} and {high:g}" if high < math.inf else f"above {low:g}"
             shown = f"{value:g}{unit}" if isinstance(value, Real) else value
             message = f"a target {name} of {shown} is out of range"
