@@ -42,7 +42,7 @@ def principal_components() -> None:
     import numpy as np
     from sklearn.decomposition import PCA
 
-    from eigenfield import open_capture
+    from eigenfield.capture import open_capture
     from eigenfield.encoding.projected.atlas import make_atlas
     from eigenfield.encoding.projected.mean import mean_map
     from eigenfield.encoding.projected.project import texture_maps
@@ -64,7 +64,7 @@ def video() -> None:
     import av
     import numpy as np
 
-    from eigenfield import open_capture
+    from eigenfield.capture import open_capture
     from eigenfield.runtime.parallel import ordinary_scheduling
 
     capture = open_capture(tarot(), calibration=tarot() / "calibration" / "refined.json")

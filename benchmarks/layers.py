@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 import eigenfield as ef
 import measure
+from eigenfield.capture import open_any
 from eigenfield.core.camera import Camera
 from eigenfield.imaging.metrics import psnr
 from eigenfield.reconstruction import layered, layers
@@ -72,7 +73,7 @@ class _GivenError(Exception):
 def given_of(name: str, out: Path) -> tuple[NDArray[np.uint8], Sequence[Camera], Range]:
     """Photographs at the size of a trial, their cameras, and the range of inverse depths of a capture."""
     capture = captures.named(name, out)
-    photographs = ef.open_any(capture.folder, calibration=capture.calibration)
+    photographs = open_any(capture.folder, calibration=capture.calibration)
 
     def stop(*given: Any, **_: Any) -> None:
         raise _GivenError(*given)

@@ -21,6 +21,7 @@ import numpy as np
 
 import eigenfield as ef
 import measure
+from eigenfield.capture import open_capture
 from eigenfield.demo import draw_demo_capture
 from eigenfield.encoding.projected.atlas import make_atlas
 from eigenfield.encoding.projected.project import texture_map
@@ -146,7 +147,7 @@ def measured(name: str, demo: Path) -> dict[str, Any]:
 
 def exact(demo: Path) -> dict[str, Any]:
     """What resampling alone costs: every fourth row and column of the demo's capture, with all their textures."""
-    capture = ef.open_capture(demo / "capture")
+    capture = open_capture(demo / "capture")
     some = prepared.every(capture, 4)
     scene = ef.encode(some, demo / "capture" / "proxy.ply", textures=len(some.views) - 1, density=2.0, fit="none")
     return ef.evaluate(scene, some, png_maps="none")["image"]

@@ -201,7 +201,7 @@ def tarot(count: int) -> Scene | None:
     folder = os.environ.get("EIGENFIELD_DATA")
     if not folder:
         return None
-    from eigenfield import open_capture
+    from eigenfield.capture import open_capture
     from eigenfield.proxy import read_mesh
 
     capture = Path(folder) / "tarot_17x17_512"

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import eigenfield as ef
+from eigenfield.capture import open_capture
 from eigenfield.evaluation import read_circles
 from eigenfield.gltf import parts
 
@@ -16,7 +17,7 @@ pytestmark = pytest.mark.slow
 
 def tarot(data):
     folder = data / "tarot_17x17_512"
-    return folder, ef.open_capture(folder, calibration=folder / "calibration" / "refined.json")
+    return folder, open_capture(folder, calibration=folder / "calibration" / "refined.json")
 
 
 @pytest.mark.parametrize(
@@ -83,7 +84,7 @@ def test_photographs_in_one_small_file_out(data, tmp_path, call):
 
 def test_lenses_are_removed(data):
     """The fox: every view is there, straightened to its own size."""
-    capture = ef.open_capture(data / "fox_transforms_half")
+    capture = open_capture(data / "fox_transforms_half")
     assert len(capture.views) == 50
     photograph = capture.photograph(0)
     assert photograph.pixels.shape == (960, 540, 3) and np.isfinite(photograph.pixels).all()

@@ -13,9 +13,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-import eigenfield as ef
 import measure
-from eigenfield.capture import LightField, View
+from eigenfield.capture import LightField, View, open_capture
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import Scene
@@ -107,7 +106,7 @@ def words(capture: Capture) -> list[str]:
 
 def opened(where: Sequence[str]) -> LightField:
     """The capture that `words` names."""
-    return ef.open_capture(where[0], calibration=where[2] if len(where) > 1 else None)
+    return open_capture(where[0], calibration=where[2] if len(where) > 1 else None)
 
 
 def grid_of(light_field: LightField) -> Grid | None:

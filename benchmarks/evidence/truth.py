@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import eigenfield as ef
-from eigenfield.capture import LightField
+from eigenfield.capture import LightField, open_capture, open_photographs
 from eigenfield.core.scene import Scene
 from eigenfield.evaluation.session import Session, start_session
 from eigenfield.imaging.metrics import to_codes
@@ -34,8 +34,8 @@ def true_geometry(folder: Path, work: Path) -> dict[str, Any]:
     Every second row and column counts. folder: as `draw_demo_capture` writes it: images, transforms.json and proxy.ply.
     work: a folder that keeps the stages of the reconstruction.
     """
-    exact = every(ef.open_capture(folder), 2)
-    bare = ef.open_photographs(folder)
+    exact = every(open_capture(folder), 2)
+    bare = open_photographs(folder)
     bare = bare.subset([bare.names.index(name) for name in exact.names])
     made = ef.reconstruct(bare, work=work)
     options: dict[str, Any] = {"textures": TEXTURES, "density": DENSITY, "hold_out": "odd", "fit": "none"}

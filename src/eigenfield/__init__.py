@@ -2,8 +2,7 @@
 
     import eigenfield as ef
 
-    made = ef.reconstruct(ef.open_any("photos/"))
-    scene = ef.encode(made.light_field, made.proxy)
+    scene = ef.encode("photos/")
     ef.save(scene, "scene.glb")
     picture = ef.render(ef.load("scene.glb"), at=(0.3, -0.2))
 
@@ -21,9 +20,7 @@ from eigenfield.core.version import __version__
 if TYPE_CHECKING:
     from eigenfield.capture import LightField as LightField
     from eigenfield.capture import PhotoSet as PhotoSet
-    from eigenfield.capture import open_any as open_any
-    from eigenfield.capture import open_capture as open_capture
-    from eigenfield.capture import open_photographs as open_photographs
+    from eigenfield.capture import opening as _opening
     from eigenfield.core.camera import Camera as Camera
     from eigenfield.core.errors import CaptureError as CaptureError
     from eigenfield.core.errors import EigenfieldError as EigenfieldError
@@ -41,12 +38,17 @@ if TYPE_CHECKING:
     from eigenfield.evaluation import evaluate as evaluate
     from eigenfield.gltf import load as load
     from eigenfield.gltf import save as save
+    from eigenfield.gltf import validate as validate
     from eigenfield.reconstruction import Reconstruction as Reconstruction
     from eigenfield.reconstruction import reconstruct as reconstruct
     from eigenfield.rendering import render as render
     from eigenfield.runtime.parallel import set_threads as set_threads
+    from eigenfield.viewer import view as view
+    from eigenfield.viewer.exports import export as export
 
-_HOME = {
+    open = _opening.open_any
+
+_HOME = {  # a room, or a name in a room where that is another
     "Camera": "core.camera",
     "CaptureError": "core.errors",
     "EigenfieldError": "core.errors",
@@ -65,14 +67,15 @@ _HOME = {
     "Target": "encoding",
     "encode": "encoding",
     "evaluate": "evaluation",
+    "export": "viewer.exports",
     "load": "gltf",
-    "open_any": "capture",
-    "open_capture": "capture",
-    "open_photographs": "capture",
+    "open": "capture:open_any",
     "reconstruct": "reconstruction",
     "render": "rendering",
     "save": "gltf",
     "set_threads": "runtime.parallel",
+    "validate": "gltf",
+    "view": "viewer",
 }
 __all__ = ["__version__", *_HOME]
 
@@ -80,7 +83,8 @@ __all__ = ["__version__", *_HOME]
 def __getattr__(name: str) -> Any:
     if name not in _HOME:
         raise AttributeError(f"module 'eigenfield' has no attribute {name!r}")
-    value = getattr(importlib.import_module(f"eigenfield.{_HOME[name]}"), name)
+    room, _, inner = _HOME[name].partition(":")
+    value = getattr(importlib.import_module(f"eigenfield.{room}"), inner or name)
     globals()[name] = value
     return value
 

@@ -15,6 +15,7 @@ import eigenfield as ef
 import measure
 from benchmarks.test_evidence_between import joined, square
 from benchmarks.test_evidence_codecs import numbered
+from eigenfield.capture import open_capture
 from eigenfield.core.camera import Camera
 from eigenfield.gltf import parts
 from eigenfield.imaging.metrics import psnr
@@ -157,7 +158,7 @@ def test_a_small_capture_from_end_to_end(nine, tmp_path, monkeypatch):
     assert found["cameras"] == 5 and found["encoded"] == 4
     for row in rows.values():
         assert 0 <= row["edge_share"] <= 1 and row["edge_pixels"] == rows["ours"]["edge_pixels"]
-    theirs = ef.evaluate(ef.load(file), ef.open_capture(nine.folder), png_maps="none")["image"]["held_out"]
+    theirs = ef.evaluate(ef.load(file), open_capture(nine.folder), png_maps="none")["image"]["held_out"]
     for key in ("psnr", "psnr_luma", "psnr_full", "ssim"):
         assert rows["ours"][key] == pytest.approx(theirs[key], abs=1e-6)
     side = 56 * pictures.ENLARGED * 2
@@ -186,7 +187,7 @@ def test_a_small_capture_from_end_to_end(nine, tmp_path, monkeypatch):
 
 
 def test_peers_of_soft_sheets_are_drawn_on_an_opaque_surface(nine, tmp_path, monkeypatch):
-    field = ef.open_capture(nine.folder)
+    field = open_capture(nine.folder)
     plain = ef.encode(field, nine.proxy, textures=2, hold_out="odd", density=0.8, fit="none")
     ef.save(stacked(plain, plain.proxy.mesh), tmp_path / "ours.glb", codec="png")
     ef.save(plain, tmp_path / "opaque.glb", codec="png")
@@ -203,7 +204,7 @@ def test_peers_of_soft_sheets_are_drawn_on_an_opaque_surface(nine, tmp_path, mon
     assert found["sheets"] == 3 and found["mesh"] == parts(tmp_path / "opaque.glb")["mesh"]
     size = (tmp_path / "ours.glb").stat().st_size
     assert rows["ours"]["bytes"] == size and rows[FAST.name]["bytes"] <= equal_bytes.OVER * size
-    opaque, photographs = ef.load(tmp_path / "opaque.glb"), ef.open_capture(nine.folder)
+    opaque, photographs = ef.load(tmp_path / "opaque.glb"), open_capture(nine.folder)
     truth = ef.evaluate(opaque, photographs, png_maps="none")["image"]["held_out"]
     assert [row["coverage"] for row in rows.values()] == pytest.approx([truth["coverage"]] * len(rows))
     theirs = ef.evaluate(ef.load(tmp_path / "ours.glb"), photographs, png_maps="none")["image"]["held_out"]
@@ -225,7 +226,7 @@ def test_another_tree_encodes_to_our_bytes(nine, tmp_path):
 
 
 def test_a_version_before_that_saw_the_views_is_refused(nine, tmp_path):
-    field = ef.open_capture(nine.folder)
+    field = open_capture(nine.folder)
     held = ef.encode(field, nine.proxy, textures=2, hold_out="odd", density=0.8, fit="none")
     seen = ef.encode(field, nine.proxy, textures=2, density=0.8, fit="none")
     ef.save(held, tmp_path / "held.glb")

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import eigenfield as ef
+from eigenfield.capture import open_capture
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.gltf import save
@@ -28,7 +29,7 @@ def capture(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(captures, "shaded_texture", lambda index, total: shaded_texture(0, total))
         write_capture(folder, cameras=row_grid(25, 64, 56))
-    light_field = ef.open_capture(folder)
+    light_field = open_capture(folder)
     scene = ef.encode(light_field, folder / "proxy.ply", textures=4, hold_out="odd", density=1.5, fit="none")
     file = folder / "scene.glb"
     save(scene, file)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import eigenfield as ef
+from eigenfield.capture import open_capture
 from eigenfield.core.camera import Camera
 from eigenfield.gltf import save
 from eigenfield.imaging.metrics import psnr
@@ -25,7 +26,7 @@ from support.scenes import row_grid
 @pytest.fixture(scope="module")
 def coded(tmp_path_factory):
     folder = write_capture(tmp_path_factory.mktemp("losses") / "capture", cameras=row_grid(9, 64, 56))
-    light_field = ef.open_capture(folder)
+    light_field = open_capture(folder)
     file = folder / "scene.glb"
     save(ef.encode(light_field, folder / "proxy.ply", textures=3, density=1.0, fit="none"), file, quality=40)
     return folder, light_field, file

@@ -27,7 +27,8 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def scene(folder, tmp_path_factory):
-    from eigenfield import encode, open_capture
+    from eigenfield import encode
+    from eigenfield.capture import open_capture
 
     path = tmp_path_factory.mktemp("scene") / "scene.glb"
     save(encode(open_capture(folder), folder / "proxy.ply", textures=4, atlas=64, hold_out="view_04.png"), path)

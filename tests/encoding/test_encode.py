@@ -11,6 +11,7 @@ import pytest
 
 import eigenfield as ef
 import reference
+from eigenfield.capture import open_capture
 from eigenfield.core.appearance import Appearance, Basis, Plane
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
@@ -37,7 +38,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def capture(folder):
-    return ef.open_capture(folder)
+    return open_capture(folder)
 
 
 @pytest.fixture(scope="module")
@@ -188,7 +189,7 @@ def test_cameras_on_a_line_are_no_error(tmp_path):
     K = np.array([[50.0, 0, 32], [0, 50, 28], [0, 0, 1]])
     line = tuple(Camera(K, np.eye(3), -np.array([0.3 * i - 0.6, 0, -3.0]), 64, 56) for i in range(5))
     folder = write_capture(tmp_path / "line", line)
-    made = ef.encode(ef.open_capture(folder), proxy=folder / "proxy.ply", textures=4, atlas=64)
+    made = ef.encode(open_capture(folder), proxy=folder / "proxy.ply", textures=4, atlas=64)
     assert made.rig.view_plane.is_line and len(made.rig.triangles) == 0
     save(made, tmp_path / "line.glb")
     left, middle = ef.render(ef.load(tmp_path / "line.glb"), at=(-0.9, 0)), ef.render(made, at=(-0.9, 0.8))

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eigenfield as ef
+from eigenfield.capture import open_capture
 from eigenfield.coding.pictures.pictures_10bit import svt_coder
 from eigenfield.core.appearance import Plane
 from eigenfield.core.errors import OptionError
@@ -340,7 +341,7 @@ def test_more_cameras_more_textures(cameras, expected):
 
 def test_a_fitted_file_is_small_and_near_the_photographs(fitted):
     folder, output = fitted
-    scene, capture = ef.load(output), ef.open_capture(folder)
+    scene, capture = ef.load(output), open_capture(folder)
     assert validate(output) == []
     assert [plane.mean.shape[2] for plane in scene.appearance.planes] == [1, 2] and scene.appearance.to_rgb is not None
     assert scene.settings["fit"] == "photographs" and scene.settings["fitted"]["quality"] == 92
@@ -372,11 +373,11 @@ def test_saving_again_codes_nothing_twice(fitted, tmp_path):
 
 def test_a_fitted_scene_is_evaluated_without_texture_maps(fitted, run):
     folder, output = fitted
-    figures = evaluate(ef.load(output), ef.open_capture(folder))
+    figures = evaluate(ef.load(output), open_capture(folder))
     assert figures["image"]["encoded"]["psnr"] > 40
     assert figures["uv"] is None and figures["png_maps"] is None
     with pytest.raises(OptionError, match="no texture maps") as caught:
-        evaluate(ef.load(output), ef.open_capture(folder), curve="all")
+        evaluate(ef.load(output), open_capture(folder), curve="all")
     assert caught.value.code == "curve" and "--fit none" in caught.value.remedy
     code, said, _ = run("evaluate", output, folder)
     assert code == 0 and "none: the scene was fitted" in said
@@ -392,12 +393,12 @@ def test_a_fitted_scene_is_evaluated_without_texture_maps(fitted, run):
 def test_options_that_do_not_go_with_a_fit(fitted, options, code):
     folder, _ = fitted
     with pytest.raises(OptionError) as caught:
-        ef.encode(ef.open_capture(folder), proxy=folder / "proxy.ply", **{"fit": "photographs", **options})
+        ef.encode(open_capture(folder), proxy=folder / "proxy.ply", **{"fit": "photographs", **options})
     assert caught.value.code == code
 
 
 def test_presets_differ_in_bytes(fitted):
     folder, _ = fitted
     options = {"proxy": folder / "proxy.ply", "textures": 4, "fit": "photographs"}
-    sizes = [len(encode_scene(ef.encode(ef.open_capture(folder), **options, preset=name))) for name in PRESETS]
+    sizes = [len(encode_scene(ef.encode(open_capture(folder), **options, preset=name))) for name in PRESETS]
     assert sizes == sorted(sizes) and sizes[0] < sizes[-1]

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import eigenfield as ef
+from eigenfield.capture import open_capture
 from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice
 from eigenfield.core.mesh import Mesh
@@ -223,7 +224,7 @@ def test_a_mesh_that_is_off_costs_an_encode_little(tmp_path, monkeypatch):
     exact = lattice.coordinates(true.vertices)
     exact[:, 2] *= 1.03
     wrong = replace(true, vertices=lattice.points(exact).astype(np.float32))
-    capture, made = ef.open_capture(folder), {}
+    capture, made = open_capture(folder), {}
     for rounds in (4, 0):
         monkeypatch.setattr(surface, "SURFACE_TUNING", replace(surface.SURFACE_TUNING, rounds=rounds))
         scene = ef.encode(capture, wrong, textures=2, fit="photographs")

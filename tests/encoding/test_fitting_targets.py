@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import eigenfield as ef
+from eigenfield.capture import open_capture
 from eigenfield.core.payloads import mesh_key, size_of
 from eigenfield.encoding import EncodeOptions, Target
 from eigenfield.encoding.fitted.encode import FIGURES_MAX_BYTES
@@ -29,7 +30,7 @@ def test_figures_are_measured_of_the_file_that_is_kept(fitted, monkeypatch):
         "eigenfield.encoding.fitted.planes.coded_psnr", lambda *given: drawn.append(coded_psnr(*given)) or drawn[-1]
     )
     options = {"proxy": folder / "proxy.ply", "textures": 4, "fit": "photographs"}
-    made = ef.encode(ef.open_capture(folder), **options, target=Target(size=output.stat().st_size))
+    made = ef.encode(open_capture(folder), **options, target=Target(size=output.stat().st_size))
     assert len(files) > 1 and len(drawn) == 2
     assert [one["coded"] for one in made.settings["fitted"]["psnr"].values()] == [round(one, 3) for one in drawn]
     assert any(abs(len(tried) - len(encode_scene(made))) <= FIGURES_MAX_BYTES for tried in files)
@@ -49,7 +50,7 @@ def test_a_size_is_kept_to(fitted, tmp_path, run):
 
 def test_a_psnr_is_reached_and_one_that_cannot_be_is_said_to_be_out_of_reach(fitted, caplog):
     folder, _ = fitted
-    capture = ef.open_capture(folder)
+    capture = open_capture(folder)
     options = {"proxy": folder / "proxy.ply", "textures": 4, "fit": "photographs"}
     scene = ef.encode(capture, **options, target=Target(psnr=36))
     figures = evaluate(scene, capture)["image"]["encoded"]
@@ -64,7 +65,7 @@ def test_a_psnr_is_reached_and_one_that_cannot_be_is_said_to_be_out_of_reach(fit
 def test_a_target_far_from_the_preset_has_a_mesh_of_its_own(tmp_path, caplog, monkeypatch):
     cameras = row_grid(9, 64, 56)
     folder = write_capture(tmp_path / "relief", cameras, relief(cameras[4], 0.5, False, step=2))
-    capture, options = ef.open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "density": 1.5}
+    capture, options = open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "density": 1.5}
     asked = Target(psnr=28)
     with caplog.at_level("INFO", "eigenfield.encode"):
         monkeypatch.setattr("eigenfield.encoding.fitted.encode.REFIT_MIN_MESH_RATIO", 0.1)
@@ -90,7 +91,7 @@ def test_of_two_fits_the_better_is_kept(tmp_path, caplog, monkeypatch, asked):
     """The second may be worse: another mesh and atlas are a guess from the quality."""
     cameras = row_grid(9, 64, 56)
     folder = write_capture(tmp_path / "relief", cameras, relief(cameras[4], 0.5, False, step=2))
-    capture, options = ef.open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "density": 1.5}
+    capture, options = open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "density": 1.5}
     made = []
     for share in (1.0, 1e-3):
         monkeypatch.setattr("eigenfield.encoding.fitted.encode.REFIT_MIN_MESH_RATIO", share)
@@ -107,7 +108,7 @@ def test_of_two_fits_the_better_is_kept(tmp_path, caplog, monkeypatch, asked):
 
 def test_a_target_far_from_the_preset_has_an_atlas_of_its_own(tmp_path, caplog):
     folder = write_capture(tmp_path / "nine")
-    capture, proxy = ef.open_capture(folder), folder / "proxy.ply"
+    capture, proxy = open_capture(folder), folder / "proxy.ply"
     with caplog.at_level("INFO", "eigenfield.encode"):
         near = ef.encode(capture, proxy, textures=2, target=Target(psnr=20))
     assert "fitted again for quality" in caplog.text

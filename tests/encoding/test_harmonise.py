@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eigenfield as ef
+from eigenfield.capture import open_capture
 from eigenfield.core.errors import FormatError, OptionError
 from eigenfield.encoding.projected.atlas import make_atlas
 from eigenfield.encoding.projected.harmonise import fit_colours, harmonised_map
@@ -68,7 +69,7 @@ def folders(tmp_path_factory, plain):
 
 
 def encoded(folder, **options):
-    return ef.encode(ef.open_capture(folder), folder / "proxy.ply", textures=8, atlas=128, fit="none", **options)
+    return ef.encode(open_capture(folder), folder / "proxy.ply", textures=8, atlas=128, fit="none", **options)
 
 
 @pytest.mark.parametrize("model", ["gain", "affine"])
@@ -101,7 +102,7 @@ def test_equal_exposures_stay_as_they_are(folders):
 
 def test_captured_cameras_get_their_own_exposure_back_and_viewpoints_the_common_one(folders):
     common = encoded(folders["equal"])
-    scene, capture = encoded(folders["gain"], harmonise="gain"), ef.open_capture(folders["gain"])
+    scene, capture = encoded(folders["gain"], harmonise="gain"), open_capture(folders["gain"])
     level = np.exp(np.log(GAINS).mean())
     for index, name in enumerate(scene.rig.names):
         picture = ef.render(scene, camera=name)
@@ -120,7 +121,7 @@ def test_fewer_textures_do_where_exposures_differ(folders):
     """One texture of eight is spared: what the exposures did is no longer in them."""
 
     def figures(**options):
-        capture = ef.open_capture(folders["gain"])
+        capture = open_capture(folders["gain"])
         scene = ef.encode(capture, folders["gain"] / "proxy.ply", textures=2, atlas=128, fit="none", **options)
         return evaluate(scene, capture)["image"]["encoded"]["psnr"]
 
@@ -137,7 +138,7 @@ def test_held_out_cameras_have_no_colours(folders):
 
 
 def test_the_uv_measure_compares_harmonised_maps(folders):
-    capture = ef.open_capture(folders["gain"])
+    capture = open_capture(folders["gain"])
     scene = encoded(folders["gain"], harmonise="gain")
     found = evaluate(scene, capture)
     assert found["uv"]["psnr"] > 40
@@ -329,7 +330,7 @@ def test_the_command_line(folders, tmp_path, run):
 
 
 def test_harmonised_maps_are_the_maps_of_harmonised_photographs(folders):
-    scene, capture = encoded(folders["gain"]), ef.open_capture(folders["gain"])
+    scene, capture = encoded(folders["gain"]), open_capture(folders["gain"])
     atlas = make_atlas(scene.proxy.mesh, 128, 128)
     pixels = capture.photograph(3).pixels
     values, seen = texture_map(atlas, scene.rig.cameras[3], pixels)

@@ -10,6 +10,7 @@ from dataclasses import FrozenInstanceError, fields, replace
 import pytest
 
 import eigenfield as ef
+from eigenfield.capture import open_capture
 from eigenfield.cli.encode import command
 from eigenfield.cli.field_options import from_fields
 from eigenfield.core.errors import OptionError
@@ -58,7 +59,7 @@ def test_what_is_about_texture_maps_alone_is_the_paper_s_way(asked):
 
 
 def test_the_paper_s_way_is_said_where_it_was_not_asked_for(folder, caplog):
-    capture = ef.open_capture(folder)
+    capture = open_capture(folder)
     ef.encode(capture, folder / "proxy.ply", atlas=64, textures=1, uv_ssim=0.5)
     (record,) = caplog.records
     assert record.getMessage().startswith("--uv-ssim is about texture maps, which a fit does not make")
@@ -152,7 +153,7 @@ def test_the_command_line_maps_by_name():
 
 
 def test_options_and_their_fields_by_name_are_the_same(folder):
-    capture, proxy = ef.open_capture(folder), folder / "proxy.ply"
+    capture, proxy = open_capture(folder), folder / "proxy.ply"
     asked = {"textures": 2, "atlas": 64, "fit": "none"}
     made = [
         ef.encode(capture, proxy, EncodeOptions(**asked)),
@@ -170,7 +171,7 @@ def test_the_library_saves_what_the_command_line_does(folder, tmp_path, run, wor
     code, _, err = run("encode", folder, "-q", "-o", tmp_path / "cli.glb", *words)
     assert code == 0, err
     options = command_line(*words)
-    scene = ef.encode(ef.open_capture(folder), folder / "proxy.ply", options)
+    scene = ef.encode(open_capture(folder), folder / "proxy.ply", options)
     save(scene, tmp_path / "library.glb", **options.for_save)
     assert (tmp_path / "library.glb").read_bytes() == (tmp_path / "cli.glb").read_bytes()
 
@@ -190,7 +191,7 @@ def test_a_residual_from_the_library_is_that_of_the_command_line(folder, tmp_pat
     words = ["--proxy", str(folder / "proxy.ply"), *words.split()]
     code, _, err = run("encode", folder, "-q", "-o", tmp_path / "cli.glb", *words)
     assert code == 0, err
-    made = ef.encode(ef.open_capture(folder), folder / "proxy.ply", command_line(*words))
+    made = ef.encode(open_capture(folder), folder / "proxy.ply", command_line(*words))
     save(made, tmp_path / "library.glb", **command_line(*words).for_save)
     assert made.residual is not None
     assert (tmp_path / "library.glb").read_bytes() == (tmp_path / "cli.glb").read_bytes()

@@ -14,6 +14,7 @@ from PIL import Image
 
 import eigenfield as ef
 from eigenfield import gltf as scene_format
+from eigenfield.capture import open_capture
 from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError, OptionError
 from eigenfield.core.mesh import Mesh
@@ -41,7 +42,7 @@ WHERE = f"/extensions/{limits.EXTENSION}/residual"
 
 @pytest.fixture(scope="module")
 def capture(tmp_path_factory):
-    return ef.open_capture(write_capture(tmp_path_factory.mktemp("capture") / "nine"))
+    return open_capture(write_capture(tmp_path_factory.mktemp("capture") / "nine"))
 
 
 @pytest.fixture(scope="module")
@@ -337,7 +338,7 @@ def test_masked_pixels_have_no_difference(base, capture, tmp_path):
         mask = np.zeros((view.camera.height, view.camera.width), np.uint8)
         mask[:, 32:] = 255
         Image.fromarray(mask).save(folder / f"{view.name}.png")
-    masked = ef.open_capture(capture.root, masks=folder)
+    masked = open_capture(capture.root, masks=folder)
     difference = difference_of(with_residual(base, masked, FINE), 0)
     assert np.abs(difference[:, :28]).max() < 4 / 255 < np.abs(difference[:, 36:]).max()
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eigenfield import open_capture
+from eigenfield.capture import open_capture
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.encoding import EncodeOptions

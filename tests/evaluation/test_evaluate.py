@@ -16,7 +16,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, OptionError, OutputError
 from eigenfield.encoding.projected.atlas import make_atlas
 from eigenfield.encoding.projected.project import texture_map
-from eigenfield.evaluation import ExcludedCircle, evaluate, reconstruct_maps, stored_scores
+from eigenfield.evaluation import ExcludedCircle, evaluate, match_photographs, reconstruct_maps, stored_scores
 from eigenfield.evaluation.uv import measure_map
 from eigenfield.gltf import load, save
 from eigenfield.imaging.flip import flip
@@ -282,6 +282,18 @@ def test_missing_photographs_are_named_and_left_out(scene, tmp_path):
     held_only = evaluate(scene, write_capture(scene, tmp_path / "d", only=HELD))
     assert held_only["image"]["encoded"] is held_only["uv"] is None
     assert held_only["image"]["held_out"]["psnr"] == PSNR_MAX_DECIBELS
+
+
+def test_photographs_with_other_endings_are_matched_by_stem(scene, tmp_path):
+    scene, capture = named_as_files(scene), write_capture(scene, tmp_path / "c")
+    endings = [".JPG", ".heic", *[".png"] * 7]
+    named = [Path(name).stem + ending for name, ending in zip(scene.rig.names, endings, strict=True)]
+    views = [dataclasses.replace(view, name=name) for view, name in zip(capture.views, named, strict=True)]
+    found = match_photographs(scene, dataclasses.replace(capture, views=tuple(views)))
+    assert found == {index: index for index in range(9)}
+    twins = [dataclasses.replace(views[0], name=f"{Path(named[0]).stem}.tif"), *views]  # neither is the one
+    found = match_photographs(scene, dataclasses.replace(capture, views=tuple(twins)))
+    assert found == {index: index + 1 for index in range(1, 9)}
 
 
 def test_a_camera_that_sees_nothing_has_no_figures(scene, tmp_path):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import eigenfield as ef
+from eigenfield.capture import open_capture
 from eigenfield.core.errors import FormatError
 from eigenfield.gltf import encode_scene, parts, read_scene, store_scores, validate, without_residual
 from eigenfield.imaging.metrics import psnr, to_codes
@@ -18,7 +19,7 @@ from support.captures import write_capture
 
 @pytest.fixture(scope="module")
 def capture(tmp_path_factory):
-    return ef.open_capture(write_capture(tmp_path_factory.mktemp("capture") / "nine"))
+    return open_capture(write_capture(tmp_path_factory.mktemp("capture") / "nine"))
 
 
 @pytest.fixture(scope="module")

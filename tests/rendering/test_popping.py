@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import eigenfield as ef
+from eigenfield.capture import open_capture
 from eigenfield.demo import draw_demo_capture
 from eigenfield.gltf import save
 from eigenfield.rendering import novel_camera, renderer_of, view_weights
@@ -21,7 +22,7 @@ PIECE = np.array([[-0.2, -0.12], [0.3, 0.27]])  # of it, for the pictures
 
 def demo_scene(folder, side, pixels, textures, atlas):
     draw_demo_capture(folder / "capture", rows=side, columns=side, size=pixels)
-    capture = ef.open_capture(folder / "capture")
+    capture = open_capture(folder / "capture")
     proxy = folder / "capture" / "proxy.ply"
     save(ef.encode(capture, proxy, textures=textures, atlas=atlas, fit="none"), folder / "demo.glb")
     return ef.load(folder / "demo.glb")

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import eigenfield as ef
+from eigenfield.capture import open_capture
 from eigenfield.coding.codecs import encoder
 from eigenfield.coding.pictures.pictures_10bit import svt_coder
 from eigenfield.coding.pictures.stacking import encode
@@ -62,7 +63,7 @@ def fitted_scene() -> EncodedScene:
     """Luma and chroma fitted to nine photographs."""
     with tempfile.TemporaryDirectory() as work:
         folder = write_capture(Path(work) / "nine", cameras(3, 3), bumpy_square(24))
-        capture = ef.open_capture(folder)
+        capture = open_capture(folder)
         return ef.encode(capture, proxy=folder / "proxy.ply", fit="photographs", textures=6)
 
 

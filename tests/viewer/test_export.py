@@ -17,13 +17,13 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from PIL import Image
 
-import eigenfield as ef
-from eigenfield.cli.export import OPTIONS
+from eigenfield.capture import open_capture
 from eigenfield.core.errors import OutputError
 from eigenfield.gltf import save
 from eigenfield.rendering import RenderJob
 from eigenfield.runtime.files import atomic_files
 from eigenfield.viewer import exports
+from eigenfield.viewer.exports import OPTIONS
 from support.scenes import tiny_scene
 
 KINDS = {  # output, options, and a file that must be there
@@ -325,4 +325,4 @@ def test_hostile_cameras_are_written_inside(tmp_path):
     listing = json.loads((tmp_path / "in" / "maps" / "eigenfield.json").read_text(encoding="utf-8"))
     assert list(listing["maps"]) == list(names)
     assert all((tmp_path / "in" / "maps" / file).is_file() for file in listing["maps"].values())
-    assert len(ef.open_capture(tmp_path / "in" / "colmap")) == 25
+    assert len(open_capture(tmp_path / "in" / "colmap")) == 25

@@ -14,6 +14,7 @@ import trimesh
 from PIL import Image
 
 import eigenfield as ef
+from eigenfield.capture import open_capture
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.proxy import Proxy
@@ -250,7 +251,7 @@ def test_quilts_fit_players_and_say_what_cannot_be(scene):
 
 def test_a_colmap_folder_is_read_back_and_shows_what_is_drawn(scene, tmp_path):
     exports.write_colmap(RenderJob(scene), tmp_path / "capture")
-    capture = ef.open_capture(tmp_path / "capture")
+    capture = open_capture(tmp_path / "capture")
     assert capture.format == "colmap" and capture.problems == ()
     assert capture.names == tuple(f"{name}.png" for name in scene.rig.names)
     for index, (name, camera) in enumerate(zip(scene.rig.names, scene.rig.cameras, strict=True)):
@@ -280,14 +281,14 @@ def test_pycolmap_reads_the_model_and_its_points_lie_on_the_mesh(scene, tmp_path
 def test_other_sizes_viewpoints_and_backgrounds_of_a_colmap_folder(scene, tmp_path):
     job = RenderJob(scene, resolution=(30, 20), background=None)
     exports.write_colmap(job, tmp_path / "path", points=np.array([[0.0, 0.0], [0.4, -0.3], [-0.5, 0.5]]))
-    capture = ef.open_capture(tmp_path / "path")
+    capture = open_capture(tmp_path / "path")
     assert capture.names == ("path_0000.png", "path_0001.png", "path_0002.png")
     assert (capture.cameras[0].width, capture.cameras[0].height) == (30, 20)
     with Image.open(tmp_path / "path" / "images" / "path_0000.png") as picture:
         assert picture.mode == "RGBA"
     skewed = tuple(replace(c, K=c.K + np.array([[0, 2.0, 0], [0, 0, 0], [0, 0, 0]])) for c in scene.rig.cameras)
     exports.write_colmap(RenderJob(replace(scene, rig=replace(scene.rig, cameras=skewed))), tmp_path / "skew")
-    assert len(ef.open_capture(tmp_path / "skew")) == 9
+    assert len(open_capture(tmp_path / "skew")) == 9
 
 
 def test_captured_cameras_have_their_own_exposure(scene, tmp_path):
@@ -306,7 +307,7 @@ def test_grey_scenes_are_pictures_and_other_attributes_are_not(tmp_path):
     exports.write_obj_folder(grey, tmp_path / "obj")
     exports.write_colmap(RenderJob(grey), tmp_path / "colmap")
     exports.write_quilt(RenderJob(grey), exports.quilt_of(grey, (2, 2)), tmp_path / "q.png")
-    assert len(ef.open_capture(tmp_path / "colmap")) == 5
+    assert len(open_capture(tmp_path / "colmap")) == 5
     other = tiny_scene(channels=6)
     for write in (
         lambda: exports.write_maps(other, tmp_path / "a"),

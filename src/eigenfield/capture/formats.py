@@ -29,6 +29,7 @@ from eigenfield.capture.readers.strecha import find_strecha, read_strecha
 from eigenfield.capture.readers.video import find_videos, read_videos
 from eigenfield.capture.readers.walk import find_walk, read_walk
 from eigenfield.core.errors import CaptureError, OptionError
+from eigenfield.core.recognise import SPLAT, read_head, recognise
 
 # of the formats that claim a folder, the one of lowest rank is read; two of one rank are ambiguous
 RANK_FIRST, RANK_SECOND, RANK_CAMERAS, RANK_NAMES, RANK_ON_REQUEST, RANK_ANY = range(6)
@@ -232,10 +233,16 @@ def _not_a_calibration(path: Path) -> CaptureError:
     """The error for a file that is named and of no format, which says what it is as far as its name does."""
     lower = path.name.lower()
     kind = next((kind for kind in (*OTHER_KINDS, MESH_KIND) if lower.endswith(kind.endings)), None)
-    message, remedy = "is no calibration", "name a transforms.json, a COLMAP model, another that docs/captures.md lists"
+    message, remedy = (
+        "is no calibration",
+        "name a transforms.json, a COLMAP model, another that `eigenfield help captures` lists",
+    )
     remedy += ", or a folder with one"
     if lower.endswith(ALL_EXTENSIONS):
         message, remedy = "is one photograph, and no calibration", "name the folder of all photographs"
     elif kind is not None:
-        message, remedy = f"is {kind.what}, and no calibration", kind.remedy
+        what = recognise(read_head(path)) or kind.what
+        message, remedy = f"is {what}, and no calibration", kind.remedy
+        if what == SPLAT:
+            remedy = "name the folder of the photographs that it was trained on"
     return CaptureError("calibration-unknown", message, path=path, remedy=remedy)

@@ -46,7 +46,9 @@ def held_out_cameras(rule: str | None, names: Sequence[str], coordinates: NDArra
         unknown = [name for name in wanted if name not in names]
         if unknown:
             raise OptionError(
-                "hold-out", f"no camera is called {unknown[0]}", remedy="eigenfield inspect lists the names"
+                "hold-out",
+                f"no camera is called {unknown[0]}",
+                remedy="`eigenfield inspect CAPTURE --json` lists the names",
             )
         held[[list(names).index(name) for name in wanted]] = True
     if (~held).sum() < HOLDOUT_MIN_ENCODED_CAMERAS:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -23,7 +24,9 @@ from eigenfield.capture.readers.folder import read_folders
 from eigenfield.capture.readers.grid_names import compile_pattern
 from eigenfield.capture.readers.video import is_video_rig, read_videos
 from eigenfield.capture.unread import describe_unread
+from eigenfield.core.arguments import checked
 from eigenfield.core.errors import CaptureError, OptionError
+from eigenfield.core.recognise import refuse_address
 
 C = TypeVar("C", LightField, PhotoSet, Capture)
 StrPath = str | os.PathLike[str]
@@ -129,6 +132,7 @@ def open_photographs(
     return _finish(made)
 
 
+@checked
 def open_any(
     path: StrPath,
     *,
@@ -261,6 +265,7 @@ def _restrict_formats(row: Format, formats: tuple[Format, ...]) -> tuple[Format,
 
 def _find_claim(path: Path, formats: tuple[Format, ...], options: OpenOptions) -> Claim | None:
     if not path.exists():
+        refuse_address(path)
         raise CaptureError("capture-missing", "does not exist", path=path, remedy="check the path")
     if path.is_file():
         return claim_of_file(path, formats)
@@ -318,12 +323,14 @@ def _open_source(source: _Source, masks: StrPath | None, strict: bool) -> Captur
 
 def _no_cameras(path: Path, problems: tuple[str, ...] = ()) -> CaptureError:
     why = next((problem for problem in problems if "cannot be used" in problem), None)
-    message = "has no calibration (transforms.json, COLMAP model or another that docs/captures.md lists)"
+    message = "has no calibration (transforms.json, COLMAP model or another that `eigenfield help captures` lists)"
     others = sorted(p.name for p in path.glob("*.json"))
     if others:
         remedy = f"it holds {list_names(others)}: name one as the calibration"
     elif path.is_dir() and (photographs_in(path) or photographs_in(path / IMAGES_FOLDER)):
-        remedy = f"run `eigenfield calibrate {path}` or `eigenfield encode {path}`, or name one with --calibration"
+        words = shlex.quote(str(path))
+        remedy = f"`eigenfield encode {words} -o scene.glb` estimates cameras and mesh, `eigenfield calibrate {words}` "
+        remedy += "cameras alone; or name one with --calibration"
     else:
         remedy = "name one with --calibration"
     return CaptureError("calibration-missing", why or message, path=path, remedy=remedy)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import _thread
 import contextlib
+import difflib
 import importlib
 import io
 import logging
@@ -15,7 +16,9 @@ from types import FrameType
 from typing import NoReturn
 
 import click
+from click.shell_completion import shell_complete
 
+from eigenfield.cli.completion import COMPLETION_VARIABLE
 from eigenfield.core.errors import EigenfieldError
 from eigenfield.core.version import __version__
 from eigenfield.runtime.children import kill_children
@@ -34,6 +37,8 @@ VERBS = {
     "evaluate": "Measure a scene against its photographs.",
     "info": "Show what a scene file holds: bytes by part, settings, scores.",
     "validate": "Check a scene file and list every finding.",
+    "help": "Read a page of the documentation.",
+    "completion": "Print the script that completes commands in bash, zsh or fish.",
 }
 
 
@@ -48,6 +53,15 @@ class _Verbs(click.Group):
             return None
         command: click.Command = importlib.import_module(f"eigenfield.cli.{name}").command
         return command
+
+    def resolve_command(
+        self, context: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        if args[0] not in VERBS and not args[0].startswith("-"):
+            near = difflib.get_close_matches(args[0], VERBS, n=1)
+            remedy = f"did you mean {near[0]}?" if near else "`eigenfield --help` lists them"
+            context.fail(f"No such command {args[0]!r}; {remedy}")
+        return super().resolve_command(context, args)
 
     def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Commands"):
@@ -121,6 +135,9 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # names that its encoding does not have are written as escapes
             stream.reconfigure(errors="backslashreplace")
+    asked = os.environ.get(COMPLETION_VARIABLE)
+    if asked is not None:  # by the script of `eigenfield completion`
+        sys.exit(shell_complete(group, {}, "eigenfield", COMPLETION_VARIABLE, asked))
     logging.basicConfig(format="%(message)s", level=logging.WARNING)
     with contextlib.suppress(ValueError):  # not in the main thread
         for number in STOP_SIGNALS:

@@ -9,7 +9,7 @@ import click
 
 from eigenfield.cli.common import pair_of_numbers, together
 
-DEFAULT_FRAMES, DEFAULT_FPS = 120, "30"
+DEFAULT_FPS = "30"
 
 
 def _parse_colour(context: click.Context, parameter: click.Parameter, value: str) -> tuple[float, ...] | None:
@@ -47,7 +47,7 @@ picture_options = together(  # the fields of `RenderJob`
 )  # fmt: skip
 flight_options = together(
     click.option("--path", metavar="circle|spiral|grid", help="A fly-through."),
-    click.option("--frames", type=int, metavar="N", help=f"Pictures of a path.  [default: {DEFAULT_FRAMES}]"),
+    click.option("--frames", type=int, metavar="N", help="Pictures of a path.  [default: 120]"),
     click.option("--fps", callback=_parse_rate, default=DEFAULT_FPS, show_default=True, metavar="F",
                  help="Pictures a second."),
 )  # fmt: skip

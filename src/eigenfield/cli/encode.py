@@ -22,7 +22,6 @@ from eigenfield.cli.common import (
     reconstruction_options,
 )
 from eigenfield.cli.field_options import field_options, from_fields
-from eigenfield.core.errors import OptionError
 from eigenfield.encoding import EncodeOptions
 
 if TYPE_CHECKING:
@@ -47,7 +46,37 @@ def _parse_size(context: click.Context, parameter: click.Parameter, value: str |
     return round(float(found[1]) * {"": 1, "k": 1e3, "m": 1e6, "g": 1e9}[found[2]])
 
 
+GROUPS = {  # of options in the help, the common ones first; what is named in none is of the last
+    "Common options": (
+        "output", "proxy", "preset", "target_size", "hold_out", "work", "overwrite", "quiet", "threads",
+    ),
+    "What the capture is": (
+        "calibration", "masks", "format", "grid", "pattern", "frame", "frames", "reference", "metres_per_unit",
+    ),
+    "Estimated cameras and mesh": (
+        "surface", "layers", "refine", "background", "primitives", "fit_spheres", "blind", "triangles",
+    ),
+    "Quality and size": (
+        "quality", "target_psnr", "target_ssim", "textures", "density", "atlas", "residual", "fit",
+    ),
+    "Texture maps, as the paper makes them (--fit none)": ("uv_ssim", "align", "harmonise", "codec", "keep_maps"),
+    "Other options": (),
+}  # fmt: skip
+
+
+class _Grouped(click.Command):
+    """Shows its options by `GROUPS`."""
+
+    def format_options(self, context: click.Context, formatter: click.HelpFormatter) -> None:
+        lines = {option.name: option.get_help_record(context) for option in self.get_params(context)}
+        for title, names in GROUPS.items():
+            shown = [lines.pop(name) for name in names or tuple(lines)]
+            with formatter.section(title):
+                formatter.write_dl([line for line in shown if line is not None])
+
+
 @click.command(
+    cls=_Grouped,
     epilog="""\b
 Examples:
   eigenfield encode photos/ -o scene.glb
@@ -59,7 +88,7 @@ Examples:
   eigenfield encode photos/ --proxy mesh.glb --fit none --codec png -o scene.glb
   eigenfield encode photos/ --proxy mesh.glb --preset small -o small.glb
   eigenfield encode photos/ --proxy mesh.glb --target-size 300kB -o small.glb
-  eigenfield encode photos/ --proxy mesh.glb --residual 70 -o archive.glb"""
+  eigenfield encode photos/ --proxy mesh.glb --residual 70 -o archive.glb""",
 )
 @capture_argument()
 @click.option(
@@ -101,31 +130,30 @@ def command(
     """Turn the photographs in CAPTURE into one .glb.
 
     Cameras and proxy mesh are estimated where they are not given: CAPTURE is a folder of photographs, with or without a
-    calibration, several such folders, a zip, or one video of a walk (eigenfield inspect CAPTURE says what is found).
+    calibration, several such folders, a zip, or one video of a walk (`eigenfield inspect CAPTURE` says what is found).
     """  # fmt: skip
     from eigenfield.encoding import encode
+    from eigenfield.encoding.estimated import reconstruction_settings, refuse_unused
     from eigenfield.encoding.views import check_selection
-    from eigenfield.gltf import parts, save
-    from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES
-    from eigenfield.runtime.files import refuse_existing
+    from eigenfield.gltf import parts, refuse_output, save
+    from eigenfield.proxy import refuse_no_mesh
 
     started = time.monotonic()
-    refuse_existing(output, overwrite)
+    refuse_output(output, overwrite)
+    if proxy is not None:
+        refuse_no_mesh(proxy)
     options = from_fields(EncodeOptions, settings)
-    if blind and options.hold_out is None:
-        raise OptionError("blind", "--blind is about held-out photographs", remedy="say which with --hold-out")
+    if proxy is None:
+        settings = reconstruction_settings(options, settings, blind)
+    else:
+        refuse_unused(settings, blind)
     with progress_bars(quiet) as progress:
         if proxy is not None:
-            _refuse_unused(settings, blind)
             scratch = output.absolute().parent if work is None else work
             light_field = _open_capture(capture, place, scratch, quiet)
             scene = encode(light_field, proxy, options, work=scratch, progress=progress)
         else:
             scratch = output.with_suffix(".work") if work is None else work
-            settings["triangles"] = PROXY_DEFAULT_TRIANGLES if options.triangles is None else options.triangles
-            settings["blind"], settings["hold_out"] = options.hold_out if blind else None, options.hold_out
-            if options.resolved().fit == "none":
-                _leave_out_layers(settings)
             check = partial(check_selection, options=options)
             made = reconstruct_capture(capture, place, scratch, progress, quiet, check, **settings)
             scene = encode(made.light_field, made.proxy, options, triangles=None, work=scratch, progress=progress)
@@ -138,25 +166,6 @@ def command(
         f"atlas {width}x{height}, for {photographs['count']} photographs ({photographs['bytes'] / 1e6:.1f} MB), "
         f"{len(scene.proxy.mesh.faces)} triangles, {time.monotonic() - started:.0f} s"
     )
-
-
-def _refuse_unused(settings: Mapping[str, Any], blind: bool) -> None:
-    """Refuse the options of `reconstruct`, and --blind, where the proxy is given."""
-    asked = [name for name, value in settings.items() if value not in (None, "auto", ())] + ["blind"] * blind
-    if asked:
-        raise OptionError(
-            "proxy-given",
-            f"--{asked[0].replace('_', '-').removesuffix('s')} is for making a proxy, but --proxy gives one",
-            remedy="leave out one of the two",
-        )
-
-
-def _leave_out_layers(settings: dict[str, Any]) -> None:
-    """One opaque surface, since texture maps know no other; refuse layers that were asked for."""
-    if settings["surface"] == "layers" or (settings["layers"] or 1) > 1:
-        message = "texture maps of several layers, which only a fit can make"
-        raise OptionError("sheets", message, remedy="leave out --fit none, or the layers")
-    settings["layers"] = 1
 
 
 def _open_capture(capture: Path, place: Mapping[str, Any], scratch: Path, quiet: bool) -> LightField:

@@ -61,7 +61,9 @@ Examples:
     help="Write plots and a contact sheet as PNG into DIR, which is made if need be.",
 )
 @click.option("--overwrite", is_flag=True, help="Replace plots that exist.")
-@click.option("--store", is_flag=True, help="Write the figures into the scene file (eigenfield info shows them).")
+@click.option(
+    "--store", is_flag=True, help="Write the figures into the scene file (`eigenfield info SCENE` shows them)."
+)
 @click.option(
     "--exclude-circles",
     type=PATH,
@@ -106,8 +108,8 @@ def command(
 ) -> None:
     """Measure the file SCENE against the photographs of CAPTURE, matched by name.
 
-    docs/measures.md defines every figure. Where the file has a residual, captured views are measured without it
-    and with it; held-out ones have none. With --json all figures go to standard output, otherwise a table does.
+    `eigenfield help measures` defines every figure. Where the file has a residual, captured views are measured without
+    it and with it; held-out ones have none. With --json all figures go to standard output, otherwise a table does.
     """  # fmt: skip
     from eigenfield.capture import open_any
     from eigenfield.evaluation import evaluate, read_circles, stored_scores, with_scene_cameras

@@ -51,7 +51,7 @@ Examples:
     help="Draw the proxy's outline over the photographs at the array's corners and centre.",
 )
 @click.option("--overwrite", is_flag=True, help="Replace an existing overlay.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON; docs/captures.md says what is in it.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON; `eigenfield help captures` says what is in it.")
 @common_options
 def command(
     capture: Path,
@@ -71,6 +71,10 @@ def command(
         raise OptionError(
             "overlay-needs-proxy", "--overlay draws a mesh over the photographs", remedy="name it with --proxy"
         )
+    if proxy is not None:
+        from eigenfield.proxy import refuse_no_mesh
+
+        refuse_no_mesh(proxy)
     if overlay is not None:
         from eigenfield.runtime.files import refuse_existing
 
@@ -84,7 +88,7 @@ def command(
         raise OptionError(
             "proxy-needs-cameras",
             "--proxy is drawn by the capture's cameras, and it has none",
-            remedy=f"run `eigenfield calibrate {capture}` first",
+            remedy=f"run `eigenfield calibrate {shlex.quote(str(capture))}` first",
         )
     mesh = None
     if proxy is not None and opened.light_field is not None:

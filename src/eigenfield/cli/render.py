@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from eigenfield.cli.common import PATH, common_options, note, progress_bars
-from eigenfield.cli.drawing import DEFAULT_FRAMES, flight_options, picture_options, residual_option
+from eigenfield.cli.drawing import flight_options, picture_options, residual_option
 from eigenfield.core.errors import OptionError
 
 
@@ -73,11 +73,11 @@ def command(
         raise OptionError("residual", "only captured views have a residual", remedy="name a --camera, or leave it out")
     from eigenfield.encoding.residual.views import captured_pixels, difference_of
     from eigenfield.gltf import load
-    from eigenfield.rendering import RenderJob, camera_index, path_points, viewpoint, viewpoint_colour
+    from eigenfield.rendering import FLIGHT_FRAMES, RenderJob, camera_index, path_points, viewpoint, viewpoint_colour
     from eigenfield.rendering.render_jobs import png, refuse_flight, write_flight
 
     if path is not None:
-        points = path_points(path, DEFAULT_FRAMES if frames is None else frames)
+        points = path_points(path, FLIGHT_FRAMES if frames is None else frames)
         refuse_flight(output, len(points), overwrite)
         job = RenderJob(load(scene), **picture)
         with progress_bars(quiet) as progress:

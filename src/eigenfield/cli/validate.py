@@ -12,7 +12,7 @@ from eigenfield.cli.common import PATH, common_options, echo_json
 
 @click.command(
     epilog="""\b
-Exit code 0 if no file has an error, 2 otherwise. The codes are explained in docs/format.md.
+Exit code 0 if no file has an error, 2 otherwise. `eigenfield help format` explains the codes.
 
 \b
 Examples:

@@ -1,8 +1,42 @@
-"""Hook by which a notebook shows a scene, set from above, so that plain data imports no viewer."""
+"""What a notebook shows: a scene, by a hook set from above so that plain data imports no viewer, and progress."""
 
 from __future__ import annotations
 
+import html
+import importlib
+import sys
+import time
 from collections.abc import Callable
 from typing import Any
 
+NOTEBOOK_UPDATE_SECONDS = 0.1  # between two updates of a bar
+
 show: Callable[[Any], str] | None = None  # from a scene to HTML; set by `eigenfield/__init__.py`
+_bars: dict[str, tuple[Any, float]] = {}  # by stage: where it is displayed, and when it was last updated
+
+
+def is_notebook() -> bool:
+    """Whether this is the kernel of a Jupyter notebook, which displays HTML."""
+    shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
+    return shell is not None and getattr(shell, "kernel", None) is not None
+
+
+def notebook_progress(stage: str, done: int, total: int) -> None:
+    """The `Progress` of work that was given none: one bar a stage in a notebook, nothing anywhere else.
+
+    Args:
+        stage: Name of the work.
+        done: Finished steps.
+        total: All steps.
+    """
+    if not is_notebook():
+        return
+    display = importlib.import_module("IPython.display")
+    text = f"{html.escape(stage)} <progress value='{done}' max='{max(total, 1)}'></progress> {done} of {total}"
+    if done == 0 or stage not in _bars:
+        _bars[stage] = display.display(display.HTML(text), display_id=True), time.monotonic()
+    elif done >= total or time.monotonic() - _bars[stage][1] >= NOTEBOOK_UPDATE_SECONDS:
+        _bars[stage][0].update(display.HTML(text))
+        _bars[stage] = _bars[stage][0], time.monotonic()
+    if done >= total:
+        del _bars[stage]

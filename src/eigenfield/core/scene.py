@@ -123,12 +123,23 @@ class Scene:
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "_derived": {}}
 
+    def __repr__(self) -> str:
+        held, mesh, sheets = int(self.rig.held_out.sum()), self.proxy.mesh, self.proxy.sheets
+        rows, columns = self.appearance.atlas if self.appearance.planes else (0, 0)
+        layers = "" if sheets is None else f" in {len(sheets.faces)} sheets"
+        more = "" if self.residual is None else f", a residual of {len(self.residual.video):,} bytes"
+        return (
+            f"{type(self).__name__} of {len(self.rig.cameras)} cameras, {held} of them held out\n"
+            f"proxy: {len(mesh.vertices):,} vertices, {len(mesh.faces):,} triangles{layers}\n"
+            f"appearance: {self.appearance.textures} eigen textures, atlas {columns}x{rows}{more}"
+        )
+
     def _repr_html_(self) -> str | None:
         """The viewer in a frame, for notebooks."""
         return None if notebook.show is None else notebook.show(self)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class EncodedScene(Scene):
     """A scene with the payloads of its parts, as `encode` and `load` return it.
 

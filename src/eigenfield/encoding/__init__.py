@@ -1,17 +1,20 @@
-"""A calibrated capture and a proxy in, an eigen-texture scene out."""
+"""Photographs in, an eigen-texture scene out."""
 
 from __future__ import annotations
 
 import logging
 import os
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from eigenfield.encoding.options import EncodeOptions
+from eigenfield.core.notebook import notebook_progress
+from eigenfield.encoding.options import EncodeOptions, changed_options
 from eigenfield.encoding.target import Target
 
 if TYPE_CHECKING:
+    from eigenfield.capture import Capture
     from eigenfield.core.mesh import Mesh
     from eigenfield.core.observations import CalibratedObservations
     from eigenfield.core.progress import Progress
@@ -24,26 +27,41 @@ log = logging.getLogger("eigenfield.encode")
 
 
 def encode(
-    capture: CalibratedObservations,
-    proxy: str | os.PathLike[str] | Mesh | Proxy,
+    capture: str | os.PathLike[str] | Capture | CalibratedObservations,
+    proxy: str | os.PathLike[str] | Mesh | Proxy | None = None,
     options: EncodeOptions | None = None,
     *,
+    surface: str = "auto",
+    layers: int | None = None,
+    refine: bool | None = None,
+    background: bool | None = None,
+    primitives: Sequence[str] = (),
+    fit_spheres: Sequence[str] = (),
+    blind: bool = False,
     work: str | os.PathLike[str] | None = None,
-    progress: Progress | None = None,
+    progress: Progress | None = notebook_progress,
     **changes: Any,
 ) -> EncodedScene:
-    """Encode a light field on a proxy mesh: fitted to its photographs, or projected as the paper does.
+    """Encode photographs on a proxy mesh, as `eigenfield encode` does: fitted to them, or projected as in the paper.
 
     Options about texture maps choose the paper's way, with a warning, where neither was asked for.
 
     Args:
-        capture: Photographs with their cameras.
+        capture: A folder or a file, as `open_any` takes it, or what that returns.
         proxy: A triangle mesh or a proxy with sheets in the world of `capture.cameras`, or a mesh file in the world of
-            the calibration's files, which is the same unless `capture.origin` says another.
+            the calibration's files, which is the same unless `capture.origin` says another. None: it is made from the
+            photographs, and so are cameras where there are none (see `reconstruct`).
         options: What is asked for; None for the defaults.
-        work: Folder for scratch files, up to 17 bytes a pixel, and 10 for each sheet that it shows; or 4 bytes x
-            channels x cameras x texels.
-        progress: Reports each stage.
+        surface: As of `reconstruct`, and so are the next five; without a proxy alone.
+        layers: Number of soft sheets.
+        refine: Whether the cameras of an array are corrected.
+        background: Whether the frustum is closed behind the surface.
+        primitives: Texts of primitives.
+        fit_spheres: Texts of spheres to fit.
+        blind: Estimate proxy and cameras without the held-out photographs too.
+        work: Folder that keeps finished stages of the reconstruction, and scratch files: up to 17 bytes a pixel, and
+            10 for each sheet that it shows; or 4 bytes x channels x cameras x texels. None: a temporary one.
+        progress: Reports each stage; by default bars in a notebook. None: nothing is reported.
         changes: Fields of `EncodeOptions` by name, in place of those of `options`.
 
     Returns:
@@ -55,13 +73,24 @@ def encode(
         CaptureError, ProxyError, OptionError, OutputError: Each names the file and the remedy.
     """
     # what the stages need takes a second to load, and the command line's help needs none of it
+    from eigenfield.encoding.estimated import calibrated, estimate, reconstruction_settings, refuse_unused
     from eigenfield.encoding.fitted.encode import encode_fitted
     from eigenfield.encoding.plan import plan_encoding
     from eigenfield.encoding.projected.encode import encode_projected
     from eigenfield.encoding.residual.make import check_residual, with_residual
     from eigenfield.gltf import encode_scene, read_scene
 
-    asked = replace(EncodeOptions() if options is None else options, **changes)
+    asked = changed_options(EncodeOptions() if options is None else options, changes)
+    own: dict[str, Any] = {
+        "surface": surface, "layers": layers, "refine": refine, "background": background,
+        "primitives": tuple(primitives), "fit_spheres": tuple(fit_spheres),
+    }  # fmt: skip
+    if proxy is None:
+        capture, proxy = estimate(capture, asked, reconstruction_settings(asked, own, blind), work, progress)
+        asked = replace(asked, triangles=None)  # the mesh has no more than were asked for
+    else:
+        refuse_unused(own, blind)
+        capture = calibrated(capture, proxy)
     meant = asked.resolved()
     projected = meant.fit == "none"
     if projected and asked.fit is None:

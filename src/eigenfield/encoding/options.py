@@ -5,9 +5,12 @@ Importing this loads nothing but the standard library, so that `eigenfield encod
 
 from __future__ import annotations
 
+import difflib
 import os
-from dataclasses import dataclass, replace
-from typing import TypedDict, TypeVar
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from numbers import Integral, Real
+from typing import Any, TypedDict, TypeVar, get_args, get_origin, get_type_hints
 
 from eigenfield.core.errors import OptionError
 from eigenfield.encoding.fields import document_options, option, options_of
@@ -152,6 +155,7 @@ class EncodeOptions:
     )
 
     def __post_init__(self) -> None:
+        self._check_types()
         self._check_file()
         self._check_way()
         self._check_numbers()
@@ -201,6 +205,16 @@ class EncodeOptions:
     def _chosen_fit(self) -> str:
         return self.fit or ("none" if self.map_options and not self._fit_options else "photographs")
 
+    def _check_types(self) -> None:
+        """Raise OptionError `option-type` for values of another type; whole numbers stand for any number."""
+        for name, kind in get_type_hints(type(self)).items():
+            value, kinds = getattr(self, name), get_args(kind) or (kind,)
+            plain = [get_origin(each) or each for each in kinds]
+            taken = tuple({int: Integral, float: Real}.get(each, each) for each in plain)  # NumPy's numbers too
+            if not isinstance(value, taken) or (isinstance(value, bool) and bool not in plain):
+                names = ", ".join(each.__name__ for each in plain if each is not type(None))
+                raise OptionError("option-type", f"{name} is a {type(value).__name__}", remedy=f"give {names}")
+
     def _check_file(self) -> None:
         from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, check_codec
 
@@ -243,6 +257,28 @@ class EncodeOptions:
         if not all(side is None or 1 <= side <= ATLAS_MAX_SIDE_TEXELS for side in sides):
             remedy = f"ask for sides from 1 to {ATLAS_MAX_SIDE_TEXELS}"
             raise OptionError("atlas", f"an atlas of {self.atlas} was asked for", remedy=remedy)
+
+
+def changed_options(options: EncodeOptions, changes: Mapping[str, Any]) -> EncodeOptions:
+    """The options with other values.
+
+    Args:
+        options: The options.
+        changes: Values by name.
+
+    Raises:
+        OptionError: `option-unknown`; as `EncodeOptions`.
+    """
+    names = [each.name for each in fields(EncodeOptions)]
+    for name in changes:
+        if name not in names:
+            near = difflib.get_close_matches(name, names, n=1)
+            remedy = f"did you mean {near[0]}?" if near else f"there are {', '.join(names)}"
+            raise OptionError("option-unknown", f"encode has no option {name}", remedy=remedy)
+    if not isinstance(options, EncodeOptions):
+        message = f"the options are a {type(options).__name__}"
+        raise OptionError("option-type", message, remedy="give EncodeOptions, or single options by name")
+    return replace(options, **changes)
 
 
 def resolved_value(value: T | None) -> T:

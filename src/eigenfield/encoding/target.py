@@ -6,6 +6,7 @@ import logging
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from numbers import Real
 from typing import Generic, TypeVar
 
 from eigenfield.core.errors import OptionError
@@ -18,6 +19,7 @@ log = logging.getLogger("eigenfield.fit")
 TARGET_MAX_ATTEMPTS = 7
 TARGET_MIN_QUALITY, TARGET_MAX_QUALITY = 20, 99  # below, pictures are not recognisable
 TARGET_FIRST_QUALITY = 80
+TARGET_RANGES = {"size": (1000, math.inf, " bytes"), "psnr": (1, 99, " dB"), "ssim": (0, 1, "")}  # both excluded
 TARGET_NEAR_SIZE_RATIO = 0.985  # of a target size: such files are near enough
 
 
@@ -42,9 +44,12 @@ class Target:
             names = ", ".join(f"--target-{name}" for name, _ in given) or "no target"
             raise OptionError("target", f"{names} at a time", remedy="say one: size, psnr or ssim")
         name, value = given[0]
-        low, high = {"size": (1000, math.inf), "psnr": (1, 99), "ssim": (0, 1)}[name]
-        if not low < value < high:
-            raise OptionError("target", f"{name} of {value:g}", remedy=f"say one between {low:g} and {high:g}")
+        low, high, unit = TARGET_RANGES[name]
+        if isinstance(value, bool) or not isinstance(value, Real) or not low < float(value) < high:
+            between = f"between {low:g} and {high:g}" if high < math.inf else f"above {low:g}"
+            shown = f"{value:g}{unit}" if isinstance(value, Real) else value
+            message = f"a target {name} of {shown} is out of range"
+            raise OptionError("target", message, remedy=f"say one {between}{unit}")
 
     def is_met(self, tried: Attempt[T]) -> bool:
         """Whether a file reaches it."""

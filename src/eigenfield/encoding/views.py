@@ -148,7 +148,8 @@ def grid_of(coordinates: NDArray[np.float64]) -> NDArray[np.int64] | None:
 
 def nothing_seen_error() -> CaptureError:
     """The error `nothing-seen` of a proxy that is in no photograph."""
-    remedy = "bring mesh and cameras into one frame (eigenfield inspect --overlay shows both); look at the masks"
+    remedy = "bring mesh and cameras into one frame (`eigenfield inspect CAPTURE --proxy MESH --overlay overlay.png` "
+    remedy += "shows both); look at the masks"
     return CaptureError("nothing-seen", "no camera sees any texel of the proxy", remedy=remedy)
 
 
@@ -161,7 +162,9 @@ def _held_and_reference(
     if name is None:
         return held, int(encoded[np.argmin(np.linalg.norm(places[encoded], axis=1))])
     if name not in names:
-        raise OptionError("reference", f"no camera is called {name}", remedy="eigenfield inspect lists the names")
+        raise OptionError(
+            "reference", f"no camera is called {name}", remedy="`eigenfield inspect CAPTURE --json` lists the names"
+        )
     index = names.index(name)
     if index not in encoded:
         raise OptionError("reference", f"{name} is held out", remedy="name an encoded camera as --reference")

@@ -70,7 +70,7 @@ def read_circles(path: str | os.PathLike[str], names: Sequence[str]) -> dict[str
             "circles-unmatched",
             f"none of its {len(circles)} circles belongs to a camera of the scene",
             path=path,
-            remedy="key circles by the names that eigenfield info lists",
+            remedy=f"key circles by the photographs' names, such as {names[0]}",
         )
     return found
 

@@ -9,22 +9,25 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from eigenfield.capture import LightField
+from eigenfield.capture import Capture, open_any
+from eigenfield.core.arguments import checked
+from eigenfield.core.notebook import notebook_progress
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
 from eigenfield.encoding.residual.views import with_differences
 from eigenfield.evaluation.exclusion import ExcludedCircle
 from eigenfield.evaluation.image import summarise_scores
-from eigenfield.evaluation.session import CameraScores, PictureScores, Session, start_session
+from eigenfield.evaluation.session import CameraScores, PictureScores, Session, start_session, with_scene_cameras
 from eigenfield.gltf import parts
 from eigenfield.runtime.parallel import parallel_stream
 
 EVALUATION_SCHEMA = "eigenfield.evaluate/1"
 
 
+@checked
 def evaluate(
     scene: Scene,
-    capture: LightField,
+    capture: str | os.PathLike[str] | Capture,
     *,
     path: str | os.PathLike[str] | None = None,
     curve: str = "none",
@@ -34,13 +37,13 @@ def evaluate(
     circles: Mapping[str, ExcludedCircle] | None = None,
     png_maps: str = "all",
     flip: bool = False,
-    progress: Progress | None = None,
+    progress: Progress | None = notebook_progress,
 ) -> dict[str, Any]:
     """Measure a scene against its photographs; docs/measures.md defines every score. The result is JSON-able.
 
     Args:
         scene: The scene.
-        capture: Its photographs.
+        capture: Its photographs, or their folder; where they have no cameras, they take the scene's by name.
         path: The scene's file, for `bytes` and `ratio`; both are None without it.
         curve: Measure UV scores for every number of textures, of "all" cameras or a "sample" of 16; "none": do not.
         textures: Use only so many textures.
@@ -49,7 +52,7 @@ def evaluate(
         circles: By camera, excluded from the scores under `outside` (see `read_circles`).
         png_maps: Pack "all" texture maps as PNG, a "sample" of 16 (scaled up), or "none".
         flip: Measure FLIP too, which takes longer.
-        progress: Called for each camera.
+        progress: Called for each camera; by default a bar in a notebook.
 
     Raises:
         CaptureError: `no-photographs`: no photograph has the name of a camera. `photograph-size`. As for reading
@@ -57,8 +60,10 @@ def evaluate(
         OptionError: `png-maps`, `curve`, `textures`, `not-photographs` or `settings-unknown`.
     """
     started = time.monotonic()
+    opened = open_any(capture) if isinstance(capture, str | os.PathLike) else capture
+    photographs = with_scene_cameras(scene, opened)
     session = start_session(
-        scene, capture, curve=curve, textures=textures, filter=filter, weights=weights, circles=circles,
+        scene, photographs, curve=curve, textures=textures, filter=filter, weights=weights, circles=circles,
         png_maps=png_maps, flip=flip,
     )  # fmt: skip
     indices = list(session.photographs)

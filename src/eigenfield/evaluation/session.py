@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import logging
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 import numpy as np
 from numpy.typing import NDArray
@@ -291,12 +292,11 @@ def with_scene_cameras(scene: Scene, photographs: Capture) -> LightField:
         photographs = photographs.with_exposure(exposure)
     if photographs.light_field is not None:
         return photographs.light_field
-    index = {name: i for i, name in enumerate(scene.rig.names)}
-    chosen = photographs.subset([i for i, name in enumerate(photographs.names) if name in index])
+    index = {photograph: camera for camera, photograph in _same_names(scene, photographs.names).items()}
+    chosen, numbers = photographs.subset(sorted(index)), [index[photograph] for photograph in sorted(index)]
     if not len(chosen):
         raise _no_photographs(scene, photographs.root, photographs.names)
     lenses, stored = _recorded_lenses(scene), scene.settings.get("asStored")
-    numbers = [index[name] for name in chosen.names]
     cameras = [scene.rig.cameras[number] for number in numbers]
     marked = [isinstance(stored, list) and number in stored for number in numbers]  # a file may hold anything here
     shots = tuple(_orient(*known) for known in zip(chosen.shots, cameras, marked, strict=True))
@@ -348,7 +348,7 @@ def _no_photographs(scene: Scene, root: Path, names: Sequence[str]) -> CaptureEr
 
 
 def match_photographs(scene: Scene, capture: LightField) -> dict[int, int]:
-    """The view of the capture for each scene camera, by name.
+    """The view of the capture for each scene camera, by name; where no name has its ending, by the name without it.
 
     Args:
         scene: The scene.
@@ -357,8 +357,7 @@ def match_photographs(scene: Scene, capture: LightField) -> dict[int, int]:
     Raises:
         CaptureError: `no-photographs`: no name fits.
     """
-    views = {view.name: index for index, view in enumerate(capture.views)}
-    photographs = {index: views[name] for index, name in enumerate(scene.rig.names) if name in views}
+    photographs = _same_names(scene, capture.names)
     if not photographs:
         raise _no_photographs(scene, capture.root, capture.names)
     for index, view in photographs.items():
@@ -370,6 +369,22 @@ def match_photographs(scene: Scene, capture: LightField) -> dict[int, int]:
             )
             break
     return photographs
+
+
+def _same_names(scene: Scene, names: Sequence[str]) -> dict[int, int]:
+    """The photograph of each scene camera, by index: of the same name, or else the only one of the same stem, if its
+    name is no other camera's."""
+    whole = {name: index for index, name in enumerate(names)}
+    free = [name for name in names if name not in set(scene.rig.names)]
+    stems = Counter(map(_stem, free)), Counter(_stem(name) for name in scene.rig.names if name not in whole)
+    by_stem = {_stem(name): whole[name] for name in free if stems[0][_stem(name)] == stems[1][_stem(name)] == 1}
+    found = {index: whole.get(name, by_stem.get(_stem(name))) for index, name in enumerate(scene.rig.names)}
+    return {index: photograph for index, photograph in found.items() if photograph is not None}
+
+
+def _stem(name: str) -> str:
+    """A photograph's name without its ending, in one case: view_01.JPG and view_01.png are one."""
+    return str(PurePosixPath(name).with_suffix("")).casefold()
 
 
 def _is_aligned(scene: Scene) -> bool:

@@ -12,6 +12,7 @@ from typing import Any
 
 from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError, OutputError
+from eigenfield.core.recognise import HEAD_BYTES, recognise, refuse_address
 from eigenfield.gltf import strict_json
 
 MAGIC = b"glTF"
@@ -50,6 +51,7 @@ def read_file(path: Path) -> bytes:
 
     Raises:
         FormatError: `file-missing`, `file-unreadable`, `not-a-file`, `file-size`.
+        OptionError: `web-address`.
     """
     try:
         status = path.stat()
@@ -59,6 +61,7 @@ def read_file(path: Path) -> bytes:
             raise FormatError("file-size", f"{status.st_size} bytes, {limits.MAX_FILE} are allowed", where="byte 0")
         return path.read_bytes()
     except FileNotFoundError as error:
+        refuse_address(path)
         raise FormatError("file-missing", "does not exist", where="byte 0", remedy="check the name") from error
     except (OSError, ValueError) as error:  # ValueError: a name with a null byte
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
@@ -72,7 +75,9 @@ def parse_glb(data: bytes) -> Glb:
         FormatError: `not-glb`, `truncated`, `glb-version`, `glb-length`, `glb-chunk`, `json-*`.
     """
     if data[:4] != MAGIC:
-        raise FormatError("not-glb", "does not begin with 'glTF'", where="byte 0", remedy="name a .glb")
+        what = recognise(data[:HEAD_BYTES])
+        message = "does not begin with 'glTF'" if what is None else f"is {what}, and no .glb"
+        raise FormatError("not-glb", message, where="byte 0", remedy="name a .glb")
     if len(data) < HEADER.size:
         raise FormatError("truncated", f"ends after {len(data)} bytes, within the header", where=f"byte {len(data)}")
     _, version, length = HEADER.unpack_from(data)

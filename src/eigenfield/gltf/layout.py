@@ -178,7 +178,7 @@ def find_extension(document: Document) -> Value:
         asset.fail("gltf-version", f"glTF {quote(asset.value)}, 2.x expected")
     if not root.has("extensions") or not root["extensions"].has(limits.EXTENSION):
         message = f"a glTF file without {limits.EXTENSION}: no eigen-texture scene"
-        remedy = "name a file that `eigenfield encode` made"
+        remedy = "name a file that `eigenfield encode CAPTURE -o scene.glb` wrote"
         raise FormatError("not-a-scene", message, where="/extensions", remedy=remedy)
     extension = root["extensions"][limits.EXTENSION]
     version = extension["version"]

@@ -14,6 +14,7 @@ from eigenfield.coding import limits
 from eigenfield.coding.pictures.pictures_8bit import check_preview
 from eigenfield.coding.pictures.quantise import mean_values, spread_precision
 from eigenfield.core.appearance import Appearance, Basis, Plane
+from eigenfield.core.arguments import checked
 from eigenfield.core.errors import FormatError
 from eigenfield.core.payloads import (
     Coded,
@@ -67,6 +68,7 @@ def layout_of(data: bytes) -> tuple[Document, FileLayout]:
     return document, layout
 
 
+@checked
 def load(path: str | os.PathLike[str]) -> EncodedScene:
     """Read a scene: float32 means, uint8 or uint16 textures with their scale and zero, and their payloads.
 
@@ -192,6 +194,7 @@ def _decode_basis(basis: BasisLayout, channels: int) -> Coded[Basis]:
     return Coded(made, payloads_of(made, [picture.payload for picture in basis.textures], basis.payload))
 
 
+@checked
 def validate(path: str | os.PathLike[str]) -> list[Finding]:
     """Every finding in a file, in the order of the file's parts; an empty list for a file as specified.
 

@@ -16,8 +16,10 @@ from eigenfield.coding import limits
 from eigenfield.coding.codecs import CODECS, encoder
 from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, PICTURES, check_codec, dimensions
 from eigenfield.core.appearance import Plane
-from eigenfield.core.errors import OutputError
+from eigenfield.core.arguments import checked
+from eigenfield.core.errors import OptionError, OutputError
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.notebook import notebook_progress
 from eigenfield.core.payloads import Payload, PicturePayload
 from eigenfield.core.progress import Progress
 from eigenfield.core.proxy import Sheets
@@ -47,6 +49,7 @@ PACKED_NODE_DIGITS = 6
 CODED_NAMES_MIN_SAVING_BYTES = 256  # with their two entries in the JSON
 
 
+@checked
 def save(
     scene: Scene,
     path: str | os.PathLike[str],
@@ -54,7 +57,7 @@ def save(
     codec: str | None = None,
     quality: int | None = None,
     overwrite: bool = False,
-    progress: Progress | None = None,
+    progress: Progress | None = notebook_progress,
 ) -> None:
     """Write `scene` as a .glb, atomically.
 
@@ -69,7 +72,7 @@ def save(
             becomes AVIF.
         quality: 0..100 for avif, by default DEFAULT_AVIF_QUALITY; the mean is coded finer (MEAN_QUALITY_RATIO).
         overwrite: Whether an existing file is replaced.
-        progress: Reports each picture.
+        progress: Reports each picture; by default a bar in a notebook.
 
     Raises:
         OutputError: `output-exists`, `disk-full`, `file-too-large`, `scene-limit`, ...
@@ -77,7 +80,7 @@ def save(
         FormatError: The scene is inconsistent in itself. Nothing is written.
     """
     path = Path(path)
-    refuse_existing(path, overwrite)
+    refuse_output(path, overwrite)
     blocks, anew = _blocks(scene, codec, quality, progress, path)
     with atomic_writer(path, overwrite=overwrite) as file:
         for block in blocks:
@@ -86,6 +89,23 @@ def save(
         grows = sum(now - before for now, before in anew.values()) > 0
         parts = ", ".join(f"{part} ({now:,} bytes, it had {before:,})" for part, (now, before) in anew.items())
         log.log(logging.WARNING if grows else logging.INFO, "%s: coded anew: %s", path, parts)
+
+
+def refuse_output(path: Path, overwrite: bool) -> None:
+    """Before any work: check that a scene may be written.
+
+    Args:
+        path: Of the .glb.
+        overwrite: Whether an existing file may be replaced.
+
+    Raises:
+        OptionError: `output-kind`: its name does not end in .glb.
+        OutputError: It may not or cannot be written.
+    """
+    if path.suffix.lower() != ".glb":
+        message = "a scene is a .glb file"
+        raise OptionError("output-kind", message, path=path, remedy=f"name it {path.with_suffix('.glb').name}")
+    refuse_existing(path, overwrite)
 
 
 def encode_scene(

@@ -3,7 +3,7 @@
 from eigenfield.proxy.atlas.layout import AtlasStatistics, atlas_fault, atlas_statistics, chart_labels
 from eigenfield.proxy.atlas.unwrap import PROXY_DEFAULT_TRIANGLES, simplify_mesh, unwrap_mesh, weld_vertices
 from eigenfield.proxy.meshes.prepare import prepare_proxy
-from eigenfield.proxy.meshes.read import read_mesh
+from eigenfield.proxy.meshes.read import read_mesh, refuse_no_mesh
 from eigenfield.proxy.meshes.write import check_mesh_name, write_mesh, write_ply
 from eigenfield.proxy.primitives.shapes import Primitive, insert_primitive, parse_primitive
 from eigenfield.proxy.primitives.sphere_fit import find_view, fit_sphere, parse_region
@@ -28,6 +28,7 @@ __all__ = [
     "parse_region",
     "prepare_proxy",
     "read_mesh",
+    "refuse_no_mesh",
     "relief_mesh",
     "simplify_mesh",
     "soft_relief",

@@ -334,7 +334,8 @@ def inverse_depths(
             "depth-nothing",
             "no depth agrees with the photographs and their cameras",
             path=capture.root,
-            remedy="look at the calibration (eigenfield inspect), or let it be estimated: eigenfield calibrate",
+            remedy="look at the calibration (`eigenfield inspect CAPTURE`), or let it be estimated: "
+            "`eigenfield calibrate CAPTURE`",
         )
     return max(label_range[0], ARRAY_TUNING.min_inverse_ratio * label_range[1]) * reference.scale, label_range[
         1

@@ -18,8 +18,10 @@ from eigenfield.capture import Capture, LightField, PhotoSet
 from eigenfield.capture.lightfield import PhotographSource
 from eigenfield.capture.survey import refuse_one_place
 from eigenfield.capture.writers.save import save_calibration
+from eigenfield.core.arguments import checked
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.notebook import notebook_progress
 from eigenfield.core.progress import Progress
 from eigenfield.core.proxy import Proxy
 from eigenfield.proxy import (
@@ -78,6 +80,7 @@ class Reconstruction:
     report: ProxyReport
 
 
+@checked
 def reconstruct(
     capture: Capture,
     *,
@@ -91,7 +94,7 @@ def reconstruct(
     blind: str | None = None,
     hold_out: str | None = None,
     work: Path | None = None,
-    progress: Progress | None = None,
+    progress: Progress | None = notebook_progress,
 ) -> Reconstruction:
     """Estimate what a capture lacks: cameras if it has none, and a proxy.
 
@@ -112,7 +115,7 @@ def reconstruct(
         hold_out: A rule of `hold_out`: layers, whose opacity is appearance, are not made from these views. Default:
             those of `blind`.
         work: The folder of finished stages; None: nothing is stored.
-        progress: Called within stages.
+        progress: Called within stages; by default bars in a notebook.
 
     Raises:
         CaptureError: The photographs cannot be read or do not fit together.

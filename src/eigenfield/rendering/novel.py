@@ -11,6 +11,7 @@ from eigenfield.core.scene import Scene
 from eigenfield.rendering.weights import place_weights
 
 FLIGHT_PATHS = ("circle", "spiral", "grid")
+FLIGHT_FRAMES = 120  # of a path, where none are asked for
 FLIGHT_RADIUS_HALF_WIDTHS = 0.9  # half widths of the array; beyond its rim views are extrapolated
 FLIGHT_SPIRAL_TURNS = 3
 FLIGHT_GRID_ROWS = 5

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.errors import OptionError
 from eigenfield.core.scene import Scene
 from eigenfield.imaging.metrics import to_codes
+from eigenfield.imaging.png import png_bytes
+from eigenfield.runtime.files import write_bytes
 
 # Of a pixel's samples: all, of up to 4 x 4. The coded opacity of what is opaque is a few hundredths off.
 PICTURE_COVERED_RATIO = 0.95
@@ -35,6 +40,35 @@ class Picture:
     def to_uint8(self) -> NDArray[np.uint8]:
         """(H, W, C) uint8: times 255, rounded half to even, clipped."""
         return to_codes(self.image)
+
+    def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+        """Write the picture as a PNG of 8 bits, whole or not at all.
+
+        Args:
+            path: Of the .png.
+            overwrite: Whether an existing file is replaced.
+
+        Raises:
+            OptionError: `output-kind`: the name does not end in .png. `not-a-picture`: it has other than 1 or 3
+                channels.
+            OutputError: The file may not or cannot be written.
+        """
+        path, data = Path(path), self._repr_png_()
+        if path.suffix.lower() != ".png":
+            remedy = f"name it {path.with_suffix('.png').name}"
+            raise OptionError("output-kind", "a picture is written as a .png", path=path, remedy=remedy)
+        if data is None:
+            message = f"{self.image.shape[2]} channels make no picture"
+            raise OptionError("not-a-picture", message, path=path, remedy="take three of `image`")
+        write_bytes(path, data, overwrite=overwrite)
+
+    def _repr_png_(self) -> bytes | None:
+        """The picture as a PNG, for notebooks; None where it has other than 1 or 3 channels."""
+        return png_bytes(self.to_uint8()) if self.image.shape[2] in (1, 3) else None
+
+    def __repr__(self) -> str:
+        height, width, channels = self.image.shape
+        return f"Picture of {width}x{height}, {channels} channels, {self.coverage.mean():.1%} covered"
 
 
 def camera_colour(scene: Scene, index: int) -> NDArray[np.float32] | None:

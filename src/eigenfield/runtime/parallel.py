@@ -15,6 +15,7 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import Any, TypeVar
 
+from eigenfield.core.arguments import checked
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
 
@@ -81,6 +82,7 @@ def threads() -> int:
     return os.cpu_count() or 1
 
 
+@checked
 def set_threads(count: int | None) -> None:
     """Use `count` threads from now on (None: as many as there are processors). Raises OptionError below 1."""
     global _threads, _pool

@@ -13,5 +13,8 @@ from eigenfield.viewer.notebook import scene_html
 from eigenfield.viewer.page import page_html, single_file
 from eigenfield.viewer.photographs import Photographs
 from eigenfield.viewer.server import Server
+from eigenfield.viewer.view import view
 
-__all__ = ["Content", "Manifest", "Photographs", "Server", "make_manifest", "page_html", "scene_html", "single_file"]
+__all__ = [
+    "Content", "Manifest", "Photographs", "Server", "make_manifest", "page_html", "scene_html", "single_file", "view",
+]  # fmt: skip

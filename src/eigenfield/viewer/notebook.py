@@ -29,7 +29,8 @@ def scene_html(scene: Scene) -> str:
         glb = scene.derive("glb", lambda: encode_scene(replace(scene, residual=None)))
         if len(glb) > NOTEBOOK_MAX_BYTES:
             return _line(
-                f"a scene of {len(glb) / 1e6:.0f} MB is too large for a notebook; save it and use `eigenfield view`"
+                f"a scene of {len(glb) / 1e6:.0f} MB is too large for a notebook; save it and use "
+                "`eigenfield view SCENE`"
             )
         page = single_file(glb, title=NOTEBOOK_TITLE).decode("utf-8")
     except EigenfieldError as error:

@@ -53,7 +53,7 @@ ANSWER_HEADERS = {
 
 
 class Server(ThreadingHTTPServer):
-    """Answers from a manifest, in threads of its own, from `with` until the block ends.
+    """Answers from a manifest, in threads of its own, from `with` or `start` until the block ends or `close`.
 
     Attributes:
         manifest: What is answered.
@@ -85,8 +85,13 @@ class Server(ThreadingHTTPServer):
         self._lock = threading.Lock()
         self._acceptor = threading.Thread(target=self.serve_forever, args=(SERVER_POLL_SECONDS,), daemon=True)
 
+    def start(self) -> None:
+        """Answer from now on, in a thread."""
+        if self._acceptor.ident is None:
+            self._acceptor.start()
+
     def __enter__(self) -> Server:
-        self._acceptor.start()
+        self.start()
         return self
 
     def __exit__(self, *_: object) -> None:

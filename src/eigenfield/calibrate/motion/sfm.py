@@ -152,7 +152,7 @@ def _check_photographs(photos: PhotoSet) -> None:
             "planar-rectified",
             "is a rectified grid: its photographs share one plane, and structure from motion cannot tell their cameras",
             path=photos.root,
-            remedy="use `eigenfield encode`, which takes the cameras from the grid",
+            remedy="use `eigenfield encode CAPTURE -o scene.glb`, which takes the cameras from the grid",
         )
 
 

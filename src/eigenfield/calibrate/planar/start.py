@@ -115,7 +115,7 @@ def _estimate_start(
             f"the photographs do not move as a grid of {len(set(layout.rows))} rows and {len(set(layout.columns))} "
             f"columns does: {agreeing} of {int(moved.sum())} points agree",
             remedy=f"check --grid and --format, and that {names[centre]} is of the scene; hand-held photographs need "
-            "eigenfield calibrate",
+            "`eigenfield calibrate CAPTURE`",
         )
     _refuse_swapped(parallax, names[centre])
     low, high = _disparity_range(parallax)

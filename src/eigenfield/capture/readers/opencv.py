@@ -144,7 +144,7 @@ def read_opencv(path: Path, photographs: Path | None = None) -> Calibration:
             "opencv-poses",
             "has no camera with a pose (R and T)",
             path=path,
-            remedy="use it as --intrinsics of `eigenfield calibrate`, or add the extrinsics",
+            remedy="use it as --intrinsics of `eigenfield calibrate CAPTURE`, or add the extrinsics",
         )
     return Calibration(path, "opencv", tuple(entries), tuple(errors), tuple(problems))
 

@@ -95,7 +95,9 @@ def warn_of_disagreement(
     log.info("%.1f grey levels from the mean texture, which holds %.0f %% of the contrast", typical, 100 * shared)
     if shared < AGREEMENT_MIN_CONTRAST_RATIO and not outliers:  # which spoil the mean for all
         words = "the photographs hardly agree on the proxy: their mean holds %.0f %% of their contrast; look at "
-        log.warning(words + "cameras and mesh (eigenfield inspect --overlay)", 100 * shared)
+        log.warning(
+            words + "cameras and mesh (`eigenfield inspect CAPTURE --proxy MESH --overlay overlay.png`)", 100 * shared
+        )
     return error
 
 

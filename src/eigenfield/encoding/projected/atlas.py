@@ -96,7 +96,8 @@ def texels_per_pixel(mesh: Mesh, camera: Camera) -> float:
     usable &= area > 0
     if not usable.any():
         message = "the camera nearest the centre of the array sees nothing of the mesh"
-        remedy = "bring the mesh into the frame of the cameras (eigenfield inspect --overlay shows both)"
+        remedy = "bring the mesh into the frame of the cameras "
+        remedy += "(`eigenfield inspect CAPTURE --proxy MESH --overlay overlay.png` shows both)"
         raise ProxyError("proxy-not-seen", message, remedy=remedy)
     ratio = np.sqrt(np.abs(signed_areas(uv))[usable] / area[usable])
     order = np.argsort(ratio, kind="stable")

@@ -76,7 +76,8 @@ def _check_seen(mesh: Mesh, cameras: Sequence[Camera], path: Path | None) -> Non
         f"the mesh {where} all {len(cameras)} cameras (its middle is at {_point(middle)}, theirs at {_point(array)})",
         path=path,
         remedy="bring both into one frame: look for flipped axes (y and z between OpenGL and OpenCV), another scale or "
-        "another reconstruction's coordinates; eigenfield inspect --overlay shows both",
+        "another reconstruction's coordinates; `eigenfield inspect CAPTURE --proxy MESH --overlay overlay.png` shows "
+        "both",
     )
 
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from eigenfield.core.errors import FormatError, ProxyError
 from eigenfield.core.mesh import Mesh, triangle_areas
+from eigenfield.core.recognise import read_head, recognise, refuse_address
 from eigenfield.proxy.meshes.formats import RawMesh
 from eigenfield.proxy.meshes.gltf import GLTF
 from eigenfield.proxy.meshes.obj import OBJ
@@ -53,17 +54,7 @@ def read_mesh(path: str | os.PathLike[str], origin: NDArray[np.float64] | None =
             `proxy-degenerate`.
     """
     file = Path(path)
-    suffix = file.suffix.lower()
-    if suffix not in MESH_SUFFIXES:
-        raise ProxyError(
-            "proxy-format",
-            f"meshes ending in {suffix or 'nothing'} are not read",
-            path=file,
-            remedy=f"convert it to one of {', '.join(MESH_SUFFIXES)}",
-        )
-    if file.is_dir() or not file.exists():
-        what = "is a folder" if file.is_dir() else "does not exist"
-        raise ProxyError("proxy-missing", what, path=file, remedy="name the proxy's mesh file")
+    refuse_no_mesh(file)
     try:
         data = file.read_bytes()
     except OSError as error:
@@ -73,8 +64,39 @@ def read_mesh(path: str | os.PathLike[str], origin: NDArray[np.float64] | None =
             path=file,
             remedy="check the file and its permissions",
         ) from error
-    raw = _parse(data, suffix, file)
+    raw = _parse(data, file.suffix.lower(), file)
     return check_mesh(raw if origin is None else raw._replace(vertices=raw.vertices - origin), file)
+
+
+def refuse_no_mesh(path: Path) -> None:
+    """Before any work: refuse what is no file of a mesh, by its name and its first bytes.
+
+    Args:
+        path: The file.
+
+    Raises:
+        ProxyError: `proxy-missing`, `proxy-format`.
+        OptionError: `web-address`.
+    """
+    suffix, what = path.suffix.lower(), recognise(read_head(path))
+    if what is not None:
+        raise ProxyError("proxy-format", f"is {what}, and no mesh", path=path, remedy=_remedy("name a mesh"))
+    if not path.exists():
+        refuse_address(path)
+    if path.is_dir() or (suffix in MESH_SUFFIXES and not path.exists()):
+        what = "is a folder, and no mesh" if path.is_dir() else "this mesh does not exist"
+        raise ProxyError("proxy-missing", what, path=path, remedy=_remedy("name the proxy's mesh file"))
+    if suffix not in MESH_SUFFIXES:
+        raise ProxyError(
+            "proxy-format",
+            f"meshes ending in {suffix or 'nothing'} are not read",
+            path=path,
+            remedy=f"convert it to one of {', '.join(MESH_SUFFIXES)}",
+        )
+
+
+def _remedy(remedy: str) -> str:
+    return f"{remedy}, or leave it out: `eigenfield encode CAPTURE -o scene.glb` makes one from the photographs"
 
 
 def _parse(data: bytes, suffix: str, file: Path) -> RawMesh:

@@ -39,7 +39,7 @@ def poisson_surface(points: OrientedPoints, *, progress: Progress | None = None)
         raise ProxyError(
             "surface-no-points",
             f"{len(points)} points are no surface",
-            remedy="check the calibration (eigenfield inspect), and that the photographs overlap and have texture",
+            remedy="check the calibration (`eigenfield inspect CAPTURE`); photographs must overlap and have texture",
         )
     low, high = points.positions.min(axis=0), points.positions.max(axis=0)
     centre, scale = (low + high) / 2, float((high - low).max()) or 1.0

@@ -84,7 +84,7 @@ def trim_surface(
         raise ProxyError(
             "surface-empty",
             f"nothing is left of a surface of {len(mesh.faces)} triangles once what no points support is cut away",
-            remedy="check the calibration (eigenfield inspect) and the depth range",
+            remedy="check the calibration (`eigenfield inspect CAPTURE`) and the depth range",
         )
     log.info("trimmed from %d to %d triangles", len(mesh.faces), len(result.faces))
     return result
@@ -115,7 +115,7 @@ def trim_by_masks(mesh: Mesh, cameras: Sequence[Camera], masks: Sequence[NDArray
         raise ProxyError(
             "surface-empty",
             "nothing of the surface lies within the masks of nine views in ten",
-            remedy="check that the masks belong to these photographs, and the calibration (eigenfield inspect)",
+            remedy="check the calibration (`eigenfield inspect CAPTURE`), and that the masks are of these photographs",
         )
     return result
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.arguments import checked
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
@@ -25,6 +26,7 @@ from eigenfield.rendering.software.tiles import empty_layers, fill_layers, read_
 from eigenfield.rendering.weights import ViewWeights, camera_weights, view_weights
 
 BLACK = (0.0, 0.0, 0.0)
+RENDER_PLACE_TOLERANCE = 1e-6  # half widths of the array, by which a viewpoint may be rounded beyond its edge
 RENDER_SPARE_BUFFERS = 4  # sets kept for the next pictures
 
 
@@ -254,6 +256,7 @@ def renderer_of(scene: Scene) -> Renderer:
     return scene.derive("software renderer", lambda: Renderer(scene))
 
 
+@checked
 def render(
     scene: Scene,
     *,
@@ -318,6 +321,9 @@ def viewpoint(
     """
     if at is not None and camera is not None:
         raise OptionError("viewpoint", "a place and a camera were both given", remedy="give one of them")
+    if at is not None and max(abs(float(v)) for v in at) > 1 + RENDER_PLACE_TOLERANCE:
+        message = f"the viewpoint {at[0]:g},{at[1]:g} lies outside the array"
+        raise OptionError("viewpoint", message, remedy="give two numbers from -1 to 1; 0,0 is its middle")
     if not 0 <= time < len(scene.times):
         raise OptionError("time", f"there is no instant {time}", remedy=f"give 0 to {len(scene.times) - 1}")
     if at is not None:

@@ -6,6 +6,7 @@ Each kind is a module. What is written is whole or absent; existing files stay u
 from __future__ import annotations
 
 from eigenfield.viewer.exports.colmap import write_colmap
+from eigenfield.viewer.exports.export import OPTIONS, export
 from eigenfield.viewer.exports.folder import refuse_folder
 from eigenfield.viewer.exports.maps import write_maps
 from eigenfield.viewer.exports.names import file_names
@@ -14,6 +15,8 @@ from eigenfield.viewer.exports.quilt import quilt_of, write_quilt
 from eigenfield.viewer.page import write_page
 
 __all__ = [
+    "OPTIONS",
+    "export",
     "file_names",
     "quilt_of",
     "refuse_folder",

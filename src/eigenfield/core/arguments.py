@@ -1,0 +1,94 @@
+"""Arguments of public functions, checked against their annotations: a wrong one is an OptionError that names it."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import types
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from numbers import Integral, Real
+from typing import Any, ParamSpec, TypeVar, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from eigenfield.core.errors import OptionError
+
+P = ParamSpec("P")
+R = TypeVar("R")
+_NUMBERS = {int: Integral, float: Real}  # NumPy's numbers too
+_WORDS = {int: "a whole number", float: "a number", str: "a text", bool: "True or False", type(None): "None"}
+
+
+def checked(function: Callable[P, R]) -> Callable[P, R]:
+    """The function, which raises OptionError `argument` for arguments of another type than it says, and unknown ones.
+
+    A NumPy array or a list stands for a tuple, and a whole number for a number.
+
+    Args:
+        function: Its annotations must be importable.
+    """
+    signature = inspect.signature(function)
+
+    @functools.lru_cache(1)
+    def hints() -> dict[str, Any]:
+        return get_type_hints(function)
+
+    @functools.wraps(function)
+    def call(*args: P.args, **named: P.kwargs) -> R:
+        try:
+            given = signature.bind(*args, **named).arguments
+        except TypeError as error:
+            remedy = f"it takes {', '.join(signature.parameters)}"
+            raise OptionError("argument", f"{function.__name__}: {error}", remedy=remedy) from None
+        for name, value in given.items():
+            kind = signature.parameters[name].kind
+            if kind is not inspect.Parameter.VAR_KEYWORD and not matches(value, hints()[name]):
+                message = f"{name} of {function.__name__} is {_shown(value)}"
+                raise OptionError("argument", message, remedy=f"give {in_words(hints()[name])}")
+        return function(*args, **named)
+
+    return call
+
+
+def matches(value: object, hint: Any) -> bool:
+    """Whether a value is of an annotation's type; what is none of the types that options have is taken.
+
+    Args:
+        value: Any value.
+        hint: An evaluated annotation.
+    """
+    origin, inner = get_origin(hint) or hint, get_args(hint)
+    if origin in (Union, types.UnionType):
+        return any(matches(value, each) for each in inner)
+    if origin is tuple or origin is Sequence:
+        if isinstance(value, str | bytes | Mapping) or not isinstance(value, Sequence | np.ndarray):
+            return False
+        if origin is tuple and inner[-1:] != (...,):
+            return len(value) == len(inner) and all(map(matches, value, inner))
+        return all(matches(each, inner[0]) for each in value)
+    if getattr(origin, "_is_protocol", False):
+        return callable(value) if "__call__" in vars(origin) else True
+    if not isinstance(origin, type) or origin is object:
+        return True
+    return isinstance(value, _NUMBERS.get(origin, origin)) and not (isinstance(value, bool) and origin in _NUMBERS)
+
+
+def in_words(hint: Any) -> str:
+    """What an annotation takes, for a message.
+
+    Args:
+        hint: An evaluated annotation.
+    """
+    origin, inner = get_origin(hint) or hint, get_args(hint)
+    if origin in (Union, types.UnionType):
+        return " or ".join(dict.fromkeys(map(in_words, inner)))
+    if origin is tuple and inner[-1:] != (...,):
+        return f"({', '.join(map(in_words, inner))})"
+    if origin in (tuple, Sequence):
+        return f"a sequence, each {in_words(inner[0])}"
+    return _WORDS.get(origin, f"a {getattr(origin, '__name__', origin)}")
+
+
+def _shown(value: object) -> str:
+    text = repr(value) if isinstance(value, str | int | float | Iterable) else ""
+    return text if 0 < len(text) <= 40 else f"a {type(value).__name__}"

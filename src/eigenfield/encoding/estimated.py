@@ -1,0 +1,132 @@
+"""What `encode` needs of a capture and was not given: cameras and proxy."""
+
+from __future__ import annotations
+
+import logging
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from eigenfield.capture import Capture, LightField, PhotoSet, open_any, open_capture
+from eigenfield.core.errors import OptionError
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.observations import CalibratedObservations
+from eigenfield.core.progress import Progress
+from eigenfield.core.proxy import Proxy
+from eigenfield.encoding.options import EncodeOptions
+from eigenfield.encoding.views import check_selection
+from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES, refuse_no_mesh
+from eigenfield.reconstruction import reconstruct
+
+log = logging.getLogger("eigenfield.encode")
+
+Given = str | os.PathLike[str] | Capture | CalibratedObservations
+
+
+def reconstruction_settings(options: EncodeOptions, own: Mapping[str, Any], blind: bool) -> dict[str, Any]:
+    """The arguments of `reconstruct` for a scene with these options.
+
+    Args:
+        options: Of the scene.
+        own: Arguments of `reconstruct` that were given.
+        blind: Whether held-out photographs take no part in cameras and proxy.
+
+    Raises:
+        OptionError: `blind`, `sheets`.
+    """
+    if blind and options.hold_out is None:
+        raise OptionError("blind", "--blind is about held-out photographs", remedy="say which with --hold-out")
+    settings = {
+        **own,
+        "triangles": PROXY_DEFAULT_TRIANGLES if options.triangles is None else options.triangles,
+        "blind": options.hold_out if blind else None,
+        "hold_out": options.hold_out,
+    }
+    if options.resolved().fit == "none":  # texture maps know one opaque surface
+        if own["surface"] == "layers" or (own["layers"] or 1) > 1:
+            message = "texture maps of several layers, which only a fit can make"
+            raise OptionError("sheets", message, remedy="leave out --fit none, or the layers")
+        settings["layers"] = 1
+    return settings
+
+
+def refuse_unused(own: Mapping[str, Any], blind: bool) -> None:
+    """Refuse arguments of `reconstruct`, and `blind`, where the proxy is given.
+
+    Args:
+        own: Arguments of `reconstruct` that were given.
+        blind: Whether held-out photographs were to take no part in cameras and proxy.
+
+    Raises:
+        OptionError: `proxy-given`.
+    """
+    asked = [name for name, value in own.items() if value not in (None, "auto", ())] + ["blind"] * blind
+    if asked:
+        raise OptionError(
+            "proxy-given",
+            f"--{asked[0].replace('_', '-').removesuffix('s')} is for making a proxy, but --proxy gives one",
+            remedy="leave out one of the two",
+        )
+
+
+def estimate(
+    given: Given, options: EncodeOptions, settings: Mapping[str, Any], work: str | os.PathLike[str] | None,
+    progress: Progress | None,
+) -> tuple[LightField, Proxy]:  # fmt: skip
+    """Cameras and proxy of a capture.
+
+    Args:
+        given: The capture, or its path.
+        options: Of the scene.
+        settings: Of `reconstruction_settings`.
+        work: Folder that keeps finished stages; None: nothing is kept.
+        progress: Reports each stage.
+
+    Raises:
+        CaptureError, ProxyError, OptionError: As `open_any` and `reconstruct`.
+    """
+    folder = None if work is None else Path(work)
+    if isinstance(given, LightField | PhotoSet):
+        opened: Capture = given
+    elif isinstance(given, str | os.PathLike):
+        opened = open_any(given, work=None if folder is None else folder / "frames")
+        _warn(opened.problems)
+    else:
+        raise OptionError("capture", f"a {type(given).__name__} makes no proxy", remedy="give the proxy, or a folder")
+    check_selection(opened, options)
+    made = reconstruct(opened, work=folder, progress=progress, **settings)
+    _warn(made.light_field.problems[len(opened.problems) :])
+    return made.light_field, made.proxy
+
+
+def calibrated(given: Given, proxy: str | os.PathLike[str] | Mesh | Proxy) -> CalibratedObservations:
+    """A capture with cameras, as it is or opened.
+
+    Args:
+        given: The capture, or its path.
+        proxy: Refused first if it is a path and no mesh.
+
+    Raises:
+        CaptureError, ProxyError: As `open_capture` and `refuse_no_mesh`.
+        OptionError: `capture`, `proxy`: they are nothing that is encoded.
+    """
+    if isinstance(proxy, str | os.PathLike):
+        refuse_no_mesh(Path(proxy))
+    elif not isinstance(proxy, Mesh | Proxy):
+        remedy = "give a mesh file, a Mesh or a Proxy, or leave it out"
+        raise OptionError("proxy", f"a {type(proxy).__name__} is no proxy", remedy=remedy)
+    if isinstance(given, str | os.PathLike):
+        opened = open_capture(given)
+        _warn(opened.problems)
+        return opened
+    if isinstance(given, PhotoSet):
+        raise OptionError("capture", "these photographs have no cameras", remedy="leave out the proxy, or calibrate")
+    if not hasattr(given, "cameras"):
+        raise OptionError("capture", f"a {type(given).__name__} is no capture", remedy="give a folder, or `ef.open` it")
+    return given
+
+
+def _warn(problems: tuple[str, ...]) -> None:
+    for problem in problems:
+        log.warning("%s", problem)

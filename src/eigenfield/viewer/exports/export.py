@@ -1,0 +1,180 @@
+"""A scene for other programs, by the name of what is written or by its kind."""
+
+from __future__ import annotations
+
+import os
+import re
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.core.arguments import checked
+from eigenfield.core.errors import OptionError
+from eigenfield.core.notebook import notebook_progress
+from eigenfield.core.progress import Progress
+from eigenfield.core.scene import Scene, check_scale
+from eigenfield.gltf import load
+from eigenfield.rendering import FLIGHT_FRAMES, RenderJob, path_points
+from eigenfield.rendering.render_jobs import refuse_flight, write_flight
+from eigenfield.runtime.files import is_numbered, refuse_existing
+from eigenfield.viewer.exports.colmap import write_colmap
+from eigenfield.viewer.exports.folder import refuse_folder
+from eigenfield.viewer.exports.maps import write_maps
+from eigenfield.viewer.exports.obj import refuse_obj, write_obj, write_obj_folder
+from eigenfield.viewer.exports.quilt import quilt_of, write_quilt
+from eigenfield.viewer.page import write_page
+
+PICTURE_OPTIONS = {"resolution", "background", "weights", "filter", "textures", "samples", "renderer"}
+OPTIONS = {  # of each kind, beside the options of all
+    "html": {"title", "metres_per_unit"},
+    "mp4": PICTURE_OPTIONS | {"path", "frames", "fps"},
+    "png": PICTURE_OPTIONS | {"path", "frames"},
+    "obj": {"textures"},
+    "maps": {"textures"},
+    "quilt": PICTURE_OPTIONS | {"quilt", "spread"},
+    "colmap": PICTURE_OPTIONS | {"path", "frames", "residual"},
+}
+ENDINGS = {"html": (".html", ".htm"), "mp4": (".mp4",), "png": (".png",), "quilt": (".png",)}
+FILE_ENDINGS = (".html", ".htm", ".mp4", ".png", ".jpg", ".jpeg", ".glb", ".gltf", ".ply", ".zip")
+QUILT_NAME = re.compile(r"_qs\d+x\d+a[\d.]+$")
+FLIGHT_DEFAULT_PATH, FLIGHT_FPS = "circle", 30
+
+
+@checked
+def export(
+    scene: Scene | str | os.PathLike[str],
+    output: str | os.PathLike[str],
+    kind: str | None = None,
+    *,
+    overwrite: bool = False,
+    progress: Progress | None = notebook_progress,
+    **options: Any,
+) -> tuple[Path, str]:
+    """Write a scene for other programs, as `eigenfield export` does.
+
+    Args:
+        scene: The scene, or its file.
+        output: A file or a folder.
+        kind: "html", "mp4", "png" (single pictures), "obj", "maps", "quilt" or "colmap"; None: by the output's name.
+        overwrite: Whether existing files, and folders that an export wrote, are replaced.
+        progress: Reports each picture; by default a bar in a notebook.
+        options: Of the kind (`OPTIONS`): fields of `RenderJob` for pictures; `path` and `frames` (`path_points`) and
+            `fps` of a flight; `title` and `metres_per_unit` of a page; `quilt` (columns, rows), `spread`; `residual`.
+
+    Returns:
+        The file or folder that was written, and what it holds, for people.
+
+    Raises:
+        OptionError: `output-kind`, `unused-option`; an option is impossible.
+        OutputError: Something exists already, or cannot be written.
+        FormatError: The file is no scene.
+    """
+    output = Path(output)
+    chosen = _chosen_kind(output, kind, is_numbered(output))
+    _check(chosen, output, options)
+    points = None
+    if chosen in ("mp4", "png") or "path" in options:
+        points = path_points(options.get("path", FLIGHT_DEFAULT_PATH), options.get("frames", FLIGHT_FRAMES))
+    _refuse(chosen, output, points, overwrite)
+    loaded = scene if isinstance(scene, Scene) else load(scene)
+    job = RenderJob(loaded, **{name: value for name, value in options.items() if name in PICTURE_OPTIONS})
+    return _write(chosen, job, points, output, options, overwrite, progress)
+
+
+def _refuse(kind: str, output: Path, points: NDArray[np.float64] | None, overwrite: bool) -> None:
+    """Refuse existing outputs, before any work; a quilt's name is known only with its scene."""
+    if _is_obj(output):
+        refuse_obj(output, overwrite)
+    elif kind not in ENDINGS:
+        refuse_folder(output, overwrite)
+    elif points is not None:
+        refuse_flight(output, len(points), overwrite)
+    elif kind != "quilt":
+        refuse_existing(output, overwrite)
+
+
+def _write(
+    kind: str, job: RenderJob, points: NDArray[np.float64] | None, output: Path, options: dict[str, Any],
+    overwrite: bool, progress: Progress | None,
+) -> tuple[Path, str]:  # fmt: skip
+    """Write the export; where, and what was written."""
+    scene = job.scene
+    how: dict[str, Any] = {"overwrite": overwrite, "progress": progress}
+    if kind == "html":
+        write_page(scene, output, overwrite=overwrite, **options)
+        return output, f"{output.stat().st_size / 1e6:.1f} MB"
+    if _is_obj(output):
+        write_obj(scene, output, overwrite=overwrite)
+        return output, "with its material and the mean; a folder with --as obj holds the eigen textures too"
+    if kind == "obj":
+        write_obj_folder(scene, output, textures=job.textures, **how)
+        return output, "mesh, mean and eigen textures"
+    if kind == "maps":
+        write_maps(scene, output, textures=job.textures, **how)
+        return output, f"{len(scene.rig.encoded)} texture maps"
+    if kind == "quilt":
+        quilt = quilt_of(scene, options.get("quilt"), job.resolution, options.get("spread", 1.0))
+        path = write_quilt(job, quilt, output, **how)
+        return path, f"{quilt.columns * quilt.rows} views of {quilt.width}x{quilt.height}"
+    if kind == "colmap":
+        write_colmap(job, output, points=points, residual=options.get("residual", False), **how)
+        return output, f"{len(scene.rig.names) if points is None else len(points)} pictures and a COLMAP model"
+    assert points is not None
+    write_flight(job, points, output, Fraction(options.get("fps", FLIGHT_FPS)), **how)
+    return output, f"{len(points)} pictures"
+
+
+def _is_obj(output: Path) -> bool:
+    return output.suffix.lower() == ".obj"
+
+
+def _chosen_kind(output: Path, kind: str | None, numbered: bool) -> str:
+    """The kind that is asked for, else that of the output's name."""
+    ending = output.suffix.lower()
+    if kind is not None and kind not in OPTIONS:
+        raise OptionError("output-kind", f"no export is called {kind}", remedy=f"use one of {', '.join(OPTIONS)}")
+    if kind is None:
+        if ending == ".png" and not numbered and not QUILT_NAME.search(output.stem):
+            raise OptionError(
+                "output-kind",
+                f"{output}: one .png may be many things",
+                remedy="put %04d into its name for the pictures of a path, or say --as quilt; "
+                "`eigenfield render SCENE -o view.png` draws one view",
+            )
+        by_ending = {".html": "html", ".htm": "html", ".mp4": "mp4", ".obj": "obj",
+                     ".png": "png" if numbered else "quilt"}  # fmt: skip
+        if ending not in by_ending:
+            raise OptionError(
+                "output-kind",
+                f"{output}: the name does not tell what to write",
+                remedy=f"say --as {', '.join(list(OPTIONS)[:-1])} or {list(OPTIONS)[-1]}",
+            )
+        return by_ending[ending]
+    if kind in ENDINGS and ending not in ENDINGS[kind]:
+        raise OptionError("output-kind", f"{output}: {kind} is a file", remedy=f"name it {ENDINGS[kind][0]}")
+    if kind == "png" and not numbered:
+        raise OptionError("output-kind", f"{output}: a path makes many pictures", remedy="put %04d into its name")
+    if kind == "quilt" and numbered:
+        raise OptionError("output-kind", f"{output}: a quilt is one picture", remedy="leave the number out of its name")
+    if kind not in ENDINGS and (ending in FILE_ENDINGS or (ending == ".obj" and kind != "obj")):
+        raise OptionError("output-kind", f"{output}: {kind} is a folder", remedy="name one")
+    return kind
+
+
+def _check(kind: str, output: Path, given: dict[str, Any]) -> None:
+    """Refuse options that the kind does not take, before anything is read."""
+    for name in given:
+        if name not in OPTIONS[kind]:
+            raise OptionError("unused-option", f"--{name.replace('_', '-')} is not for {kind}", remedy="leave it out")
+    if _is_obj(output) and "textures" in given:
+        raise OptionError(
+            "unused-option", f"{output} has the mean alone", remedy="leave out --textures, or name a folder"
+        )
+    if kind == "colmap" and "frames" in given and "path" not in given:
+        raise OptionError("frames", "--frames needs --path", remedy="give a path, or leave it out")
+    if kind == "mp4" and given.get("background", ()) is None:
+        raise OptionError("background", "a film cannot be transparent", remedy="name a colour, or write .png pictures")
+    check_scale(given.get("metres_per_unit"))

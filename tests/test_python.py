@@ -1,0 +1,184 @@
+"""Python as a person expects it: paths are taken, values show themselves briefly, and wrong arguments are named."""
+
+from __future__ import annotations
+
+import sys
+import types
+import urllib.request
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import eigenfield as ef
+from eigenfield.core import notebook
+from eigenfield.core.arguments import checked
+from support.captures import write_array, write_capture
+from support.program import call
+from support.scenes import tiny_scene
+
+
+def error(function, *arguments, **named) -> str:
+    with pytest.raises(ef.OptionError) as caught:
+        function(*arguments, **named)
+    return str(caught.value)
+
+
+@pytest.fixture(scope="module")
+def nine(tmp_path_factory) -> Path:
+    return write_capture(tmp_path_factory.mktemp("python") / "nine")
+
+
+@pytest.mark.parametrize(
+    ("words", "options"),
+    [
+        (["--surface", "relief"], {"surface": "relief"}),
+        (["--fit", "none", "--textures", "3", "--hold-out", "every:5", "--blind"],
+         {"fit": "none", "textures": 3, "hold_out": "every:5", "blind": True}),
+    ],
+)  # fmt: skip
+def test_encode_takes_a_folder_and_writes_what_the_command_line_does(words, options, tmp_path):
+    write_array(tmp_path / "photos", side=3)
+    assert call("encode", tmp_path / "photos", "-q", "-o", tmp_path / "theirs.glb", *words) == 0
+    scene = ef.encode(tmp_path / "photos", **options)
+    ef.save(scene, tmp_path / "ours.glb")
+    assert (tmp_path / "ours.glb").read_bytes() == (tmp_path / "theirs.glb").read_bytes()
+
+
+def test_encode_and_evaluate_take_paths_and_captures(nine):
+    options = {"fit": "none", "textures": 2, "atlas": 64}
+    made = [ef.encode(given, str(nine / "proxy.ply"), **options) for given in (str(nine), nine, ef.open(nine))]
+    assert len({scene.appearance.planes[0].mean.tobytes() for scene in made}) == 1
+    found = [ef.evaluate(made[0], given, png_maps="none")["image"] for given in (str(nine), nine, ef.open(nine))]
+    assert found[0] == found[1] == found[2]
+
+
+def test_a_scene_and_a_picture_show_themselves_briefly():
+    scene = tiny_scene(held_out=(1,), cameras=6)
+    assert repr(scene).count("\n") == 2 and "6 cameras, 1 of them held out" in repr(scene)
+    encoded = ef.EncodedScene(scene.proxy, scene.rig, scene.appearance)
+    assert repr(encoded).startswith("EncodedScene of 6 cameras") and len(repr(encoded)) < 300
+    assert len(repr(ef.render(scene))) < 80
+
+
+def test_a_picture_is_shown_in_a_notebook_and_saved(tmp_path):
+    from PIL import Image
+
+    picture = ef.render(tiny_scene())
+    picture.save(tmp_path / "a.png")
+    assert (tmp_path / "a.png").read_bytes() == picture._repr_png_()
+    np.testing.assert_array_equal(np.asarray(Image.open(tmp_path / "a.png")), picture.to_uint8())
+    with pytest.raises(ef.OutputError):
+        picture.save(tmp_path / "a.png")
+    picture.save(tmp_path / "a.png", overwrite=True)
+    assert "name it a.png" in error(picture.save, tmp_path / "a.jpg")
+    attributes = replace(picture, image=np.zeros((4, 4, 5), np.float32))
+    assert attributes._repr_png_() is None and "5 channels" in error(attributes.save, tmp_path / "b.png")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.png"]
+
+
+def test_a_scene_is_exported_and_viewed(tmp_path):
+    scene = tiny_scene()
+    ef.save(scene, tmp_path / "a.glb")
+    for given in (scene, ef.load(tmp_path / "a.glb"), tmp_path / "a.glb"):
+        written, what = ef.export(given, tmp_path / "a.html", title="A", overwrite=True)
+        assert written == tmp_path / "a.html" and what.endswith(" MB")
+    assert ef.export(scene, tmp_path / "%d.png", path="grid", frames=2, samples=1)[1] == "2 pictures"
+    assert "use one of html, mp4" in error(ef.export, scene, tmp_path / "b", "pdf")
+    assert "--title is not for maps" in error(ef.export, scene, tmp_path / "b", "maps", title="B")
+    for given in (scene, tmp_path / "a.glb"):
+        with ef.view(given, browser=False) as server, urllib.request.urlopen(server.address, timeout=20) as answer:
+            assert b"<html" in answer.read()
+    with pytest.raises(ef.EigenfieldError):
+        ef.view(tmp_path / "nothing.glb", browser=False)
+
+
+class Kernel:
+    """What stands for IPython: a shell with a kernel, and what is displayed."""
+
+    def __init__(self):
+        self.shown: list[str] = []
+        self.kernel = self
+        self.display = types.ModuleType("IPython.display")
+        self.display.HTML = str
+        self.display.display = self.add
+        module = types.ModuleType("IPython")
+        module.get_ipython = lambda: self
+        self.modules = {"IPython": module, "IPython.display": self.display}
+
+    def add(self, text, display_id):
+        self.shown.append(text)
+        return self
+
+    def update(self, text):
+        self.shown[-1] = text
+
+
+def test_a_notebook_shows_progress_unless_told_otherwise(nine, monkeypatch):
+    kernel, options = Kernel(), {"fit": "none", "textures": 2, "atlas": 64}
+    ef.encode(nine, nine / "proxy.ply", **options)  # no notebook
+    for name, module in kernel.modules.items():
+        monkeypatch.setitem(sys.modules, name, module)
+    ef.encode(nine, nine / "proxy.ply", progress=None, **options)
+    assert kernel.shown == []
+    ef.encode(nine, nine / "proxy.ply", **options)
+    assert kernel.shown and all("<progress" in text for text in kernel.shown)
+    notebook.notebook_progress("<b>", 0, 2)
+    notebook.notebook_progress("<b>", 2, 2)
+    assert kernel.shown[-1].startswith("&lt;b&gt; ") and kernel.shown[-1].endswith("2 of 2")
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments", "named", "says"),
+    [
+        ("render", ["scene.glb"], {}, "scene of render is 'scene.glb'; give a Scene"),
+        ("render", [None], {"ressolution": 3}, "unexpected keyword argument 'ressolution'"),
+        ("load", [3], {}, "path of load is 3"),
+        ("save", [3, "a.glb"], {}, "scene of save is 3"),
+        ("open", [None], {}, "path of open_any"),
+        ("open", ["a"], {"grid": "3x3"}, "grid of open_any is '3x3'; give (a whole number, a whole number) or None"),
+        ("evaluate", [None, "a"], {}, "scene of evaluate"),
+        ("reconstruct", ["photos"], {}, "capture of reconstruct is 'photos'"),
+        ("set_threads", ["all"], {}, "count of set_threads is 'all'"),
+        ("validate", [None], {}, "path of validate"),
+        ("view", [3], {}, "scene of view is 3"),
+        ("export", [3, "a.html"], {}, "scene of export is 3"),
+        ("encode", [3], {}, "makes no proxy"),
+        ("encode", ["a", 3], {}, "is no proxy"),
+        ("encode", ["a"], {"preste": "small"}, "did you mean preset?"),
+        ("encode", ["a"], {"textures": "many"}, "textures is a str; give int"),
+        ("encode", ["a"], {"quality": 101}, "quality"),
+        ("encode", ["a"], {"target": 300_000}, "target is a int; give Target"),
+        ("encode", ["a"], {"target": ef.Target(size="1 MB")}, "a target size of 1 MB"),
+        ("encode", ["a", "b.ply"], {"surface": "relief"}, "leave out one of the two"),
+    ],
+)  # fmt: skip
+def test_a_wrong_argument_is_named(name, arguments, named, says):
+    assert says in error(getattr(ef, name), *arguments, **named)
+
+
+@pytest.mark.parametrize("named", [{"at": "x"}, {"at": (0, 0, 0)}, {"at": (5, 5)}, {"at": (np.nan, 0)},
+                                   {"resolution": "big"}, {"resolution": (0, 5)}, {"samples": 1.5},
+                                   {"textures": True}, {"background": "red"}, {"weights": 3}, {"time": 7}])  # fmt: skip
+def test_a_wrong_view_is_an_option_error(named):
+    error(ef.render, tiny_scene(), **named)
+
+
+def test_arrays_lists_and_numpy_numbers_stand_for_tuples_and_numbers():
+    scene = tiny_scene()
+    expected = ef.render(scene, at=(0.25, 0.0), resolution=(20, 16)).image
+    given = ef.render(scene, at=np.array([0.25, 0.0]), resolution=[np.int64(20), 16]).image
+    np.testing.assert_array_equal(given, expected)
+
+
+def test_annotations_say_what_is_taken():
+    @checked
+    def function(a: tuple[int, ...], b: int | None = None, *, c: bool = False) -> tuple[int, ...]:
+        return a
+
+    assert function([1, 2], c=True) == [1, 2]
+    assert "a of function is (1, 'x'); give a sequence, each a whole number" in error(function, (1, "x"))
+    assert "b of function is 2.5; give a whole number or None" in error(function, (), 2.5)
+    assert "c of function is 1; give True or False" in error(function, (), c=1)
+    assert "missing a required argument: 'a'; it takes a, b, c" in error(function)
