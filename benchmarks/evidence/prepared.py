@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import measure
-from eigenfield.capture import LightField, View, open_capture
+from eigenfield.capture import LightField, View, open_any, open_capture
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import Scene
@@ -24,6 +24,7 @@ from eigenfield.evaluation import ExcludedCircle, read_circles
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.imaging.png import png_bytes
 from eigenfield.proxy import prepare_proxy, read_mesh, write_mesh
+from eigenfield.reconstruction import reconstruct
 from eigenfield.rendering import Renderer, camera_weights
 from eigenfield.runtime.files import write_bytes
 from eigenfield.runtime.parallel import parallel_map
@@ -81,7 +82,7 @@ def own_proxy(capture: Capture, work: Path) -> Proxy | None:
     """
     if capture.proxy is not None:
         return None
-    return ef.reconstruct(ef.open_any(capture.folder, calibration=capture.calibration), work=work / "stages").proxy
+    return reconstruct(open_any(capture.folder, calibration=capture.calibration), work=work / "stages").proxy
 
 
 def prepare(capture: Capture, work: Path, quick: bool = False) -> Prepared:
