@@ -161,7 +161,7 @@ def test_options_and_their_fields_by_name_are_the_same(folder):
         ef.encode(capture, proxy, EncodeOptions(**{**asked, "textures": 5}), textures=2),
     ]
     assert len({encode_scene(scene) for scene in made}) == 1
-    with pytest.raises(TypeError, match="colour"):
+    with pytest.raises(OptionError, match="colour"):
         ef.encode(capture, proxy, colour="red")
 
 

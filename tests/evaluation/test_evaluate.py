@@ -428,7 +428,8 @@ def test_the_table_of_the_verb_shows_flip(scene, tmp_path, run):
 def test_the_verb_leaves_nothing_when_it_cannot(scene, tmp_path, run):
     save(scene, tmp_path / "scene.glb", codec="png")
     before = (tmp_path / "scene.glb").read_bytes()
-    write_capture(scene, tmp_path / "c")  # names end in .png, the scene's do not
+    others = tuple(f"other_{name}" for name in scene.rig.names)
+    write_capture(dataclasses.replace(scene, rig=dataclasses.replace(scene.rig, names=others)), tmp_path / "c")
     code, out, err = run("evaluate", tmp_path / "scene.glb", tmp_path / "c", "--plots", tmp_path / "plots", "--store")
     assert (code, out) == (2, "") and err.startswith("eigenfield: ")
     assert not (tmp_path / "plots").exists()

@@ -160,7 +160,7 @@ def test_resolution_crops_to_cover():
         ({"filter": "best"}, "bicubic"),
         ({"resolution": (0, 5)}, "16384"),
         ({"samples": 99}, "1 to 16"),
-        ({"samples": 2.0}, "1 to 16"),
+        ({"samples": 2.0}, "give a whole number"),
         ({"textures": -1}, "0 or more"),
         ({"background": (1, 2)}, "3 finite"),
     ],

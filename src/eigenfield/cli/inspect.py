@@ -71,10 +71,6 @@ def command(
         raise OptionError(
             "overlay-needs-proxy", "--overlay draws a mesh over the photographs", remedy="name it with --proxy"
         )
-    if proxy is not None:
-        from eigenfield.proxy import refuse_no_mesh
-
-        refuse_no_mesh(proxy)
     if overlay is not None:
         from eigenfield.runtime.files import refuse_existing
 
