@@ -50,6 +50,7 @@ def test_a_zip_with_a_calibration(tmp_path, run):
     assert len(open_capture(path)) == len(open_capture(folder)) == 9
     report = json.loads(run("inspect", path, "--json").out)
     assert report["views"] == 9 and report["next"] == [f"eigenfield encode {path} -o scene.glb"]
+    assert report["root"] == str(path)
 
 
 def info(name: str, mode: int = stat.S_IFREG | 0o644) -> zipfile.ZipInfo:

@@ -77,6 +77,8 @@ def command(
         refuse_existing(overlay, overwrite)
 
     from eigenfield.capture import open_any
+    from eigenfield.capture.archive import is_zip
+    from eigenfield.capture.photographs.kinds import VIDEO_EXTENSIONS
     from eigenfield.capture.survey import decode_all
 
     opened = open_any(capture, strict=False, **place)
@@ -95,6 +97,8 @@ def command(
         damaged = decode_all(opened, progress)
     refusal = _refusal(capture, place, opened, damaged, proxy)
     report = describe(opened, damaged)
+    if is_zip(capture) or capture.suffix.lower() in VIDEO_EXTENSIONS:  # read from a temporary folder
+        report["root"] = str(capture)
     report["refused"] = None if refusal is None else _error(refusal)
     report["next"] = _next_commands(report, capture, place)
     if mesh is not None and opened.light_field is not None:
