@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import measure
-from eigenfield.calibrate import align_similarity, calibration_error
+from eigenfield.calibration import align_similarity, calibration_error
 from eigenfield.capture import open_capture
 from eigenfield.capture.photographs.read import decode
 from eigenfield.stereo import depth_range, estimate_depth

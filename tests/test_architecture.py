@@ -17,7 +17,7 @@ FLOORS = [  # from the ground up; rooms of one floor do not know each other
     ["imaging"],
     ["coding"],
     ["gltf", "capture", "stereo"],
-    ["proxy", "calibrate"],
+    ["proxy", "calibration"],
     ["reconstruction", "rendering"],
     ["encoding"],
     ["evaluation", "viewer", "demo"],

@@ -15,6 +15,7 @@ import eigenfield as ef
 from eigenfield.core import notebook
 from eigenfield.core.arguments import checked
 from support.captures import write_array, write_capture
+from support.motion import photographed
 from support.program import call
 from support.scenes import tiny_scene
 
@@ -94,6 +95,18 @@ def test_a_scene_is_exported_and_viewed(tmp_path):
         ef.view(tmp_path / "nothing.glb", browser=False)
 
 
+def test_cameras_are_found_as_the_command_line_finds_them(tmp_path, monkeypatch):
+    monkeypatch.setattr("eigenfield.calibration.motion.features.FEATURE_MIN_MEDIAN_COUNT", 0)  # of small photographs
+    photographed(tmp_path / "photos")
+    found = ef.calibrate(tmp_path / "photos", tmp_path / "ours", progress=None)
+    assert len(found.light_field) == 5
+    assert call("calibrate", tmp_path / "photos", "-q", "-o", tmp_path / "theirs") == 0
+    for name in ("transforms.json", "report.json"):
+        assert (tmp_path / "ours" / name).read_bytes() == (tmp_path / "theirs" / name).read_bytes()
+    with pytest.raises(ef.OutputError):
+        ef.calibrate(tmp_path / "photos", tmp_path / "ours")
+
+
 class Kernel:
     """What stands for IPython: a shell with a kernel, and what is displayed."""
 
@@ -142,6 +155,7 @@ def test_a_notebook_shows_progress_unless_told_otherwise(nine, monkeypatch):
         ("reconstruct", ["photos"], {}, "capture of reconstruct is 'photos'"),
         ("set_threads", ["all"], {}, "count of set_threads is 'all'"),
         ("validate", [None], {}, "path of validate"),
+        ("calibrate", [3], {}, "photographs of calibrate is 3"),
         ("view", [3], {}, "scene of view is 3"),
         ("export", [3, "a.html"], {}, "scene of export is 3"),
         ("encode", [3], {}, "makes no proxy"),

@@ -18,6 +18,7 @@ from eigenfield.core import notebook as _notebook
 from eigenfield.core.version import __version__
 
 if TYPE_CHECKING:
+    from eigenfield.calibration import calibrate as calibrate
     from eigenfield.capture import LightField as LightField
     from eigenfield.capture import PhotoSet as PhotoSet
     from eigenfield.capture import opening as _opening
@@ -65,6 +66,7 @@ _HOME = {  # a room, or a name in a room where that is another
     "Reconstruction": "reconstruction",
     "Scene": "core.scene",
     "Target": "encoding",
+    "calibrate": "calibration",
     "encode": "encoding",
     "evaluate": "evaluation",
     "export": "viewer.exports",

@@ -70,7 +70,7 @@ SLOW = pytest.mark.slow
 @pytest.mark.parametrize("command", [pytest.param(each, marks=[SLOW] * (" encode " in each)) for each in COMMANDS])
 def test_a_command_that_a_message_gives_runs(command, places, run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("eigenfield.calibrate.motion.features.FEATURE_MIN_MEDIAN_COUNT", 0)  # of small photographs
+    monkeypatch.setattr("eigenfield.calibration.motion.features.FEATURE_MIN_MEDIAN_COUNT", 0)  # of small photographs
     _, verb, *words = shlex.split(command)
     capture = places.get(verb, places["CAPTURE"])
     given = [verb, *(str(capture if word in ("CAPTURE", "{}") else places.get(word, word)) for word in words)]

@@ -16,7 +16,7 @@ import pytest
 from PIL import Image, ImageFilter
 
 import eigenfield as ef
-from eigenfield.calibrate.motion import sfm
+from eigenfield.calibration.motion import sfm
 from eigenfield.capture import PhotoSet, Shot, open_any, open_capture
 from eigenfield.core.errors import CaptureError, EigenfieldError
 from eigenfield.reconstruction import reconstruct

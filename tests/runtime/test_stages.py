@@ -79,7 +79,7 @@ def test_the_fingerprint_is_that_of_the_rooms_that_make_stages(tmp_path):
 
 def test_the_rooms_that_make_stages_are_there():
     assert all((PACKAGE_FOLDER / room / "__init__.py").is_file() for room in STAGE_ROOMS)
-    assert "calibrate" in STAGE_ROOMS and "encoding" not in STAGE_ROOMS
+    assert "calibration" in STAGE_ROOMS and "encoding" not in STAGE_ROOMS
 
 
 def test_a_place_that_is_a_file_is_refused(tmp_path):

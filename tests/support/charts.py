@@ -6,11 +6,11 @@ import cv2
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from eigenfield.calibrate.charts import board as boards
-from eigenfield.calibrate.charts.board import Board
-from eigenfield.calibrate.charts.bundle import BoardObservation
-from eigenfield.calibrate.charts.corners import DetectedCorners
-from eigenfield.calibrate.charts.lens_models import camera_matrix, project_points
+from eigenfield.calibration.charts import board as boards
+from eigenfield.calibration.charts.board import Board
+from eigenfield.calibration.charts.bundle import BoardObservation
+from eigenfield.calibration.charts.corners import DetectedCorners
+from eigenfield.calibration.charts.lens_models import camera_matrix, project_points
 
 CHECKER = boards.checkerboard(9, 6, 25.0, "mm")
 CHARUCO = boards.charuco(5, 6, 30.0, 22.0, "DICT_4X4_50", "mm")

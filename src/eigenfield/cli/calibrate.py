@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import time
 from pathlib import Path
 from typing import Any
 
 import click
 
-from eigenfield.cli.calibrate_chart import REPORT_FILE, ChartOptions, calibrate_from_charts, chart_options
+from eigenfield.cli.calibrate_chart import ChartOptions, calibrate_from_charts, chart_options
 from eigenfield.cli.common import (
     PATH,
     common_options,
@@ -105,31 +104,26 @@ def command(
         return
 
     started = time.monotonic()
-    from eigenfield.calibrate import read_known_lenses, structure_from_motion
-    from eigenfield.calibrate.motion.report import describe_motion, report_lines
+    from eigenfield.calibration.motion.calibrate import calibrate, refuse_passing
+    from eigenfield.calibration.motion.report import describe_motion, report_lines
     from eigenfield.capture import open_photographs
-    from eigenfield.capture.archive import is_zip
-    from eigenfield.capture.writers.save import save_calibration
 
     photos = open_photographs(folder, strict=False, work=work, **names)
-    if work is None and (photos.format in ("video", "walk") or is_zip(folder)):
-        message = "what is taken out of a video or a zip must stay for the calibration to name it"
-        raise OptionError("video-work", message, remedy="add --work DIR")
+    refuse_passing(photos, folder, work)
     note_all(photos.problems, quiet)
-    known = None if intrinsics is None else read_known_lenses(intrinsics, photos)
     with progress_bars(quiet) as progress:
-        motion = structure_from_motion(
+        motion = calibrate(
             photos,
-            intrinsics=known,
+            place,
+            intrinsics=intrinsics,
             camera_per_photo=camera_per_photo,
-            matching=matching,  # type: ignore[arg-type]
+            matching=matching,
             work=work,
             seed=seed,
+            overwrite=overwrite,
             progress=progress,
         )
     report = describe_motion(motion)
-    text = json.dumps(report, indent=1, allow_nan=False) + "\n"
-    save_calibration(motion.light_field, place, motion.points, overwrite=overwrite, more={REPORT_FILE: text.encode()})
     if as_json:
         echo_json(report)
     else:

@@ -16,8 +16,8 @@ from eigenfield.cli.common import note_all, progress_bars, together
 from eigenfield.core.errors import OptionError
 
 if TYPE_CHECKING:
-    from eigenfield.calibrate.charts.board import Board
-    from eigenfield.calibrate.charts.calibrate import CameraReport, ChartCalibration
+    from eigenfield.calibration.charts.board import Board
+    from eigenfield.calibration.charts.calibrate import CameraReport, ChartCalibration
 
 BOARD_FILE = "charuco.toml"
 REPORT_FILE = "report.json"
@@ -88,7 +88,7 @@ def board_of(options: ChartOptions, folder: Path) -> Board:
         OptionError: `chart`, and as `checkerboard`, `charuco`, `parse_size`, `parse_length` do.
         CaptureError: `board-file`.
     """
-    from eigenfield.calibrate.charts.board import (
+    from eigenfield.calibration.charts.board import (
         BOARD_DEFAULT_DICTIONARY,
         charuco,
         checkerboard,
@@ -141,7 +141,7 @@ def _board_file(options: ChartOptions, folder: Path) -> Path | None:
 def calibrate_from_charts(folder: Path, output: Path, options: ChartOptions, *, overwrite: bool, quiet: bool) -> None:
     """Calibrate the rig whose charts are in `folder`; write transforms.json, sparse/0 and report.json to `output`;
     print the table of its cameras."""
-    from eigenfield.calibrate.charts.calibrate import calibrate_charts
+    from eigenfield.calibration.charts.calibrate import calibrate_charts
     from eigenfield.capture.writers.save import save_calibration
 
     started = time.monotonic()

@@ -12,7 +12,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate import PlanarArray, PlanarStart, refine_planar, register_views, start_given, start_planar
+from eigenfield.calibration import PlanarArray, PlanarStart, refine_planar, register_views, start_given, start_planar
 from eigenfield.capture import Capture, LightField
 from eigenfield.capture.holdout import held_out_cameras
 from eigenfield.capture.writers.save import save_calibration

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate import PlanarArray
+from eigenfield.calibration import PlanarArray
 from eigenfield.capture import Capture, Lens, LightField
 from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice

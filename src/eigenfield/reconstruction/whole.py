@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate import structure_from_motion, triangulate_points
+from eigenfield.calibration import structure_from_motion, triangulate_points
 from eigenfield.capture import Capture, LightField, PhotoSet
 from eigenfield.capture.lightfield import PhotographSource
 from eigenfield.capture.survey import refuse_one_place

@@ -24,7 +24,7 @@ log = logging.getLogger("eigenfield.stages")
 
 DIGEST_BLOCK_BYTES = 1 << 20
 PACKAGE_FOLDER = Path(__file__).parents[1]
-STAGE_ROOMS = "core", "runtime", "imaging", "capture", "stereo", "calibrate", "proxy", "reconstruction"
+STAGE_ROOMS = "core", "runtime", "imaging", "capture", "stereo", "calibration", "proxy", "reconstruction"
 
 
 @cache

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eigenfield.calibrate import refine_planar, register_views, start_given, start_planar
-from eigenfield.calibrate.planar.array import ARRAY_PARAMETERS, ArrayModel
-from eigenfield.calibrate.planar.start import nominal_positions
+from eigenfield.calibration import refine_planar, register_views, start_given, start_planar
+from eigenfield.calibration.planar.array import ARRAY_PARAMETERS, ArrayModel
+from eigenfield.calibration.planar.start import nominal_positions
 from eigenfield.capture import GridLayout
 from eigenfield.core.errors import CaptureError
 from support.planes import everywhere, paint, photograph

@@ -18,13 +18,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate.align import natural_gauge, transform_camera
-from eigenfield.calibrate.lenses import KnownLens, distort_to_pixels
-from eigenfield.calibrate.motion.cache import cached_features, cached_matches
-from eigenfield.calibrate.motion.colmap_core import pycolmap
-from eigenfield.calibrate.motion.features import Features, undistort_features
-from eigenfield.calibrate.motion.mapping import MAPPING_TUNING, SparseModel, map_views
-from eigenfield.calibrate.motion.matching import MATCHING_TUNING, Match, Matching, check_matching
+from eigenfield.calibration.align import natural_gauge, transform_camera
+from eigenfield.calibration.lenses import KnownLens, distort_to_pixels
+from eigenfield.calibration.motion.cache import cached_features, cached_matches
+from eigenfield.calibration.motion.colmap_core import pycolmap
+from eigenfield.calibration.motion.features import Features, undistort_features
+from eigenfield.calibration.motion.mapping import MAPPING_TUNING, SparseModel, map_views
+from eigenfield.calibration.motion.matching import MATCHING_TUNING, Match, Matching, check_matching
 from eigenfield.capture.calibration import escape_name
 from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.messages import count_phrase, list_names
@@ -36,7 +36,7 @@ from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.progress import Progress
 from eigenfield.runtime.stages import Stages
 
-log = logging.getLogger("eigenfield.calibrate")
+log = logging.getLogger("eigenfield.calibration")
 
 SFM_MIN_FEATURES = 60  # with fewer, a photograph is called blurred or textureless
 SFM_NOMINAL_FOCAL_SIDES = 1.2  # of the longer side, if no focal length is known

@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate.charts.board import Board
-from eigenfield.calibrate.charts.bundle import BoardObservation
-from eigenfield.calibrate.charts.corners import (
+from eigenfield.calibration.charts.board import Board
+from eigenfield.calibration.charts.bundle import BoardObservation
+from eigenfield.calibration.charts.corners import (
     BoardVariant,
     DetectedCorners,
     board_variants,
@@ -23,12 +23,12 @@ from eigenfield.calibrate.charts.corners import (
     detect_dictionary,
     find_corners,
 )
-from eigenfield.calibrate.charts.pictures import ChartCamera, ChartPictures, decode_frames, read_grey_picture
+from eigenfield.calibration.charts.pictures import ChartCamera, ChartPictures, decode_frames, read_grey_picture
 from eigenfield.core.errors import CaptureError
 from eigenfield.core.progress import Progress, track
 from eigenfield.runtime.parallel import parallel_map, parallel_stream
 
-log = logging.getLogger("eigenfield.calibrate")
+log = logging.getLogger("eigenfield.calibration")
 
 DETECTION_SAMPLE_PICTURES = 8  # of a camera, from which the printed variant is determined
 DETECTION_HINT_PICTURES = 12  # in which a board of another size is searched

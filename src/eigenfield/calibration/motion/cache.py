@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from eigenfield.calibrate.lenses import KnownLens
-from eigenfield.calibrate.motion.colmap_core import pycolmap
-from eigenfield.calibrate.motion.features import FeatureOptions, Features, extract_features, extract_features_of
-from eigenfield.calibrate.motion.matching import Match, Matching, choose_pairs, match_pairs
+from eigenfield.calibration.lenses import KnownLens
+from eigenfield.calibration.motion.colmap_core import pycolmap
+from eigenfield.calibration.motion.features import FeatureOptions, Features, extract_features, extract_features_of
+from eigenfield.calibration.motion.matching import Match, Matching, choose_pairs, match_pairs
 from eigenfield.capture.calibration import or_error
 from eigenfield.capture.photoset import PhotoSet, Shot
 from eigenfield.core.errors import CaptureError

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from eigenfield.calibrate.lenses import KnownLens, undistort_pixels
-from eigenfield.calibrate.motion.colmap_core import pycolmap
+from eigenfield.calibration.lenses import KnownLens, undistort_pixels
+from eigenfield.calibration.motion.colmap_core import pycolmap
 from eigenfield.capture.calibration import or_error
 from eigenfield.capture.photographs.decoded import decode_with_mask
 from eigenfield.capture.photoset import PhotoSet, Shot

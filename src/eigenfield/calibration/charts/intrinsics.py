@@ -14,11 +14,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate.charts.corners import DetectedCorners
-from eigenfield.calibrate.charts.lens_models import LENS_MODEL_LADDER, LensModel, camera_matrix, project_points
+from eigenfield.calibration.charts.corners import DetectedCorners
+from eigenfield.calibration.charts.lens_models import LENS_MODEL_LADDER, LensModel, camera_matrix, project_points
 from eigenfield.imaging.sampling import distances_to, farthest_points
 
-log = logging.getLogger("eigenfield.calibrate")
+log = logging.getLogger("eigenfield.calibration")
 
 F64 = NDArray[np.float64]
 

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eigenfield.calibrate import (
+from eigenfield.calibration import (
     KnownLens,
     read_known_lenses,
 )
-from eigenfield.calibrate.lenses import distort_to_pixels, undistort_pixels
+from eigenfield.calibration.lenses import distort_to_pixels, undistort_pixels
 from eigenfield.capture import Lens, LightField, PhotoSet
 from eigenfield.core.errors import CaptureError
 from support.motion import HEIGHT, WIDTH, K, photographed

@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate.planar.array import ARRAY_PARAMETERS, ArrayModel
-from eigenfield.calibrate.planar.kernels import normal_equations
+from eigenfield.calibration.planar.array import ARRAY_PARAMETERS, ArrayModel
+from eigenfield.calibration.planar.kernels import normal_equations
 from eigenfield.runtime.parallel import parallel_map
 from eigenfield.stereo.reference_view import ReferenceView
 

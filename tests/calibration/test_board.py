@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from eigenfield.calibrate.charts import board as boards
-from eigenfield.calibrate.charts.corners import BoardVariant, board_variants, find_corners
-from eigenfield.calibrate.charts.intrinsics import estimate_intrinsics
-from eigenfield.calibrate.charts.lens_models import LENS_MODEL_LADDER, project_points, project_points_with_derivatives
+from eigenfield.calibration.charts import board as boards
+from eigenfield.calibration.charts.corners import BoardVariant, board_variants, find_corners
+from eigenfield.calibration.charts.intrinsics import estimate_intrinsics
+from eigenfield.calibration.charts.lens_models import LENS_MODEL_LADDER, project_points, project_points_with_derivatives
 from eigenfield.core.errors import CaptureError, OptionError
 from support import charts
 from support.charts import CHARUCO, CHECKER, TOML

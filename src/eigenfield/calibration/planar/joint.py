@@ -16,10 +16,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate.planar.array import ARRAY_PARAMETERS, ARRAY_POSITION, ARRAY_SHIFT, ArrayModel
-from eigenfield.calibrate.planar.fit import PhotometricTarget, gauss_newton_step, select_textured_points
-from eigenfield.calibrate.planar.kernels import occlusion_votes
-from eigenfield.calibrate.planar.start import PlanarStart, irregularity, reverse_depth
+from eigenfield.calibration.planar.array import ARRAY_PARAMETERS, ARRAY_POSITION, ARRAY_SHIFT, ArrayModel
+from eigenfield.calibration.planar.fit import PhotometricTarget, gauss_newton_step, select_textured_points
+from eigenfield.calibration.planar.kernels import occlusion_votes
+from eigenfield.calibration.planar.start import PlanarStart, irregularity, reverse_depth
 from eigenfield.core.camera import Camera
 from eigenfield.core.progress import Progress
 from eigenfield.runtime.parallel import parallel_map
@@ -33,7 +33,7 @@ from eigenfield.stereo.sweep import SWEEP_MAX_DIFFERENCE_LEVELS, plane_sweep
 from eigenfield.stereo.views import HALF_FROM_FULL_INDEX, halve_pictures, pack_pictures, unpack_pictures
 from eigenfield.stereo.visibility import depth_buffers, mean_texture
 
-log = logging.getLogger("eigenfield.calibrate")
+log = logging.getLogger("eigenfield.calibration")
 
 
 @dataclass(frozen=True)

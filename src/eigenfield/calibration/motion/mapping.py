@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate.motion.colmap_core import pycolmap, run_interruptibly
-from eigenfield.calibrate.motion.matching import MATCHING_TUNING, Match
+from eigenfield.calibration.motion.colmap_core import pycolmap, run_interruptibly
+from eigenfield.calibration.motion.matching import MATCHING_TUNING, Match
 from eigenfield.core.progress import Progress
 from eigenfield.runtime.temporary import temporary_folder
 

@@ -14,16 +14,16 @@ import cv2
 import numpy as np
 import pytest
 
-from eigenfield.calibrate import (
+from eigenfield.calibration import (
     KnownLens,
     SfmResult,
     calibration_error,
     structure_from_motion,
 )
-from eigenfield.calibrate.align import angle_between
-from eigenfield.calibrate.lenses import undistort_pixels
-from eigenfield.calibrate.motion.features import FeatureOptions, extract_features_of
-from eigenfield.calibrate.motion.matching import choose_pairs
+from eigenfield.calibration.align import angle_between
+from eigenfield.calibration.lenses import undistort_pixels
+from eigenfield.calibration.motion.features import FeatureOptions, extract_features_of
+from eigenfield.calibration.motion.matching import choose_pairs
 from eigenfield.capture import GridLayout, Lens, LightField, PhotoSet, Shot, open_capture
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, OptionError, OutputError
@@ -59,8 +59,8 @@ def kept(scene: tuple[PhotoSet, LightField], tmp_path_factory: pytest.TempPathFa
 def solved(scene: tuple[PhotoSet, LightField], kept: Path) -> SfmResult:
     """Their cameras, by known intrinsics: the killed run goes on from its matches."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("eigenfield.calibrate.motion.cache.extract_features", None)  # calling it would fail
-        patch.setattr("eigenfield.calibrate.motion.cache.match_pairs", None)
+        patch.setattr("eigenfield.calibration.motion.cache.extract_features", None)  # calling it would fail
+        patch.setattr("eigenfield.calibration.motion.cache.match_pairs", None)
         return structure_from_motion(scene[0], intrinsics=KnownLens(K), work=kept)
 
 
@@ -68,7 +68,7 @@ def solved(scene: tuple[PhotoSet, LightField], kept: Path) -> SfmResult:
 def strong_features() -> Iterator[None]:
     """Small photographs have few features: looking for weaker ones, as the temple needs, takes four times as long."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("eigenfield.calibrate.motion.features.FEATURE_MIN_MEDIAN_COUNT", 0)
+        patch.setattr("eigenfield.calibration.motion.features.FEATURE_MIN_MEDIAN_COUNT", 0)
         yield
 
 

@@ -15,7 +15,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate.charts.board import Board, dictionaries
+from eigenfield.calibration.charts.board import Board, dictionaries
 
 CORNERS_MAX_SEARCH_PIXELS = 1600  # longer side for the detection; corners are refined at full resolution
 CORNERS_MIN_PICTURE_PIXELS = 48  # shorter side; OpenCV's detectors fail an assertion on less

@@ -19,13 +19,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate.charts.board import Board
-from eigenfield.calibrate.charts.bundle import BoardObservation, RigEstimate
-from eigenfield.calibrate.charts.detection import BoardDetections, detect_boards
-from eigenfield.calibrate.charts.intrinsics import INTRINSICS_MIN_BOARDS, IntrinsicsEstimate, estimate_intrinsics
-from eigenfield.calibrate.charts.lens_models import LENS_INTRINSICS, brown_lens, camera_matrix
-from eigenfield.calibrate.charts.pictures import ChartCamera, ChartPictures, find_charts
-from eigenfield.calibrate.charts.rig import RigSolution, solve_rig
+from eigenfield.calibration.charts.board import Board
+from eigenfield.calibration.charts.bundle import BoardObservation, RigEstimate
+from eigenfield.calibration.charts.detection import BoardDetections, detect_boards
+from eigenfield.calibration.charts.intrinsics import INTRINSICS_MIN_BOARDS, IntrinsicsEstimate, estimate_intrinsics
+from eigenfield.calibration.charts.lens_models import LENS_INTRINSICS, brown_lens, camera_matrix
+from eigenfield.calibration.charts.pictures import ChartCamera, ChartPictures, find_charts
+from eigenfield.calibration.charts.rig import RigSolution, solve_rig
 from eigenfield.capture.lightfield import LightField, View
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.core.camera import Camera
@@ -34,9 +34,9 @@ from eigenfield.core.progress import Progress
 from eigenfield.imaging.graph import components
 from eigenfield.runtime.parallel import tracked_map
 
-log = logging.getLogger("eigenfield.calibrate")
+log = logging.getLogger("eigenfield.calibration")
 
-CHART_REPORT_SCHEMA = "eigenfield.calibrate.charts/1"
+CHART_REPORT_SCHEMA = "eigenfield.calibration.charts/1"
 CHART_WARN_RMS_PIXELS = 2.0  # a rig that fits worse gets a warning
 CHART_WARN_FOCAL_DEVIATION = 0.02  # relative standard deviation of a focal length that gets a warning
 CHART_WARN_OUTLIER_FRACTION = 0.5  # of a camera's observations

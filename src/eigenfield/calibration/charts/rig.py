@@ -18,12 +18,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate.charts.bundle import BoardObservation, RigEstimate, adjust_bundle
-from eigenfield.calibrate.charts.corners import DetectedCorners
-from eigenfield.calibrate.charts.intrinsics import board_pose
-from eigenfield.calibrate.charts.lens_models import project_points
+from eigenfield.calibration.charts.bundle import BoardObservation, RigEstimate, adjust_bundle
+from eigenfield.calibration.charts.corners import DetectedCorners
+from eigenfield.calibration.charts.intrinsics import board_pose
+from eigenfield.calibration.charts.lens_models import project_points
 
-log = logging.getLogger("eigenfield.calibrate")
+log = logging.getLogger("eigenfield.calibration")
 
 RIG_MAX_PROPOSALS = 40  # common moments of a pair that propose a relative pose, and on which it is tested
 RIG_ERROR_CAP_DIAGONALS = 0.02  # larger errors count as this

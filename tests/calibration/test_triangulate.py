@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from eigenfield.calibrate import triangulate_points
-from eigenfield.calibrate.motion.features import Features
-from eigenfield.calibrate.motion.triangulate import _pairs, _triangulate_tracks, fundamental_matrix
+from eigenfield.calibration import triangulate_points
+from eigenfield.calibration.motion.features import Features
+from eigenfield.calibration.motion.triangulate import _pairs, _triangulate_tracks, fundamental_matrix
 from eigenfield.capture.lightfield import LightField, View
 from eigenfield.core.errors import CaptureError
 from eigenfield.imaging.raster import rasterise_view

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from eigenfield.calibrate.lenses import KnownLens
-from eigenfield.calibrate.motion.features import FeatureOptions, Features, extract_features, undistort_features
-from eigenfield.calibrate.motion.matching import mutual_matches
+from eigenfield.calibration.lenses import KnownLens
+from eigenfield.calibration.motion.features import FeatureOptions, Features, extract_features, undistort_features
+from eigenfield.calibration.motion.matching import mutual_matches
 from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.photoset import PhotoSet, Shot
 from eigenfield.core.camera import Camera
@@ -20,7 +20,7 @@ from eigenfield.core.progress import Progress
 from eigenfield.imaging.graph import components
 from eigenfield.runtime.parallel import tracked_map
 
-log = logging.getLogger("eigenfield.calibrate")
+log = logging.getLogger("eigenfield.calibration")
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from eigenfield.calibrate.motion.sfm import SfmResult
+from eigenfield.calibration.motion.sfm import SfmResult
 from eigenfield.capture.calibration import escape_name
 
-MOTION_REPORT_SCHEMA = "eigenfield.calibrate/1"
+MOTION_REPORT_SCHEMA = "eigenfield.calibration/1"
 
 
 def describe_motion(motion: SfmResult) -> dict[str, Any]:

@@ -10,21 +10,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate.planar.array import (
+from eigenfield.calibration.planar.array import (
     ARRAY_GIVEN_SIGMA,
     ARRAY_PARAMETERS,
     ARRAY_POSITION,
     ARRAY_SHIFT,
     ArrayModel,
 )
-from eigenfield.calibrate.planar.parallax import Parallax, measure_parallax
-from eigenfield.calibrate.planar.tracks import Tracks, find_tracks
+from eigenfield.calibration.planar.parallax import Parallax, measure_parallax
+from eigenfield.calibration.planar.tracks import Tracks, find_tracks
 from eigenfield.capture.layout import GridLayout
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError
 from eigenfield.core.viewplane import fit_view_plane
 
-log = logging.getLogger("eigenfield.calibrate")
+log = logging.getLogger("eigenfield.calibration")
 
 START_NOMINAL_ANGLE_RADIANS = math.radians(50)  # field of view of the longer side if no focal length is known
 START_TRACK_DISTANCES_STEPS = (1, 2, 4)  # from the central camera to the views that are searched for its points

@@ -22,10 +22,10 @@ from scipy.sparse import coo_array, csc_array, diags_array
 from scipy.sparse.linalg import splu
 from scipy.spatial.transform import Rotation
 
-from eigenfield.calibrate.charts.corners import DetectedCorners
-from eigenfield.calibrate.charts.lens_models import project_points, project_points_with_derivatives
+from eigenfield.calibration.charts.corners import DetectedCorners
+from eigenfield.calibration.charts.lens_models import project_points, project_points_with_derivatives
 
-log = logging.getLogger("eigenfield.calibrate")
+log = logging.getLogger("eigenfield.calibration")
 
 F64 = NDArray[np.float64]
 

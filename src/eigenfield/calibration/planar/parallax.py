@@ -18,11 +18,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate.planar.tracks import Tracks
+from eigenfield.calibration.planar.tracks import Tracks
 
 F64 = NDArray[np.float64]
 
-log = logging.getLogger("eigenfield.calibrate")
+log = logging.getLogger("eigenfield.calibration")
 
 PARALLAX_MIN_POINTS = 20
 PARALLAX_MIN_VIEWS = 2  # in which a point must be found, besides the central one

@@ -7,7 +7,7 @@ from pathlib import Path, PurePosixPath
 
 import numpy as np
 
-from eigenfield.calibrate.lenses import KnownLens
+from eigenfield.calibration.lenses import KnownLens
 from eigenfield.capture.arrangement import OpenOptions
 from eigenfield.capture.calibration import Intrinsics, escape_name
 from eigenfield.capture.formats import FORMATS, claim_of_file, detect_format

@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from eigenfield.calibrate import (
+from eigenfield.calibration import (
     align_similarity,
     calibration_error,
 )
-from eigenfield.calibrate.align import natural_gauge
+from eigenfield.calibration.align import natural_gauge
 from eigenfield.capture import LightField, PhotoSet
 from eigenfield.core.errors import CaptureError
 from support.motion import photographed
@@ -56,7 +56,7 @@ def test_what_cannot_be_aligned_is_refused():
 def test_the_error_of_a_moved_copy_is_none_and_of_a_turned_camera_its_angle(scene):
     _, truth = scene
     scale, R, t = natural_gauge(truth.cameras)
-    from eigenfield.calibrate.align import transform_camera
+    from eigenfield.calibration.align import transform_camera
 
     views = [replace(v, camera=transform_camera(v.camera, scale, R, t)) for v in truth.views]
     error = calibration_error(replace(truth, views=tuple(views)), truth)

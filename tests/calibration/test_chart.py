@@ -16,13 +16,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from eigenfield.calibrate.charts import board as boards
-from eigenfield.calibrate.charts import corners
-from eigenfield.calibrate.charts.bundle import RigEstimate, adjust_bundle
-from eigenfield.calibrate.charts.calibrate import calibrate_charts
-from eigenfield.calibrate.charts.lens_models import LENS_MODEL_LADDER
-from eigenfield.calibrate.charts.pictures import find_charts, split_name
-from eigenfield.calibrate.charts.rig import solve_rig
+from eigenfield.calibration.charts import board as boards
+from eigenfield.calibration.charts import corners
+from eigenfield.calibration.charts.bundle import RigEstimate, adjust_bundle
+from eigenfield.calibration.charts.calibrate import calibrate_charts
+from eigenfield.calibration.charts.lens_models import LENS_MODEL_LADDER
+from eigenfield.calibration.charts.pictures import find_charts, split_name
+from eigenfield.calibration.charts.rig import solve_rig
 from eigenfield.capture import open_capture
 from eigenfield.cli.calibrate_chart import board_of, chart_options, table
 from eigenfield.core.errors import CaptureError, EigenfieldError, OutputError

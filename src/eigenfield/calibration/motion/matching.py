@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from eigenfield.calibrate.motion.colmap_core import pycolmap
-from eigenfield.calibrate.motion.features import Features
-from eigenfield.calibrate.motion.matching_kernels import find_best_two, mask_off_lines
+from eigenfield.calibration.motion.colmap_core import pycolmap
+from eigenfield.calibration.motion.features import Features
+from eigenfield.calibration.motion.matching_kernels import find_best_two, mask_off_lines
 from eigenfield.capture.layout import GridLayout
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track

@@ -1,0 +1,29 @@
+"""Cameras from photographs: structure from motion, calibration boards, and planar arrays."""
+
+from __future__ import annotations
+
+from eigenfield.calibration.align import align_similarity, calibration_error
+from eigenfield.calibration.known import read_known_lenses
+from eigenfield.calibration.lenses import KnownLens
+from eigenfield.calibration.motion.calibrate import calibrate
+from eigenfield.calibration.motion.sfm import SfmResult, structure_from_motion
+from eigenfield.calibration.motion.triangulate import triangulate_points
+from eigenfield.calibration.planar.joint import PlanarArray, refine_planar, register_views
+from eigenfield.calibration.planar.start import PlanarStart, start_given, start_planar
+
+__all__ = [
+    "KnownLens",
+    "PlanarArray",
+    "PlanarStart",
+    "SfmResult",
+    "align_similarity",
+    "calibrate",
+    "calibration_error",
+    "read_known_lenses",
+    "refine_planar",
+    "register_views",
+    "start_given",
+    "start_planar",
+    "structure_from_motion",
+    "triangulate_points",
+]
