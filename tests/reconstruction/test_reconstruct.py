@@ -125,7 +125,9 @@ def test_grey_photographs_end_in_one_line(tmp_path):
 
 
 def test_a_given_proxy_and_its_options_do_not_mix(photos, tmp_path, run):
-    code, _, err = run("encode", photos, "--proxy", "mesh.ply", "--no-refine", "-o", tmp_path / "scene.glb")
+    mesh = tmp_path / "mesh.ply"
+    mesh.write_bytes(b"ply\n")
+    code, _, err = run("encode", photos, "--proxy", mesh, "--no-refine", "-o", tmp_path / "scene.glb")
     assert code == 2
     assert "--proxy" in err
 

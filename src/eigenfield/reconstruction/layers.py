@@ -55,7 +55,7 @@ class LayersTuning:
         min_gain_db: By which sheets must draw the views of a trial better than the opaque surface. With 4 dB they were
             better (Fern), with 0.6 worse (the sparse Tarot).
         dense_min_gain_db: The same of a dense array, on whose opaque surface the fit then gains more, in fewer bytes.
-            With 4.1 dB sheets were better (Boxes); with 3.5 (Amethyst), 2.0 (Shop) and 1.0 (Antinous) they were worse.
+            With 3.7 dB sheets were better (Boxes); with 3.5 (Amethyst), 2.0 (Shop) and 1.0 (Antinous) they were worse.
         count_gain_db: By which more sheets must draw them better than fewer.
     """
 
@@ -77,7 +77,7 @@ class LayersTuning:
     depth_error_pixels: float = 0.04
     hidden_ratio: float = 1.02
     min_gain_db: float = 1.0
-    dense_min_gain_db: float = 3.8
+    dense_min_gain_db: float = 3.6
     count_gain_db: float = 0.15
 
 
