@@ -9,8 +9,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from numbers import Integral, Real
 from typing import Any, ParamSpec, TypeVar, Union, get_args, get_origin, get_type_hints
 
-import numpy as np
-
 from eigenfield.core.errors import OptionError
 
 P = ParamSpec("P")
@@ -50,7 +48,7 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
     return call
 
 
-def matches(value: object, hint: Any) -> bool:
+def matches(value: Any, hint: Any) -> bool:
     """Whether a value is of an annotation's type; what is none of the types that options have is taken.
 
     Args:
@@ -61,7 +59,7 @@ def matches(value: object, hint: Any) -> bool:
     if origin in (Union, types.UnionType):
         return any(matches(value, each) for each in inner)
     if origin is tuple or origin is Sequence:
-        if isinstance(value, str | bytes | Mapping) or not isinstance(value, Sequence | np.ndarray):
+        if isinstance(value, str | bytes | Mapping) or not (isinstance(value, Sequence) or hasattr(value, "__array__")):
             return False
         if origin is tuple and inner[-1:] != (...,):
             return len(value) == len(inner) and all(map(matches, value, inner))

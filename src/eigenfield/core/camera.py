@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NoReturn
 
@@ -11,6 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from eigenfield.core.errors import CaptureError
 
 CAMERA_ROTATION_TOLERANCE = 1e-4  # of singular values; calibrations are often printed with six digits
+
+NO_MEAN_AXIS = 1e-9  # length of a mean of unit vectors that has no direction
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,3 +105,17 @@ class Camera:
         """The camera with every number rounded to float32, as files keep it."""
         k, r, p = (a.astype(np.float32).astype(np.float64) for a in (self.K, self.R, self.t))
         return Camera(k, r, p, self.width, self.height)
+
+
+def axis_angles(cameras: Sequence[Camera]) -> NDArray[np.float64]:
+    """(V,) degrees between each camera's optical axis and the mean of all; 180 where they have no mean.
+
+    Args:
+        cameras: V of them.
+    """
+    axes = np.array([camera.R[2] for camera in cameras])
+    mean = axes.mean(axis=0)
+    length = float(np.linalg.norm(mean))
+    if length < NO_MEAN_AXIS:
+        return np.full(len(cameras), 180.0)
+    return np.asarray(np.degrees(np.arccos(np.clip(axes @ (mean / length), -1, 1))))

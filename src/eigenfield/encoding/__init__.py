@@ -83,7 +83,7 @@ def encode(
     asked = changed_options(EncodeOptions() if options is None else options, changes)
     own: dict[str, Any] = {
         "surface": surface, "layers": layers, "refine": refine, "background": background,
-        "primitives": tuple(primitives), "fit_spheres": tuple(fit_spheres),
+        "primitives": primitives or (), "fit_spheres": fit_spheres or (),
     }  # fmt: skip
     if proxy is None:
         capture, proxy = estimate(capture, asked, reconstruction_settings(asked, own, blind), work, progress)

@@ -9,9 +9,9 @@ import difflib
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from numbers import Integral, Real
-from typing import Any, TypedDict, TypeVar, get_args, get_origin, get_type_hints
+from typing import Any, TypedDict, TypeVar, get_type_hints
 
+from eigenfield.core.arguments import in_words, matches
 from eigenfield.core.errors import OptionError
 from eigenfield.encoding.fields import document_options, option, options_of
 from eigenfield.encoding.target import Target
@@ -208,12 +208,9 @@ class EncodeOptions:
     def _check_types(self) -> None:
         """Raise OptionError `option-type` for values of another type; whole numbers stand for any number."""
         for name, kind in get_type_hints(type(self)).items():
-            value, kinds = getattr(self, name), get_args(kind) or (kind,)
-            plain = [get_origin(each) or each for each in kinds]
-            taken = tuple({int: Integral, float: Real}.get(each, each) for each in plain)  # NumPy's numbers too
-            if not isinstance(value, taken) or (isinstance(value, bool) and bool not in plain):
-                names = ", ".join(each.__name__ for each in plain if each is not type(None))
-                raise OptionError("option-type", f"{name} is a {type(value).__name__}", remedy=f"give {names}")
+            value = getattr(self, name)
+            if not matches(value, kind):
+                raise OptionError("option-type", f"{name} is a {type(value).__name__}", remedy=f"give {in_words(kind)}")
 
     def _check_file(self) -> None:
         from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, check_codec

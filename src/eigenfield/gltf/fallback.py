@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding.pictures.pictures_8bit import encode_small_preview
-from eigenfield.core.camera import Camera
+from eigenfield.core.camera import Camera, axis_angles
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Payload
 from eigenfield.core.scene import Scene
@@ -66,7 +66,8 @@ def fallback(scene: Scene, atlas: NDArray[np.uint8], coded: int) -> tuple[Mesh, 
         atlas: (H, W) or (H, W, 3) codes of its mean.
         coded: Bytes of the coded parts.
     """
-    drawn = _draw_middle(scene, atlas) if look_one_way(scene.rig.cameras) else None
+    one_way = axis_angles(scene.rig.cameras).max() <= MAX_AXIS_ANGLE_DEGREES
+    drawn = _draw_middle(scene, atlas) if one_way else None
     for size in SIZES:
         if drawn is None:
             mesh, picture = coarse_mesh(scene.proxy.mesh, 2 * size.points), atlas
@@ -82,18 +83,6 @@ def plain_bytes(mesh: Mesh) -> int:
     """Bytes of a small mesh as plain floats with a byte a corner."""
     assert mesh.uv is not None
     return mesh.vertices.nbytes + mesh.uv.nbytes + mesh.faces.size
-
-
-def look_one_way(cameras: tuple[Camera, ...]) -> bool:
-    """Whether the axes of all cameras are about the same.
-
-    Args:
-        cameras: All cameras.
-    """
-    axes = np.array([camera.R[2] for camera in cameras])
-    mean = axes.mean(axis=0)
-    least = math.cos(math.radians(MAX_AXIS_ANGLE_DEGREES)) * float(np.linalg.norm(mean))
-    return bool(least > 0 and (axes @ mean).min() >= least)
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,7 +111,7 @@ def _draw_middle(scene: Scene, atlas: NDArray[np.uint8]) -> _Drawn | None:
     counts = (len(mesh.faces),) if sheets is None else sheets.faces
     shape = camera.height, camera.width
     picture, depth = np.zeros((*shape, *atlas.shape[2:]), np.float32), np.zeros(shape, np.float32)
-    shown = np.zeros(shape, np.float32)
+    shown, colours = np.zeros(shape, np.float32), atlas.astype(np.float32)
     for first, last in zip(np.cumsum((0, *counts)), np.cumsum(counts), strict=False):
         part = replace(mesh, faces=mesh.faces[first:last])
         inverse, uv = _places(part, camera)
@@ -130,7 +119,7 @@ def _draw_middle(scene: Scene, atlas: NDArray[np.uint8]) -> _Drawn | None:
         if sheets is not None:
             opacity *= np.clip(_sample(sheets.opacity, uv), 0, 1)
         over = opacity if picture.ndim == 2 else opacity[..., None]
-        picture += over * (_sample(atlas.astype(np.float32), uv) - picture)
+        picture += over * (_sample(colours, uv) - picture)
         depth = np.where(opacity >= HALF_COVERED, inverse, depth)
         shown += opacity * (1 - shown)
     covered = depth > 0
@@ -168,12 +157,8 @@ def _places(mesh: Mesh, camera: Camera) -> tuple[NDArray[np.float32], NDArray[np
     uv = np.zeros((*covered.shape, 2), np.float32)
     if covered.any():
         assert mesh.uv is not None
-        row, column = np.nonzero(covered)
-        found = raster.face[covered]
-        at = np.stack([column + 0.5, row + 0.5, np.ones(len(row))], axis=1)
-        corners = np.einsum("nij,nj->ni", raster.edges[found], at)
-        corners /= corners.sum(axis=1, keepdims=True)
-        uv[covered] = np.einsum("ni,nij->nj", corners, mesh.uv[mesh.faces[found]])
+        shares = raster.corner_shares(*np.nonzero(covered))
+        uv[covered] = np.einsum("nk,nkx->nx", shares, mesh.uv[mesh.faces[raster.face[covered]]])
     return np.where(covered, raster.inverse_depth, np.float32(0)), uv
 
 

@@ -13,12 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding import limits
-from eigenfield.coding.codecs import CODECS, encoder
+from eigenfield.coding.codecs import CODECS
 from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, PICTURES, check_codec, dimensions
 from eigenfield.core.appearance import Plane
 from eigenfield.core.arguments import checked
 from eigenfield.core.errors import OptionError, OutputError
-from eigenfield.core.mesh import Mesh
 from eigenfield.core.notebook import notebook_progress
 from eigenfield.core.payloads import Payload, PicturePayload
 from eigenfield.core.progress import Progress
@@ -26,8 +25,7 @@ from eigenfield.core.proxy import Sheets
 from eigenfield.core.scene import Residual, Scene
 from eigenfield.core.version import __version__
 from eigenfield.gltf import packed, strict_json
-from eigenfield.gltf.accessors import FLOAT, UINT8, UINT16, UINT32
-from eigenfield.gltf.axes import NEAR_PLANE_RATIO, capture_to_gltf, opening_view, quaternion
+from eigenfield.gltf.accessors import FLOAT, UINT16, UINT32
 from eigenfield.gltf.buffer import Buffer
 from eigenfield.gltf.cached import CachedPayloads, cached_payloads
 from eigenfield.gltf.coded_pictures import PlanePictures, ScenePictures, code_pictures, shortest_decimals, shown_mean
@@ -35,18 +33,23 @@ from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, Glb, file_head, json_
 from eigenfield.gltf.fallback import fallback
 from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.layout import read_layout, unpacked_document
-from eigenfield.gltf.name_pattern import name_pattern
-from eigenfield.gltf.streams import FEATURES, PLACES, codec_entry, minor
+from eigenfield.gltf.streams import FEATURES, codec_entry, minor
 from eigenfield.gltf.writable import check_writable
+from eigenfield.gltf.write_geometry import (
+    NODE_DIGITS,
+    PACKED_NODE_DIGITS,
+    index_type,
+    write_cameras,
+    write_nodes,
+    write_primitive,
+    write_stream,
+    write_view_plane,
+)
 from eigenfield.runtime.files import atomic_writer, refuse_existing
 
 log = logging.getLogger("eigenfield.format")
 
 DEFAULT_AVIF_QUALITY = 70  # of the eigen textures
-_VERTICES, _INDICES = 34962, 34963  # glTF's targets of a buffer view
-NODE_DIGITS = 9  # of numbers for other viewers and of the view plane: all that readers of 32 bits keep
-PACKED_NODE_DIGITS = 6
-CODED_NAMES_MIN_SAVING_BYTES = 256  # with their two entries in the JSON
 
 
 @checked
@@ -160,7 +163,7 @@ def _plain_sizes(scene: Scene) -> dict[str, int]:
     """Bytes of the parts that are not pictures, as plain numbers."""
     mesh = scene.proxy.mesh
     assert mesh.uv is not None
-    corner = 2 if _index_type(mesh, False) == UINT16 else 4
+    corner = 2 if index_type(mesh, False) == UINT16 else 4
     return {
         "mesh": 4 * (mesh.vertices.size + mesh.uv.size) + corner * mesh.faces.size,
         "cameras": 4 * (5 + 12) * len(scene.rig.cameras),
@@ -179,12 +182,12 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayl
     shown, preview = scene.proxy.mesh, coded.preview or coded.planes[0].mean
     if mesh is not None:
         shown, preview = fallback(scene, shown_mean(scene), coded.bytes + len(mesh.data))
-    primitive = _primitive(shown, buffer, mesh is not None)
+    primitive = write_primitive(shown, buffer, mesh is not None)
     image = {"bufferView": buffer.view(preview.data), "mimeType": PICTURES[preview.codec].mime}
     plain = buffer.packed is None
     order = {} if plain or scene.residual is None else _frame_order(scene.residual, buffer)
-    cameras = {} if plain else _cameras(scene, buffer, poses)
-    proxy = {} if mesh is None else {"mesh": _stream(mesh, "mesh", buffer)}
+    cameras = {} if plain else write_cameras(scene, buffer, poses)
+    proxy = {} if mesh is None else {"mesh": write_stream(mesh, "mesh", buffer)}
     if scene.proxy.sheets is not None and coded.opacity is not None:
         proxy["sheets"] = _sheets(scene.proxy.sheets, coded.opacity, buffer)
     planes = []
@@ -193,8 +196,8 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayl
         planes.append(
             _plane(plane, made, weights, buffer, inline=index > 0 or mesh is not None or coded.preview is not None)
         )
-    cameras = cameras or _cameras(scene, buffer, poses)
-    view_plane = _view_plane(scene, buffer, poses is not None)
+    cameras = cameras or write_cameras(scene, buffer, poses)
+    view_plane = write_view_plane(scene, buffer, poses is not None)
     entries = _by_gain_per_byte(scene, coded, planes)
     codecs = buffer.codecs | {("textures", picture.codec) for _, picture in entries}
     needs = _needs(scene, coded, {codec for _, codec in codecs}, cameras, planes)
@@ -222,7 +225,7 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayl
     else:
         extension = {"version": version, "needs": [packed.FEATURE], packed.FEATURE: packed.write(extension, buffer)}
     has_holes = mesh is None and scene.proxy.sheets is not None
-    perspective, nodes = _nodes(scene, NODE_DIGITS if plain else PACKED_NODE_DIGITS)
+    perspective, nodes = write_nodes(scene, NODE_DIGITS if plain else PACKED_NODE_DIGITS)
     named = partial(_named, plain)
     return {
         "asset": {"version": "2.0", **({"generator": f"eigenfield {__version__}"} if plain else {})},
@@ -294,31 +297,6 @@ def _version(scene: Scene, needs: Sequence[str], named: bool) -> str:
     return max(found, key=minor)
 
 
-def _primitive(mesh: Mesh, buffer: Buffer, small: bool) -> dict[str, Any]:
-    """small: whether indices may have 8 bits, which other viewers read but need not be quick at."""
-    assert mesh.uv is not None
-    bounds = {"min": shortest_decimals(mesh.vertices.min(axis=0)), "max": shortest_decimals(mesh.vertices.max(axis=0))}
-    return {
-        "attributes": {
-            "POSITION": buffer.accessor(mesh.vertices, FLOAT, "VEC3", _VERTICES, **bounds),
-            "TEXCOORD_0": buffer.accessor(mesh.uv, FLOAT, "VEC2", _VERTICES),
-        },
-        "indices": buffer.accessor(mesh.faces.ravel(), _index_type(mesh, small), "SCALAR", _INDICES),
-        "material": 0,
-    }
-
-
-def _index_type(mesh: Mesh, small: bool) -> int:
-    """The largest index of a type restarts a primitive and may not be used."""
-    return UINT8 if small and len(mesh.vertices) < 256 else UINT16 if len(mesh.vertices) < 65_536 else UINT32
-
-
-def _stream(payload: Payload, place: str, buffer: Buffer) -> Any:
-    """The entry of a stream: its buffer view, and its codec unless it is the default."""
-    index, named = buffer.stream(payload, place), codec_entry(payload.codec, place)
-    return index if PLACES[place].bare and not named else {"bufferView": index, **named}
-
-
 def _sheets(sheets: Sheets, opacity: PicturePayload, buffer: Buffer) -> dict[str, Any]:
     height, width = sheets.opacity.shape
     picture = {"bufferView": buffer.stream(opacity, "opacity"), "size": [width, height], **_picture(opacity, "opacity")}
@@ -343,7 +321,7 @@ def _plane(
         if basis.grid is not None:
             entry |= {"grid": [basis.grid[1], basis.grid[0]], "corner": [basis.corner[1], basis.corner[0]]}
         if stream is not None:
-            entry["codedWeights"] = _stream(stream, "weights", buffer)
+            entry["codedWeights"] = write_stream(stream, "weights", buffer)
         elif basis.count:
             entry["weights"] = buffer.accessor(basis.weights.ravel(), FLOAT, "SCALAR")
         entry |= _textures([_picture(file, "textures") for file in files])
@@ -395,7 +373,7 @@ def _residual(residual: Residual, buffer: Buffer) -> dict[str, Any]:
         made["full"] = True
     if residual.smooth_edges:
         made["smooth"] = True
-    return made | _stream(Payload(residual.codec, residual.video), "residual", buffer)
+    return made | write_stream(Payload(residual.codec, residual.video), "residual", buffer)
 
 
 def _frame_order(residual: Residual, buffer: Buffer) -> dict[str, int]:
@@ -423,96 +401,3 @@ def _needs(
     }
     own = {CODECS[codec].needs for codec in codecs}
     return sorted({name for name, needed in found.items() if needed} | {need for need in own if need is not None})
-
-
-def _cameras(scene: Scene, buffer: Buffer, stream: Payload | None) -> dict[str, Any]:
-    sizes = np.array([[c.width, c.height] for c in scene.rig.cameras])
-    made: dict[str, Any] = {}
-    if stream is not None and (sizes == sizes[0]).all():
-        made["size"] = sizes[0].tolist()
-    else:
-        made["sizes"] = buffer.accessor(sizes.ravel(), UINT32, "SCALAR")
-    if scene.appearance.colours is not None:
-        made["colour"] = buffer.accessor(scene.appearance.colours.ravel(), FLOAT, "SCALAR")
-    if scene.rig.held_out.any():
-        made["heldOut"] = np.flatnonzero(scene.rig.held_out).tolist()
-    if stream is not None:
-        made["coded"] = _stream(stream, "cameras", buffer)
-    else:
-        cameras = scene.rig.cameras
-        intrinsics = np.array([[c.K[0, 0], c.K[1, 1], c.K[0, 1], c.K[0, 2], c.K[1, 2]] for c in cameras])
-        poses = np.array([np.hstack([c.R, c.t[:, None]]) for c in cameras])
-        made["intrinsics"] = buffer.accessor(intrinsics.ravel(), FLOAT, "SCALAR")
-        made["poses"] = buffer.accessor(poses.ravel(), FLOAT, "SCALAR")
-    return _names(scene.rig.names, None if stream is None else buffer) | made
-
-
-def _names(names: Sequence[str], buffer: Buffer | None) -> dict[str, Any]:
-    """One by one, by a pattern or coded, whichever is shortest; without a buffer as readers of 1.1 know them."""
-    plain: dict[str, Any] = {"names": list(names)}
-    if buffer is None:
-        return plain
-    pattern, stream = name_pattern(names), _encode_at("names", names)
-    shorter = plain if pattern is None else {"pattern": pattern}
-    if stream is None or len(stream.data) + CODED_NAMES_MIN_SAVING_BYTES >= len(json_bytes(shorter)):
-        return shorter
-    return {"codedNames": _stream(stream, "names", buffer) | {"count": len(names)}}
-
-
-def _encode_at(place: str, value: Any) -> Payload | None:
-    """A value coded by the default codec of a place; None where it cannot code it."""
-    codec = PLACES[place].codec
-    assert codec is not None
-    data: bytes | None = encoder(codec)(value)
-    return None if data is None else Payload(codec, data)
-
-
-def _view_plane(scene: Scene, buffer: Buffer, short: bool) -> dict[str, Any]:
-    """short: whether the triangles may be coded, which readers of 1.1 do not know."""
-    plane = scene.rig.view_plane
-    numbers = {"origin": plane.origin, "right": plane.right, "up": plane.up, "extent": plane.extent}
-    made: dict[str, Any] = {name: (value + 0.0).tolist() for name, value in numbers.items()}  # + 0.0: no minus zero
-    if short:
-        size = max(np.abs(plane.origin).max(), plane.extent.max())
-        units = {"origin": size, "right": 1.0, "up": 1.0, "extent": size}
-        made = {name: _rounded(value, units[name]) for name, value in numbers.items()}
-    if len(scene.rig.triangles):
-        stream = _encode_at("triangles", scene.rig.triangles) if short else None
-        if stream is not None:
-            made["codedTriangles"] = _stream(stream, "triangles", buffer)
-        else:
-            made["triangles"] = buffer.accessor(scene.rig.triangles.ravel(), UINT32, "SCALAR")
-    return made
-
-
-def _decimals(numbers: Iterable[float], digits: int) -> list[float]:
-    return [float(f"{number:.{digits}g}") + 0.0 for number in numbers]  # + 0.0: no minus zero in the file
-
-
-def _rounded(numbers: NDArray[np.float64], unit: float, digits: int = NODE_DIGITS) -> list[float]:
-    """To a place below the first digit of `unit`: what is nothing beside it becomes 0."""
-    places = digits - 1 - int(np.floor(np.log10(unit))) if unit > 0 else digits
-    return [round(float(number), places) + 0.0 for number in numbers]
-
-
-def _nodes(scene: Scene, digits: int) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    camera = scene.rig.cameras[scene.rig.reference]
-    turn = capture_to_gltf(scene.rig.view_plane)
-    perspective, axes = opening_view(camera, scene.proxy.mesh)
-    proxy = {"mesh": 0, **_node_rotation(turn, digits)}
-    distance = perspective["znear"] / NEAR_PLANE_RATIO
-    view = {"camera": 0, **_node_translation(turn @ camera.centre, distance, digits)}
-    perspective = dict(zip(perspective, _decimals(perspective.values(), digits), strict=True))
-    return perspective, [proxy, view | _node_rotation(turn @ axes, digits)]
-
-
-def _node_translation(place: NDArray[np.float64], distance: float, digits: int) -> dict[str, list[float]]:
-    """A node's translation, left out where it is none. distance: to the nearest vertex."""
-    found = _rounded(place, max(float(np.abs(place).max()), distance), digits)
-    return {"translation": found} if any(found) else {}
-
-
-def _node_rotation(rotation: NDArray[np.float64], digits: int) -> dict[str, list[float]]:
-    """A node's rotation, (3, 3); left out where it is none."""
-    found = _rounded(np.array(quaternion(rotation)), 1.0, digits)
-    return {} if found == [0, 0, 0, 1] else {"rotation": found}

@@ -45,6 +45,17 @@ class Raster:
     inverse_depth: NDArray[np.float32]
     edges: NDArray[np.float64]
 
+    def corner_shares(self, row: NDArray[np.intp], column: NDArray[np.intp]) -> NDArray[np.float64]:
+        """(n, 3) barycentric coordinates of pixel centres in the triangles that are there.
+
+        Args:
+            row: (n,) of pixels with a triangle.
+            column: (n,) likewise.
+        """
+        at = np.stack([column + 0.5, row + 0.5, np.ones(len(row))], axis=1)
+        over_depth = np.einsum("nkx,nx->nk", self.edges[self.face[row, column]], at)
+        return np.asarray(over_depth / over_depth.sum(axis=1, keepdims=True))
+
 
 @kernel()
 def edge_functions(corners, faces, first, last, edges):

@@ -16,7 +16,7 @@ from eigenfield.calibration import PlanarArray, PlanarStart, refine_planar, regi
 from eigenfield.capture import Capture, LightField
 from eigenfield.capture.holdout import held_out_cameras
 from eigenfield.capture.writers.save import save_calibration
-from eigenfield.core.camera import Camera
+from eigenfield.core.camera import Camera, axis_angles
 from eigenfield.core.errors import CaptureError, ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.viewplane import fit_view_plane
@@ -97,13 +97,12 @@ def looks_one_way(cameras: Sequence[Camera]) -> bool:
     mean = axes.mean(axis=0)
     if np.linalg.norm(mean) < 0.5:
         return False
-    angles = np.degrees(np.arccos(np.clip(axes @ (mean / np.linalg.norm(mean)), -1, 1)))
     normal = np.cross(plane.right, plane.up)
     centres = np.array([camera.centre for camera in cameras]) - plane.origin
     along = np.degrees(np.arccos(min(1.0, abs(float(normal @ mean)) / float(np.linalg.norm(mean)))))
     thickness = float(np.abs(centres @ normal).max()) / float(np.linalg.norm(np.ptp(centres, axis=0)))
     return bool(
-        angles.max() < ARRAY_TUNING.max_axis_angle_degrees
+        axis_angles(cameras).max() < ARRAY_TUNING.max_axis_angle_degrees
         and thickness < ARRAY_TUNING.max_thickness_fraction
         and (along < ARRAY_TUNING.max_plane_angle_degrees or plane.extent.min() == 0)
     )

@@ -12,7 +12,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.core.camera import Camera
+from eigenfield.core.camera import Camera, axis_angles
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress
 from eigenfield.core.proxy import Proxy
@@ -92,10 +92,7 @@ def layers_fault(cameras: Sequence[Camera]) -> str | None:
     """
     if len(cameras) < LAYERS_TUNING.min_views:
         return f"{len(cameras)} photographs are too few for layers"
-    axes = np.array([camera.R[2] for camera in cameras])
-    mean = axes.mean(axis=0)
-    cosine = float((axes @ mean).min()) / max(float(np.linalg.norm(mean)), 1e-9)
-    angle = math.degrees(math.acos(min(max(cosine, -1.0), 1.0)))
+    angle = axis_angles(cameras).max()
     if angle > LAYERS_TUNING.max_axis_angle_degrees:
         return f"the cameras do not look one way: one looks {angle:.0f} degrees off the others"
     return None

@@ -175,9 +175,7 @@ class _Layers:
             faces = self.mesh.faces[ends[number] : ends[number + 1]]
             drawn = rasterise(corners, faces, camera.width, camera.height)
             y, x = np.nonzero(drawn.face >= 0)
-            face = drawn.face[y, x]
-            of_corners = np.einsum("nkx,nx->nk", drawn.edges[face], np.stack([x + 0.5, y + 0.5, np.ones(len(x))], 1))
-            at = np.einsum("nk,nkx->nx", of_corners / of_corners.sum(axis=1, keepdims=True), uv[faces[face]])
+            at = np.einsum("nk,nkx->nx", drawn.corner_shares(y, x), uv[faces[drawn.face[y, x]]])
             through[y, x] *= 1 - _read_opacity(self.sheets, at)
         return shares
 
