@@ -163,7 +163,7 @@ def test_a_notebook_shows_progress_unless_told_otherwise(nine, monkeypatch):
         ("encode", ["a"], {"preste": "small"}, "did you mean preset?"),
         ("encode", ["a"], {"textures": "many"}, "textures is a str; give a whole number"),
         ("encode", ["a"], {"quality": 101}, "quality"),
-        ("encode", ["a"], {"target": 300_000}, "target is a int; give Target"),
+        ("encode", ["a"], {"target": 300_000}, "target is a int; give a Target"),
         ("encode", ["a"], {"target": ef.Target(size="1 MB")}, "a target size of 1 MB"),
         ("encode", ["a", "b.ply"], {"surface": "relief"}, "leave out one of the two"),
     ],
