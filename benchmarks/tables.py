@@ -5,12 +5,14 @@ python benchmarks/tables.py [--check]
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 from typing import Any
 
 import between_tables
 import evaluation_tables
+import plots
 import rate_tables
 from evaluation_tables import table
 from measure import latest, runs
@@ -176,19 +178,29 @@ def drawing() -> str:
         f" once a frame, to the memory bandwidth ({figures['read_gb_per_second']:.0f} GB/s, measured in the same run).\n\n"
         + table(["N", *DRAWN.values(), "of the bandwidth"], rows)
         + f"\nSumming 40 textures takes {figures['composition_40']['ratio_to_numpy']:.2f} of the time of NumPy's matrix"
-        " product on float32 textures.\n\n"
-        + shaded()
-        + origin(figures, "render")
-        + origin(latest("render-opengl"), "render-opengl")
-        + origin(latest("render-browser"), "render-browser")
-        + "\n"
+        " product on float32 textures.\n\n" + shaded() + origin(figures, "render") + "\n"
     )
 
 
 def shaded() -> str:
     """The shader on OpenGL and in a browser: frames a second, and times the cost of a plain texture."""
-    opengl, browser = latest("render-opengl"), latest("render-browser")
     first = next(run for run in reversed(runs("render-browser")) if "first_picture_bytes" in run)  # asked for by a file
+    return (
+        "The browser and the OpenGL renderer share one shader. The tables give its frames per second; in brackets is the"
+        " time of a frame relative to one plain texture on the same mesh (N = 0). OpenGL draws 1920x1080, and in stereo"
+        " 2 x 1832x1920 with weights per texel. The browser draws 1024x768. The atlas has 1024² texels.\n\n"
+        + shaded_by(gpu=True)
+        + shaded_by(gpu=False)
+        + "![Frames per second against the number of eigen textures](frames.png)\n\n"
+        f"The viewer's script has {latest('render-browser')['bundle']['viewer.js'] / 1e3:.0f} kB, three.js included. The"
+        f" first picture of the demo, encoded with `--fit none`, needs {first['first_picture_bytes'] / 1e3:.0f} of the"
+        f" file's {first['demo_bytes']['total'] / 1e3:.0f} kB.\n\n"
+    )
+
+
+def shaded_by(gpu: bool) -> str:
+    """The newest figures of the shader on a GPU, or on the processor."""
+    opengl, browser = (plots.newest(name, gpu) for name in ("render-opengl", "render-browser"))
 
     def cell(entry: dict[str, Any] | None, fps: float | None) -> str:
         return "" if entry is None or fps is None else f"{number(fps)} ({entry['times_plain']:.1f})"
@@ -202,19 +214,14 @@ def shaded() -> str:
             entry = theirs.get(key)
             cells.append(cell(entry, None if entry is None else 1e3 / entry["milliseconds"]))
         rows.append([count, *cells])
-    width, height = opengl["mono"]
-    eye = "x".join(str(side) for side in opengl["eye"])
-    page = "x".join(str(side) for side in browser["view"])
+    place = "On a GPU" if gpu else "On the processor, without a GPU"
     return (
-        "The browser and the OpenGL renderer share one shader. The table gives its frames per second; in brackets is the"
-        " time of a frame relative to one plain texture on the same mesh (N = 0). **No GPU was available: both draw on the"
-        f" processor.** OpenGL runs on {opengl['driver']}, at {width}x{height} and in stereo (2 x {eye}, weights per"
-        f" texel). {browser['browser']} runs on {driver(browser['driver'])} at {page}. The atlas has 1024² texels.\n\n"
+        f"{place}: {driver(opengl['driver'])}; {browser['browser']} on {driver(browser['driver'])}.\n\n"
         + table(["N", "OpenGL bilinear", "bicubic", "stereo", "browser", "by the ray"], rows)
-        + "\n![Frames per second against the number of eigen textures](frames.png)\n\n"
-        f"The viewer's script has {browser['bundle']['viewer.js'] / 1e3:.0f} kB, three.js included. The first picture of"
-        f" the demo, encoded with `--fit none`, needs {first['first_picture_bytes'] / 1e3:.0f} of the file's"
-        f" {first['demo_bytes']['total'] / 1e3:.0f} kB.\n\n"
+        + "\n"
+        + origin(opengl, "render-opengl")
+        + origin(browser, "render-browser")
+        + "\n"
     )
 
 
@@ -224,7 +231,8 @@ def number(value: float) -> str:
 
 def driver(name: str) -> str:
     """What draws, out of ANGLE's long name for it."""
-    return "SwiftShader" if "SwiftShader" in name else name
+    found = re.search(r"SwiftShader|NVIDIA \w+(?= \w+ HBM)", name)
+    return found[0] if found else name
 
 
 def single() -> str:
