@@ -30,6 +30,7 @@ KINDS = {  # output, options, and a file that must be there
     "html": ("page.html", [], "page.html"),
     "mp4": ("flight.mp4", ["--frames", 4], "flight.mp4"),
     "png": ("f%02d.png", ["--frames", 3], "f02.png"),
+    "glb": ("plain.glb", [], "plain.glb"),
     "obj": ("mesh.obj", [], "mesh.png"),
     "obj folder": ("mesh", ["--as", "obj"], "mesh/eigen_02.png"),
     "maps": ("maps", ["--as", "maps"], "maps/view_03.png"),
@@ -226,7 +227,14 @@ def test_an_export_that_was_killed_while_it_replaced_another_is_replaced_by_the_
     [
         ("a.png", [], "--as quilt"),
         ("a", [], "say --as"),
-        ("a.glb", [], "say --as"),
+        ("a.gltf", [], "say --as"),
+        ("a.obj", ["--as", "glb"], ".glb"),
+        ("a.glb", ["--at", "0,2"], "lies outside the array"),
+        ("a.glb", ["--image", "ktx2"], "gltf-transform uastc"),
+        ("a.glb", ["--image", "gif"], "png, jpeg, webp"),
+        ("a.glb", ["--metres-per-unit", "0"], "above 0"),
+        ("a.glb", ["--textures", 2], "--textures is not for glb"),
+        ("a.obj", ["--draco"], "--draco is not for obj"),
         ("a.png", ["--as", "maps"], "folder"),
         ("a.obj", ["--as", "colmap"], "folder"),
         ("a", ["--as", "html"], ".html"),
@@ -326,3 +334,17 @@ def test_hostile_cameras_are_written_inside(tmp_path):
     assert list(listing["maps"]) == list(names)
     assert all((tmp_path / "in" / "maps" / file).is_file() for file in listing["maps"].values())
     assert len(open_capture(tmp_path / "in" / "colmap")) == 25
+
+
+def test_a_glb_never_takes_the_place_of_its_scene(run, scene_file):
+    before = scene_file.read_bytes()
+    code, _, err = run("export", scene_file, "-o", scene_file, "--overwrite")
+    assert code == 2 and "the scene itself" in err and err.count("\n") == 1
+    assert scene_file.read_bytes() == before
+
+
+def test_without_dracopy_a_line_says_what_to_install(export, monkeypatch):
+    monkeypatch.setitem(sys.modules, "DracoPy", None)
+    code, err = export("a.glb", "--draco")
+    assert code == 2 and "pip install 'eigenfield[meshes]'" in err and err.count("\n") == 1
+    assert list(export.place.iterdir()) == []

@@ -20,6 +20,7 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.core.proxy import Proxy
 from eigenfield.gltf import encode_scene, save
 from eigenfield.gltf.axes import capture_to_gltf
+from eigenfield.gltf.container import parse_glb
 from eigenfield.proxy import read_mesh
 from eigenfield.rendering import RenderJob, draw_texture, renderer_of, view_weights
 from eigenfield.viewer import exports
@@ -198,6 +199,75 @@ def test_what_sheets_hardly_show_has_no_points(tmp_path):
     )
     disc = points[np.abs(points[:, 2] - 0.1) < 0.15]
     assert len(points) > 1000 and len(disc) > 100 and (np.hypot(*disc[:, :2].T) < 0.9).all()
+
+
+def opened(path):
+    """Primitives in their order, and the picture and the alpha mode of the material, as trimesh reads a .glb."""
+    parts = list(trimesh.load(path, process=False, maintain_order=True).geometry.values())
+    material = parts[0].visual.material
+    return parts, np.asarray(material.baseColorTexture).astype(np.float32) / 255, material.alphaMode
+
+
+@pytest.mark.parametrize("draco", [False, True])
+def test_a_plain_glb_is_the_proxy_with_its_mean_upright_and_in_metres(scene, tmp_path, draco):
+    scene = replace(scene, settings={**scene.settings, "metresPerUnit": 0.25, "origin": [100.0, 0.0, 0.0]})
+    exports.write_glb(scene, tmp_path / "a.glb", draco=draco)
+    (mesh,), picture, mode = opened(tmp_path / "a.glb")
+    np.testing.assert_array_equal(picture, np.rint(255 * mean_map(scene).clip(0, 1)).astype(np.float32) / 255)
+    assert mode in (None, "OPAQUE") and mesh.faces.shape == scene.proxy.mesh.faces.shape
+    turn = capture_to_gltf(scene.rig.view_plane)
+    found = read_mesh(tmp_path / "a.glb")  # by our own reader, which places it as its node says
+    off = np.abs(found.vertices[found.faces] - 0.25 * (scene.proxy.mesh.vertices @ turn.T)[scene.proxy.mesh.faces])
+    assert draco or off.max() < 1e-5
+    low, high = (0.25 * (scene.proxy.mesh.vertices @ turn.T)[:, None]).min(0), found.vertices.min(axis=0)
+    np.testing.assert_allclose(low[0], high, atol=1e-4)
+    gltf = parse_glb((tmp_path / "a.glb").read_bytes()).json
+    assert [node["name"] for node in gltf["nodes"]] == ["proxy", "reference camera"]
+    assert gltf["nodes"][0]["extras"] == {"origin": [100, 0, 0]}
+    centre = scene.rig.cameras[scene.rig.reference].centre
+    np.testing.assert_allclose(gltf["nodes"][1]["translation"], 0.25 * turn @ centre, atol=1e-6)
+    exports.write_glb(scene, tmp_path / "b.glb", draco=draco, metres_per_unit=2.0)
+    np.testing.assert_allclose(read_mesh(tmp_path / "b.glb").vertices, 8 * found.vertices, atol=1e-4)
+
+
+@pytest.mark.parametrize(("image", "most"), [("png", 0.5 / 255), ("jpeg", 0.04), ("webp", 0.06)])
+def test_a_plain_glb_has_the_texture_of_a_viewpoint(fitted, tmp_path, image, most):
+    exports.write_glb(fitted, tmp_path / "a.glb", at=(0.6, -0.4), image=image)
+    _, picture, _ = opened(tmp_path / "a.glb")
+    place = view_weights(fitted, (0.6, -0.4))
+    maps, encoded = camera_maps(fitted), fitted.rows().tolist()
+    expected = sum(
+        value * maps(encoded.index(row), None)
+        for row, value in zip(place.rows.tolist(), place.values.tolist(), strict=True)
+    )
+    assert np.abs(picture - expected.clip(0, 1)).mean() < most
+    assert np.abs(expected - mean_map(fitted)).max() > 0.01  # it is not the mean's
+
+
+def test_sheets_of_a_plain_glb_are_blended_back_to_front(tmp_path):
+    scene = soft_scene()
+    exports.write_glb(scene, tmp_path / "a.glb")
+    exports.write_obj(scene, tmp_path / "a.obj")
+    parts, picture, mode = opened(tmp_path / "a.glb")
+    assert [len(part.faces) for part in parts] == list(scene.proxy.sheets.faces) and mode == "BLEND"
+    np.testing.assert_array_equal(picture, pixels(tmp_path / "a.png"))
+    exports.write_glb(scene, tmp_path / "b.glb", image="webp", draco=True)
+    parts, lossy, mode = opened(tmp_path / "b.glb")
+    assert [len(part.faces) for part in parts] == list(scene.proxy.sheets.faces) and mode == "BLEND"
+    np.testing.assert_array_equal(lossy[..., 3], picture[..., 3])
+    with pytest.raises(OptionError, match="a JPEG has none"):
+        exports.write_glb(scene, tmp_path / "c.glb", image="jpeg")
+    assert not (tmp_path / "c.glb").exists()
+
+
+def test_a_grey_scene_and_attributes_as_a_plain_glb(tmp_path):
+    for image in ("png", "jpeg", "webp"):
+        ef.export(tiny_scene(1), tmp_path / f"{image}.glb", image=image)
+        assert read_mesh(tmp_path / f"{image}.glb").uv is not None
+    with pytest.raises(OptionError, match="picture"):
+        ef.export(tiny_scene(6), tmp_path / "six.glb")
+    with pytest.raises(OptionError, match="at of write_glb"):
+        ef.export(tiny_scene(), tmp_path / "word.glb", at="left")
 
 
 def test_a_quilt_begins_at_the_bottom_left_with_the_leftmost_view(scene, tmp_path):

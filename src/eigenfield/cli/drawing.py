@@ -12,6 +12,17 @@ from eigenfield.cli.common import pair_of_numbers, together
 DEFAULT_FPS = "30"
 
 
+def parse_place(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[float, float] | None:
+    """A click callback: view-plane coordinates, X,Y."""
+    if value is None:
+        return None
+    try:
+        x, y = (float(part) for part in value.split(","))
+    except ValueError:
+        raise click.BadParameter("two numbers from -1 to 1 with a comma between them: 0.3,-0.2") from None
+    return x, y
+
+
 def _parse_colour(context: click.Context, parameter: click.Parameter, value: str) -> tuple[float, ...] | None:
     if value == "transparent":
         return None

@@ -9,7 +9,7 @@ import click
 from click.core import ParameterSource
 
 from eigenfield.cli.common import PATH, common_options, note, pair_of_numbers, progress_bars
-from eigenfield.cli.drawing import flight_options, picture_options, residual_option
+from eigenfield.cli.drawing import flight_options, parse_place, picture_options, residual_option
 
 
 @click.command(
@@ -18,6 +18,8 @@ Examples:
   eigenfield export scene.glb -o scene.html
   eigenfield export scene.glb -o flight.mp4 --path spiral --frames 240
   eigenfield export scene.glb -o 'frames/%04d.png' --background transparent
+  eigenfield export scene.glb -o plain.glb --as glb
+  eigenfield export scene.glb -o plain.glb --at 0.5,0 --image webp --draco
   eigenfield export scene.glb -o mesh.obj
   eigenfield export scene.glb -o textures --as obj
   eigenfield export scene.glb -o maps --as maps
@@ -33,11 +35,14 @@ Examples:
     metavar="PATH",
     help="A file or a folder; a file's ending says what is made, if --as does not.",
 )
-@click.option("--as", "kind", metavar="html|mp4|png|obj|maps|quilt|colmap", help="What is made.")
+@click.option("--as", "kind", metavar="html|mp4|png|glb|obj|maps|quilt|colmap", help="What is made.")
 @click.option("--title", metavar="TEXT", help="Of the page (html).  [default: the output's name]")
+@click.option("--metres-per-unit", type=float, metavar="M", help="Metres in one unit of the capture (html, glb).")
+@click.option("--at", callback=parse_place, metavar="X,Y", help="Viewpoint of the texture (glb).  [default: the mean]")
 @click.option(
-    "--metres-per-unit", type=float, metavar="M", help="Metres in one unit of the capture, for headsets (html)."
+    "--image", default="png", show_default=True, metavar="png|jpeg|webp", help="How the texture is kept (glb)."
 )
+@click.option("--draco", is_flag=True, help="Compress the mesh (glb).")
 @click.option(
     "--quilt",
     callback=pair_of_numbers("COLUMNSxROWS: 8x6"),
@@ -64,6 +69,7 @@ def command(scene: Path, output: Path, kind: str | None, overwrite: bool, quiet:
     html    one page with viewer and scene, which opens by double click
     mp4     a fly-through (--path, else a circle)
     png     its single pictures, where the output's name has %04d
+    glb     the mesh with its mean, or the texture of --at, for any glTF viewer
     obj     NAME.obj with the mean as its texture; into a folder: with the eigen textures
     maps    a texture map for each encoded camera, in a folder
     quilt   the views side by side for a Looking Glass display, a .png

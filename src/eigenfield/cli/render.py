@@ -9,18 +9,8 @@ from typing import Any
 import click
 
 from eigenfield.cli.common import PATH, common_options, note, progress_bars
-from eigenfield.cli.drawing import flight_options, picture_options, residual_option
+from eigenfield.cli.drawing import flight_options, parse_place, picture_options, residual_option
 from eigenfield.core.errors import OptionError
-
-
-def _parse_place(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[float, float] | None:
-    if value is None:
-        return None
-    try:
-        x, y = (float(part) for part in value.split(","))
-    except ValueError:
-        raise click.BadParameter("two numbers from -1 to 1 with a comma between them: 0.3,-0.2") from None
-    return x, y
 
 
 @click.command(
@@ -42,9 +32,7 @@ Examples:
     metavar="FILE",
     help="A .png, an .mp4 for a path, or a .png with %04d in its name for a path's single pictures.",
 )
-@click.option(
-    "--at", callback=_parse_place, metavar="X,Y", help="Viewpoint in the array: 0,0 its middle, ±1 its edges."
-)
+@click.option("--at", callback=parse_place, metavar="X,Y", help="Viewpoint in the array: 0,0 its middle, ±1 its edges.")
 @click.option("--camera", metavar="NAME", help="A captured camera.  [default: the reference camera]")
 @flight_options
 @picture_options

@@ -23,6 +23,16 @@ class Mesh:
     faces: NDArray[np.int32]
     uv: NDArray[np.float32] | None = None
 
+    def part(self, faces: NDArray[np.bool_] | slice) -> Mesh:
+        """Some of its faces, with the vertices that they have.
+
+        Args:
+            faces: Which, as NumPy picks them.
+        """
+        used, corners = np.unique(self.faces[faces], return_inverse=True)
+        uv = None if self.uv is None else self.uv[used]
+        return Mesh(self.vertices[used], corners.reshape(-1, 3).astype(np.int32), uv)
+
     def face_normals(self) -> NDArray[np.float64]:
         """(m, 3) unit normals by the right-hand rule; zero for triangles without area."""
         return _unit(area_normals(self.vertices[self.faces].astype(np.float64)))

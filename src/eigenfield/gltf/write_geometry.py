@@ -35,15 +35,19 @@ def write_primitive(mesh: Mesh, buffer: Buffer, small: bool) -> dict[str, Any]:
         small: Whether indices may have 8 bits, which other viewers read but need not be quick at.
     """
     assert mesh.uv is not None
-    bounds = {"min": shortest_decimals(mesh.vertices.min(axis=0)), "max": shortest_decimals(mesh.vertices.max(axis=0))}
     return {
         "attributes": {
-            "POSITION": buffer.accessor(mesh.vertices, FLOAT, "VEC3", _VERTICES, **bounds),
+            "POSITION": buffer.accessor(mesh.vertices, FLOAT, "VEC3", _VERTICES, **bounds_of(mesh.vertices)),
             "TEXCOORD_0": buffer.accessor(mesh.uv, FLOAT, "VEC2", _VERTICES),
         },
         "indices": buffer.accessor(mesh.faces.ravel(), index_type(mesh, small), "SCALAR", _INDICES),
         "material": 0,
     }
+
+
+def bounds_of(vertices: NDArray[np.float32]) -> dict[str, list[float]]:
+    """`min` and `max` of an accessor of positions (n, 3)."""
+    return {"min": shortest_decimals(vertices.min(axis=0)), "max": shortest_decimals(vertices.max(axis=0))}
 
 
 def index_type(mesh: Mesh, small: bool) -> int:

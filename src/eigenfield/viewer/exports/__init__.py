@@ -1,4 +1,4 @@
-"""A scene for other programs: a page, a video, a mesh with textures, texture maps, a quilt, photographs with a model.
+"""A scene for other programs: a page, a video, meshes with textures, texture maps, a quilt, photographs with a model.
 
 Each kind is a module. What is written is whole or absent; existing files stay unless `overwrite` says otherwise.
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 from eigenfield.viewer.exports.colmap import write_colmap
 from eigenfield.viewer.exports.export import OPTIONS, export
 from eigenfield.viewer.exports.folder import refuse_folder
+from eigenfield.viewer.exports.glb import write_glb
 from eigenfield.viewer.exports.maps import write_maps
 from eigenfield.viewer.exports.names import file_names
 from eigenfield.viewer.exports.obj import refuse_obj, write_obj, write_obj_folder
@@ -22,6 +23,7 @@ __all__ = [
     "refuse_folder",
     "refuse_obj",
     "write_colmap",
+    "write_glb",
     "write_maps",
     "write_obj",
     "write_obj_folder",

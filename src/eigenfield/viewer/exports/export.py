@@ -22,6 +22,7 @@ from eigenfield.rendering.render_jobs import refuse_flight, write_flight
 from eigenfield.runtime.files import is_numbered, refuse_existing
 from eigenfield.viewer.exports.colmap import write_colmap
 from eigenfield.viewer.exports.folder import refuse_folder
+from eigenfield.viewer.exports.glb import check_image, write_glb
 from eigenfield.viewer.exports.maps import write_maps
 from eigenfield.viewer.exports.obj import refuse_obj, write_obj, write_obj_folder
 from eigenfield.viewer.exports.quilt import quilt_of, write_quilt
@@ -32,12 +33,13 @@ OPTIONS = {  # of each kind, beside the options of all
     "html": {"title", "metres_per_unit"},
     "mp4": PICTURE_OPTIONS | {"path", "frames", "fps"},
     "png": PICTURE_OPTIONS | {"path", "frames"},
+    "glb": {"at", "image", "draco", "metres_per_unit"},
     "obj": {"textures"},
     "maps": {"textures"},
     "quilt": PICTURE_OPTIONS | {"quilt", "spread"},
     "colmap": PICTURE_OPTIONS | {"path", "frames", "residual"},
 }
-ENDINGS = {"html": (".html", ".htm"), "mp4": (".mp4",), "png": (".png",), "quilt": (".png",)}
+ENDINGS = {"html": (".html", ".htm"), "mp4": (".mp4",), "png": (".png",), "glb": (".glb",), "quilt": (".png",)}
 FILE_ENDINGS = (".html", ".htm", ".mp4", ".png", ".jpg", ".jpeg", ".glb", ".gltf", ".ply", ".zip")
 QUILT_NAME = re.compile(r"_qs\d+x\d+a[\d.]+$")
 FLIGHT_DEFAULT_PATH, FLIGHT_FPS = "circle", 30
@@ -58,11 +60,13 @@ def export(
     Args:
         scene: The scene, or its file.
         output: A file or a folder.
-        kind: "html", "mp4", "png" (single pictures), "obj", "maps", "quilt" or "colmap"; None: by the output's name.
+        kind: "html", "mp4", "png" (single pictures), "glb", "obj", "maps", "quilt" or "colmap"; None: by the
+            output's name.
         overwrite: Whether existing files, and folders that an export wrote, are replaced.
         progress: Reports each picture; by default a bar in a notebook.
         options: Of the kind (`OPTIONS`): fields of `RenderJob` for pictures; `path` and `frames` (`path_points`) and
-            `fps` of a flight; `title` and `metres_per_unit` of a page; `quilt` (columns, rows), `spread`; `residual`.
+            `fps` of a flight; `title` and `metres_per_unit` of a page; `at`, `image`, `draco` and
+            `metres_per_unit` of a glb (`write_glb`); `quilt` (columns, rows), `spread`; `residual`.
 
     Returns:
         The file or folder that was written, and what it holds, for people.
@@ -79,6 +83,8 @@ def export(
     if chosen in ("mp4", "png") or "path" in options:
         points = path_points(options.get("path", FLIGHT_DEFAULT_PATH), options.get("frames", FLIGHT_FRAMES))
     _refuse(chosen, output, points, overwrite)
+    if chosen == "glb" and not isinstance(scene, Scene) and output.exists() and output.samefile(scene):
+        raise OptionError("output-kind", f"{output} is the scene itself", remedy="name another file")
     loaded = scene if isinstance(scene, Scene) else load(scene)
     job = RenderJob(loaded, **{name: value for name, value in options.items() if name in PICTURE_OPTIONS})
     return _write(chosen, job, points, output, options, overwrite, progress)
@@ -106,6 +112,9 @@ def _write(
     if kind == "html":
         write_page(scene, output, overwrite=overwrite, **options)
         return output, f"{output.stat().st_size / 1e6:.1f} MB"
+    if kind == "glb":
+        write_glb(scene, output, overwrite=overwrite, **options)
+        return output, f"{output.stat().st_size / 1e6:.1f} MB, for any viewer"
     if _is_obj(output):
         write_obj(scene, output, overwrite=overwrite)
         return output, "with its material and the mean; a folder with --as obj holds the eigen textures too"
@@ -144,7 +153,7 @@ def _chosen_kind(output: Path, kind: str | None, numbered: bool) -> str:
                 remedy="put %04d into its name for the pictures of a path, or say --as quilt; "
                 "`eigenfield render SCENE -o view.png` draws one view",
             )
-        by_ending = {".html": "html", ".htm": "html", ".mp4": "mp4", ".obj": "obj",
+        by_ending = {".html": "html", ".htm": "html", ".mp4": "mp4", ".glb": "glb", ".obj": "obj",
                      ".png": "png" if numbered else "quilt"}  # fmt: skip
         if ending not in by_ending:
             raise OptionError(
@@ -178,3 +187,5 @@ def _check(kind: str, output: Path, given: dict[str, Any]) -> None:
     if kind == "mp4" and given.get("background", ()) is None:
         raise OptionError("background", "a film cannot be transparent", remedy="name a colour, or write .png pictures")
     check_scale(given.get("metres_per_unit"))
+    if kind == "glb":
+        check_image(given.get("image", "png"), given.get("draco", False))

@@ -91,6 +91,19 @@ def mean_map(scene: Scene) -> NDArray[np.float32]:
     return _composer(scene)(ViewWeights(), 0)
 
 
+def view_map(scene: Scene, weights: ViewWeights) -> NDArray[np.float32]:
+    """(H, W, C): the texture of a viewpoint over the whole atlas, not clipped.
+
+    Args:
+        scene: The scene.
+        weights: Of the viewpoint.
+
+    Raises:
+        OptionError: `not-a-picture`.
+    """
+    return _composer(scene)(weights, None)
+
+
 def alpha_added(scene: Scene) -> Callable[[NDArray[np.float32]], NDArray[np.float32]]:
     """A function of a map (H, W, C) of one or three channels: R, G, B and opacity (H, W, 4) of sheets, else the map."""
     if scene.proxy.sheets is None:
@@ -112,8 +125,7 @@ def opaque_mesh(proxy: Proxy) -> Mesh:
     size = sheets.opacity.shape
     column, row = (mesh.uv[mesh.faces].mean(axis=1) * (size[1], size[0])).astype(np.int64).T
     opaque = sheets.opacity[row.clip(0, size[0] - 1), column.clip(0, size[1] - 1)] >= 0.5
-    used, corners = np.unique(mesh.faces[opaque], return_inverse=True)
-    return Mesh(mesh.vertices[used], corners.reshape(-1, 3).astype(np.int32), mesh.uv[used])
+    return mesh.part(opaque)
 
 
 def eigen_maps(scene: Scene, count: int) -> Iterator[tuple[NDArray[np.float32], NDArray[np.float32]]]:
