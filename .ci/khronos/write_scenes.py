@@ -10,6 +10,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
 
 from eigenfield.core.proxy import Proxy
 from eigenfield.gltf import save
+from eigenfield.viewer.exports import write_glb
 from support.coded_scenes import coded_scene
 from support.scenes import bumpy_square, tiny_scene
 from support.soft_scenes import coded_soft_scene, soft_scene
@@ -18,8 +19,8 @@ SHAPES = [(3, 3), (1, 2), (6, 2), (3, 0)]  # channels, eigen textures
 
 
 def main(folder: Path) -> None:
-    """Write every combination, one mesh that needs long indices, and scenes of which everything is coded or that have
-    sheets."""
+    """Write every combination, one mesh that needs long indices, scenes of which everything is coded or that have
+    sheets, and exports for other viewers."""
     folder.mkdir(parents=True, exist_ok=True)
     for codec in ("png", "webp", "avif"):
         for channels, textures in SHAPES:
@@ -28,9 +29,13 @@ def main(folder: Path) -> None:
     large = replace(tiny_scene(), proxy=Proxy(bumpy_square(256)))
     save(large, folder / "large.glb", codec="png", overwrite=True)
     save(tiny_scene(cameras=2), folder / "line.glb", overwrite=True)
-    save(coded_scene(), folder / "coded.glb", overwrite=True)
+    for fallback in ("small", "good", "none"):
+        save(coded_scene(), folder / f"coded-{fallback}.glb", fallback=fallback, overwrite=True)
     save(soft_scene(), folder / "sheets.glb", overwrite=True)
     save(coded_soft_scene(), folder / "coded-sheets.glb", overwrite=True)
+    for image, draco in (("png", False), ("jpeg", True), ("webp", False)):
+        write_glb(coded_scene(), folder / f"plain-{image}.glb", at=(0.5, 0), image=image, draco=draco, overwrite=True)
+    write_glb(soft_scene(), folder / "plain-sheets.glb", overwrite=True)
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ from eigenfield.coding import limits
 from eigenfield.coding.codecs import CODECS
 from eigenfield.core.scene import Residual
 from eigenfield.gltf import encode_scene, layout
+from eigenfield.gltf.fallback import with_fallback
 from eigenfield.gltf.streams import FEATURES, OTHER_FEATURES
 from support import schema
 from support.coded_scenes import coded_scene, precise_scene
@@ -39,6 +40,7 @@ def files(good):
         b"video", (240, 320), np.arange(25)[::-1].copy(), (0.01, 0.02), full_chroma=True, smooth_edges=True
     )
     made["coded"] = encode_scene(coded)
+    made["bare"] = encode_scene(with_fallback(coded, "none"))
     made["sheets"] = encode_scene(soft_scene(), codec="webp")
     made |= {name: encode_scene(coded_scene(name)) for name, codec in CODECS.items() if codec.kind == "weights"}
     made["precise"] = encode_scene(precise_scene())

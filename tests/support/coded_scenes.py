@@ -92,14 +92,16 @@ def shallow(made: EncodedScene) -> EncodedScene:
 
 
 def write(folder: Path) -> None:
-    """Write coded.glb, precise.glb, fitted.glb and shallow.glb; add pictures of the first three to references.json,
-    which is there."""
+    """Write coded.glb, bare.glb, which shows other viewers nothing, precise.glb, fitted.glb and shallow.glb; add
+    pictures of the first four to references.json, which is there."""
     listing = folder / "references.json"
     pictures = json.loads(listing.read_text(encoding="utf-8"))
     made = coded_scene()
     save(shallow(made), folder / "shallow.glb", overwrite=True)
     save(made, folder / "coded.glb", overwrite=True)
     pictures += references(folder, "coded.glb", PLACES[:2])
+    save(made, folder / "bare.glb", fallback="none", overwrite=True)
+    pictures += references(folder, "bare.glb", PLACES[1:2])
     save(precise_scene(), folder / "precise.glb", overwrite=True)
     pictures += references(folder, "precise.glb", PLACES[:2])
     # Fitted textures hold what their nine photographs ask for, up to the finest ripple that the atlas has: a vertex off

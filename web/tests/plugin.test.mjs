@@ -380,6 +380,14 @@ test("a coded mesh is drawn in place of glTF's, which is for others", async () =
   });
   assert.deepEqual([info.vertices, info.triangles, shown], [24 * 24, 2 * 23 * 23, [2 * 23 * 23]]);
   assert.ok(coarse.length === 1 && coarse[0] <= 256, `${coarse}`);
+  const bare = await page.evaluate(async () => {
+    const { gltf, field } = await window.lab.loadEigenfield("bare.glb");
+    const others = await window.lab.plainLoad("bare.glb", false);
+    const meshes = (scene) => scene.getObjectsByProperty("isMesh", true).length;
+    return { info: field.info, ours: meshes(gltf.scene), theirs: meshes(others.scene) };
+  });
+  assert.deepEqual([bare.info.triangles, bare.ours, bare.theirs], [2 * 23 * 23, 1, 0]);
+  assert.ok(bare.info.bytes.total < info.bytes.total - 1500, `${bare.info.bytes.total} bytes`);
   assert.deepEqual(info.cameras.map(({ width, height }) => [width, height]), Array(25).fill([320, 240]));
   const { total, mesh, mean, weights, other, textures } = info.bytes;
   assert.equal(mesh + mean + weights + other + textures.reduce((a, b) => a + b, 0), total);

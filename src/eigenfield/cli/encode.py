@@ -57,7 +57,7 @@ GROUPS = {  # of options in the help, the common ones first; what is named in no
         "surface", "layers", "refine", "background", "primitives", "fit_spheres", "blind", "triangles",
     ),
     "Quality and size": (
-        "quality", "target_psnr", "target_ssim", "textures", "density", "atlas", "residual", "fit",
+        "quality", "target_psnr", "target_ssim", "textures", "density", "atlas", "residual", "fit", "fallback",
     ),
     "Texture maps, as the paper makes them (--fit none)": ("uv_ssim", "align", "harmonise", "codec", "keep_maps"),
     "Other options": (),

@@ -25,11 +25,12 @@ ATLAS_MAX_SIDE_TEXELS = 16384
 DENSITY_LIMITS = 0.01, 100.0  # atlas texels per photograph pixel along one axis
 FIT_MAX_DENSITY = 1.5  # likewise, with a fit
 MAP_OPTIONS = ("align", "uv_ssim", "harmonise", "keep_maps", "codec")  # options that a fit has no use for
-FIT_OPTIONS = ("target", "preset")  # options that the paper's way has no use for
+FIT_OPTIONS = ("target", "preset", "fallback")  # options that the paper's way has no use for
 UNKNOWN_CHOICE_TEXTS = {
     "fit": "no fit is called",
     "preset": "no preset is called",
     "harmonise": "no harmonisation is called",
+    "fallback": "no fallback is called",
 }
 
 
@@ -149,6 +150,11 @@ class EncodeOptions:
         limits=(0, 100),
         metavar="[Q]",
         bare="40",
+    )
+    fallback: str | None = option(
+        "What viewers without eigen textures show: the middle view with at most 6 % of the file's bytes (small), with "
+        "at most 25 % (good), or nothing (none).  [default: small]",
+        choices=("small", "good", "none"),
     )
     keep_maps: str | os.PathLike[str] | None = option(
         "Also write every filled texture map and its visibility as PNG.", metavar="DIR"

@@ -33,6 +33,7 @@ from eigenfield.encoding.geometry.triangle_count import triangle_count_rd
 from eigenfield.encoding.options import EncodeOptions, resolved_value
 from eigenfield.encoding.projected.atlas import atlas_side, texels_per_pixel
 from eigenfield.encoding.views import CaptureViews, grid_of, select_views, usual_reference
+from eigenfield.gltf.fallback import with_fallback
 from eigenfield.proxy import prepare_proxy
 from eigenfield.proxy.relief.find_lattice import relief_lattice, relief_proxy
 
@@ -142,7 +143,7 @@ class EncodePlan:
                 "pixels": sum(sizes),
             },
         }
-        return EncodedScene(
+        made = EncodedScene(
             proxy=replace(self.proxy, lattice=None),
             rig=rig,
             appearance=Appearance(planes=planes, colours=colours, to_rgb=to_rgb),
@@ -151,6 +152,7 @@ class EncodePlan:
             payloads=self.payloads | (payloads or {}),
             times=tuple(views.capture.times),
         )
+        return made if self.options.fallback is None else with_fallback(made, self.options.fallback)
 
 
 def plan_encoding(

@@ -52,11 +52,12 @@ def parts(path: str | os.PathLike[str]) -> dict[str, int]:
 def _parts(document: Document) -> dict[str, int]:
     root = document.root
     extension = root["extensions"][limits.EXTENSION]
-    primitive = root["meshes"].at(0)["primitives"].at(0)
-    attributes = [*(primitive["attributes"][key] for key in ("POSITION", "TEXCOORD_0")), primitive["indices"]]
     found: dict[str, list[Value]] = {name: [] for name in PARTS}
     found["mean"] += [root["images"].at(0)["bufferView"]] if root.has("images") else []
-    found["mesh"] += [_view_of(document, reference) for reference in attributes]
+    if root.has("meshes"):
+        primitive = root["meshes"].at(0)["primitives"].at(0)
+        attributes = [*(primitive["attributes"][key] for key in ("POSITION", "TEXCOORD_0")), primitive["indices"]]
+        found["mesh"] += [_view_of(document, reference) for reference in attributes]
     for plane in extension["planes"].items(limits.MAX_PLANES):
         for basis in plane["bases"].items(limits.MAX_BASES):
             found["weights"] += [_view_of(document, basis["weights"])] if basis.has("weights") else []

@@ -10,21 +10,25 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding.pictures.pictures_8bit import encode_small_preview
 from eigenfield.core.camera import Camera, axis_angles
+from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Payload
 from eigenfield.core.scene import Scene
+from eigenfield.gltf.accessors import DTYPES
 from eigenfield.gltf.coarse import coarse_mesh
+from eigenfield.gltf.write_geometry import index_type
 
-MAX_BYTES_RATIO = 0.06  # of mesh and picture to what is coded
+SceneT = TypeVar("SceneT", bound=Scene)
+
 MAX_AXIS_ANGLE_DEGREES = 25.0  # between a camera's axis and the mean axis, of cameras that look one way
 MAX_MARGIN_FRACTION = 0.12  # by which the view is widened, of the reference camera's side
-VIEW_SIDE_PIXELS = 256  # in which it is drawn
 DEPTH_MEDIAN_PIXELS = 5
 DEPTH_BLUR_RATIO = 0.5  # of the spacing of the height field's points
 HALF_COVERED = 0.5  # opacity from which on a sheet is there
@@ -46,43 +50,98 @@ class Size:
     quality: int
 
 
-SIZES = (
-    Size(200, 384, 55),
-    Size(160, 288, 55),
-    Size(128, 224, 50),
-    Size(100, 160, 45),
-    Size(80, 128, 40),
-    Size(48, 80, 35),
-    Size(30, 48, 30),
-    Size(16, 40, 30),
+@dataclass(frozen=True)
+class Budget:
+    """What other viewers get.
+
+    Attributes:
+        ratio: Bytes of mesh and picture to those of what is coded, at most.
+        side: Of the view that is drawn, in pixels.
+        sizes: The first that is within the budget is taken, else the last.
+    """
+
+    ratio: float
+    side: int
+    sizes: tuple[Size, ...]
+
+
+SMALL = Budget(
+    0.06,
+    256,
+    (
+        Size(200, 384, 55),
+        Size(160, 288, 55),
+        Size(128, 224, 50),
+        Size(100, 160, 45),
+        Size(80, 128, 40),
+        Size(48, 80, 35),
+        Size(30, 48, 30),
+        Size(16, 40, 30),
+    ),
 )
+GOOD = Budget(
+    0.25,
+    1024,
+    (
+        Size(3000, 1024, 80),
+        Size(2000, 896, 75),
+        Size(1400, 768, 70),
+        Size(1000, 640, 70),
+        Size(700, 512, 65),
+        Size(450, 448, 60),
+        Size(300, 384, 60),
+        *SMALL.sizes,
+    ),
+)
+BUDGETS = {"small": SMALL, "good": GOOD, "none": None}
+SETTING = "fallback"  # of a scene, left out for the default
+DEFAULT = "small"
 
 
-def fallback(scene: Scene, atlas: NDArray[np.uint8], coded: int) -> tuple[Mesh, Payload]:
-    """A mesh and its picture, of the first of SIZES within MAX_BYTES_RATIO x `coded` bytes, else of the last.
+def with_fallback(scene: SceneT, fallback: str) -> SceneT:
+    """The scene, to be written with this for other viewers.
+
+    Args:
+        scene: The scene.
+        fallback: A key of BUDGETS.
+
+    Raises:
+        OptionError: `fallback`.
+    """
+    if fallback not in BUDGETS:
+        raise OptionError("fallback", f"no fallback is called {fallback}", remedy=f"use one of {', '.join(BUDGETS)}")
+    kept = {key: value for key, value in scene.settings.items() if key != SETTING}
+    return replace(scene, settings=kept if fallback == DEFAULT else {**kept, SETTING: fallback})
+
+
+def make_fallback(scene: Scene, atlas: NDArray[np.uint8], coded: int) -> tuple[Mesh, Payload] | None:
+    """A mesh and its picture within the budget that the scene's settings name; None where they want none.
 
     Args:
         scene: To be written.
         atlas: (H, W) or (H, W, 3) codes of its mean.
         coded: Bytes of the coded parts.
     """
+    budget = BUDGETS.get(scene.settings.get(SETTING, DEFAULT), SMALL)
+    if budget is None:
+        return None
     one_way = axis_angles(scene.rig.cameras).max() <= MAX_AXIS_ANGLE_DEGREES
-    drawn = _draw_middle(scene, atlas) if one_way else None
-    for size in SIZES:
+    drawn = _draw_middle(scene, atlas, budget.side) if one_way else None
+    for size in budget.sizes:
         if drawn is None:
             mesh, picture = coarse_mesh(scene.proxy.mesh, 2 * size.points), atlas
         else:
             mesh, picture = _relief(drawn, size.points), drawn.picture
         payload = Payload("jpeg", encode_small_preview(picture, size.side, size.quality))
-        if plain_bytes(mesh) + len(payload.data) <= MAX_BYTES_RATIO * coded:
+        if plain_bytes(mesh) + len(payload.data) <= budget.ratio * coded:
             break
     return mesh, payload
 
 
 def plain_bytes(mesh: Mesh) -> int:
-    """Bytes of a small mesh as plain floats with a byte a corner."""
+    """Bytes of a mesh as plain floats with the smallest indices."""
     assert mesh.uv is not None
-    return mesh.vertices.nbytes + mesh.uv.nbytes + mesh.faces.size
+    return mesh.vertices.nbytes + mesh.uv.nbytes + mesh.faces.size * DTYPES[index_type(mesh, True)].itemsize
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,10 +161,10 @@ class _Drawn:
     covered: NDArray[np.bool_]
 
 
-def _draw_middle(scene: Scene, atlas: NDArray[np.uint8]) -> _Drawn | None:
+def _draw_middle(scene: Scene, atlas: NDArray[np.uint8], side: int) -> _Drawn | None:
     """None where the reference camera sees nothing."""
     mesh, sheets = scene.proxy.mesh, scene.proxy.sheets
-    camera = _middle_camera(scene.rig.cameras[scene.rig.reference], mesh)
+    camera = _middle_camera(scene.rig.cameras[scene.rig.reference], mesh, side)
     if camera is None:
         return None
     counts = (len(mesh.faces),) if sheets is None else sheets.faces
@@ -131,8 +190,8 @@ def _draw_middle(scene: Scene, atlas: NDArray[np.uint8]) -> _Drawn | None:
     return _Drawn(camera, codes.reshape(-1, *codes.shape[2:])[nearest], depth.reshape(-1)[nearest], covered)
 
 
-def _middle_camera(camera: Camera, mesh: Mesh) -> Camera | None:
-    """The camera with the frame of the mesh in its view, at most MAX_MARGIN_FRACTION wider, in VIEW_SIDE_PIXELS."""
+def _middle_camera(camera: Camera, mesh: Mesh, side: int) -> Camera | None:
+    """The camera with the frame of the mesh in its view, at most MAX_MARGIN_FRACTION wider, in `side` pixels."""
     pixels, depth = camera.project(mesh.vertices.astype(np.float64))
     if not (depth > 0).any():
         return None
@@ -142,7 +201,7 @@ def _middle_camera(camera: Camera, mesh: Mesh) -> Camera | None:
     high = np.clip(pixels[depth > 0].max(axis=0), -margin, size + margin)
     if (high - low).min() < 1:
         return None
-    scale = VIEW_SIDE_PIXELS / (high - low).max()
+    scale = side / (high - low).max()
     width, height = np.maximum(np.rint(scale * (high - low)).astype(int), 2).tolist()
     frame = np.array([(scale, 0, -scale * low[0]), (0, scale, -scale * low[1]), (0, 0, 1)])
     return replace(camera, K=frame @ camera.K, width=width, height=height)

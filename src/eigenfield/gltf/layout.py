@@ -125,7 +125,8 @@ def read_layout(document: Document, findings: Findings) -> FileLayout | None:
     sheets = attempt(lambda: read_sheets(document, extension["sheets"]) if extension.has("sheets") else None)
     mesh = mesh_payload = None
     with findings.part():
-        mesh = geometry.read_mesh(document)  # of a coded one the coarse one, which is checked too
+        if document.root.has("meshes") or not extension.has("mesh"):
+            mesh = geometry.read_mesh(document)  # of a coded one the coarse one, which is checked too
         if extension.has("mesh"):
             mesh, mesh_payload = geometry.read_coded_mesh(document, extension["mesh"])
     attempt(lambda: check_sheets(extension["sheets"], sheets, mesh) if extension.has("sheets") else None)

@@ -208,8 +208,9 @@ def validate(path: str | os.PathLike[str]) -> list[Finding]:
         if layout is not None:
             _check_pictures(layout, findings)
             _check_residual(layout, findings)
-            _check_preview(document, findings)
-            _check_bounds(document, layout, findings)
+            if document.root.has("meshes"):
+                _check_preview(document, findings)
+                _check_bounds(document, layout, findings)
             _check_use(document, findings)
     return findings.found
 

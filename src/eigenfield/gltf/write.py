@@ -18,6 +18,7 @@ from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, PICTURES, check_c
 from eigenfield.core.appearance import Plane
 from eigenfield.core.arguments import checked
 from eigenfield.core.errors import OptionError, OutputError
+from eigenfield.core.mesh import Mesh
 from eigenfield.core.notebook import notebook_progress
 from eigenfield.core.payloads import Payload, PicturePayload
 from eigenfield.core.progress import Progress
@@ -30,7 +31,7 @@ from eigenfield.gltf.buffer import Buffer
 from eigenfield.gltf.cached import CachedPayloads, cached_payloads
 from eigenfield.gltf.coded_pictures import PlanePictures, ScenePictures, code_pictures, shortest_decimals, shown_mean
 from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, Glb, file_head, json_bytes
-from eigenfield.gltf.fallback import fallback
+from eigenfield.gltf.fallback import make_fallback, with_fallback
 from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.layout import read_layout, unpacked_document
 from eigenfield.gltf.streams import FEATURES, codec_entry, minor
@@ -59,6 +60,7 @@ def save(
     *,
     codec: str | None = None,
     quality: int | None = None,
+    fallback: str | None = None,
     overwrite: bool = False,
     progress: Progress | None = notebook_progress,
 ) -> None:
@@ -74,16 +76,20 @@ def save(
             quality, pictures that are coded already (by a fit, or read from a file) stay as they are, and the rest
             becomes AVIF.
         quality: 0..100 for avif, by default DEFAULT_AVIF_QUALITY; the mean is coded finer (MEAN_QUALITY_RATIO).
+        fallback: What viewers without eigen textures show of a scene whose mesh is coded: "small", "good" or "none";
+            None: as it was encoded.
         overwrite: Whether an existing file is replaced.
         progress: Reports each picture; by default a bar in a notebook.
 
     Raises:
         OutputError: `output-exists`, `disk-full`, `file-too-large`, `scene-limit`, ...
-        OptionError: `codec`, `codec-missing`, `quality`.
+        OptionError: `codec`, `codec-missing`, `quality`, `fallback`.
         FormatError: The scene is inconsistent in itself. Nothing is written.
     """
     path = Path(path)
     refuse_output(path, overwrite)
+    if fallback is not None:
+        scene = with_fallback(scene, fallback)
     blocks, anew = _blocks(scene, codec, quality, progress, path)
     with atomic_writer(path, overwrite=overwrite) as file:
         for block in blocks:
@@ -179,11 +185,10 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayl
     """The JSON, while `buffer` fills: mesh, opacity, mean, weights, calibration, textures; if packed, all accessors
     first."""
     mesh, poses = cached.one("mesh"), cached.one("cameras")
-    shown, preview = scene.proxy.mesh, coded.preview or coded.planes[0].mean
+    shown: tuple[Mesh, Payload] | None = (scene.proxy.mesh, coded.preview or coded.planes[0].mean)
     if mesh is not None:
-        shown, preview = fallback(scene, shown_mean(scene), coded.bytes + len(mesh.data))
-    primitive = write_primitive(shown, buffer, mesh is not None)
-    image = {"bufferView": buffer.view(preview.data), "mimeType": PICTURES[preview.codec].mime}
+        shown = make_fallback(scene, shown_mean(scene), coded.bytes + len(mesh.data))
+    drawn = {} if shown is None else _drawn(scene, *shown, buffer, mesh is not None)
     plain = buffer.packed is None
     order = {} if plain or scene.residual is None else _frame_order(scene.residual, buffer)
     cameras = {} if plain else write_cameras(scene, buffer, poses)
@@ -200,7 +205,7 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayl
     view_plane = write_view_plane(scene, buffer, poses is not None)
     entries = _by_gain_per_byte(scene, coded, planes)
     codecs = buffer.codecs | {("textures", picture.codec) for _, picture in entries}
-    needs = _needs(scene, coded, {codec for _, codec in codecs}, cameras, planes)
+    needs = _needs(scene, coded, {codec for _, codec in codecs}, cameras, planes, bool(drawn))
     version = _version(scene, needs, any(codec_entry(codec, place) for place, codec in codecs))
     extension: dict[str, Any] = {
         "needs": needs,
@@ -224,35 +229,42 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayl
         extension = {"version": version} | extension
     else:
         extension = {"version": version, "needs": [packed.FEATURE], packed.FEATURE: packed.write(extension, buffer)}
-    has_holes = mesh is None and scene.proxy.sheets is not None
     perspective, nodes = write_nodes(scene, NODE_DIGITS if plain else PACKED_NODE_DIGITS)
+    if not drawn:
+        del nodes[0]["mesh"]
     named = partial(_named, plain)
     return {
         "asset": {"version": "2.0", **({"generator": f"eigenfield {__version__}"} if plain else {})},
-        "extensionsUsed": ["KHR_materials_unlit", limits.EXTENSION],
+        "extensionsUsed": [*(["KHR_materials_unlit"] if drawn else []), limits.EXTENSION],
         "extensions": {limits.EXTENSION: extension},
         "scene": 0,
         "scenes": [{"nodes": [0, 1]}],
         "nodes": [named("proxy", nodes[0]), named("reference camera", nodes[1])],
         "cameras": [{"type": "perspective", "perspective": perspective}],
-        "meshes": [named("proxy", {"primitives": [primitive]})],
-        "materials": [
-            named(
-                "mean",
-                {
-                    "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0.0},
-                    "extensions": {"KHR_materials_unlit": {}},
-                    **({"alphaMode": "MASK"} if has_holes else {}),  # below glTF's default of 0.5
-                    "doubleSided": True,
-                },
-            )
-        ],
+        **drawn,
+        **({"accessors": buffer.accessors} if buffer.accessors else {}),
+        "bufferViews": buffer.views,
+        "buffers": [{"byteLength": buffer.length}],
+    }
+
+
+def _drawn(scene: Scene, mesh: Mesh, picture: Payload, buffer: Buffer, coded: bool) -> dict[str, Any]:
+    """What other viewers show: a mesh with a picture; coded: whether the scene's own mesh is a stream."""
+    primitive = write_primitive(mesh, buffer, coded)
+    image = {"bufferView": buffer.view(picture.data), "mimeType": PICTURES[picture.codec].mime}
+    plain, holes = buffer.packed is None, scene.proxy.sheets is not None and not coded
+    material = {
+        "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0.0},
+        "extensions": {"KHR_materials_unlit": {}},
+        **({"alphaMode": "MASK"} if holes else {}),  # below glTF's default of 0.5
+        "doubleSided": True,
+    }
+    return {
+        "meshes": [_named(plain, "proxy", {"primitives": [primitive]})],
+        "materials": [_named(plain, "mean", material)],
         "textures": [{"source": 0, "sampler": 0}],
         "samplers": [{**({"magFilter": 9729, "minFilter": 9987} if plain else {}), "wrapS": 33071, "wrapT": 33071}],
         "images": [image],
-        "accessors": buffer.accessors,
-        "bufferViews": buffer.views,
-        "buffers": [{"byteLength": buffer.length}],
     }
 
 
@@ -385,12 +397,14 @@ def _frame_order(residual: Residual, buffer: Buffer) -> dict[str, int]:
 
 
 def _needs(
-    scene: Scene, coded: ScenePictures, codecs: Iterable[str], cameras: Mapping[str, Any], planes: list[dict[str, Any]]
-) -> list[str]:
+    scene: Scene, coded: ScenePictures, codecs: Iterable[str], cameras: Mapping[str, Any], planes: list[dict[str, Any]],
+    fallback: bool,
+) -> list[str]:  # fmt: skip
     """The features that a reader must know to draw this scene."""
     pictures = [file for plane in coded.planes for some in plane.bases for file in some]
     found = {
         "namePattern": "pattern" in cameras,
+        "noFallback": not fallback,
         "precision": any(plane.mean.precision is not None for plane in coded.planes),
         "regions": any(basis.grid is not None for plane in scene.appearance.planes for basis in plane.bases),
         "sharedPicture": any("picture" in basis for plane in planes for basis in plane["bases"]),

@@ -71,7 +71,8 @@ export function viewReader(views: View[]): ViewReader {
 
 /** Reads accessors by their index; those with a `count` must have it, and lie packed. */
 export function accessorReader(root: Value, views: View[]): AccessorReader {
-  const accessors = root.key("accessors").items(limits.MAX_VIEWS);
+  const given = root.key("accessors");
+  const accessors = given.exists ? given.items(limits.MAX_VIEWS) : [];
   return (index, kind, types, count) => {
     const at = accessors[index.integer(0, accessors.length - 1)];
     if (!at) throw index.wrong("no such accessor");

@@ -42,16 +42,15 @@ export interface SceneDocument {
   settings: JsonObject;
   scores: JsonObject;
   views: View[];
-  mesh: Stream<"mesh"> | null; // the proxy, of which what follows is then a coarse form for other viewers
+  mesh: Stream<"mesh"> | null; // the proxy, of which `shown` is then a coarse form for other viewers
   sheets: Sheets | null; // null: one opaque surface
-  position: Accessor;
-  uv: Accessor;
-  indices: Accessor;
+  shown: { position: Accessor; uv: Accessor; indices: Accessor } | null; // null: nothing, for none but `mesh`
   preview: number | null; // buffer view of `images[0]`
 }
 
 const LAYOUT_FEATURES: Feature[] = [
   "namePattern",
+  "noFallback",
   "packed",
   "precision",
   "regions",
@@ -99,10 +98,6 @@ export function readDocument(json: Json): SceneDocument {
 
   const viewPlane = extension.key("viewPlane");
   const [triangles, codedTriangles] = [viewPlane.key("triangles"), viewPlane.key("codedTriangles")];
-  const primitive = root.key("meshes").at(0).key("primitives").at(0);
-  const mode = primitive.key("mode");
-  if (mode.exists && mode.integer(0, 6) !== 4) throw mode.wrong("no triangles");
-  const [attributes, indices] = [primitive.key("attributes"), primitive.key("indices")];
   const generator = extension.key("generator");
   const mesh = extension.key("mesh");
   return {
@@ -127,10 +122,21 @@ export function readDocument(json: Json): SceneDocument {
     views,
     mesh: mesh.exists ? streamOf("mesh", mesh, viewOf) : null,
     sheets: readSheets(extension.key("sheets"), viewOf),
+    shown: mesh.exists && !root.key("meshes").exists ? null : readShown(root, accessor),
+    preview,
+  };
+}
+
+/** The arrays of meshes[0]. */
+function readShown(root: Value, accessor: AccessorReader): NonNullable<SceneDocument["shown"]> {
+  const primitive = root.key("meshes").at(0).key("primitives").at(0);
+  const mode = primitive.key("mode");
+  if (mode.exists && mode.integer(0, 6) !== 4) throw mode.wrong("no triangles");
+  const [attributes, indices] = [primitive.key("attributes"), primitive.key("indices")];
+  return {
     position: limited(accessor(attributes.key("POSITION"), "VEC3", [FLOAT], null), limits.MAX_VERTICES),
     uv: limited(accessor(attributes.key("TEXCOORD_0"), "VEC2", [FLOAT], null), limits.MAX_VERTICES),
     indices: trianglesOf(accessor(indices, "SCALAR", [UINT8, UINT16, UINT32], null), limits.MAX_TRIANGLES),
-    preview,
   };
 }
 

@@ -288,8 +288,7 @@ function countBytes(scene: SceneDocument, total: number): SceneInfo["bytes"] {
     }
   }
   const weights = sum(basesOf(scene).flatMap((basis) => (basis.weights ? [basis.weights.view] : [])));
-  const { position, uv, indices } = scene;
-  const mesh = sum([position, uv, indices, ...(scene.mesh ? [scene.mesh] : [])].map(({ view }) => view));
+  const mesh = sum([...Object.values(scene.shown ?? {}), ...(scene.mesh ? [scene.mesh] : [])].map(({ view }) => view));
   const opacity = scene.sheets ? lengthOf(scene.sheets.opacity.mean.view) : 0;
   const other = total - mean - weights - mesh - opacity - textures.reduce((a, b) => a + b, 0);
   return { total, mesh, opacity, mean, weights, other, textures };

@@ -37,6 +37,7 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
     const { json } = this.parser;
     Object.assign(json, await unpacked(json, (offset, length) => this.read(offset, length)));
     this.scene = readDocument(json);
+    if (!this.scene.shown) showEmptyMesh(json);
   }
 
   private async read(offset: number, length: number): Promise<ArrayBuffer> {
@@ -67,7 +68,7 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
     const meshes = proxiesOf(gltf, this.parser);
     const [mesh] = meshes;
     if (!mesh) throw damaged("/meshes/0", "no node shows it");
-    checkGeometry(mesh.geometry, scene);
+    if (scene.shown) checkGeometry(mesh.geometry, scene.shown);
     const bytes: ViewBytes = async (view) => {
       const data = (await this.parser.getDependency("bufferView", view)) as ArrayBuffer;
       if (data.byteLength < (scene.views[view]?.length ?? 0)) throw cutOff(`/bufferViews/${view}`);
@@ -104,6 +105,14 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
     };
     return extensions["KHR_binary_glTF"]?.header?.length ?? json.buffers[0]?.byteLength ?? 0;
   }
+}
+
+/** Gives the first node of a file that shows other viewers nothing a mesh, for the coded one to take its place. */
+function showEmptyMesh(json: GLTFParser["json"]): void {
+  const [node] = json.nodes;
+  if (node) node.mesh = 0;
+  json.meshes = [{ primitives: [{ attributes: {}, material: 0 }] }];
+  json.materials = [{ doubleSided: true }];
 }
 
 /** Every instance of the first primitive of mesh 0. */

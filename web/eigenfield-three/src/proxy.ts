@@ -8,21 +8,21 @@ import { MAX_NUMBER } from "./limits.js";
 
 const SHORT = 65535; // vertices up to which indices have 16 bits: index 65535 itself begins a new strip
 
-export function checkGeometry(geometry: BufferGeometry, scene: SceneDocument): void {
+export function checkGeometry(geometry: BufferGeometry, shown: NonNullable<SceneDocument["shown"]>): void {
   const position = geometry.getAttribute("position");
   const uv = geometry.getAttribute("uv");
   const { index } = geometry;
   if (!index) throw new SceneError("damaged", "The proxy mesh has no triangles; make or download the file again.");
-  if (uv.count !== position.count) throw damaged(scene.uv.where, `${uv.count} for ${position.count} vertices`);
+  if (uv.count !== position.count) throw damaged(shown.uv.where, `${uv.count} for ${position.count} vertices`);
   for (let i = 0; i < position.count; i++) {
     const largest = Math.max(Math.abs(position.getX(i)), Math.abs(position.getY(i)), Math.abs(position.getZ(i)));
-    if (!(largest <= MAX_NUMBER)) throw damaged(scene.position.where, `vertex ${i} is not finite`);
+    if (!(largest <= MAX_NUMBER)) throw damaged(shown.position.where, `vertex ${i} is not finite`);
     if (!(Math.max(Math.abs(uv.getX(i)), Math.abs(uv.getY(i))) <= MAX_NUMBER)) {
-      throw damaged(scene.uv.where, `texture coordinates of vertex ${i} are not finite`);
+      throw damaged(shown.uv.where, `texture coordinates of vertex ${i} are not finite`);
     }
   }
   for (const vertex of index.array) {
-    if (vertex >= position.count) throw damaged(scene.indices.where, `no vertex ${vertex}`);
+    if (vertex >= position.count) throw damaged(shown.indices.where, `no vertex ${vertex}`);
   }
 }
 

@@ -56,6 +56,7 @@ export type Feature =
   | "codedWeights"
   | "mesh-2"
   | "namePattern"
+  | "noFallback"
   | "packed"
   | "precision"
   | "regions"

@@ -1422,22 +1422,22 @@ function wr(e) {
 	return (t) => t.integer(0, e.length - 1);
 }
 function Tr(e, t) {
-	let n = e.key("accessors").items(I);
-	return (e, r, i, a) => {
-		let o = n[e.integer(0, n.length - 1)];
+	let n = e.key("accessors"), r = n.exists ? n.items(I) : [];
+	return (e, n, i, a) => {
+		let o = r[e.integer(0, r.length - 1)];
 		if (!o) throw e.wrong("no such accessor");
 		let s = o.key("componentType").integer(5120, 5126);
 		if (!i.includes(s)) throw o.wrong(`component type ${s}`);
-		if (o.key("type").text(1024) !== r) throw o.wrong(`not ${r}`);
+		if (o.key("type").text(1024) !== n) throw o.wrong(`not ${n}`);
 		if (o.key("sparse").exists) throw o.wrong("sparse");
 		let c = o.key("normalized");
 		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = Sr[r] ?? 1, u = o.key("count").integer(1, we);
+		let l = Sr[n] ?? 1, u = o.key("count").integer(1, we);
 		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
 		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
 		if (!f) throw o.wrong("no such buffer view");
 		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = br[s] * l;
-		if (f.stride && (f.stride < h || r === "SCALAR")) throw o.wrong("a stride that cannot be");
+		if (f.stride && (f.stride < h || n === "SCALAR")) throw o.wrong("a stride that cannot be");
 		if (m + (u - 1) * (f.stride || h) + h > f.length) throw o.wrong("outside its buffer view");
 		if ((m + f.offset) % br[s]) throw o.wrong("not aligned");
 		return {
@@ -1690,6 +1690,7 @@ function Kr({ faces: e, where: t }, { index: n, attributes: r }) {
 // eigenfield-three/src/document.ts
 var qr = [
 	"namePattern",
+	"noFallback",
 	"packed",
 	"precision",
 	"regions",
@@ -1707,45 +1708,51 @@ function $r(e) {
 	}
 }
 function ei(e) {
-	let t = new K(e, ""), n = t.key("extensions").key(fe), r = ni(n), i = Cr(t), a = Tr(t, i), o = wr(i);
-	ri(t);
-	let s = oi(t, o), c = n.key("cameras"), { count: l, names: u } = si(c, o), d = ui(c, l), f = d.filter((e) => !e).length, p = Mr(n, f, s, a, o), m = Nr(n, p), h = c.key("colour");
+	let t = new K(e, ""), n = t.key("extensions").key(fe), r = ri(n), i = Cr(t), a = Tr(t, i), o = wr(i);
+	ii(t);
+	let s = si(t, o), c = n.key("cameras"), { count: l, names: u } = ci(c, o), d = di(c, l), f = d.filter((e) => !e).length, p = Mr(n, f, s, a, o), m = Nr(n, p), h = c.key("colour");
 	if (h.exists && m.length < 3) throw h.wrong("needs three channels");
-	let g = n.key("viewPlane"), [_, v] = [g.key("triangles"), g.key("codedTriangles")], y = t.key("meshes").at(0).key("primitives").at(0), b = y.key("mode");
-	if (b.exists && b.integer(0, 6) !== 4) throw b.wrong("no triangles");
-	let [x, S] = [y.key("attributes"), y.key("indices")], C = n.key("generator"), w = n.key("mesh");
+	let g = n.key("viewPlane"), [_, v] = [g.key("triangles"), g.key("codedTriangles")], y = n.key("generator"), b = n.key("mesh");
 	return {
 		version: r,
-		generator: C.exists ? C.text(R) : "",
+		generator: y.exists ? y.text(R) : "",
 		planes: p,
 		colours: m,
 		names: u,
 		heldOut: d,
 		reference: n.key("reference").integer(0, l - 1),
-		calibration: di(c, l, a, o),
-		sizes: fi(c, l, a),
+		calibration: fi(c, l, a, o),
+		sizes: pi(c, l, a),
 		colour: h.exists ? a(h, "SCALAR", [q], 6 * l) : null,
-		...pi(g),
-		triangles: v.exists ? Er("triangles", v, o) : _.exists ? ai(a(_, "SCALAR", [vr, yr], null), 2 * L) : null,
-		settings: mi(n.key("settings")),
-		scores: mi(n.key("scores")),
+		...mi(g),
+		triangles: v.exists ? Er("triangles", v, o) : _.exists ? oi(a(_, "SCALAR", [vr, yr], null), 2 * L) : null,
+		settings: hi(n.key("settings")),
+		scores: hi(n.key("scores")),
 		views: i,
-		mesh: w.exists ? Er("mesh", w, o) : null,
+		mesh: b.exists ? Er("mesh", b, o) : null,
 		sheets: Gr(n.key("sheets"), o),
-		position: ii(a(x.key("POSITION"), "VEC3", [q], null), Se),
-		uv: ii(a(x.key("TEXCOORD_0"), "VEC2", [q], null), Se),
-		indices: ai(a(S, "SCALAR", [
-			_r,
-			vr,
-			yr
-		], null), Ce),
+		shown: b.exists && !t.key("meshes").exists ? null : ti(t, a),
 		preview: s
 	};
 }
-function ti({ planes: e, sheets: t }) {
+function ti(e, t) {
+	let n = e.key("meshes").at(0).key("primitives").at(0), r = n.key("mode");
+	if (r.exists && r.integer(0, 6) !== 4) throw r.wrong("no triangles");
+	let [i, a] = [n.key("attributes"), n.key("indices")];
+	return {
+		position: ai(t(i.key("POSITION"), "VEC3", [q], null), Se),
+		uv: ai(t(i.key("TEXCOORD_0"), "VEC2", [q], null), Se),
+		indices: oi(t(a, "SCALAR", [
+			_r,
+			vr,
+			yr
+		], null), Ce)
+	};
+}
+function ni({ planes: e, sheets: t }) {
 	return t ? [...e, t.opacity] : e;
 }
-function ni(e) {
+function ri(e) {
 	let t = e.key("version").text(R);
 	if (!/^1\.\d+$/.test(t)) throw new j("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
@@ -1755,7 +1762,7 @@ function ni(e) {
 	}
 	return t;
 }
-function ri(e) {
+function ii(e) {
 	let t = e.key("nodes").items(I), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
@@ -1770,39 +1777,39 @@ function ri(e) {
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
-function ii(e, t) {
+function ai(e, t) {
 	if (e.count > t) throw M(e.where, `more than ${t}`);
 	return e;
 }
-function ai(e, t) {
-	if (e.count % 3) throw M(e.where, "torn triangles");
-	return ii(e, 3 * t);
-}
 function oi(e, t) {
+	if (e.count % 3) throw M(e.where, "torn triangles");
+	return ai(e, 3 * t);
+}
+function si(e, t) {
 	let n = e.key("images");
 	if (!n.exists) return null;
 	let r = n.at(0).key("bufferView");
 	return r.exists ? t(r) : null;
 }
-function si(e, t) {
+function ci(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
 		count: n.key("count").integer(1, L),
 		names: Er("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? li(r) : i.items(L).map((e) => e.text(R));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? ui(r) : i.items(L).map((e) => e.text(R));
 	if (!a.length) throw i.wrong("no cameras");
-	let o = ci(a);
+	let o = li(a);
 	if (o) throw i.wrong(o);
 	return {
 		count: a.length,
 		names: a
 	};
 }
-function ci(e) {
+function li(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
-function li(e) {
+function ui(e) {
 	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, L));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
 	let r = e.key("parts").items(Xr).map((e) => {
@@ -1822,7 +1829,7 @@ function li(e) {
 		return o;
 	});
 }
-function ui(e, t) {
+function di(e, t) {
 	let n = Array(t).fill(!1), r = e.key("heldOut");
 	if (!r.exists) return n;
 	for (let e of r.items(t)) {
@@ -1833,21 +1840,21 @@ function ui(e, t) {
 	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
 	return n;
 }
-function di(e, t, n, r) {
+function fi(e, t, n, r) {
 	let i = e.key("coded");
 	return i.exists ? Er("cameras", i, r) : {
 		intrinsics: n(e.key("intrinsics"), "SCALAR", [q], 5 * t),
 		poses: n(e.key("poses"), "SCALAR", [q], 12 * t)
 	};
 }
-function fi(e, t, n) {
+function pi(e, t, n) {
 	let r = e.key("size");
 	if (!r.exists) return n(e.key("sizes"), "SCALAR", [yr], 2 * t);
 	let [i = 0, a = 0] = r.numbers(2, 1, ye);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
-function pi(e) {
+function mi(e) {
 	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
 	for (let i of [
 		r(t, t) - 1,
@@ -1862,22 +1869,22 @@ function pi(e) {
 		extent: [i, a]
 	};
 }
-function mi(e) {
+function hi(e) {
 	return e.exists ? e.object() : {};
 }
 // eigenfield-three/src/info.ts
-var hi = 1e-6;
-async function gi(e, t) {
+var gi = 1e-6;
+async function _i(e, t) {
 	let [n, { lenses: r, poses: i }, a, o] = await Promise.all([
-		_i(e, t),
-		yi(e, t),
+		vi(e, t),
 		bi(e, t),
+		xi(e, t),
 		e.colour ? Dr(e.colour, e.views, t) : null
 	]);
 	return n.map((t, n) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
-		if (!(s > hi && c > hi)) throw M(r.where, `focal lengths of "${t}"`);
-		let { R: f, t: p } = xi([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
+		if (!(s > gi && c > gi)) throw M(r.where, `focal lengths of "${t}"`);
+		let { R: f, t: p } = Si([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
 		if (!m || !h || Math.max(m, h) > 65535 || m * h > be) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
@@ -1895,13 +1902,13 @@ async function gi(e, t) {
 				0,
 				1
 			]
-		], [_, v] = o ? Si([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
+		], [_, v] = o ? Ci([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
 		return {
 			name: t,
 			K: g,
 			R: f,
 			t: p,
-			centre: Ni(f, p),
+			centre: Pi(f, p),
 			width: m,
 			height: h,
 			gain: _,
@@ -1909,25 +1916,25 @@ async function gi(e, t) {
 		};
 	});
 }
-async function _i({ names: e, heldOut: t }, n) {
+async function vi({ names: e, heldOut: t }, n) {
 	if (Array.isArray(e)) return e;
-	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : ci(r);
+	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : li(r);
 	if (i) throw M(e.where, i);
 	return r;
 }
-async function vi(e, t, n) {
+async function yi(e, t, n) {
 	return {
 		numbers: await Dr(e, t.views, n),
 		where: e.where
 	};
 }
-async function yi(e, t) {
+async function bi(e, t) {
 	let { calibration: n, heldOut: r } = e;
 	if ("intrinsics" in n) {
 		let { intrinsics: r, poses: i } = n;
 		return {
-			lenses: await vi(r, e, t),
-			poses: await vi(i, e, t)
+			lenses: await yi(r, e, t),
+			poses: await yi(i, e, t)
 		};
 	}
 	let { view: i, codec: a, where: o } = n, s = await a.decode(new Uint8Array(await t(i)), o), c = s.poses.length / 12;
@@ -1941,15 +1948,15 @@ async function yi(e, t) {
 		poses: l(s.poses)
 	};
 }
-async function bi(e, t) {
-	if (!Array.isArray(e.sizes)) return vi(e.sizes, e, t);
+async function xi(e, t) {
+	if (!Array.isArray(e.sizes)) return yi(e.sizes, e, t);
 	let [n, r] = e.sizes;
 	return {
 		numbers: Uint32Array.from({ length: 2 * e.heldOut.length }, (e, t) => t % 2 ? r : n),
 		where: "its cameras' size"
 	};
 }
-function xi(e, t, n) {
+function Si(e, t, n) {
 	let r = (t) => [
 		e[4 * t] ?? NaN,
 		e[4 * t + 1] ?? NaN,
@@ -1967,19 +1974,19 @@ function xi(e, t, n) {
 		let a = Y(i[e], i[r]) - +(e === r);
 		if (!(Math.abs(a) <= 2e-4)) throw M(t, `the pose of "${n}" is no rotation`);
 	}
-	if (!(Y(Pi(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
+	if (!(Y(Fi(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
 	return {
 		R: i,
 		t: a
 	};
 }
-function Si(e, t, n) {
+function Ci(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
 	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw M(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
-async function Ci(e, t) {
-	let n = Ti(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => wi(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
+async function wi(e, t) {
+	let n = Ei(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => Ti(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
 	for (let e of i) {
 		let t = e.length / r;
 		for (let n = 0; n < r; n++) o.set(e.subarray(n * t, (n + 1) * t), n * a + s);
@@ -1987,26 +1994,26 @@ async function Ci(e, t) {
 	}
 	return o;
 }
-async function wi({ weights: e, count: t }, n, r, i) {
+async function Ti({ weights: e, count: t }, n, r, i) {
 	if (!e) return /* @__PURE__ */ new Float32Array();
 	if ("type" in e) return Dr(e, r.views, i);
 	let { view: a, codec: o, where: s } = e, { cameras: c, components: l, values: u } = o.decode(new Uint8Array(await i(a)), s);
 	if (c === n && l === t) return Or(u, s);
 	throw M(s, `${c} x ${l} weights, and ${n} encoded cameras x ${t} textures`);
 }
-function Ti(e) {
+function Ei(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
 }
-function Ei(e) {
-	return Math.max(0, ...Ti(e).map(({ count: e }) => e));
+function Di(e) {
+	return Math.max(0, ...Ei(e).map(({ count: e }) => e));
 }
-function Di(e, t) {
-	let n = [...t.slice(0, e.planes.length), ...Ti(e).map(({ grid: e }) => e)];
+function Oi(e, t) {
+	let n = [...t.slice(0, e.planes.length), ...Ei(e).map(({ grid: e }) => e)];
 	return [Math.max(...n.map(([e]) => e)), Math.max(...n.map(([, e]) => e))];
 }
-async function Oi(e, t) {
+async function ki(e, t) {
 	if (!e.triangles) return /* @__PURE__ */ new Uint32Array();
-	let { where: n } = e.triangles, r = await ki(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
+	let { where: n } = e.triangles, r = await Ai(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
 		if (Math.max(t, a, o) >= i) throw M(n, `no encoded camera ${Math.max(t, a, o)}`);
@@ -2014,11 +2021,11 @@ async function Oi(e, t) {
 	}
 	return r;
 }
-async function ki(e, t, n) {
+async function Ai(e, t, n) {
 	return "type" in e ? Uint32Array.from(await Dr(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
 }
-function Ai(e, t, n, r, i, a) {
-	let { right: o, up: s } = e, c = Pi(o, s), l = [
+function ji(e, t, n, r, i, a) {
+	let { right: o, up: s } = e, c = Fi(o, s), l = [
 		0,
 		0,
 		0
@@ -2046,8 +2053,8 @@ function Ai(e, t, n, r, i, a) {
 		settings: e.settings,
 		scores: e.scores,
 		metresPerUnit: typeof u == "number" && u > 0 && u <= 1e30 ? u : null,
-		bytes: ji(e, i),
-		size: Di(e, n),
+		bytes: Mi(e, i),
+		size: Oi(e, n),
 		planes: e.planes.map(({ channels: e, bases: t }, r) => ({
 			channels: e,
 			mean: n[r] ?? [1, 1],
@@ -2062,9 +2069,9 @@ function Ai(e, t, n, r, i, a) {
 		facesPlane: Math.abs(Y(l, c)) > .7
 	};
 }
-function ji(e, t) {
-	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(Ei(e)).fill(0);
-	for (let { pictures: t } of Ti(e)) {
+function Mi(e, t) {
+	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(Di(e)).fill(0);
+	for (let { pictures: t } of Ei(e)) {
 		let e = 0;
 		for (let { view: n, textures: i } of t) {
 			let t = r(n);
@@ -2074,23 +2081,18 @@ function ji(e, t) {
 			}
 		}
 	}
-	let c = i(Ti(e).flatMap((e) => e.weights ? [e.weights.view] : [])), { position: l, uv: u, indices: d } = e, f = i([
-		l,
-		u,
-		d,
-		...e.mesh ? [e.mesh] : []
-	].map(({ view: e }) => e)), p = e.sheets ? r(e.sheets.opacity.mean.view) : 0;
+	let c = i(Ei(e).flatMap((e) => e.weights ? [e.weights.view] : [])), l = i([...Object.values(e.shown ?? {}), ...e.mesh ? [e.mesh] : []].map(({ view: e }) => e)), u = e.sheets ? r(e.sheets.opacity.mean.view) : 0;
 	return {
 		total: t,
-		mesh: f,
-		opacity: p,
+		mesh: l,
+		opacity: u,
 		mean: o,
 		weights: c,
-		other: t - o - c - f - p - s.reduce((e, t) => e + t, 0),
+		other: t - o - c - l - u - s.reduce((e, t) => e + t, 0),
 		textures: s
 	};
 }
-function Mi(e, t) {
+function Ni(e, t) {
 	let { origin: n, extent: r } = e, i = [
 		t[0] - n[0],
 		t[1] - n[1],
@@ -2098,7 +2100,7 @@ function Mi(e, t) {
 	];
 	return [r[0] > 0 ? Y(i, e.right) / r[0] : 0, r[1] > 0 ? Y(i, e.up) / r[1] : 0];
 }
-function Ni(e, t) {
+function Pi(e, t) {
 	let n = (n) => -(e[0][n] * t[0] + e[1][n] * t[1] + e[2][n] * t[2]);
 	return [
 		n(0),
@@ -2109,7 +2111,7 @@ function Ni(e, t) {
 function Y(e, t) {
 	return e[0] * t[0] + e[1] * t[1] + e[2] * t[2];
 }
-function Pi(e, t) {
+function Fi(e, t) {
 	return [
 		e[1] * t[2] - e[2] * t[1],
 		e[2] * t[0] - e[0] * t[2],
@@ -2117,7 +2119,7 @@ function Pi(e, t) {
 	];
 }
 // eigenfield-three/src/cameras.ts
-function Fi(e, t, n) {
+function Ii(e, t, n) {
 	let { info: r } = e, i = r.cameras.filter((e, t) => !r.heldOut[t]), a = r.cameras[r.reference];
 	if (!a) throw RangeError(`no camera ${r.reference}`);
 	let { width: o, height: s } = a, c = [
@@ -2156,7 +2158,7 @@ function Fi(e, t, n) {
 	e.viewWeights(t, n, "delaunay").forEach((e, t) => {
 		let n = i[t];
 		if (!e || !n) return;
-		let r = Ii(n, o, s);
+		let r = Li(n, o, s);
 		for (let t of [
 			0,
 			1,
@@ -2167,7 +2169,7 @@ function Fi(e, t, n) {
 			2
 		]) t < 2 && (c[t][i] += e * r[t][i]), l[t][i] += e * n.R[t][i];
 	});
-	let u = Ri(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Li(t) * m[0], Li(n) * m[1]], _ = [
+	let u = zi(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Ri(t) * m[0], Ri(n) * m[1]], _ = [
 		0,
 		1,
 		2
@@ -2184,7 +2186,7 @@ function Fi(e, t, n) {
 		offset: null
 	};
 }
-function Ii({ K: e, width: t, height: n }, r, i) {
+function Li({ K: e, width: t, height: n }, r, i) {
 	let a = Math.max(r / t, i / n), [o, s] = [(r - a * t) / 2, (i - a * n) / 2];
 	return [
 		[
@@ -2204,16 +2206,16 @@ function Ii({ K: e, width: t, height: n }, r, i) {
 		]
 	];
 }
-function Li(e) {
+function Ri(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Ri(e) {
+function zi(e) {
 	let t = e;
 	for (let e = 0; e < 50; e++) {
 		let e = [
-			Pi(t[1], t[2]),
-			Pi(t[2], t[0]),
-			Pi(t[0], t[1])
+			Fi(t[1], t[2]),
+			Fi(t[2], t[0]),
+			Fi(t[0], t[1])
 		], n = Y(t[0], e[0]);
 		if (!(n > 1e-12)) break;
 		let r = t.map((t, r) => t.map((t, i) => (t + e[r][i] / n) / 2)), i = Math.max(...r.flatMap((e, n) => e.map((e, r) => Math.abs(e - t[n][r]))));
@@ -2221,24 +2223,24 @@ function Ri(e) {
 	}
 	return t;
 }
-function zi(e, t, n, r, i = 1) {
+function Bi(e, t, n, r, i = 1) {
 	let a = n.width / n.height, o = i * Math.min(1, a / r), s = i * Math.min(1, r / a), c = {
 		left: (1 - o) / 2,
 		top: (1 - s) / 2,
 		width: o,
 		height: s
 	};
-	return Bi(e, t, n), Vi(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
+	return Vi(e, t, n), Hi(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
 }
-function Bi(e, t, n) {
+function Vi(e, t, n) {
 	let { R: r, centre: i } = n, a = new v().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
 	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new A()), t.updateMatrixWorld(!0);
 }
-function Vi(e, t, n, r) {
-	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Hi(e, n);
+function Hi(e, t, n, r) {
+	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Ui(e, n);
 	t.near = d, t.far = f, t.projectionMatrix.set(l * i, -l * a, -(2 * r.left - 1 + l * o), 0, 0, u * s, -(1 - 2 * r.top - u * c), 0, 0, 0, -(f + d) / (f - d), -2 * f * d / (f - d), 0, 0, -1, 0), t.projectionMatrixInverse.copy(t.projectionMatrix).invert();
 }
-function Hi(e, t) {
+function Ui(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
@@ -2248,19 +2250,19 @@ function Hi(e, t) {
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
 // eigenfield-three/src/footprint.ts
-var Ui = 256;
-function Wi(e, t, n) {
+var Wi = 256;
+function Gi(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / Ui)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / Wi)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Gi(t, i.getX(e), i.getY(e), i.getZ(e))), l = Ki(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Ki(t, i.getX(e), i.getY(e), i.getZ(e))), l = qi(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = Ki(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = qi(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -2270,7 +2272,7 @@ function Wi(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function Gi({ K: e, R: t, t: n }, r, i, a) {
+function Ki({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -2278,36 +2280,36 @@ function Gi({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function Ki(e) {
+function qi(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/memory.ts
-var qi = 4 / 3, Ji = 4, Yi = 8, Xi = 2, Zi = 2 ** 20;
-function Qi() {
+var Ji = 4 / 3, Yi = 4, Xi = 8, Zi = 2, Qi = 2 ** 20;
+function $i() {
 	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
-	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && $i(e) ? Math.min(t ?? 4, 6) * 128 * Zi : Math.min(t ?? 8, 8) * 256 * Zi;
+	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && ea(e) ? Math.min(t ?? 4, 6) * 128 * Qi : Math.min(t ?? 8, 8) * 256 * Qi;
 }
-function $i(e) {
+function ea(e) {
 	return (e?.maxTouchPoints ?? 0) > 1;
 }
 function X([e, t], n) {
 	return [Math.ceil(e / n), Math.ceil(t / n)];
 }
-function ea(e, t) {
+function ta(e, t) {
 	let [n, r] = X(e, t);
 	return n * r;
 }
-function ta(e) {
+function na(e) {
 	return Math.ceil(e / 4);
 }
-function na(e, t) {
-	return t * ra(e);
-}
-function ra(e) {
-	return Math.max(1, Math.ceil(e / 4));
+function ra(e, t) {
+	return t * ia(e);
 }
 function ia(e) {
+	return Math.max(1, Math.ceil(e / 4));
+}
+function aa(e) {
 	let { atlas: t, means: n, bases: r } = e, i = [
 		t,
 		...n.map(({ size: e }) => e),
@@ -2315,14 +2317,14 @@ function ia(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-function aa(e, t) {
+function oa(e, t) {
 	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = [
 		1,
 		2,
 		4,
 		8,
 		16
-	].find((n) => Math.max(...e.atlas) / n <= t.side && oa(e, n) <= t.memory / 2) ?? 16, o = oa(e, a) + e.geometry, s = (t, n) => o + ca(e, t, n), c = (n, r) => s(n, r) + da(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
+	].find((n) => Math.max(...e.atlas) / n <= t.side && sa(e, n) <= t.memory / 2) ?? 16, o = sa(e, a) + e.geometry, s = (t, n) => o + la(e, t, n), c = (n, r) => s(n, r) + fa(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
 		1,
 		2,
 		4
@@ -2336,68 +2338,68 @@ function aa(e, t) {
 	};
 	return {
 		...p,
-		limitation: fa(p, n, e, t)
+		limitation: pa(p, n, e, t)
 	};
 }
-function oa(e, t) {
-	let n = e.means.map((e) => sa(e) * ta(e.channels) * ea(e.size, t)), r = ia(e).map((n) => {
-		let r = n.join() === e.atlas.join() ? qi : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
-		return Yi * ea(n, t) * (r + +!!i);
+function sa(e, t) {
+	let n = e.means.map((e) => ca(e) * na(e.channels) * ta(e.size, t)), r = aa(e).map((n) => {
+		let r = n.join() === e.atlas.join() ? Ji : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
+		return Xi * ta(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function sa({ tenBits: e }) {
-	return e ? Yi : Ji;
+function ca({ tenBits: e }) {
+	return e ? Xi : Yi;
 }
-function ca({ bases: e, rays: t }, n, r) {
+function la({ bases: e, rays: t }, n, r) {
 	return e.reduce((e, i) => {
 		let a = Math.min(r, i.count);
 		if (!a) return e;
-		let o = t ? ra(a) * 129 * 129 * Yi : 0;
-		return e + sa(i) * na(a, i.channels) * ea(i.size, n) + o;
+		let o = t ? ia(a) * 129 * 129 * Xi : 0;
+		return e + ca(i) * ra(a, i.channels) * ta(i.size, n) + o;
 	}, 0);
 }
-function la({ means: e, bases: t }, n, r) {
-	return ua([...e.filter(({ pieces: e, tenBits: t }) => e > 1 || t).map(({ size: e }) => X(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => X(e, r))]);
+function ua({ means: e, bases: t }, n, r) {
+	return da([...e.filter(({ pieces: e, tenBits: t }) => e > 1 || t).map(({ size: e }) => X(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => X(e, r))]);
 }
-function ua(e) {
+function da(e) {
 	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
 }
-function da(e, t) {
-	let [n, r] = la({
+function fa(e, t) {
+	let [n, r] = ua({
 		means: [],
 		bases: e.bases
 	}, 1, t);
-	return (Ji + (e.bases.some(({ tenBits: e }) => e) ? Xi : 0)) * n * r;
+	return (Yi + (e.bases.some(({ tenBits: e }) => e) ? Zi : 0)) * n * r;
 }
-function fa(e, t, n, r) {
+function pa(e, t, n, r) {
 	let i = [];
 	if (e.usable < t && i.push(`${e.usable} of ${t} eigen textures are drawn`), e.usable && e.scaleDown > 1 && i.push(`eigen textures have 1/${e.scaleDown} of their size`), e.meanDown > 1 && i.push(`the mean texture has 1/${e.meanDown} of its size`), !i.length) return null;
-	let a = oa(n, 1) + ca(n, 1, t) + da(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${pa(a)} MB of graphics memory and ${pa(r.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${ma(i.join(", "))}: ${o}.`;
-}
-function pa(e) {
-	return (e / 1e6).toFixed(+(e < 1e7));
+	let a = sa(n, 1) + la(n, 1, t) + fa(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${ma(a)} MB of graphics memory and ${ma(r.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${ha(i.join(", "))}: ${o}.`;
 }
 function ma(e) {
+	return (e / 1e6).toFixed(+(e < 1e7));
+}
+function ha(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var ha = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of four passes. All\n// draw into textures whose row 0 is v = 0. All but the first add R, G, B and opacity to what is there, which is cleared\n// to zeros before:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n//   finerOpacity  in a scene with sheets, once for all of the atlas: the opacity of the sheets\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum; or the opacity, in the first channel, at a density of its own\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n\n// The opacity in `coarse` at texture coordinates of the atlas.\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", ga = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", _a = 2, va = `
+var ga = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of four passes. All\n// draw into textures whose row 0 is v = 0. All but the first add R, G, B and opacity to what is there, which is cleared\n// to zeros before:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n//   finerOpacity  in a scene with sheets, once for all of the atlas: the opacity of the sheets\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum; or the opacity, in the first channel, at a density of its own\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n\n// The opacity in `coarse` at texture coordinates of the atlas.\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", _a = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", va = 2, ya = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${ga}${ha}`, ya = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", ba = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", xa = `${va}
+${_a}${ga}`, ba = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", xa = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", Sa = `${ya}
 in vec3 point;
 out vec4 place;
 void main() { place = placeOf(point); }
-`, Sa = "sumTextures", Ca = "finerValue", wa = "finerOpacity";
-function Ta(n, r, i) {
+`, Ca = "sumTextures", wa = "finerValue", Ta = "finerOpacity";
+function Ea(n, r, i) {
 	let o = new E({
 		glslVersion: p,
-		vertexShader: ya,
-		fragmentShader: `${va}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
+		vertexShader: ba,
+		fragmentShader: `${ya}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
 		uniforms: {
 			rectangle: { value: new te(...r) },
 			...i
@@ -2433,7 +2435,7 @@ function Ta(n, r, i) {
 	let c = new y(s, o);
 	return c.frustumCulled = !1, c;
 }
-function Ea([e, t], n) {
+function Da([e, t], n) {
 	return new ne(e, t, {
 		type: m,
 		depthBuffer: !1,
@@ -2442,29 +2444,29 @@ function Ea([e, t], n) {
 		magFilter: n ? g : x
 	});
 }
-function Da(e, t) {
-	let n = Pi(e.right, e.up), r = [
+function Oa(e, t) {
+	let n = Fi(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
 		t[2] - e.origin[2]
 	];
-	return [...Mi(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
+	return [...Ni(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
 }
-function Oa(t, n, r) {
+function ka(t, n, r) {
 	let i = t.geometry.getAttribute("position"), a = t.geometry.getAttribute("uv"), o = new Float32Array(3 * i.count), s = new Float32Array(2 * i.count);
-	for (let e = 0; e < i.count; e++) o.set(Da(n, [
+	for (let e = 0; e < i.count; e++) o.set(Oa(n, [
 		i.getX(e),
 		i.getY(e),
 		i.getZ(e)
 	]), 3 * e), s.set([a.getX(e), a.getY(e)], 2 * e);
-	let c = Array.from({ length: 5 }, (e, t) => t - _a), u = c.flatMap((e) => c.map((t) => new k(t, e)));
+	let c = Array.from({ length: 5 }, (e, t) => t - va), u = c.flatMap((e) => c.map((t) => new k(t, e)));
 	u.sort((e, t) => t.lengthSq() - e.lengthSq());
 	let d = new h();
 	d.setAttribute("position", new e(s, 2)), d.setAttribute("onPlane", new e(o, 3)), d.setIndex(t.geometry.index ? new e(t.geometry.index.array, 1) : null), d.instanceCount = u.length, d.boundingSphere = new O();
 	let f = new E({
 		glslVersion: p,
-		vertexShader: ba.replace("SHIFTS", String(u.length)),
-		fragmentShader: xa,
+		vertexShader: xa.replace("SHIFTS", String(u.length)),
+		fragmentShader: Sa,
 		uniforms: {
 			texel: { value: new k(2 / r.width, 2 / r.height) },
 			shifts: { value: u }
@@ -2484,7 +2486,7 @@ function Oa(t, n, r) {
 	};
 }
 // eigenfield-three/src/composer.ts
-var ka = {
+var Aa = {
 	version: 0,
 	mean: !0,
 	opacity: !0,
@@ -2493,7 +2495,7 @@ var ka = {
 	weights: /* @__PURE__ */ new Float64Array(),
 	eye: null,
 	maps: null
-}, Aa = class {
+}, ja = class {
 	opacity;
 	down;
 	mesh;
@@ -2504,14 +2506,14 @@ var ka = {
 	camera = new n();
 	constructor(e, t, n, r, i, a) {
 		this.opacity = n, this.down = r, this.mesh = i, this.plane = a;
-		let [o, ...s] = ia({
+		let [o, ...s] = aa({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), c = (e, n) => {
-			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(Ma), a = new D();
+			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(Na), a = new D();
 			return i.forEach(({ quad: e }, t) => a.add(Object.assign(e, { renderOrder: t }))), {
-				target: Ea(X(e, r), n),
+				target: Da(X(e, r), n),
 				scene: a,
 				steps: i,
 				places: null
@@ -2519,7 +2521,7 @@ var ka = {
 		}, l = c(o ?? e, !0);
 		this.grids = s.map((e) => c(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = Ta(Ca, [
+			let t = Ea(wa, [
 				0,
 				0,
 				1,
@@ -2533,36 +2535,36 @@ var ka = {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && Fa(this.composed, n) || (this.composed = n, Ra(e, t, () => {
+		this.composed && Ia(this.composed, n) || (this.composed = n, za(e, t, () => {
 			n.opacity && !this.opacityDrawn && this.drawOpacity(e);
 			for (let t of this.grids) {
 				n.eye && !t.places && t.steps.some(({ part: e }) => e.basis) && this.findPlaces(e, t);
-				for (let e of t.steps) Na(e, t.places?.texture ?? null, n);
+				for (let e of t.steps) Pa(e, t.places?.texture ?? null, n);
 				this.draw(e, t.scene, t.target, this.opacityDrawn && t === this.grids.at(-1));
 			}
 		}));
 	}
 	dispose() {
-		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.dispose(), ja(n);
+		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.dispose(), Ma(n);
 	}
 	drawOpacity(e) {
 		let t = this.grids.at(-1);
 		if (!this.opacity || !t) return;
-		let n = Ea(X(this.opacity.grid, this.down), !1), r = Ma(this.opacity);
-		for (let e of r) Na(e, null, ka);
+		let n = Da(X(this.opacity.grid, this.down), !1), r = Na(this.opacity);
+		for (let e of r) Pa(e, null, Aa);
 		let [i, a] = [new D(), new D()];
-		i.add(...r.map(({ quad: e }) => e)), a.add(Ta(wa, [
+		i.add(...r.map(({ quad: e }) => e)), a.add(Ea(Ta, [
 			0,
 			0,
 			1,
 			1
 		], { coarse: { value: n.texture } })), this.draw(e, i, n), this.draw(e, a, t.target);
-		for (let e of [i, a]) ja(e);
+		for (let e of [i, a]) Ma(e);
 		n.dispose(), this.opacityDrawn = !0;
 	}
 	findPlaces(e, t) {
-		t.places = Ea([t.target.width, t.target.height], !1);
-		let { scene: n, free: r } = Oa(this.mesh, this.plane, t.places);
+		t.places = Da([t.target.width, t.target.height], !1);
+		let { scene: n, free: r } = ka(this.mesh, this.plane, t.places);
 		this.draw(e, n, t.places), r();
 	}
 	draw(e, t, n, r = !1) {
@@ -2571,17 +2573,17 @@ var ka = {
 		r && i.colorMask(!0, !0, !0, !1), e.clear(!0, !1, !1), r && i.colorMask(!0, !0, !0, !0), e.render(t, this.camera);
 	}
 };
-function ja(e) {
+function Ma(e) {
 	for (let { geometry: t, material: n } of e.children) t.dispose(), n.dispose();
 }
-function Ma(e) {
+function Na(e) {
 	let t = e.colours.length, [n, r] = [e.scale.length / (4 * t), Math.floor(64 / t)], i = [];
 	for (let a = 0; a < n; a += r) {
 		let o = Array.from({ length: 64 }, (t, n) => new A(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), s = e.basis ? 1 : 4, c = Ta(Sa, e.rectangle, {
+		])), s = e.basis ? 1 : 4, c = Ea(Ca, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(a * t / s) },
 			sharing: { value: s },
@@ -2605,42 +2607,42 @@ function Ma(e) {
 	}
 	return i;
 }
-function Na({ part: e, first: t, groups: n, quad: r }, i, a) {
+function Pa({ part: e, first: t, groups: n, quad: r }, i, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Pa(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Fa(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
 	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", u ? i : null), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function Pa(e, t, n, r) {
+function Fa(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function Fa(e, t) {
+function Ia(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
-var Ia = new i(0), La = new i();
-function Ra(e, t, n) {
+var La = new i(0), Ra = new i();
+function za(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(La), e.setClearColor(Ia, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(La, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(Ra), e.setClearColor(La, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(Ra, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/maps.ts
-function za(e, t, n, i, a) {
+function Ba(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? ra(t) : 0;
+		u += e, d += t ? ia(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -2659,20 +2661,20 @@ function za(e, t, n, i, a) {
 	return p.format = T, p.type = m, p.minFilter = p.magFilter = g, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
 }
 // ../src/eigenfield/rendering/shaders/surface.glsl?raw
-var Ba = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/renderer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B and opacity at texture coordinates; nothing is cut off.\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What is seen of a value of the surface.\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\n\n// What an opaque surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\n\n// What a sheet adds to the sheets behind it at texture coordinates: R, G, B times its opacity, and its opacity. It is\n// blended with the factors ONE and ONE_MINUS_SRC_ALPHA. Colours are not cut off: those of all sheets together count.\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", Va = {
+var Va = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/renderer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B and opacity at texture coordinates; nothing is cut off.\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What is seen of a value of the surface.\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\n\n// What an opaque surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\n\n// What a sheet adds to the sheets behind it at texture coordinates: R, G, B times its opacity, and its opacity. It is\n// blended with the factors ONE and ONE_MINUS_SRC_ALPHA. Colours are not cut off: those of all sheets together count.\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", Ha = {
 	bilinear: 0,
 	bicubic: 1
-}, Ha = {
+}, Ua = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, Ua = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Wa = Ua.replace("void main", "invariant gl_Position;\nvoid main"), Ga = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", Ka = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", qa = `${Ga}
-${ga}${Ba}
+}, Wa = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Ga = Wa.replace("void main", "invariant gl_Position;\nvoid main"), Ka = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", qa = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", Ja = `${Ka}
+${_a}${Va}
 uniform float shownGain;       // of the eigen texture around mid grey
 in vec2 surfaceUv;
 vec3 eigenColour(vec3 value) { return clamp(0.5 + shownGain * value, 0.0, 1.0); }
-`, Ja = `${qa}${Ka}
+`, Ya = `${Ja}${qa}
 in vec3 surfacePlace;
 out vec4 fragment;
 void main() {
@@ -2682,7 +2684,7 @@ void main() {
   if (shown == 3) colour = errorColour(colour, surfacePlace);
   fragment = vec4(colour, 1.0);
 }
-`, Ya = `${qa}
+`, Xa = `${Ja}
 layout(location = 0) out vec4 fragment;
 layout(location = 1) out vec4 solid;
 vec3 threeBytes(float depth) {
@@ -2696,76 +2698,76 @@ void main() {
   float depth = (gl_FragCoord.z - gl_DepthRange.near) / gl_DepthRange.diff;
   solid = colour.a < 0.5 ? vec4(0.0) : vec4(threeBytes(depth), 1.0);
 }
-`, Xa = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", Za = {
+`, Za = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", Qa = {
 	blending: a,
 	blendSrc: C,
 	blendDst: w
 };
-function Qa(e, t) {
+function $a(e, t) {
 	let n = {
 		composed: { value: null },
 		finest: { value: 1 },
 		exposureScale: { value: new A(1, 1, 1) },
 		exposureBias: { value: new A() },
-		shown: { value: Ha.picture },
+		shown: { value: Ua.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new v() }
 	}, r = new E({
 		glslVersion: p,
-		vertexShader: t ? Wa : Ua,
-		fragmentShader: t ? Ya : Ja,
+		vertexShader: t ? Ga : Wa,
+		fragmentShader: t ? Xa : Ya,
 		uniforms: n,
-		defines: { BICUBIC: Va.bicubic },
+		defines: { BICUBIC: Ha.bicubic },
 		side: e ? l : f,
 		...t ? {
-			...Za,
+			...Qa,
 			depthWrite: !1
 		} : {}
 	});
 	return r.name = "eigen textures", r;
 }
-function $a(e) {
+function eo(e) {
 	let { side: t } = e;
 	return new E({
 		name: "depth of sheets",
 		glslVersion: p,
-		vertexShader: Wa,
-		fragmentShader: Xa,
+		vertexShader: Ga,
+		fragmentShader: Za,
 		colorWrite: !1,
 		side: t
 	});
 }
 // eigenfield-three/src/gpu.ts
-function eo(e, t) {
+function to(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function to(e, [t, n], r, i, a) {
-	return io(e, e.TEXTURE_2D_ARRAY, () => {
+function no(e, [t, n], r, i, a) {
+	return ao(e, e.TEXTURE_2D_ARRAY, () => {
 		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, a ? e.RGBA16F : e.RGBA8, t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function no(e, t, n) {
+function ro(e, t, n) {
 	let { width: r, height: i } = n;
-	ao(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
+	oo(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
 }
-function ro(e, [t, n], r = !1) {
-	return io(e, e.TEXTURE_2D, () => {
+function io(e, [t, n], r = !1) {
+	return ao(e, e.TEXTURE_2D, () => {
 		e.texStorage2D(e.TEXTURE_2D, 1, r ? e.RG8 : e.RGBA8, t, n), e.texParameteri(e.TEXTURE_2D, e.TEXTURE_MIN_FILTER, e.NEAREST);
 	});
 }
-function io(e, t, n) {
+function ao(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return ao(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return oo(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function ao(e, t, n, r) {
+function oo(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -2779,9 +2781,9 @@ function ao(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-var oo = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", so = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform vec2 size; // of what is drawn\nuniform highp sampler2D precisions;\nuniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nvoid main() {\n  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);\n  if (nodes.x == 0) stored = vec4(code);\n  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / 4.0, -65504.0, 65504.0));\n}\n";
-function co(e, t) {
-	let n = po(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], [a, o, s, c, l] = [
+var so = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", co = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform vec2 size; // of what is drawn\nuniform highp sampler2D precisions;\nuniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nvoid main() {\n  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);\n  if (nodes.x == 0) stored = vec4(code);\n  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / 4.0, -65504.0, 65504.0));\n}\n";
+function lo(e, t) {
+	let n = mo(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], [a, o, s, c, l] = [
 		"factors",
 		"size",
 		"precisions",
@@ -2789,7 +2791,7 @@ function co(e, t) {
 		"zero"
 	].map((t) => e.getUniformLocation(n, t)), u = ({ picture: t, rows: u }, d, f, p, m) => {
 		e.useProgram(n), e.uniform2f(o ?? null, t.width, u), e.uniform1i(s ?? null, +!!m), e.uniform2i(c ?? null, m?.precision.width ?? 0, m?.precision.height ?? 0), e.uniform1f(l ?? null, m?.zero ?? 0), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.viewport(0, 0, t.width, u);
-		for (let { channel: n, layer: r, component: i } of f) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, d, 0, r), lo(t) ? e.uniform4f(a ?? null, 255, 65280, 0, 0) : e.uniform4fv(a ?? null, [
+		for (let { channel: n, layer: r, component: i } of f) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, d, 0, r), uo(t) ? e.uniform4f(a ?? null, 255, 65280, 0, 0) : e.uniform4fv(a ?? null, [
 			0,
 			1,
 			2,
@@ -2798,13 +2800,13 @@ function co(e, t) {
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let { picture: s, row: c, rows: l } = n, d = lo(s) ? t.codes : t.picture;
+			let { picture: s, row: c, rows: l } = n, d = uo(s) ? t.codes : t.picture;
 			if (!d) return;
-			let f = () => mo(e, 0, d, () => {
-				lo(s) ? fo(e, s, c, l) : uo(e, s, c, l), ho(e, () => u(n, r, i, a, o));
+			let f = () => ho(e, 0, d, () => {
+				uo(s) ? po(e, s, c, l) : fo(e, s, c, l), go(e, () => u(n, r, i, a, o));
 			});
-			o ? mo(e, 1, t.precision, () => {
-				uo(e, o.precision, 0, o.precision.height), f();
+			o ? ho(e, 1, t.precision, () => {
+				fo(e, o.precision, 0, o.precision.height), f();
 			}) : f();
 		},
 		free() {
@@ -2812,30 +2814,30 @@ function co(e, t) {
 		}
 	};
 }
-function lo(e) {
+function uo(e) {
 	return "data" in e;
 }
-function uo(e, t, n, r) {
+function fo(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function fo(e, { data: t, width: n, stride: r }, i, a) {
+function po(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
-function po(e) {
+function mo(e) {
 	let t = e.createProgram();
-	for (let [n, r] of [[e.VERTEX_SHADER, oo], [e.FRAGMENT_SHADER, so]]) {
+	for (let [n, r] of [[e.VERTEX_SHADER, so], [e.FRAGMENT_SHADER, co]]) {
 		let i = e.createShader(n);
 		i && (e.shaderSource(i, r), e.compileShader(i), e.attachShader(t, i), e.deleteShader(i));
 	}
 	return e.linkProgram(t), t;
 }
-function mo(e, t, n, r) {
+function ho(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), ao(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), oo(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function ho(e, t) {
+function go(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -2850,7 +2852,7 @@ function ho(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/parts.ts
-function go(e, t, n) {
+function _o(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -2860,7 +2862,7 @@ function go(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = vo(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = yo(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -2888,7 +2890,7 @@ function go(e, t, n) {
 						n + e[1] / i[1]
 					],
 					colours: f,
-					...bo(l, u, h),
+					...xo(l, u, h),
 					basis: {
 						ready: m,
 						column: o,
@@ -2896,11 +2898,11 @@ function go(e, t, n) {
 					}
 				});
 			}
-			o += p, s += h ? ra(h) : 0;
+			o += p, s += h ? ia(h) : 0;
 		}
 	}), r;
 }
-function _o({ planes: e, sheets: t }, { means: n, needs: r }) {
+function vo({ planes: e, sheets: t }, { means: n, needs: r }) {
 	let i = n[e.length], a = r.means[e.length]?.size;
 	return !t || !i || !a ? null : {
 		stored: i,
@@ -2916,12 +2918,12 @@ function _o({ planes: e, sheets: t }, { means: n, needs: r }) {
 			0,
 			0
 		]],
-		...vo(t.opacity),
+		...yo(t.opacity),
 		basis: null
 	};
 }
-function vo({ mean: e, channels: t, precision: n }) {
-	let { scale: r, zero: i } = e, a = n ? 4 : yo([e]), o = {
+function yo({ mean: e, channels: t, precision: n }) {
+	let { scale: r, zero: i } = e, a = n ? 4 : bo([e]), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
 	};
@@ -2931,11 +2933,11 @@ function vo({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function yo(e) {
+function bo(e) {
 	return Lr(e) ? 1 : 255;
 }
-function bo(e, t, n) {
-	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = yo(e), o = 4 * t * ra(n), s = {
+function xo(e, t, n) {
+	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = bo(e), o = 4 * t * ia(n), s = {
 		scale: new Float32Array(o),
 		bias: new Float32Array(o)
 	};
@@ -2946,7 +2948,7 @@ function bo(e, t, n) {
 	return s;
 }
 // eigenfield-three/src/sheet-stack.ts
-var xo = "sheets", So = 16, Co = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", wo = `${Ga}${Ka}
+var So = "sheets", Co = 16, wo = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", To = `${Ka}${qa}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -2971,7 +2973,7 @@ void main() {
   gl_FragDepth = depth;
   fragment = colour;
 }
-`, To = new te(), Eo = class {
+`, Eo = new te(), Do = class {
 	scene = new D();
 	camera = new n();
 	sheets;
@@ -2983,16 +2985,16 @@ void main() {
 		e.forEach((e, n) => {
 			for (let i of [0, 1]) t.addGroup(r, 3 * e, 2 * n + i);
 			r += 3 * e;
-		}), this.depth = $a(n), this.depth.transparent = n.transparent = !0, this.sheets = new y(t, e.flatMap(() => [this.depth, n])), this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (t, n, r, i, a, o) => {
+		}), this.depth = eo(n), this.depth.transparent = n.transparent = !0, this.sheets = new y(t, e.flatMap(() => [this.depth, n])), this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (t, n, r, i, a, o) => {
 			let { materialIndex: s = 0 } = o, c = e.length - 1 - (s >> 1);
 			t.getContext().depthRange(c / e.length, (c + 1) / e.length);
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
 		let { shown: i, photograph: a, toPhotograph: o } = n.uniforms;
 		this.screen = new E({
-			name: xo,
+			name: So,
 			glslVersion: p,
-			vertexShader: Co,
-			fragmentShader: wo,
+			vertexShader: wo,
+			fragmentShader: To,
 			uniforms: {
 				shown: i,
 				photograph: a,
@@ -3006,11 +3008,11 @@ void main() {
 				toPlace: { value: new v() }
 			},
 			transparent: !0,
-			...Za
+			...Qa
 		});
 	}
 	get bytes() {
-		return this.target ? So * this.target.width * this.target.height : 0;
+		return this.target ? Co * this.target.width * this.target.height : 0;
 	}
 	attach(n, r) {
 		for (let e of [n.material].flat()) e.visible = !1;
@@ -3031,7 +3033,7 @@ void main() {
 			boundingSphere: a
 		});
 		let s = new y(o, this.screen);
-		s.name = xo, s.raycast = () => void 0, s.onBeforeRender = (e, t, i) => {
+		s.name = So, s.raycast = () => void 0, s.onBeforeRender = (e, t, i) => {
 			r(e, i), this.draw(e, i, n);
 		}, n.add(s);
 	}
@@ -3039,11 +3041,11 @@ void main() {
 		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
 	}
 	draw(e, t, n) {
-		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(To);
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Eo);
 		if (!a || !o) return;
-		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Do(a, o));
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Oo(a, o));
 		let { target: s } = this;
-		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), Ra(e, t, () => {
+		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), za(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
 		}), e.getContext().depthRange(0, 1);
 		let { uniforms: c } = this.screen, l = (e, t) => {
@@ -3052,7 +3054,7 @@ void main() {
 		l("sheets", s.textures[0]), l("solid", s.textures[1]), l("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
 	}
 };
-function Do(e, t) {
+function Oo(e, t) {
 	let n = new ne(e, t, {
 		count: 2,
 		type: m,
@@ -3063,21 +3065,21 @@ function Do(e, t) {
 	return r && (r.type = ee), n;
 }
 // eigenfield-three/src/pieces.ts
-function Oo(e) {
+function ko(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
 // eigenfield-three/src/strength.ts
-var ko = 128, Ao = .98;
-async function jo(e, t, n, r) {
+var Ao = 128, jo = .98;
+async function Mo(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = Rr(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(ko, ko).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = Rr(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Ao, Ao).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, ko, ko);
-		let { data: u } = d.getImageData(0, 0, ko, ko);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, Ao, Ao);
+		let { data: u } = d.getImageData(0, 0, Ao, Ao);
 		(l ? [
 			0,
 			1,
@@ -3086,30 +3088,30 @@ async function jo(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), Oo(u), f.sort((e, t) => e - t);
-	let p = f[Math.floor(Ao * f.length)] ?? 0;
+	}), ko(u), f.sort((e, t) => e - t);
+	let p = f[Math.floor(jo * f.length)] ?? 0;
 	return p > 0 ? .45 / p : 1;
 }
 // eigenfield-three/src/means.ts
-async function Mo(e, t, n = 1) {
-	let { mean: r, meanSize: i } = e, a = e.precision && await No(await t(e.precision.view), e.precision);
+async function No(e, t, n = 1) {
+	let { mean: r, meanSize: i } = e, a = e.precision && await Po(await t(e.precision.view), e.precision);
 	return {
 		pieces: await r.codec.decode(await t(r.view), r, i, n),
 		precision: a
 	};
 }
-async function No(e, t) {
+async function Po(e, t) {
 	let { type: n } = Un(e) ?? {}, { mimeType: r } = t.codec;
 	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
 	if (!i) throw M(t.where, "no picture");
 	return i.picture;
 }
-function Po({ pieces: e, precision: t }) {
-	Oo(e), t?.close();
+function Fo({ pieces: e, precision: t }) {
+	ko(e), t?.close();
 }
 // eigenfield-three/src/textures.ts
-var Fo = 3, Io = class {
+var Io = 3, Lo = class {
 	parts;
 	options;
 	means;
@@ -3137,14 +3139,14 @@ var Fo = 3, Io = class {
 			...t,
 			channels: e,
 			tenBits: Lr(t.pictures)
-		}))), s = ti(r).map(({ channels: e, mean: t }, n) => ({
+		}))), s = ni(r).map(({ channels: e, mean: t }, n) => ({
 			size: i[n] ?? [1, 1],
 			channels: e,
 			pieces: t.pieces,
 			tenBits: Lr([t])
 		}));
 		this.needs = {
-			atlas: Di(r, i),
+			atlas: Oi(r, i),
 			means: s,
 			bases: o,
 			rays: a,
@@ -3181,7 +3183,7 @@ var Fo = 3, Io = class {
 		});
 	}
 	dispose() {
-		this.detach(), this.disposed = !0, this.decoded?.forEach(Po), this.decoded = null;
+		this.detach(), this.disposed = !0, this.decoded?.forEach(Fo), this.decoded = null;
 	}
 	detach() {
 		let e = this.renderer?.getContext();
@@ -3204,13 +3206,13 @@ var Fo = 3, Io = class {
 		let i = this.entries.filter(({ first: e }) => e < r.usable), a = [], o = 0;
 		try {
 			for (let e of i) {
-				for (; a.length < Fo && o < i.length;) a.push(this.decode(i[o++], r.scaleDown));
+				for (; a.length < Io && o < i.length;) a.push(this.decode(i[o++], r.scaleDown));
 				let s = await a[0] ?? [];
-				if (a.shift(), t === this.turn && this.pack(s, e, n, r.usable), Oo(s), t !== this.turn) return;
+				if (a.shift(), t === this.turn && this.pack(s, e, n, r.usable), ko(s), t !== this.turn) return;
 				this.onTexture();
 			}
 		} finally {
-			for (let e of a) e.then(Oo).catch(() => void 0);
+			for (let e of a) e.then(ko).catch(() => void 0);
 		}
 		n.free(), this.packer = null, this.onComplete();
 	}
@@ -3237,13 +3239,13 @@ var Fo = 3, Io = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs, r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
-		for (let i = this.options.memory ?? Qi();; i /= 2) {
-			let a = aa(this.needs, eo(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, tenBits: r }) => to(e, X(t, o), ta(n), l, r)), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
+		for (let i = this.options.memory ?? $i();; i /= 2) {
+			let a = oa(this.needs, to(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, tenBits: r }) => no(e, X(t, o), na(n), l, r)), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return to(e, a ? X(t, s) : [1, 1], a ? na(a, n) : 1, l, i);
-			})], d = la(this.needs, o, s), f = ro(e, d), p = [...t, ...n].some(({ tenBits: e }) => e), m = p ? ro(e, d, !0) : null, h = ro(e, ua(r));
+				return no(e, a ? X(t, s) : [1, 1], a ? ra(a, n) : 1, l, i);
+			})], d = ua(this.needs, o, s), f = io(e, d), p = [...t, ...n].some(({ tenBits: e }) => e), m = p ? io(e, d, !0) : null, h = io(e, da(r));
 			if (f && h && (m || !p) && u.every((e) => e !== null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = u[t] ?? null), {
-				packer: co(e, {
+				packer: lo(e, {
 					picture: f,
 					codes: m,
 					precision: h
@@ -3260,16 +3262,16 @@ var Fo = 3, Io = class {
 		}
 	}
 	async loadMeans(e, t, n) {
-		let { scene: r, bytes: i } = this.parts, a = ti(r), { decoded: o } = this;
-		this.decoded = null, (!o || n > 1) && (o?.forEach(Po), o = await Promise.all(a.map((e) => Mo(e, i, n)))), o.forEach((n, r) => {
+		let { scene: r, bytes: i } = this.parts, a = ni(r), { decoded: o } = this;
+		this.decoded = null, (!o || n > 1) && (o?.forEach(Fo), o = await Promise.all(a.map((e) => No(e, i, n)))), o.forEach((n, r) => {
 			let i = this.means[r]?.sourceTexture, o = a[r]?.mean;
-			t === this.turn && o && i instanceof WebGLTexture && this.putMean(e, n, o, i), Po(n);
+			t === this.turn && o && i instanceof WebGLTexture && this.putMean(e, n, o, i), Fo(n);
 		}), t === this.turn && (this.hasMeans = !0, this.version += 1);
 	}
 	putMean(e, t, n, r) {
 		let { pieces: i, precision: a } = t, o = Lr([n]), [s] = i;
 		if (s && i.length === 1 && !o && "close" in s.picture) {
-			no(e, r, s.picture);
+			ro(e, r, s.picture);
 			return;
 		}
 		let c = o ? 255 * Rr(n) : 1;
@@ -3290,7 +3292,7 @@ var Fo = 3, Io = class {
 		let { basis: n, picture: r } = e, i = this.parts.bytes(r.view).then((e) => r.codec.decode(e, r, n.size, t));
 		return i.catch(() => void 0), i;
 	}
-}, Lo = 1.5, Ro = .001, zo = class extends u {
+}, Ro = 1.5, zo = .001, Bo = class extends u {
 	parts;
 	mesh;
 	info;
@@ -3322,15 +3324,15 @@ var Fo = 3, Io = class {
 		super(), this.parts = e;
 		let { scene: n, info: r, meshes: i } = e, [a] = i;
 		if (!a) throw Error("a field needs a mesh");
-		this.mesh = a, this.info = r, this.total = Ei(n), this.counts = Ti(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
+		this.mesh = a, this.info = r, this.total = Di(n), this.counts = Ei(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
 		let o = 0;
-		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new Io(e, Uo(a), t);
+		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new Lo(e, Wo(a), t);
 		let s = [a.material].flat().some((e) => e.side !== f);
-		this.material = Qa(s, n.sheets !== null), this.stack = n.sheets && new Eo(n.sheets.faces, a.geometry, this.material), this.complete = new Promise((e, t) => {
+		this.material = $a(s, n.sheets !== null), this.stack = n.sheets && new Do(n.sheets.faces, a.geometry, this.material), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0);
 		let c = r.cameras[r.reference];
-		this.detail = c ? Wi(a.geometry, c, [1, 1]) : 0, this.listen();
+		this.detail = c ? Gi(a.geometry, c, [1, 1]) : 0, this.listen();
 		for (let e of i) {
 			let t = (t, n) => this.prepare(t, n, e);
 			this.stack ? this.stack.attach(e, t) : (e.material = this.material, e.onBeforeRender = (e, n, r) => t(e, r));
@@ -3363,7 +3365,7 @@ var Fo = 3, Io = class {
 		let t = this.rowOf[e] ?? -1, n = this.info.cameras[e], r = this.columns;
 		if (t >= 0) return Float64Array.from(this.parts.omega.subarray(t * r, (t + 1) * r));
 		if (!n) throw RangeError(`no camera ${e}`);
-		return this.componentWeights(...Mi(this.info.viewPlane, n.centre));
+		return this.componentWeights(...Ni(this.info.viewPlane, n.centre));
 	}
 	restore(e) {
 		this.textures.attach(e);
@@ -3377,7 +3379,7 @@ var Fo = 3, Io = class {
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return Lo * Math.max(1, this.detail * Math.sqrt(e * t) / n);
+		return Ro * Math.max(1, this.detail * Math.sqrt(e * t) / n);
 	}
 	get columns() {
 		return this.counts.reduce((e, t) => e + t, 0);
@@ -3394,9 +3396,9 @@ var Fo = 3, Io = class {
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = Ho(t, n), [i, a] = Mi(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
+		let r = Uo(t, n), [i, a] = Ni(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
 		this.setView();
-		let l = Va[this.filter];
+		let l = Ha[this.filter];
 		this.material.defines.BICUBIC !== l && (this.material.defines.BICUBIC = l, this.material.needsUpdate = !0), this.material.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
@@ -3404,8 +3406,8 @@ var Fo = 3, Io = class {
 		if (!r) return;
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
 		if (!s) {
-			let { scene: e } = this.parts, t = _o(e, this.textures);
-			s = new Aa(i, go(e, this.textures, r), t, o, this.mesh, a), this.composers.set(o, s);
+			let { scene: e } = this.parts, t = vo(e, this.textures);
+			s = new ja(i, _o(e, this.textures, r), t, o, this.mesh, a), this.composers.set(o, s);
 		}
 		s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
 	}
@@ -3414,15 +3416,15 @@ var Fo = 3, Io = class {
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.material.uniforms.shown.value, r = n === Ha.eigen ? this.shownEigen : null;
+		let n = this.material.uniforms.shown.value, r = n === Ua.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			opacity: this.textures.hasMeans && this.stack !== null,
 			only: r,
-			count: n === Ha.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === Ua.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && Da(this.info.viewPlane, t),
+			eye: t && Oa(this.info.viewPlane, t),
 			maps: t && this.mapsOf(this.mixing)
 		};
 	}
@@ -3434,7 +3436,7 @@ var Fo = 3, Io = class {
 		]).map((e) => 1 / e);
 		e.exposureScale.value.fromArray(a), e.exposureBias.value.fromArray(a.map((e, t) => -(i?.[t] ?? 0) * e));
 		let o = this.view === "error" && !t ? "picture" : this.view, s = this.shownEigen;
-		e.shown.value = Ha[o === "eigen" && s >= this.loaded ? "mean" : o], o === "eigen" && (e.shownGain.value = this.gainOf(s)), t && this.aimPhotograph();
+		e.shown.value = Ua[o === "eigen" && s >= this.loaded ? "mean" : o], o === "eigen" && (e.shownGain.value = this.gainOf(s)), t && this.aimPhotograph();
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -3442,7 +3444,7 @@ var Fo = 3, Io = class {
 	aimPhotograph() {
 		let e = this.camera === null ? void 0 : this.info.cameras[this.camera], { photograph: t } = this;
 		if (!e || !t) return;
-		let { K: n, R: r, t: i, width: a, height: o } = e, s = new v().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new v().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !Wo(t.image), u = new v().makeScale(1 / a, (l ? -1 : 1) / o, 1);
+		let { K: n, R: r, t: i, width: a, height: o } = e, s = new v().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new v().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !Go(t.image), u = new v().makeScale(1 / a, (l ? -1 : 1) / o, 1);
 		l && (u.elements[13] = 1), this.material.uniforms.toPhotograph.value.multiplyMatrices(u, c.multiply(s)), this.material.uniforms.photograph.value = t;
 	}
 	gainOf(e) {
@@ -3453,7 +3455,7 @@ var Fo = 3, Io = class {
 		for (let { channels: t, bases: a } of n.planes) {
 			let o = n.colours.slice(i, i += t), s = a.find(({ count: t }) => t > e);
 			if (!(!s || e < 0)) {
-				jo(s, e, o, r).then((t) => {
+				Mo(s, e, o, r).then((t) => {
 					this.gains.set(e, t), this.dispatchEvent({ type: "texture" });
 				}).catch(() => void 0);
 				break;
@@ -3463,13 +3465,13 @@ var Fo = 3, Io = class {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= Ro * Math.max(...r);
+		return Math.abs(i) <= zo * Math.max(...r);
 	}
 	mapsOf(e) {
 		let { usable: t } = this;
 		if (this.maps?.mixing === e && this.maps.usable === t) return this.maps.texture;
 		this.maps?.texture.dispose();
-		let n = za(this.parts.weights, e, this.parts.omega, this.counts, t);
+		let n = Ba(this.parts.weights, e, this.parts.omega, this.counts, t);
 		return this.maps = {
 			texture: n,
 			mixing: e,
@@ -3477,33 +3479,33 @@ var Fo = 3, Io = class {
 		}, n;
 	}
 	fail(e) {
-		if (Go(e)) return;
+		if (Ko(e)) return;
 		let t = oe(e), n = `The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`;
 		this.dispatchEvent({
 			type: "error",
 			error: new j(t.code, `${t.message} ${n}`, t.where)
 		});
 	}
-}, Bo = new v(), Vo = new A();
-function Ho(e, t) {
-	return Vo.setFromMatrixPosition(e.matrixWorld).applyMatrix4(Bo.copy(t.matrixWorld).invert()), [
-		Vo.x,
-		Vo.y,
-		Vo.z
+}, Vo = new v(), Ho = new A();
+function Uo(e, t) {
+	return Ho.setFromMatrixPosition(e.matrixWorld).applyMatrix4(Vo.copy(t.matrixWorld).invert()), [
+		Ho.x,
+		Ho.y,
+		Ho.z
 	];
 }
-function Uo(e) {
+function Wo(e) {
 	let { attributes: t, index: n } = e.geometry;
 	return Object.values(t).reduce((e, t) => e + t.array.byteLength, 0) + (n?.array.byteLength ?? 0);
 }
-function Wo(e) {
+function Go(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
-function Go(e) {
+function Ko(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var Ko = class {
+var qo = class {
 	received = 0;
 	chunks = [];
 	waiters = [];
@@ -3546,53 +3548,53 @@ var Ko = class {
 		}
 		return n.buffer;
 	}
-}, qo = 1179937895, Jo = 1313821514, Yo = 5130562;
-async function Xo(e) {
+}, Jo = 1179937895, Yo = 1313821514, Xo = 5130562;
+async function Zo(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof j && t.code === "truncated" ? ts(e.received === 0) : t;
+		throw t instanceof j && t.code === "truncated" ? ns(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== qo) throw ts(!1);
+	if (new DataView(t).getUint32(0, !0) !== Jo) throw ns(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
 	if (r !== 2) throw new j("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
 	if (i < 20) throw M("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== Jo) throw M("16", "it does not begin with JSON");
+	if (a.getUint32(4, !0) !== Yo) throw M("16", "it does not begin with JSON");
 	if (o > pe) throw M("12", `${o} bytes of JSON`);
 	if (20 + o > i) throw M("12", "a chunk longer than the file");
-	let s = Qo(await e.read(20, 20 + o));
+	let s = $o(await e.read(20, 20 + o));
 	return {
 		length: i,
 		text: s,
-		json: $o(s, "20"),
-		binary: () => Zo(e, 20 + o, i)
+		json: es(s, "20"),
+		binary: () => Qo(e, 20 + o, i)
 	};
 }
-async function Zo(e, t, n) {
+async function Qo(e, t, n) {
 	let r = t;
 	for (let t = 1; t < 64 && r + 8 <= n; t++) {
 		let t = new DataView(await e.read(r, r + 8)), i = t.getUint32(0, !0);
 		if (r + 8 + i > n) throw M(String(r), "a chunk longer than the file");
-		if (t.getUint32(4, !0) === Yo) return r + 8;
+		if (t.getUint32(4, !0) === Xo) return r + 8;
 		r += 8 + i;
 	}
 	throw M(String(t), "no binary chunk");
 }
-function Qo(e) {
+function $o(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
 		throw M("20", "its JSON is not UTF-8");
 	}
 }
-function $o(e, t) {
-	if (es(e) > 64) throw M(t, "its JSON is nested too deep");
+function es(e, t) {
+	if (ts(e) > 64) throw M(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
 		throw M(t, "its JSON cannot be read");
 	}
 }
-function es(e) {
+function ts(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3603,20 +3605,20 @@ function es(e) {
 	}
 	return n;
 }
-function ts(e) {
+function ns(e) {
 	return new j("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/packed.ts
-var ns = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", rs = 4;
-async function is(e, t) {
+var rs = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", is = 4;
+async function as(e, t) {
 	let n = new K(e, ""), r = n.key("extensions").key(fe), i = r.key("packed");
 	if (!i.exists) return e;
-	ni(r);
+	ri(r);
 	let a = Cr(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < rs) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, rs)).getUint32(0, !0);
-	if (rs + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new K($o(await os(await t(o.offset + rs, s), i.where), i.where), i.where).object(), u = as(new K(c, `${i.where}/lengths`), o, rs + s), { packed: d, ...f } = r.object();
+	if (!o || o.length < is) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, is)).getUint32(0, !0);
+	if (is + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new K(es(await ss(await t(o.offset + is, s), i.where), i.where), i.where).object(), u = os(new K(c, `${i.where}/lengths`), o, is + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
 		bufferViews: [...n.key("bufferViews").items(I).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
@@ -3629,7 +3631,7 @@ async function is(e, t) {
 		}
 	};
 }
-function as(e, t, n) {
+function os(e, t, n) {
 	let r = n, i = e.items(I).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
@@ -3641,8 +3643,8 @@ function as(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function os(e, t) {
-	let n = new TextEncoder().encode(ns), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function ss(e, t) {
+	let n = new TextEncoder().encode(rs), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -3661,8 +3663,8 @@ async function os(e, t) {
 	}
 }
 // eigenfield-three/src/proxy.ts
-var ss = 65535;
-function cs(e, t) {
+var cs = 65535;
+function ls(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
 	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
 	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
@@ -3672,46 +3674,46 @@ function cs(e, t) {
 	}
 	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
 }
-async function ls({ view: n, codec: r, where: i }, a) {
+async function us({ view: n, codec: r, where: i }, a) {
 	let { positions: o, uv: s, indices: c } = r.decode(new Uint8Array(await a(n)), i);
 	if (!c.length) throw M(i, "a mesh without faces");
 	let l = new t();
 	l.setAttribute("position", new e(o, 3)), l.setAttribute("uv", new e(s, 2));
-	let u = o.length / 3 <= ss;
+	let u = o.length / 3 <= cs;
 	return l.setIndex(new e(u ? Uint16Array.from(c) : c, 1)), l;
 }
-function us(e) {
+function ds(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/grid.ts
-function ds(e) {
+function fs(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = fs(e, n, r) ?? (n === r ? null : fs(e, r, n));
+		let r = t / n, i = ps(e, n, r) ?? (n === r ? null : ps(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function fs(e, t, n) {
-	let [r, i] = [ms(e, 0), ms(e, 1)];
-	if (t === 1 && hs(i) > 0 || n === 1 && hs(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => gs(i, e) - gs(i, t));
+function ps(e, t, n) {
+	let [r, i] = [hs(e, 0), hs(e, 1)];
+	if (t === 1 && gs(i) > 0 || n === 1 && gs(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => _s(i, e) - _s(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => gs(r, e) - gs(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => _s(r, e) - _s(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return ps(n, t, (e, t) => gs(r, o(t, e))) && ps(t, n, (e, t) => gs(i, o(e, t))) ? {
+	return ms(n, t, (e, t) => _s(r, o(t, e))) && ms(t, n, (e, t) => _s(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function ps(e, t, n) {
+function ms(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -3721,33 +3723,33 @@ function ps(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function ms(e, t) {
+function hs(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function hs(e) {
+function gs(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var gs = (e, t) => e[t] ?? 0, _s = 1e-6, vs = 32, ys = class {
+var _s = (e, t) => e[t] ?? 0, vs = 1e-6, ys = 32, bs = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = ds(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = fs(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(bs(e), this.isLine ? 0 : bs(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(xs(e), this.isLine ? 0 : xs(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => As(e, t, this.places) : e === "bilinear" && this.grid ? Ms(this.places, this.grid) : Cs(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => js(e, t, this.places) : e === "bilinear" && this.grid ? Ns(this.places, this.grid) : ws(this.places, this.triangles);
 	}
 };
-function bs(e) {
+function xs(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function xs(e) {
+function Ss(e) {
 	let t = {
 		camera: [
 			0,
@@ -3767,7 +3769,7 @@ function xs(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function Ss(e, t, n, r, i, a) {
+function Cs(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -3775,49 +3777,49 @@ function Ss(e, t, n, r, i, a) {
 		m
 	];
 }
-function Cs(e, t) {
+function ws(e, t) {
 	if (!t.length) {
-		let t = ks(e, Os(e));
-		return (n, r) => Ds(n, r, e, t);
+		let t = As(e, ks(e));
+		return (n, r) => Os(n, r, e, t);
 	}
-	let n = Ts(e, t, 3), r = Es(t);
+	let n = Es(e, t, 3), r = Ds(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * vs + $(i)] ?? []) {
+		for (let r of n[$(a) * ys + $(i)] ?? []) {
 			let [n, l, u] = [
-				ws(t, r, 0),
-				ws(t, r, 1),
-				ws(t, r, 2)
-			], d = Ss(i, a, e, n, l, u), f = Math.min(...d);
+				Ts(t, r, 0),
+				Ts(t, r, 1),
+				Ts(t, r, 2)
+			], d = Cs(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? Ds(i, a, e, r) : xs(c.map((e, n) => [ws(t, o, n), e]));
+		return s < -1e-9 ? Os(i, a, e, r) : Ss(c.map((e, n) => [Ts(t, o, n), e]));
 	};
 }
-var ws = (e, t, n) => e[3 * t + n] ?? 0;
+var Ts = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * vs)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * ys)));
 }
-function Ts(e, t, n) {
+function Es(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * vs + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * ys + t]?.push(i);
 	}
 	return r;
 }
-function Es(e) {
+function Ds(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [ws(e, n, r), ws(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [Ts(e, n, r), Ts(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -3826,7 +3828,7 @@ function Es(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function Ds(e, t, n, r) {
+function Os(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -3841,12 +3843,12 @@ function Ds(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return xs([[o, 1 - c], [s, c]]);
+	return Ss([[o, 1 - c], [s, c]]);
 }
-function Os(e) {
+function ks(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function ks(e, t) {
+function As(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -3867,7 +3869,7 @@ function ks(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function As(e, t, n) {
+function js(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -3881,12 +3883,12 @@ function As(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || js(n, r, i, a) <= _s) return Ds(e, t, n, ks(n, [
+	if (a < 0 || Ms(n, r, i, a) <= vs) return Os(e, t, n, As(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = Ss(e, t, n, r, i, a);
+	let [l, u, d] = Cs(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -3902,15 +3904,15 @@ function As(e, t, n) {
 		]
 	};
 }
-function js(e, t, n, r) {
+function Ms(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function Ms(e, t) {
+function Ns(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = ks(e, Os(e));
-		return (n, r) => Ds(n, r, e, t);
+		let t = As(e, ks(e));
+		return (n, r) => Os(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -3919,7 +3921,7 @@ function Ms(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = Ts(e, o.flat(), 4), c = [];
+	let s = Es(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -3927,12 +3929,12 @@ function Ms(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * vs + $(t)] ?? []) {
-			let s = o[a], c = s ? Ns(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * ys + $(t)] ?? []) {
+			let s = o[a], c = s ? Ps(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return Ds(t, n, e, l);
-		let [a, c] = Ps(t, n, e, r);
+		if (!r || i < -1e-9) return Os(t, n, e, l);
+		let [a, c] = Fs(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -3944,7 +3946,7 @@ function Ms(e, t) {
 		};
 	};
 }
-function Ns(e, t, n, r) {
+function Ps(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -3952,7 +3954,7 @@ function Ns(e, t, n, r) {
 	}
 	return i;
 }
-function Ps(e, t, n, r) {
+function Fs(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -3970,14 +3972,14 @@ function Ps(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Fs(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [Fs(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Is(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [Is(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function Fs(e) {
+function Is(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var Is = class {
+var Ls = class {
 	parser;
 	options;
 	name = fe;
@@ -3989,7 +3991,7 @@ var Is = class {
 	async beforeRoot() {
 		if (!this.ours) return;
 		let { json: e } = this.parser;
-		Object.assign(e, await is(e, (e, t) => this.read(e, t))), this.scene = ei(e);
+		Object.assign(e, await as(e, (e, t) => this.read(e, t))), this.scene = ei(e), this.scene.shown || Rs(e);
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
@@ -4010,25 +4012,25 @@ var Is = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = Ls(e, this.parser), [r] = n;
+		let n = zs(e, this.parser), [r] = n;
 		if (!r) throw M("/meshes/0", "no node shows it");
-		cs(r.geometry, t);
+		t.shown && ls(r.geometry, t.shown);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
 			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ae(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await ls(t.mesh, i);
+		}, a = t.mesh && await us(t.mesh, i);
 		if (a) {
 			r.geometry.dispose();
 			for (let e of n) e.geometry = a;
 		}
 		t.sheets && Kr(t.sheets, r.geometry);
 		let [o, s, c, l] = await Promise.all([
-			Promise.all(ti(t).map((e) => Mo(e, i))),
-			gi(t, i),
-			Ci(t, i),
-			Oi(t, i)
-		]), u = s.filter((e, n) => !t.heldOut[n]), d = new ys(Float64Array.from(u.flatMap((e) => Mi(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = Ai(t, s, f, d.grid, this.fileBytes(), us(r.geometry)), m = {
+			Promise.all(ni(t).map((e) => No(e, i))),
+			_i(t, i),
+			wi(t, i),
+			ki(t, i)
+		]), u = s.filter((e, n) => !t.heldOut[n]), d = new bs(Float64Array.from(u.flatMap((e) => Ni(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = ji(t, s, f, d.grid, this.fileBytes(), ds(r.geometry)), m = {
 			scene: t,
 			info: p,
 			meshes: n,
@@ -4039,7 +4041,7 @@ var Is = class {
 			weights: d,
 			bytes: i
 		};
-		e.userData.eigenfield = new zo(m, this.options);
+		e.userData.eigenfield = new Bo(m, this.options);
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -4047,43 +4049,50 @@ var Is = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function Ls(e, t) {
+function Rs(e) {
+	let [t] = e.nodes;
+	t && (t.mesh = 0), e.meshes = [{ primitives: [{
+		attributes: {},
+		material: 0
+	}] }], e.materials = [{ doubleSided: !0 }];
+}
+function zs(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		Rs(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		Bs(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function Rs(e) {
+function Bs(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function zs(e, t = {}) {
+async function Vs(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new Ko(), i = new AbortController(), a = () => {
+	let r = new qo(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = Hs(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = Ws(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
-		let e = await Xo(r);
+		let e = await Zo(r);
 		if (!$r(e.json)) return {
-			gltf: await Vs(r, e, o),
+			gltf: await Us(r, e, o),
 			field: null
 		};
-		let i = await Bs(r, e, t);
+		let i = await Hs(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
 			gltf: i,
-			field: a instanceof zo ? a : null
+			field: a instanceof Bo ? a : null
 		};
 	} catch (e) {
 		throw i.abort(), n?.throwIfAborted(), oe(e);
 	}
 }
-async function Bs(e, t, n) {
+async function Hs(e, t, n) {
 	let r = new re(), i = t.binary();
 	i.catch(() => void 0);
 	let a = {
@@ -4093,12 +4102,12 @@ async function Bs(e, t, n) {
 			return e.read(r, r + n);
 		}
 	};
-	return r.register((e) => new Is(e, {
+	return r.register((e) => new Ls(e, {
 		...n,
 		stream: a
 	})), r.parseAsync(t.text, "");
 }
-async function Vs(e, t, n) {
+async function Us(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -4108,25 +4117,25 @@ async function Vs(e, t, n) {
 		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function Hs(e, t, n, r) {
+async function Ws(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? Us(e) : await Ws(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? Gs(e) : await Ks(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : Gs(t.received, e);
+			throw n.aborted ? e : qs(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function Us(e) {
+function Gs(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function Ws(e, t) {
+async function Ks(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -4137,7 +4146,7 @@ async function Ws(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function Gs(e, t) {
+function qs(e, t) {
 	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { zo as EigenField, Is as EigenfieldPlugin, xo as SHEETS, j as SceneError, Qi as defaultMemory, zs as loadEigenfield, Fi as novelCamera, zi as placeCamera };
+export { Bo as EigenField, Ls as EigenfieldPlugin, So as SHEETS, j as SceneError, $i as defaultMemory, Vs as loadEigenfield, Ii as novelCamera, Bi as placeCamera };
