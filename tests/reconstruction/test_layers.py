@@ -163,6 +163,19 @@ def test_views_left_out_tell_a_right_surface_from_a_wrong_one():
     assert compare_held_out(pictures, cameras, (0.2, 0.3), wall(6.0), counts=[2])[1] < right - 6
 
 
+def test_more_sheets_are_not_tried_where_the_fewest_are_far_from_enough():
+    cameras, told = ring(6, 4), []
+    pictures = wall_pictures(cameras)
+    tried = {"counts": [2, 3], "progress": lambda *said: told.append(said)}
+    scores, opaque = compare_held_out(pictures, cameras, (0.2, 0.3), wall(4.0), min_gain=30.0, **tried)
+    assert scores[0] == scores[1] < opaque + 30
+    steps = told[-1][2]
+    assert told[-2:] == [("sheets", steps // 2, steps), ("sheets", steps, steps)]
+    whole, same = compare_held_out(pictures, cameras, (0.2, 0.3), wall(4.0), min_gain=0.0, **tried)
+    assert (whole[0], same) == (scores[0], opaque)
+    assert told[-2:] == [("sheets", steps - 1, steps), ("sheets", steps, steps)]
+
+
 def test_the_reference_view_holds_every_frame():
     cameras = ring(4, 6)
     reference, (sheets,) = fit_views(wall_pictures(cameras), cameras, (0.2, 0.3), [2])

@@ -143,7 +143,7 @@ def asked_count(run: StageRunner, source: SheetSource) -> int:
     check_capture(source.shown)
     if run.settings.layers is not None:
         return run.settings.layers
-    counts, scores, _ = _trial(run, source, None)
+    counts, scores, _ = _trial(run, source, None, -np.inf)
     index = best_count(counts, scores)
     log.info("layers: %d, which draw views left out with %.2f dB", counts[index], scores[index])
     return counts[index]
@@ -164,17 +164,19 @@ def better_count(run: StageRunner, source: SheetSource, mesh: Mesh) -> int | Non
     if fault is not None:
         log.info("surface: opaque, since %s", fault)
         return None
-    counts, scores, opaque = _trial(run, source, mesh)
-    index = best_count(counts, scores)
     dense = source.array is not None and len(source.array.shown) >= LAYERS_TUNING.dense_views
     gain = LAYERS_TUNING.dense_min_gain_db if dense else LAYERS_TUNING.min_gain_db
+    counts, scores, opaque = _trial(run, source, mesh, gain)
+    index = best_count(counts, scores)
     better = scores[index] > opaque + gain
     words = "surface: %s, since views left out are drawn with %.2f dB by %d layers, with %.2f dB by the opaque surface"
     log.info(words, "layers" if better else "opaque", scores[index], counts[index], opaque)
     return counts[index] if better else None
 
 
-def _trial(run: StageRunner, source: SheetSource, mesh: Mesh | None) -> tuple[tuple[int, ...], list[float], float]:
+def _trial(
+    run: StageRunner, source: SheetSource, mesh: Mesh | None, gain: float
+) -> tuple[tuple[int, ...], list[float], float]:
     """Numbers of sheets, and as `compare_held_out`. Where no range of depths is found, the opaque surface wins, which
     needed none."""
     settings = run.settings
@@ -188,11 +190,11 @@ def _trial(run: StageRunner, source: SheetSource, mesh: Mesh | None) -> tuple[tu
                 raise
             scores, opaque = [-np.inf] * len(counts), np.inf
         else:
-            scores, opaque = compare_held_out(*given, mesh, counts=counts, progress=run.progress)
+            scores, opaque = compare_held_out(*given, mesh, counts=counts, min_gain=gain, progress=run.progress)
         (folder / STAGE_TRIAL_FILE).write_text(
             json.dumps([str(score) for score in (*scores, opaque)]), encoding="utf-8"
         )
 
-    folder = run.stage("trial", [source.inputs, counts, settings.triangles, settings.surface], build)
+    folder = run.stage("trial", [source.inputs, counts, gain, settings.triangles, settings.surface], build)
     *scores, opaque = map(float, json.loads((folder / STAGE_TRIAL_FILE).read_text(encoding="utf-8")))
     return counts, scores, opaque

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import logging
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import cv2
@@ -57,6 +58,7 @@ class LayersTuning:
         dense_min_gain_db: The same of a dense array, on whose opaque surface the fit then gains more, in fewer bytes.
             With 3.7 dB sheets were better (Boxes); with 3.5 (Amethyst), 2.0 (Shop) and 1.0 (Antinous) they were worse.
         count_gain_db: By which more sheets must draw them better than fewer.
+        max_count_gain_db: By which more sheets draw them better than the fewest, at most: 0.9 were seen (Fern).
     """
 
     min_views: int = 3
@@ -79,6 +81,7 @@ class LayersTuning:
     min_gain_db: float = 1.0
     dense_min_gain_db: float = 3.6
     count_gain_db: float = 0.15
+    max_count_gain_db: float = 1.3
 
 
 LAYERS_TUNING = LayersTuning()
@@ -113,7 +116,7 @@ def layers_proxy(
         progress: Called within.
     """
     pictures, cameras = halved(pictures, cameras, LAYERS_TUNING.sheets_side_pixels)
-    reference, (fitted,) = fit_views(pictures, cameras, bounds, [count], progress)
+    reference, (fitted,) = fit_views(pictures, cameras, bounds, [count], progress=progress)
     reference, sheets = _widened(reference, fitted, cameras, bounds)
     tolerance = LAYERS_TUNING.tolerance_pixels / _reach(reference, cameras)
     return soft_relief(
@@ -124,7 +127,7 @@ def layers_proxy(
 
 def fit_views(
     pictures: NDArray[np.uint8], cameras: Sequence[Camera], bounds: Range, counts: Sequence[int],
-    progress: Progress | None = None,
+    enough: Callable[[ReferenceView, SoftSheets], bool] | None = None, progress: Progress | None = None,
 ) -> tuple[ReferenceView, list[SoftSheets]]:  # fmt: skip
     """The reference view of photographs, and their soft sheets for each of some numbers of sheets.
 
@@ -133,6 +136,7 @@ def fit_views(
         cameras: As of `layers_proxy`.
         bounds: As of `layers_proxy`.
         counts: The numbers, of which those above the number of planes are taken as that.
+        enough: Called with the reference view and the sheets of each number; True leaves out those that follow.
         progress: Called within.
     """
     longer = max(pictures.shape[1:3])
@@ -145,13 +149,14 @@ def fit_views(
     sheets = fit_sheets(
         pictures, view_matrices(reference, cameras), reference.shape, np.linspace(*bounds, planes),
         [min(count, planes) for count in counts], halvings=halvings, progress=progress,
+        enough=None if enough is None else partial(enough, reference),
     )  # fmt: skip
     return reference, sheets
 
 
 def compare_held_out(
     pictures: NDArray[np.uint8], cameras: Sequence[Camera], bounds: Range, mesh: Mesh | None, *, counts: Sequence[int],
-    progress: Progress | None = None,
+    min_gain: float = -math.inf, progress: Progress | None = None,
 ) -> tuple[list[float], float]:  # fmt: skip
     """How well sheets and a mesh draw photographs left out: the mean PSNR for each number of sheets, and of the mesh.
 
@@ -164,6 +169,8 @@ def compare_held_out(
         bounds: As of `layers_proxy`.
         mesh: The opaque surface; None: sheets are compared with each other.
         counts: Numbers of sheets.
+        min_gain: PSNR by which sheets are to be better than the mesh. Where the first number is so far from it that
+            more sheets cannot reach it either, these are left out and have the same PSNR.
         progress: Called within.
     """
     pictures, cameras = halved(pictures, cameras, LAYERS_TUNING.trial_side_pixels)
@@ -171,19 +178,25 @@ def compare_held_out(
     left_out[LAYERS_TUNING.trial_step // 2 :: LAYERS_TUNING.trial_step] = True
     others, shown = np.flatnonzero(~left_out).tolist(), np.flatnonzero(left_out).tolist()
     known, unknown = [cameras[i] for i in others], [cameras[i] for i in shown]
-    reference, stacks = fit_views(pictures[others], known, bounds, counts, progress)
     whole = np.ones(pictures.shape[1:3], np.bool_)
     hard = [(pictures[i], whole) for i in shown] if mesh is None else draw_means(mesh, unknown, pictures[others], known)
-    scores = []
-    for i, matrix, (mean, covered) in zip(shown, view_matrices(reference, unknown), hard, strict=True):
-        soft = [sheets.draw(matrix, pictures.shape[1:3]) for sheets in stacks]
-        drawn = [*(np.rint(np.clip(one, 0, 1) * 255).astype(np.uint8) for one in soft), mean]
-        if covered.any():
-            scores.append([psnr(one, pictures[i], covered) for one in drawn])
-    if not scores:
+    counted = [(i, mean, covered) for i, (mean, covered) in zip(shown, hard, strict=True) if covered.any()]
+    if not counted:
         return [math.inf] * len(counts), -math.inf
-    *of_sheets, of_mesh = np.array(scores, np.float64).mean(axis=0).tolist()
-    return of_sheets, -math.inf if mesh is None else of_mesh
+    means = np.array([psnr(mean, pictures[i], seen) for i, mean, seen in counted], np.float64)
+    of_mesh = -math.inf if mesh is None else float(means.mean())
+    scores: list[float] = []
+
+    def hopeless(reference: ReferenceView, sheets: SoftSheets) -> bool:
+        matrices = view_matrices(reference, [cameras[i] for i, _, _ in counted])
+        drawn = (sheets.draw(matrix, pictures.shape[1:3]) for matrix in matrices)
+        codes = (np.rint(np.clip(one, 0, 1) * 255).astype(np.uint8) for one in drawn)
+        figures = [psnr(one, pictures[i], seen) for one, (i, _, seen) in zip(codes, counted, strict=True)]
+        scores.append(float(np.array(figures, np.float64).mean()))
+        return max(scores) + LAYERS_TUNING.max_count_gain_db < of_mesh + min_gain
+
+    fit_views(pictures[others], known, bounds, counts, hopeless, progress)
+    return scores + scores[-1:] * (len(counts) - len(scores)), of_mesh
 
 
 def best_count(counts: Sequence[int], scores: Sequence[float]) -> int:

@@ -115,6 +115,7 @@ def fit_sheets(
     halvings: int = 1,
     planes: MultiplaneTuning = MULTIPLANE_TUNING,
     tuning: SheetTuning = SHEET_TUNING,
+    enough: Callable[[SoftSheets], bool] | None = None,
     progress: Progress | None = None,
 ) -> list[SoftSheets]:
     """The soft sheets that draw V photographs best, for each of some numbers of sheets.
@@ -130,6 +131,7 @@ def fit_sheets(
         halvings: How often the size is halved for the planes; with 0 sheets are fitted at the planes' size.
         planes: Constants of the planes.
         tuning: Constants of the sheets.
+        enough: Called with the sheets of each number; after True the numbers that follow are left out.
         progress: Reports the steps.
 
     Raises:
@@ -156,6 +158,10 @@ def fit_sheets(
             )
             before += tuning.steps
         found.append(sheets)
+        if enough is not None and enough(sheets):
+            break
+    if progress is not None and before < total:
+        progress("sheets", total, total)
     return found
 
 
