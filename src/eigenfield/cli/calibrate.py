@@ -17,8 +17,8 @@ from eigenfield.cli.common import (
     masks_option,
     note,
     note_all,
-    progress_bars,
 )
+from eigenfield.cli.progress import progress_bars
 from eigenfield.core.errors import OptionError
 
 CALIBRATION_SUFFIX = "-calibration"

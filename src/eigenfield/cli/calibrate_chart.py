@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eigenfield.cli.common import note_all, progress_bars, together
+from eigenfield.cli.common import note_all, together
+from eigenfield.cli.progress import progress_bars
 from eigenfield.core.errors import OptionError
 
 if TYPE_CHECKING:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import contextlib
 import functools
 import json
 import logging
 import re
-import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -163,30 +161,6 @@ def capture_options(function: Callable[..., Any]) -> Any:
     return _place_options(collect)
 
 
-@contextlib.contextmanager
-def progress_bars(quiet: bool) -> Iterator[Progress | None]:
-    """A Progress that draws one bar a stage on standard error; None where it is no terminal, or `quiet`."""
-    if quiet or not sys.stderr.isatty():
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-    from rich.progress import Progress as Bars
-
-    columns = (
-        TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn()
-    )  # fmt: skip
-    tasks: dict[str, Any] = {}
-    with Bars(*columns, console=Console(stderr=True)) as bars:
-
-        def report(stage: str, done: int, total: int) -> None:
-            if done == 0 or stage not in tasks:
-                tasks[stage] = bars.add_task(stage, total=total)
-            bars.update(tasks[stage], completed=done, total=total)
-
-        yield report
-
-
 def note(message: str, quiet: bool = False) -> None:
     """A line for a person, on standard error."""
     if not quiet:
@@ -221,6 +195,7 @@ def reconstruct_capture(
         settings: Of `reconstruct`.
     """
     from eigenfield.capture import open_any
+    from eigenfield.encoding.cost import STEPS
     from eigenfield.reconstruction import reconstruct
 
     opened = open_any(capture, work=work / "frames", **place)
@@ -230,7 +205,8 @@ def reconstruct_capture(
     made = reconstruct(opened, work=work, progress=progress, **settings)
     note_all(made.light_field.problems[len(opened.problems) :], quiet)
     for stage, took in made.seconds.items():
-        note(f"  {stage:8} {f'{took:6.1f} s' if took else 'taken up'}", quiet)
+        if not took:
+            note(f"  {STEPS[stage].words}: taken up from an earlier run", quiet)
     note_all(made.report.lines(made.light_field.names), quiet)
     return made
 

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eigenfield.cli.common import PATH, common_options, note, progress_bars
+from eigenfield.cli.common import PATH, common_options, note
+from eigenfield.cli.progress import progress_bars
 
 if TYPE_CHECKING:
     from eigenfield.core.scene import Scene

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Mapping
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,16 +15,18 @@ from eigenfield.cli.common import (
     capture_argument,
     capture_options,
     common_options,
+    note,
     note_all,
-    progress_bars,
     reconstruct_capture,
     reconstruction_options,
 )
 from eigenfield.cli.field_options import field_options, from_fields
+from eigenfield.cli.progress import StepProgress, duration, progress_bars
 from eigenfield.encoding import EncodeOptions
 
 if TYPE_CHECKING:
-    from eigenfield.capture import LightField
+    from eigenfield.capture import Capture, LightField
+    from eigenfield.core.progress import Progress
 
 
 def _parse_atlas(context: click.Context, parameter: click.Parameter, value: str | None) -> int | tuple[int, int] | None:
@@ -151,10 +152,15 @@ def command(
         if proxy is not None:
             scratch = output.absolute().parent if work is None else work
             light_field = _open_capture(capture, place, scratch, quiet)
+            announce(light_field, options, None, progress)
             scene = encode(light_field, proxy, options, work=scratch, progress=progress)
         else:
             scratch = output.with_suffix(".work") if work is None else work
-            check = partial(check_selection, options=options)
+
+            def check(opened: Capture) -> None:
+                check_selection(opened, options)
+                announce(opened, options, settings, progress)
+
             made = reconstruct_capture(capture, place, scratch, progress, quiet, check, **settings)
             scene = encode(made.light_field, made.proxy, options, triangles=None, work=scratch, progress=progress)
         save(scene, output, **options.for_save, overwrite=overwrite, progress=progress)
@@ -166,6 +172,34 @@ def command(
         f"atlas {width}x{height}, for {photographs['count']} photographs ({photographs['bytes'] / 1e6:.1f} MB), "
         f"{len(scene.proxy.mesh.faces)} triangles, {time.monotonic() - started:.0f} s"
     )
+
+
+def announce(
+    capture: Capture, options: EncodeOptions, settings: Mapping[str, Any] | None, progress: Progress | None
+) -> None:
+    """Say what an encode is expected to take, and how it goes on if it is stopped; nothing without a progress.
+
+    Args:
+        capture: Photographs, with or without cameras.
+        options: Of the scene.
+        settings: The arguments of `reconstruct`; None: the proxy is given.
+        progress: Of `progress_bars`, which then counts the steps.
+    """
+    from eigenfield.encoding.cost import STEPS, expected_cost
+    from eigenfield.runtime.parallel import threads
+
+    if not isinstance(progress, StepProgress):
+        return
+    count = threads()
+    cost = expected_cost(capture, options, settings, count)
+    pixels = sum(width * height for width, height in capture.sizes)
+    note(
+        f"{len(capture.sizes)} photographs, {pixels / 1e6:.1f} megapixels: {duration(cost.seconds)} with {count} "
+        f"threads, {cost.memory / 1e9:.1f} GB of memory, {cost.scratch / 1e6:.0f} MB of scratch files"
+    )
+    if settings is not None:
+        note("Ctrl-C stops it; the same command goes on after the last finished step")
+    progress.plan(cost.steps, {name: step.words for name, step in STEPS.items()})
 
 
 def _open_capture(capture: Path, place: Mapping[str, Any], scratch: Path, quiet: bool) -> LightField:

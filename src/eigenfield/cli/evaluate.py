@@ -16,8 +16,8 @@ from eigenfield.cli.common import (
     echo_json,
     first_names,
     note,
-    progress_bars,
 )
+from eigenfield.cli.progress import progress_bars
 
 Column = tuple[str, str, str]  # key, heading, format
 

@@ -8,8 +8,9 @@ from typing import Any
 import click
 from click.core import ParameterSource
 
-from eigenfield.cli.common import PATH, common_options, note, pair_of_numbers, progress_bars
+from eigenfield.cli.common import PATH, common_options, note, pair_of_numbers
 from eigenfield.cli.drawing import flight_options, parse_place, picture_options, residual_option
+from eigenfield.cli.progress import progress_bars
 
 
 @click.command(

@@ -17,8 +17,8 @@ from eigenfield.cli.common import (
     common_options,
     echo_json,
     note,
-    progress_bars,
 )
+from eigenfield.cli.progress import progress_bars
 from eigenfield.core.errors import EigenfieldError, OptionError
 
 if TYPE_CHECKING:

@@ -15,9 +15,9 @@ from eigenfield.cli.common import (
     common_options,
     mesh_options,
     note,
-    progress_bars,
     reconstruct_capture,
 )
+from eigenfield.cli.progress import progress_bars
 
 
 @click.command(

@@ -8,8 +8,9 @@ from typing import Any
 
 import click
 
-from eigenfield.cli.common import PATH, common_options, note, progress_bars
+from eigenfield.cli.common import PATH, common_options, note
 from eigenfield.cli.drawing import flight_options, parse_place, picture_options, residual_option
+from eigenfield.cli.progress import progress_bars
 from eigenfield.core.errors import OptionError
 
 

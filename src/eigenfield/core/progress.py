@@ -18,6 +18,18 @@ class Progress(Protocol):
     def __call__(self, stage: str, done: int, total: int) -> None: ...
 
 
+def begin_step(progress: Progress | None, step: str) -> None:
+    """Say that a step of long work begins. It has stages of its own, or none.
+
+    Args:
+        progress: Told if it has a method `begin`, which a plain function has not.
+        step: Name of the step, one of `encoding.cost.STEPS`.
+    """
+    begin = getattr(progress, "begin", None)
+    if begin is not None:
+        begin(step)
+
+
 def track(items: Iterable[T], stage: str, total: int, progress: Progress | None) -> Iterator[T]:
     """Yield `items`, and report each one once the consumer is done with it.
 

@@ -19,7 +19,7 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import CalibratedObservations, cameras_of
 from eigenfield.core.payloads import Coded, Payloads, mesh_key, size_of
-from eigenfield.core.progress import Progress
+from eigenfield.core.progress import Progress, begin_step
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
 from eigenfield.core.scene import EncodedScene
@@ -176,6 +176,7 @@ def plan_encoding(
     Raises:
         CaptureError, ProxyError, OptionError, OutputError: As `encode`.
     """
+    begin_step(progress, "mesh")
     views, options = select_views(capture, asked), _for_one_quality(asked)
     return _at_its_quality(_prepare(proxy, views, options, work, progress), asked)
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from eigenfield.coding.limits import MAX_SHEETS
 from eigenfield.core.errors import OptionError
-from eigenfield.core.progress import Progress
+from eigenfield.core.progress import Progress, begin_step
 from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES, parse_primitive, parse_region
 from eigenfield.proxy.atlas.unwrap import UNWRAP_MIN_TRIANGLES
 from eigenfield.runtime.stages import Stages, stage_key
@@ -121,6 +121,8 @@ class StageRunner:
         started = time.monotonic()
         key = stage_key([name, self.identity, *inputs])
         ready = self.stages.path(name, key).is_dir()
+        if not ready:
+            begin_step(self.progress, name)
         folder = self.stages.run(name, key, build)
         self.seconds[name] = 0.0 if ready else time.monotonic() - started
         log.info("%s: %s", name, "taken up" if ready else f"{self.seconds[name]:.1f} s")

@@ -9,13 +9,16 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numba
 import platformdirs
+from numba.core import event
 
 Kernel = Callable[..., Any]
 _IMPORTS = re.compile(r"^from eigenfield\.(\S+) import", re.MULTILINE)
@@ -89,3 +92,33 @@ def kernel(*, fastmath: bool | set[str] = False, inline: bool = False) -> Callab
         return compiled
 
     return decorate
+
+
+class _Compilations(event.Listener):  # type: ignore[misc]
+    """Counts the kernels that are being compiled, in any thread."""
+
+    def __init__(self, changed: Callable[[bool], None]) -> None:
+        self._changed, self._running, self._gate = changed, 0, threading.Lock()
+
+    def on_start(self, event: Any) -> None:
+        self._count(1)
+
+    def on_end(self, event: Any) -> None:
+        self._count(-1)
+
+    def _count(self, more: int) -> None:
+        with self._gate:
+            before, self._running = self._running, self._running + more
+            if (before > 0) != (self._running > 0):
+                self._changed(self._running > 0)
+
+
+@contextmanager
+def watch_compilation(changed: Callable[[bool], None]) -> Iterator[None]:
+    """Tell when kernels begin to be compiled, and when none is any longer. What the cache has is not compiled.
+
+    Args:
+        changed: Called with True and False in turns, from any thread.
+    """
+    with event.install_listener("numba:compile", _Compilations(changed)):
+        yield

@@ -11,7 +11,7 @@ from pathlib import Path
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import CalibratedObservations
 from eigenfield.core.payloads import Payloads
-from eigenfield.core.progress import Progress
+from eigenfield.core.progress import Progress, begin_step
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import EncodedScene
 from eigenfield.encoding.fitted.colour import to_rgb
@@ -45,6 +45,7 @@ class FittedEncoder:
 
     def encode_without_figures(self, quality: int) -> EncodedScene:
         """The scene coded at a quality; its settings have placeholders for the PSNR."""
+        begin_step(self.progress, "code")
         options = self.plan.options
         coder = {"coder": "libaom"} if self.fits.patient else {}
         own = {"fit": options.fit, "fitted": {"quality": quality, **coder, "psnr": self.fits.psnr_figures()}}
@@ -74,6 +75,7 @@ def open_encoder(
         progress: Reports each stage.
         warn: Whether photographs that do not show what the others do are named in a warning.
     """
+    begin_step(progress, "fit")
     views, options = plan.views, plan.options
     cameras, observations = views.rig.encoded_cameras, views.observations
     asked = fitted_textures(len(observations)) if options.textures is None else options.textures

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.appearance import Basis, Plane
-from eigenfield.core.progress import Progress
+from eigenfield.core.progress import Progress, begin_step
 from eigenfield.core.scene import EncodedScene
 from eigenfield.encoding.options import resolved_value
 from eigenfield.encoding.plan import EncodePlan
@@ -40,6 +40,7 @@ def encode_projected(plan: EncodePlan, work: Path | None = None, progress: Progr
         CaptureError: A photograph cannot be read, or no camera sees the proxy (`nothing-seen`).
         OutputError: The scratch folder is full (`disk-full`), or maps cannot be written.
     """
+    begin_step(progress, "maps")
     options, views = plan.options, plan.views
     own = {"uvSsim": options.uv_ssim, "align": "dis" if options.align else None, "resampling": RESAMPLING}
     colours = None

@@ -1,0 +1,157 @@
+"""What long work says: its cost before, its steps while it runs, on a terminal and elsewhere."""
+
+from __future__ import annotations
+
+import os
+import pty
+import re
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+
+from eigenfield.capture import open_any
+from eigenfield.cli import progress as progress_module
+from eigenfield.cli.progress import StepProgress, duration, progress_bars
+from eigenfield.encoding import EncodeOptions
+from eigenfield.encoding.cost import STEPS, expected_cost
+from eigenfield.encoding.estimated import reconstruction_settings
+
+OWN = {"surface": "auto", "layers": None, "refine": None, "background": None, "primitives": (), "fit_spheres": ()}
+
+
+class Clock:
+    """A clock that a test sets."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.now = 0.0
+        monkeypatch.setattr(progress_module.time, "monotonic", lambda: self.now)
+
+
+class Told(StepProgress):
+    """Keeps the headings."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.headings: list[str] = []
+
+    def show_step(self, heading: str) -> None:
+        self.headings.append(heading)
+
+
+def test_steps_are_numbered_and_the_rest_follows_this_machines_pace(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock, told = Clock(monkeypatch), Told()
+    told.plan({"array": 100, "trial": 100, "mesh": 200, "fit": 600}, {"array": "depth"})
+    told.begin("array")
+    clock.now = 200  # twice as long as was expected
+    told.begin("mesh")  # no trial was needed
+    assert told.headings == ["step 1 of 4: depth, about 17 min left", "step 3 of 4: mesh, about 18 min left"]
+    clock.now = 260
+    assert told.left() == "about 17 min left"
+    told.begin("mesh")  # the same once more is no new step
+    assert len(told.headings) == 2
+
+
+def test_time_of_compilation_says_nothing_about_the_pace(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock, told = Clock(monkeypatch), Told()
+    told.plan({"array": 100, "fit": 100}, {})
+    told.begin("array")
+    told.compiling(True)
+    clock.now = 400
+    told.compiling(False)
+    clock.now = 500
+    told.begin("fit")
+    assert told.headings[-1] == "step 2 of 2: fit, about 2 min left"
+
+
+def test_work_without_a_plan_has_steps_without_numbers() -> None:
+    told = Told()
+    told.begin("draw")
+    assert told.headings == ["draw"]
+    assert told.left() == ""
+
+
+@pytest.mark.parametrize(("seconds", "words"), [(1, "10 s"), (44, "40 s"), (100, "2 min"), (7200, "2.0 h")])
+def test_durations_are_said_as_people_say_them(seconds: float, words: str) -> None:
+    assert duration(seconds) == f"about {words}"
+
+
+def test_lines_come_now_and_then_where_there_is_no_terminal(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    clock = Clock(monkeypatch)
+    with progress_bars(quiet=False) as shown:
+        assert shown is not None
+        for done in range(11):
+            shown("depth", done, 10)
+            clock.now += 5
+    assert capsys.readouterr().err.splitlines() == [f"  depth: {done} of 10" for done in (3, 6, 9)]
+
+
+def test_compilation_is_said_once_if_it_takes_long(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    said = threading.Event()
+    monkeypatch.setattr(progress_module, "COMPILING_SECONDS", 0.01)
+    monkeypatch.setattr(progress_module.click, "echo", lambda text, err: (print(text), said.set()))
+    with progress_bars(quiet=False) as shown:
+        assert isinstance(shown, StepProgress)
+        for _ in range(2):
+            shown.compiling(True)
+            assert said.wait(10)
+            shown.compiling(False)
+    assert capsys.readouterr().out.splitlines() == ["  compiling for this processor, once: about a minute"]
+
+
+def test_nothing_is_shown_if_quiet() -> None:
+    with progress_bars(quiet=True) as shown:
+        assert shown is None
+
+
+def test_a_capture_with_cameras_has_the_steps_that_its_encode_takes(fitted: tuple[Path, Path]) -> None:
+    opened, options = open_any(fitted[0]), EncodeOptions()
+    settings = reconstruction_settings(options, OWN, blind=False)
+    cost = expected_cost(opened, options, settings, threads=1)
+    assert list(cost.steps) == ["array", "relief", "trial", "layers", "mesh", "fit", "code"]
+    assert cost.seconds == pytest.approx(sum(cost.steps.values()))
+    assert expected_cost(opened, options, settings, threads=4).seconds < cost.seconds / 2
+    assert list(expected_cost(opened, options, None, 1).steps) == ["mesh", "fit", "code"]
+    paper = EncodeOptions(fit="none")
+    settings = reconstruction_settings(paper, OWN, blind=False)
+    assert list(expected_cost(opened, paper, settings, 1).steps) == ["array", "relief", "mesh", "maps", "code"]
+    assert set(cost.steps) <= set(STEPS)
+
+
+def run_on_a_terminal(words: list[str]) -> str:
+    """What a command shows on a terminal."""
+    own, theirs = pty.openpty()
+    with subprocess.Popen(
+        [sys.executable, "-m", "eigenfield", *words], stderr=theirs, stdout=subprocess.DEVNULL
+    ) as run:
+        os.close(theirs)
+        shown = b""
+        while True:
+            try:
+                shown += os.read(own, 4096)
+            except OSError:  # Linux says so when the other end is closed
+                break
+        assert run.wait() == 0
+    os.close(own)
+    return re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", shown.decode())
+
+
+def test_an_encode_says_its_cost_and_its_steps(fitted: tuple[Path, Path], tmp_path: Path) -> None:
+    words = ["encode", str(fitted[0]), "--proxy", str(fitted[0] / "proxy.ply"), "-o", str(tmp_path / "out.glb")]
+    shown = run_on_a_terminal([*words, "--preset", "small"])
+    assert re.search(r"9 photographs, 0.0 megapixels: about \d+ s with \d+ threads", shown)
+    for line in ("step 1 of 3: mesh, about", "step 2 of 3: fit, about", "step 3 of 3: coding, about"):
+        assert line in shown
+    words[-1] = str(tmp_path / "lines.glb")
+    run = subprocess.run(
+        [sys.executable, "-m", "eigenfield", *words, "--preset", "small"], capture_output=True, text=True, check=True
+    )
+    assert [line[:11] for line in run.stderr.splitlines() if line.startswith("step")] == [
+        "step 1 of 3", "step 2 of 3", "step 3 of 3"
+    ]  # fmt: skip
