@@ -28,6 +28,7 @@ from support.scenes import tiny_scene
 
 KINDS = {  # output, options, and a file that must be there
     "html": ("page.html", [], "page.html"),
+    "html plain": ("page.html", ["--plain"], "page.jpg"),
     "mp4": ("flight.mp4", ["--frames", 4], "flight.mp4"),
     "png": ("f%02d.png", ["--frames", 3], "f02.png"),
     "glb": ("plain.glb", [], "plain.glb"),
@@ -99,6 +100,27 @@ def test_an_existing_output_is_kept_before_any_work(export, kind, monkeypatch):
     monkeypatch.setattr("eigenfield.gltf.load", load)
     code, err = export(output, *options)
     assert code == 2 and "--overwrite" in err and contents(export.place) == {there: b"precious"}
+
+
+def test_a_plain_page_names_its_poster_to_crawlers_and_shows_how_to_embed_it(export):
+    code, err = export("my page.html", "--plain", "--title", "<&>", "--url", "https://example.org/a b/page.html")
+    assert code == 0
+    snippet = err.splitlines()[1]
+    assert snippet.startswith(
+        '<iframe src="https://example.org/a b/page.html" title="&lt;&amp;&gt;" width="640" height="'
+    )
+    page = (export.place / "my page.html").read_text(encoding="utf-8")
+    tags = dict(re.findall(r'<meta property="([\w:]+)" content="([^"]*)">', page))
+    assert tags["og:image"] == "https://example.org/a b/my%20page.jpg" and tags["og:title"] == "&lt;&amp;&gt;"
+    with Image.open(export.place / "my page.jpg") as poster:
+        assert [str(side) for side in poster.size] == [tags["og:image:width"], tags["og:image:height"]]
+        assert poster.format == "JPEG" and np.asarray(poster).std() > 5
+    assert '"ui":"plain"' in page and page.index('class="poster"') < page.index("eigenfield-config")
+    code, err = export("other.html", "--plain", "--at", "0.5,0")
+    page = (export.place / "other.html").read_text(encoding="utf-8")
+    assert code == 0 and '<iframe src="other.html"' in err and "og:url" not in page
+    assert '"start":[0.5,0.0]' in page and 'og:image" content="other.jpg"' in page
+    assert (export.place / "other.jpg").read_bytes() != (export.place / "my page.jpg").read_bytes()
 
 
 def test_a_folder_with_files_of_others_is_never_replaced(export):
@@ -251,6 +273,11 @@ def test_an_export_that_was_killed_while_it_replaced_another_is_replaced_by_the_
         ("a", ["--as", "obj", "--textures", -1], "0 or more"),
         ("a", ["--as", "maps", "--textures", -1], "0 or more"),
         ("a", ["--as", "colmap", "--frames", 3], "--path"),
+        ("a.html", ["--at", "0,1.5"], "outside the array"),
+        ("a.html", ["--plain", "--at", "0,1.5"], "outside the array"),
+        ("a.html", ["--url", "https://example.org/"], "--url is for --plain"),
+        ("a.html", ["--plain", "--url", "example.org"], "https://"),
+        ("a.mp4", ["--plain"], "--plain is not for mp4"),
         ("a.html", ["--metres-per-unit", "nan"], "above 0"),
         ("a.html", ["--metres-per-unit", "-1"], "above 0"),
         ("a.png", ["--as", "quilt", "--quilt", "0x3"], "1x1"),

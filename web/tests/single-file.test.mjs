@@ -57,6 +57,46 @@ test("a file opened by itself, offline: the served page's picture; hostile names
   await close();
 });
 
+test("a plain page: offline with its poster, a laboratory one click away, and embedded by its snippet", async () => {
+  const path = join(folder, "plain.html");
+  const options = ["--plain", "--title", TITLE, "--at", "0.5,-0.25", "--url", "https://example.org/a/plain.html"];
+  eigenfield("export", scenePath("scene.glb"), "-o", path, ...options);
+  const { page, close } = await openPage(browser, null, { width: 900, height: 600, context: { offline: true } });
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await page.goto(pathToFileURL(path).href);
+  await page.waitForFunction(() => window.eigenfield);
+  const { status, x, y } = await state(page);
+  assert.deepEqual([status, x, y], ["ready", 0.5, -0.25]);
+  assert.equal(await page.title(), TITLE);
+  assert.equal(await page.locator(".title").innerText(), TITLE);
+  assert.equal(await page.locator("img").count(), 0, "the poster has gone");
+  assert.ok(await page.locator(".panel").isHidden());
+  assert.equal(await page.locator("[property='og:image']").getAttribute("content"), "https://example.org/a/plain.jpg");
+  assert.equal(await page.locator("[property='og:title']").getAttribute("content"), TITLE);
+  await page.getByRole("button", { name: "Laboratory" }).click();
+  assert.ok(await page.locator(".panel").isVisible());
+  assert.equal(await page.evaluate(() => window.broken), undefined);
+  await close();
+
+  const show = "import sys, eigenfield as ef; print(ef.export(*sys.argv[1:3], plain=True, overwrite=True)[1])";
+  const [snippet] = /<iframe.*<\/iframe>/.exec(python("-c", show, scenePath("scene.glb"), path));
+  const head = '<!doctype html><meta charset="utf-8"><title>mine</title><link rel="icon" href="data:,">';
+  const server = await serve({
+    routes: { "/": { body: head + snippet, type: "text/html; charset=utf-8" } }, folders: [folder],
+  });
+  try {
+    const outer = await openPage(browser, server.url, { width: 900, height: 700 });
+    const frame = await (await outer.page.waitForSelector("iframe")).contentFrame();
+    await frame.waitForFunction(() => window.eigenfield);
+    assert.equal((await state(frame)).loaded, 6);
+    assert.deepEqual(await frame.evaluate(() => [document.fullscreenEnabled, document.title]), [true, "plain"]);
+    assert.deepEqual(server.requests, ["/", "/plain.html"]);
+    await outer.close();
+  } finally {
+    await server.close();
+  }
+});
+
 test("in a notebook: a frame of its own that draws, moves and saves, and begins with its panel folded", async () => {
   const frame = join(folder, "frame.html");
   const show = "import sys, eigenfield; open(sys.argv[2], 'w').write(eigenfield.load(sys.argv[1])._repr_html_())";

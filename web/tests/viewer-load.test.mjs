@@ -106,7 +106,11 @@ test("without a scene it asks for one; a chosen file and a dropped one open", as
   assert.equal((await state(page)).loaded, 6);
   await drop(page, "not-ours.bin");
   await page.waitForSelector(".message:not([hidden])");
-  await drop(page, "scene.glb");
+  assert.match(await message(page), /^not-ours\.bin cannot be opened: .*not a GLB file/);
+  const kept = await state(page);
+  assert.deepEqual([kept.status, kept.title, kept.loaded], ["ready", "scene", 6], "the open scene stays");
+  await drop(page, "line.glb");
+  await page.waitForFunction(() => window.eigenfield.state().title === "line");
   assert.equal((await state(page)).status, "ready", "an error is not for ever");
   assert.ok(await page.locator(".message").isHidden());
   await close();

@@ -174,6 +174,22 @@ test("orbit: starts without a jump, turns about the surface, says when it is out
   await close();
 });
 
+test("every part of the address", async () => {
+  const photographs = { view_1_2: "capture/view_1_2.png" };
+  const place = "x=0.1&y=0.2&zoom=2&dolly=0.1";
+  const hash = `#${place}&n=2&view=eigen&eigen=3&weights=eye&mixing=nearest3&wireframe=1`;
+  const { page, close } = await openViewer(browser, "scene.glb", { hash, photographs });
+  const { x, y, zoom, dolly, count, view, eigen, weights, mixing, wireframe } = await state(page);
+  assert.deepEqual([x, y, zoom, dolly], [0.1, 0.2, 2, 0.1]);
+  assert.deepEqual([count, view, eigen, weights, mixing, wireframe], [2, "eigen", 2, "eye", "nearest3", true]);
+  await page.evaluate(() => void (location.hash = "#camera=view_1_2&photograph=1"));
+  await page.waitForFunction(() => window.eigenfield.state().camera === "view_1_2");
+  assert.equal((await state(page)).photograph, true);
+  await page.evaluate(() => void (location.hash = "#mode=orbit"));
+  await page.waitForFunction(() => window.eigenfield.state().mode === "orbit");
+  await close();
+});
+
 test("the view is in the address, and comes from it", async () => {
   const first = await openViewer(browser, "scene.glb");
   await first.page.evaluate(() => window.eigenfield.goTo(0.25, -0.5));

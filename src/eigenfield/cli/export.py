@@ -17,6 +17,7 @@ from eigenfield.cli.progress import progress_bars
     epilog="""\b
 Examples:
   eigenfield export scene.glb -o scene.html
+  eigenfield export scene.glb -o scene.html --plain --title "My scene" --url https://example.org/scene.html
   eigenfield export scene.glb -o flight.mp4 --path spiral --frames 240
   eigenfield export scene.glb -o 'frames/%04d.png' --background transparent
   eigenfield export scene.glb -o plain.glb --as glb
@@ -39,11 +40,20 @@ Examples:
 @click.option("--as", "kind", metavar="html|mp4|png|glb|obj|maps|quilt|colmap", help="What is made.")
 @click.option("--title", metavar="TEXT", help="Of the page (html).  [default: the output's name]")
 @click.option("--metres-per-unit", type=float, metavar="M", help="Metres in one unit of the capture (html, glb).")
-@click.option("--at", callback=parse_place, metavar="X,Y", help="Viewpoint of the texture (glb).  [default: the mean]")
+@click.option(
+    "--at",
+    callback=parse_place,
+    metavar="X,Y",
+    help="First view (html), or viewpoint of the texture (glb).  [default: the reference camera's; the mean]",
+)
 @click.option(
     "--image", default="png", show_default=True, metavar="png|jpeg|webp", help="How the texture is kept (glb)."
 )
 @click.option("--draco", is_flag=True, help="Compress the mesh (glb).")
+@click.option(
+    "--plain", is_flag=True, help="A page for guests, panel and tools one click away, and a poster beside it (html)."
+)
+@click.option("--url", metavar="URL", help="Where the page will be, for links to it (html --plain).")
 @click.option(
     "--quilt",
     callback=pair_of_numbers("COLUMNSxROWS: 8x6"),

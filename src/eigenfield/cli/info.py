@@ -57,6 +57,7 @@ def _facts(layout: FileLayout, parts: dict[str, int]) -> dict[str, Any]:
         "format": layout.version,
         "generator": layout.generator,
         "bytes": parts,
+        "textures": max((basis.count for plane in layout.planes or () for basis in plane.bases), default=0),
         "planes": [_plane_facts(entry) for entry in layout.planes or ()],
         "proxy": {
             "vertices": len(mesh.vertices),
@@ -124,13 +125,14 @@ def _text_lines(facts: dict[str, Any]) -> list[str]:
     lines = ["bytes"]
     for name, count in facts["bytes"].items():
         lines.append(f"  {name:10}{count:14,}{100 * count / total:8.1f} %")
+    lines.append(f"eigen         {facts['textures']} textures of the basis that has most")
     for plane in facts["planes"]:
         mean = plane["mean"]
         channels = f"{plane['channels']} channel{'' if plane['channels'] == 1 else 's'}"
         lines.append(f"mean          {_size(mean['size'])}, {channels}, {mean['type']}")
         for basis in plane["bases"]:
             types = f", {', '.join(basis['types'])}" if basis["types"] else ""
-            lines.append(f"textures      {basis['textures']} of {_size(basis['size'])}, {channels}{types}")
+            lines.append(f"basis         {basis['textures']} textures of {_size(basis['size'])}, {channels}{types}")
     proxy = facts["proxy"]
     lines.append(f"proxy         {proxy['vertices']:,} vertices, {proxy['triangles']:,} triangles")
     if proxy["sheets"] is not None:

@@ -107,5 +107,5 @@ class Appearance:
 
     @property
     def textures(self) -> int:
-        """Number of eigen textures of the largest plane."""
-        return max((sum(basis.count for basis in plane.bases) for plane in self.planes), default=0)
+        """Number of eigen textures: of the basis that has most. Drawing with so many draws with all."""
+        return max((basis.count for plane in self.planes for basis in plane.bases), default=0)

@@ -8,7 +8,7 @@ import html
 import json
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from eigenfield.core.errors import OutputError
 from eigenfield.core.scene import Scene
 from eigenfield.core.version import __version__
 from eigenfield.gltf import encode_scene
+from eigenfield.rendering import viewpoint
 from eigenfield.runtime.files import refuse_existing, write_bytes
 
 STATIC_FOLDER = Path(__file__).parent / "static"  # what `npm run build` in web/ leaves here
@@ -46,7 +47,7 @@ def page_html(config: Mapping[str, Any]) -> bytes:
 
     Args:
         config: JSON object, all keys optional: title, scene (URL), bytes, embedded, photographs (camera name to URL),
-            metresPerUnit, version.
+            metresPerUnit, version, start (X, Y), ui.
 
     Raises:
         OutputError: `viewer-build`.
@@ -54,7 +55,27 @@ def page_html(config: Mapping[str, Any]) -> bytes:
     return _encode(_configure(_text("index.html"), config))
 
 
-def single_file(glb: bytes, *, title: str, metres_per_unit: float | None = None) -> bytes:
+@dataclass(frozen=True)
+class Plain:
+    """What a page without a laboratory has of its own.
+
+    Attributes:
+        poster: A JPEG of the first view, shown until the scene is there.
+        tags: Names and contents of <meta property>, for those who show a link to the page.
+    """
+
+    poster: bytes
+    tags: Mapping[str, str]
+
+
+def single_file(
+    glb: bytes,
+    *,
+    title: str,
+    metres_per_unit: float | None = None,
+    start: tuple[float, float] | None = None,
+    plain: Plain | None = None,
+) -> bytes:
     """The viewer and a scene as one page that needs nothing else, from file:// too; the same bytes for the same input.
 
     The page's own policy allows its one script and style, named by their hashes, and no connection to anywhere.
@@ -63,11 +84,21 @@ def single_file(glb: bytes, *, title: str, metres_per_unit: float | None = None)
         glb: The scene's file.
         title: Of the page.
         metres_per_unit: Metres in one unit of the capture, for headsets.
+        start: The first view, on the view plane. Default: the reference camera's.
+        plain: Of a page without a laboratory. Default: with one.
 
     Raises:
         OutputError: `viewer-build`.
     """
     config: dict[str, Any] = {"title": title, "embedded": True, "bytes": len(glb), "version": __version__}
+    if start is not None:
+        config["start"] = list(start)
+    head = poster = ""
+    if plain is not None:
+        config["ui"] = "plain"
+        head = "".join(f'\n<meta property="{name}" content="{html.escape(text)}">' for name, text in plain.tags.items())
+        picture = base64.b64encode(plain.poster).decode("ascii")
+        poster = f'<img class="poster" alt="{html.escape(title)}" src="data:image/jpeg;base64,{picture}">'
     if metres_per_unit is not None:
         config["metresPerUnit"] = metres_per_unit
     script, style = _inline_script(_text("viewer.js")), _inline_style(_text("viewer.css"))
@@ -80,9 +111,9 @@ def single_file(glb: bytes, *, title: str, metres_per_unit: float | None = None)
     page = _replace_once(page, STYLE_ELEMENT, lambda _: f"<style>{style}</style>")
     page = _replace_once(page, SCRIPT_ELEMENT, lambda _: f'<script type="module">{script}</script>')
     meta = f'<meta http-equiv="Content-Security-Policy" content="{policy}">'
-    page = _replace_once(page, HEAD_ELEMENT, lambda head: f"{head}\n{meta}")
+    page = _replace_once(page, HEAD_ELEMENT, lambda found: f"{found}\n{meta}{head}")
     data = f'<script type="application/octet-stream" id="eigenfield-scene">{scene}</script>'
-    return _encode(_configure(page, config, data))
+    return _encode(_configure(page, config, data, poster))
 
 
 def write_page(
@@ -91,6 +122,7 @@ def write_page(
     *,
     title: str | None = None,
     metres_per_unit: float | None = None,
+    at: tuple[float, float] | None = None,
     overwrite: bool = False,
 ) -> None:
     """Write a page that opens by double click and needs no network: viewer and scene in one file.
@@ -102,14 +134,19 @@ def write_page(
         output: The .html.
         title: Of the page. Default: the output's name.
         metres_per_unit: Metres in one unit of the capture, for headsets.
+        at: The first view, on the view plane. Default: the reference camera's.
         overwrite: Whether an existing file is replaced.
 
     Raises:
+        OptionError: `viewpoint`: `at` is outside the array.
         OutputError: `viewer-build`; the file cannot be written.
     """
     refuse_existing(output, overwrite)
+    if at is not None:
+        viewpoint(scene, at=at)  # refuses what is outside
     glb = encode_scene(replace(scene, residual=None))
-    data = single_file(glb, title=output.stem if title is None else title, metres_per_unit=metres_per_unit)
+    title = output.stem if title is None else title
+    data = single_file(glb, title=title, metres_per_unit=metres_per_unit, start=at)
     write_bytes(output, data, overwrite=overwrite)
 
 
@@ -118,14 +155,14 @@ def _text(name: str) -> str:
     return static_file(name).decode("utf-8").replace("\r\n", "\n").replace("\r", "\n")
 
 
-def _configure(page: str, config: Mapping[str, Any], more: str = "") -> str:
-    """The page with its title and configuration; `more` behind them."""
+def _configure(page: str, config: Mapping[str, Any], more: str = "", first: str = "") -> str:
+    """The page with its title and configuration; `first` before it, `more` behind it."""
     for mark in (TITLE_ELEMENT, CONFIG_ELEMENT):
         if page.count(mark) != 1:
             raise _not_built("index.html", f"has not exactly one {mark}")
     page = page.replace(TITLE_ELEMENT, f"<title>{html.escape(str(config.get('title', 'eigenfield')))}</title>")
     before, after = page.split(CONFIG_ELEMENT)  # not `replace`: nothing that came in is searched again
-    return before + CONFIG_ELEMENT.replace("{}", json_for_html(config)) + more + after
+    return before + first + CONFIG_ELEMENT.replace("{}", json_for_html(config)) + more + after
 
 
 def json_for_html(value: Any) -> str:

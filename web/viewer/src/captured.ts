@@ -13,6 +13,8 @@ export interface Captured {
   /** From a free view to the nearest camera; from a camera to the next one, in the order of the list. */
   next(step: number): void;
   nearest(): void;
+  /** Name of the camera that is looked through, else of the nearest. */
+  nearestName(): string | null;
   order(): CameraOrder;
   /** Of the camera that is looked through, else of the nearest. */
   hasPhotograph(): boolean;
@@ -68,6 +70,7 @@ export function createCaptured(
   return {
     to,
     nearest,
+    nearestName: () => nameOf(session.captured ?? places.nearest()),
     order,
     hasPhotograph,
     leave: () => {

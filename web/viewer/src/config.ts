@@ -1,5 +1,11 @@
-// The configuration of the page: the JSON in #eigenfield-config, by whoever made the page, and ?memory=MB in its
-// address. Every key is optional, and a key of the wrong kind is as good as absent.
+// The configuration of the page: the JSON in #eigenfield-config, by whoever made the page, and the query of its
+// address: ?memory=MB, ?ui=, ?poster=. Every key is optional, and a key of the wrong kind is as good as absent.
+
+import { oneOf } from "./options";
+
+/** What lies over the picture: nothing; title and a few buttons; or panel, map and tools. */
+export const UIS = ["none", "plain", "full"] as const;
+export type Ui = (typeof UIS)[number];
 
 export interface Config {
   title: string | null;
@@ -9,6 +15,10 @@ export interface Config {
   photographs: ReadonlyMap<string, string>; // camera's name to URL
   metresPerUnit: number | null;
   version: string | null;
+  start: { x: number; y: number } | null; // the first view, on the view plane
+  ui: Ui;
+  poster: string | null; // URL of a picture that is shown until the scene is there
+  ownView: boolean; // the address names no view: the page may show its first one as it likes
   memory: number | null; // GPU bytes the page may use; null: by the device
 }
 
@@ -23,6 +33,9 @@ export function readConfig(page: Document, address: URL): Config {
     return typeof value === "number" && Number.isFinite(value) && value > 0 ? value : null;
   };
   const photographs = given["photographs"];
+  const start: unknown[] = Array.isArray(given["start"]) ? given["start"] : [];
+  const [x, y] = start.map((value) => (typeof value === "number" && Math.abs(value) <= 1 ? value : undefined));
+  const asked = address.searchParams.get("ui");
   const megabytes = Number(address.searchParams.get("memory"));
   return {
     title: text("title"),
@@ -36,6 +49,10 @@ export function readConfig(page: Document, address: URL): Config {
     ),
     metresPerUnit: positive("metresPerUnit"),
     version: text("version"),
+    start: x === undefined || y === undefined ? null : { x, y },
+    ui: oneOf(UIS, asked === "0" ? "none" : asked) ?? oneOf(UIS, given["ui"]) ?? "full",
+    poster: address.searchParams.get("poster"),
+    ownView: address.hash.length < 2,
     memory: megabytes > 0 && Number.isFinite(megabytes) ? megabytes * 1e6 : null,
   };
 }

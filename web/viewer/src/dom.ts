@@ -44,5 +44,6 @@ export const ICONS = {
   nearest: "M12 8a4 4 0 1 0 0 8 4 4 0 0 0 0-8ZM12 3v3M12 18v3M3 12h3M18 12h3",
   previous: "M14.5 6 8.5 12l6 6",
   next: "M9.5 6l6 6-6 6",
+  fullscreen: "M4 9V4h5M15 4h5v5M20 15v5h-5M9 20H4v-5",
   close: "M6 6l12 12M18 6 6 18",
 };

@@ -53,6 +53,11 @@ export function createHelp(version: string | null): Help {
   root.addEventListener("click", (event) => {
     if (event.target === root) root.close(); // beside the sheet
   });
+  root.addEventListener("keydown", (event) => {
+    if (!["h", "?"].includes(event.key.toLowerCase())) return;
+    event.stopPropagation(); // the page would open it again
+    root.close();
+  });
   return {
     root,
     toggle: () => {

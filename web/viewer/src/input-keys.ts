@@ -15,7 +15,11 @@ const HELD: Readonly<Record<string, Axis>> = {
   KeyR: ["forward", 1], KeyF: ["forward", -1],
 };
 
+const PLAIN: readonly string[] = ["0", "home", "escape"]; // keys of pages without a laboratory
+
 export interface Actions {
+  /** Panel, map and tools are not shown. */
+  plain(): boolean;
   help(): void;
   panel(): void;
   screenshot(): void;
@@ -73,7 +77,7 @@ export function listenToKeys(viewer: Viewer, actions: Actions): Keys {
     }
     if (event.repeat && !["[", "]", "-", "+", "="].includes(event.key)) return;
     const act = once(event.key);
-    if (!act) return;
+    if (!act || (actions.plain() && !PLAIN.includes(event.key.toLowerCase()))) return;
     event.preventDefault();
     act();
   });

@@ -17,6 +17,7 @@ export function listenToPointers(viewer: Viewer): void {
 
   canvas.addEventListener("pointerdown", (event) => {
     canvas.setPointerCapture(event.pointerId);
+    viewer.hold();
     down.set(event.pointerId, { x: event.clientX, y: event.clientY });
   });
   canvas.addEventListener("pointermove", (event) => {

@@ -2,7 +2,7 @@
 
 import { createApi } from "./api";
 import { createCameraMap } from "./camera-map";
-import { readConfig } from "./config";
+import { readConfig, type Ui } from "./config";
 import { button, element, ICONS } from "./dom";
 import { takeFiles } from "./files";
 import { createHelp } from "./help";
@@ -10,8 +10,10 @@ import { listenToGamepads, type Gamepads } from "./input-gamepad";
 import { listenToKeys, type Keys } from "./input-keys";
 import { listenToPointers } from "./input-pointer";
 import { createTilt } from "./input-tilt";
+import { createFullscreen } from "./fullscreen";
 import { createOverlays } from "./overlays";
 import { createPanel } from "./panel";
+import { takePoster } from "./poster";
 import { saveScreenshot } from "./screenshot";
 import { fileSource, namedSource } from "./source";
 import { keepAddress } from "./url";
@@ -26,7 +28,10 @@ const SMALL = "(max-width: 720px), (max-height: 500px)"; // the panel would leav
 function start(): void {
   const address = new URL(location.href);
   const config = readConfig(document, address);
-  if (config.title !== null) document.title = `${config.title} – eigenfield`;
+  const name = (title: string): void => {
+    document.title = config.ui === "full" ? `${title} – eigenfield` : title; // other pages are their owners'
+  };
+  if (config.title !== null) name(config.title);
   const label = "The scene: arrow keys move, H lists all controls";
   const canvas = element("canvas", { class: "view", tabindex: "0", role: "application", "aria-label": label });
   const stageArea = element("main", { class: "stage" }, canvas);
@@ -66,43 +71,59 @@ function start(): void {
     viewer.setMode(viewer.modeName() === "plane" ? "orbit" : "plane");
   });
   const lean = button("Move by tilting the device", ICONS.tilt, () => void tilt.toggle());
+  const fullscreen = createFullscreen();
+  let ui = config.ui;
+  const laboratory = element("button", { type: "button", class: "laboratory" }, "Laboratory");
+  laboratory.addEventListener("click", () => showUi(ui === "full" ? "plain" : "full"));
   const shoot = button("Save the picture  P", ICONS.camera, () => saveScreenshot(viewer));
   const tools = element(
     "div", { class: "tools", role: "toolbar", "aria-label": "Tools" },
-    button("First view  Home", ICONS.home, viewer.home), orbit, lean, headset.root, shoot,
-    button("Open a file", ICONS.open, chooser.choose), button("Controls  H", ICONS.help, help.toggle), fold,
+    button("First view  Home", ICONS.home, viewer.home), orbit, lean, shoot,
+    button("Open a file", ICONS.open, chooser.choose), button("Controls  H", ICONS.help, help.toggle),
+    fullscreen, headset.root, fold, laboratory,
   );
-  stageArea.append(...overlays.roots, map.root, tools);
+  const showUi = (next: Ui): void => {
+    ui = next;
+    document.body.dataset["ui"] = ui; // the style sheet hides what does not belong to it
+    laboratory.hidden = config.ui !== "plain";
+    laboratory.setAttribute("aria-pressed", String(ui === "full"));
+    showPanel(ui === "full" && !matchMedia(SMALL).matches);
+  };
+  const poster = takePoster(document, config.poster);
+  stageArea.append(...(poster ? [poster] : []), ...overlays.roots, map.root, tools);
   document.body.append(stageArea, panel.root, help.root, chooser.root);
 
   const update = (): void => {
     panel.update();
     overlays.update();
+    if (viewer.status() === "failed") poster?.remove();
     map.update();
     orbit.setAttribute("aria-pressed", String(viewer.modeName() === "orbit"));
     orbit.hidden = !viewer.scene()?.plane;
     lean.hidden = !tilt.possible || !viewer.scene()?.plane;
     lean.setAttribute("aria-pressed", String(tilt.on()));
     shoot.disabled = viewer.scene() === null;
-    const name = viewer.scene()?.source.name;
-    if (name !== undefined) document.title = `${name} – eigenfield`;
+    const title = viewer.scene()?.source.name;
+    if (title !== undefined) name(title);
   };
   viewer.onChange(update);
   viewer.onDraw(() => {
     overlays.tick();
     map.update();
     panel.tick();
+    if (viewer.scene() !== null && (!viewer.arriving() || !viewer.untouched())) poster?.remove();
   });
 
   listenToPointers(viewer);
   keys = listenToKeys(viewer, {
+    plain: () => ui !== "full",
     help: help.toggle,
     panel: () => showPanel(panel.root.hidden !== false),
     screenshot: () => saveScreenshot(viewer),
   });
   gamepads = listenToGamepads(viewer);
   keepAddress(viewer);
-  showPanel(!matchMedia(SMALL).matches);
+  showUi(ui);
   new ResizeObserver(() => {
     if (headset.presenting()) return; // the headset has its own size
     viewer.stage.resize(stageArea.clientWidth, stageArea.clientHeight);

@@ -38,4 +38,7 @@ export function approach(value: number, goal: number, seconds: number, constant:
   return goal + (value - goal) * Math.exp(-seconds / constant);
 }
 
+/** On a phone held upright the picture fills the height, and its sides are cut; elsewhere all of it is seen. */
+export const fillsHeight = (aspect: number): boolean => aspect < 1 && matchMedia("(pointer: coarse)").matches;
+
 export const clamp = (value: number, low: number, high: number): number => Math.min(Math.max(value, low), high);

@@ -3,7 +3,7 @@
 import { Vector2, Vector3 } from "three";
 import type { Captured } from "./captured";
 import type { Mode } from "./mode";
-import type { Places } from "./places";
+import type { Coordinates, Places } from "./places";
 import type { ModeName, Session } from "./session";
 import type { Stage } from "./stage";
 
@@ -18,11 +18,13 @@ export interface Movement {
 
 const MIDDLE = new Vector2(); // of the canvas
 
+/** start: the first view of the page's own scene, on the view plane; null: the reference camera's. */
 export function createMovement(
   session: Session,
   stage: Stage,
   places: Places,
   captured: Captured,
+  start: Coordinates | null,
   changed: () => void,
 ): Movement {
   const setMode = (next: ModeName): void => {
@@ -59,18 +61,19 @@ export function createMovement(
       if (!scene) return;
       captured.leave();
       const { field, plane, orbit, around } = scene;
+      const first = scene.source.own ? start : null;
       if (!field) {
         const away = new Vector3(0.35, 0.25, 1).setLength(around.radius / Math.sin(Math.atan(around.tangents.y)));
         orbit.set(around.centre.clone().add(away), around.centre);
       } else if (plane) {
         session.mode = "plane";
         const { cameras, reference, viewPlane } = field.info;
-        const { x, y } = places.dropped(cameras[reference]?.centre ?? viewPlane.origin);
+        const { x, y } = first ?? places.dropped(cameras[reference]?.centre ?? viewPlane.origin);
         plane.goTo(x, y);
         plane.setDolly(0);
         plane.setZoom(1);
       } else {
-        orbit.enter(places.stand(field.info.reference), MIDDLE);
+        orbit.enter(places.stand((first && places.nearestTo(first)) ?? field.info.reference), MIDDLE);
         const { eye, target } = orbit.pose();
         orbit.set(eye, target); // upright, however the camera was held
       }

@@ -27,7 +27,7 @@ export interface Events {
 
 export function createOpening(session: Session, stage: Stage, config: Config, events: Events): Opening {
   const { changed } = events;
-  let opening: AbortController | null = null;
+  const openings: AbortController[] = []; // of the scene that is open and of those that may follow it, oldest first
   let opened: Promise<void> = Promise.resolve();
 
   const close = (): void => {
@@ -66,9 +66,10 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
   };
 
   const open = async (source: Source): Promise<void> => {
-    opening?.abort();
-    const mine = (opening = new AbortController());
-    const stale = (): boolean => opening !== mine;
+    const mine = new AbortController();
+    openings.push(mine);
+    const stale = (): boolean => mine.signal.aborted;
+    const latest = (): boolean => openings.at(-1) === mine;
     Object.assign(session, { status: "loading", arriving: false, message: null });
     session.progress = { loaded: 0, total: source.bytes };
     changed();
@@ -78,7 +79,7 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
         signal: mine.signal,
         memory: config.memory ?? undefined,
         onBytes: (loaded, total) => {
-          if (stale()) return;
+          if (!latest()) return;
           session.progress = { loaded, total: total ?? source.bytes };
           changed();
         },
@@ -87,17 +88,23 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
         field?.dispose();
         return;
       }
+      while (openings[0] !== mine) openings.shift()?.abort();
       put(source, gltf, field);
       if (!field) return;
       await follow(field);
-      if (stale()) return;
+      if (session.scene?.field !== field) return;
       session.arriving = false;
       changed();
     } catch (error) {
       if (stale()) return;
-      session.message = described(error);
-      session.status = "failed";
-      close();
+      const last = latest();
+      openings.splice(openings.indexOf(mine), 1);
+      if (!last) return; // another one is on its way
+      const field = session.scene?.field;
+      const { text, code } = described(error);
+      session.message = { text: session.scene ? `${source.name} cannot be opened: ${text}` : text, code };
+      session.status = session.scene ? "ready" : "failed"; // an open scene stays
+      session.arriving = field ? field.loaded < field.usable : false;
       changed();
     }
   };
@@ -140,7 +147,7 @@ function ended(field: EigenField): Promise<void> {
 function plainSurroundings(gltf: GLTF): Surroundings {
   const { centre, radius } = extentOf(gltf.scene);
   const tangents = new Vector2(0.4, 0.4);
-  return { up: new Vector3(0, 1, 0), centre, radius, tangents, focus: null, outside: () => false };
+  return { up: new Vector3(0, 1, 0), centre, radius, tangents, focus: null, framed: false, beyond: () => 0 };
 }
 
 function described(error: unknown): Message {

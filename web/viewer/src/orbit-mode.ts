@@ -2,20 +2,24 @@
 // thing turn as it stands; a camera's roll is kept on the way in and let go with the first movement.
 
 import { MathUtils, type Object3D, type PerspectiveCamera, Quaternion, Raycaster, Vector2, Vector3 } from "three";
-import { approach, clamp, type Mode, type Push, WHOLE } from "./mode";
+import { approach, clamp, fillsHeight, type Mode, type Push, WHOLE } from "./mode";
 
 const TURN = 2.4; // radians that a drag across the smaller side of the canvas turns
 const STEEPEST = 1.45; // radians above or below
 const SMOOTH = 0.07; // seconds
+const GIVE = 0.1; // radians beyond the captured views over which a step outwards loses nearly two thirds of its length
+const HALVINGS = 12; // when looking for the part of a step that is left
 
-/** Where captured views are, in the world of three.js: what `outside` and the speed of movement need to know. */
+/** Where captured views are, in the world of three.js: what `outside` and the resistance beyond them need to know. */
 export interface Surroundings {
   up: Vector3;
   centre: Vector3; // of the surface
   radius: number;
   tangents: Vector2; // half the reference camera's picture over its focal length, across and down
   focus: Vector3 | null; // what cameras that stand around look at: a free eye turns about it, and stays among them
-  outside(eye: Vector3, target: Vector3): boolean;
+  framed: boolean; // photographs show a view that goes on beside them, not a thing in their middle
+  /** Radians from the direction of an eye, as the target sees it, to the nearest one that was captured; 0 among them. */
+  beyond(eye: Vector3, target: Vector3): number;
 }
 
 export interface OrbitMode extends Mode {
@@ -74,7 +78,34 @@ export function createOrbitMode(object: Object3D, around: Surroundings): OrbitMo
     const away = goal.target.clone().sub(around.centre);
     if (away.length() > 2 * around.radius) goal.target.copy(around.centre).add(away.setLength(2 * around.radius));
   };
-  const tangent = (): number => Math.max(around.tangents.y, around.tangents.x / aspect);
+  const tangent = (): number => {
+    const { x, y } = around.tangents;
+    return around.framed && fillsHeight(aspect) ? Math.min(y, x / aspect) : Math.max(y, x / aspect);
+  };
+  /** Moves by the part of a step that is left of it: beyond the captured views each step outwards is worth less. */
+  const resisted = (move: (part: number) => void): void => {
+    const before = { ...goal, target: goal.target.clone() };
+    const reached = (part: number): number => {
+      Object.assign(goal, before, { target: before.target.clone() });
+      move(part);
+      return around.beyond(eyeOf(goal), goal.target);
+    };
+    const from = around.beyond(eyeOf(goal), goal.target);
+    const to = reached(1);
+    if (to <= from) return;
+    const allowed = GIVE * Math.log(Math.exp(from / GIVE) + (to - from) / GIVE);
+    let [low, high] = [0, 1];
+    for (let i = 0; i < HALVINGS; i++) {
+      const part = (low + high) / 2;
+      if (reached(part) < allowed) low = part;
+      else high = part;
+    }
+    reached(low);
+  };
+  const turn = (right: number, up: number): void => {
+    goal.yaw += right;
+    goal.pitch = clamp(goal.pitch + up, -STEEPEST, STEEPEST);
+  };
   const surface = (camera: PerspectiveCamera, at: Vector2): Vector3 | null => {
     ray.setFromCamera(at, camera);
     return ray.intersectObject(object, true)[0]?.point ?? null;
@@ -107,16 +138,14 @@ export function createOrbitMode(object: Object3D, around: Surroundings): OrbitMo
     drag: (dx, dy, panning) => {
       if (panning) {
         const size = 2 * goal.distance * Math.min(tangent(), tangent() * aspect);
-        pan(-dx * size, dy * size);
+        resisted((part) => pan(-dx * size * part, dy * size * part));
       } else {
-        goal.yaw -= dx * TURN;
-        goal.pitch = clamp(goal.pitch + dy * TURN, -STEEPEST, STEEPEST);
+        resisted((part) => turn(-dx * TURN * part, dy * TURN * part));
       }
     },
     release: () => {},
     push: (wish: Push, seconds: number) => {
-      goal.yaw += wish.x * seconds;
-      goal.pitch = clamp(goal.pitch + wish.y * seconds, -STEEPEST, STEEPEST);
+      resisted((part) => turn(wish.x * seconds * part, wish.y * seconds * part));
       setDistance(goal.distance * Math.exp(-(wish.closer + wish.forward) * seconds));
     },
     closer: (factor) => setDistance(goal.distance / factor),
@@ -152,6 +181,6 @@ export function createOrbitMode(object: Object3D, around: Surroundings): OrbitMo
       camera.updateMatrixWorld(true);
       return WHOLE;
     },
-    outside: () => around.outside(eyeOf(place), place.target),
+    outside: () => around.beyond(eyeOf(place), place.target) > 0,
   };
 }

@@ -42,6 +42,8 @@ export function createOverlays(viewer: Viewer, choose: () => void): Overlays {
     element("p", {}, "Outside the captured views", element("kbd", {}, "Esc")), back,
   );
   const tag = element("p", { class: "tag", hidden: "" });
+  const title = element("p", { class: "title" });
+  const hint = element("p", { class: "hint", hidden: "" }, "Drag to look around");
 
   const update = (): void => {
     const scene = viewer.scene();
@@ -70,9 +72,11 @@ export function createOverlays(viewer: Viewer, choose: () => void): Overlays {
     chooseAnother.hidden = status !== "failed";
     dismiss.hidden = status !== "ready";
     invitation.hidden = status !== "empty";
+    title.textContent = scene?.source.name ?? viewer.config.title ?? "";
     tick();
   };
   const tick = (): void => {
+    hint.hidden = !viewer.untouched() || viewer.status() !== "ready" || viewer.arriving() || viewer.message() !== null;
     const outside = viewer.outside();
     cue.hidden = !outside;
     viewer.stage.canvas.parentElement?.classList.toggle("outside", outside);
@@ -86,7 +90,7 @@ export function createOverlays(viewer: Viewer, choose: () => void): Overlays {
     if (tag.textContent !== words) tag.textContent = words;
   };
   return {
-    roots: [tag, cue, progress, message, invitation, drop],
+    roots: [title, tag, cue, hint, progress, message, invitation, drop],
     update,
     tick,
     hover: (over) => void (drop.hidden = !over),

@@ -180,7 +180,9 @@ export function createPanel(viewer: Viewer): Panel {
       const now = viewer.rate();
       const { scale, linear } = viewer.detail();
       const drawn = scale < 1 ? ", coarser until it rests" : linear ? ", linear until it rests" : "";
-      rate.textContent = now === null ? "still" : `${now.toFixed(0)} frames per second${drawn}`;
+      const near = viewer.nearestName();
+      const rests = near === null ? "Drawn in full" : `Drawn in full, nearest camera ${near}`;
+      rate.textContent = now === null ? rests : `${now.toFixed(0)} frames per second${drawn}`;
     },
   };
 }

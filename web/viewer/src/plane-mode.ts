@@ -5,7 +5,7 @@ import type { PerspectiveCamera } from "three";
 import { novelCamera, placeCamera } from "eigenfield-three";
 import type { CaptureCamera, EigenField, Frame, Vector } from "eigenfield-three";
 import { add, dot, scaled, turned } from "./geometry";
-import { approach, clamp, type Mode, type Push } from "./mode";
+import { approach, clamp, fillsHeight, type Mode, type Push } from "./mode";
 
 const SPAN = 2.6; // view-plane units that a drag across the smaller side of the canvas moves
 const GIVE = 0.14; // how far beyond the edge a hand can pull
@@ -29,6 +29,7 @@ export function createPlaneMode(field: EigenField): PlaneMode {
   const goal = { x: 0, y: 0, zoom: 1, dolly: 0 };
   const depth = depths(field);
   const furthest = (NEAREST * depth.nearest) / depth.middle;
+  let cover = 1; // how much larger than whole the picture is at zoom 1
   let held = false;
   let pushed = false;
 
@@ -37,7 +38,7 @@ export function createPlaneMode(field: EigenField): PlaneMode {
     goal.y = line ? 0 : clamp(y, -reach, reach);
   };
   const setDolly = (dolly: number): void => void (goal.dolly = clamp(dolly, BACK, furthest));
-  const setZoom = (zoom: number): void => void (goal.zoom = clamp(zoom, 1, LARGEST));
+  const setZoom = (zoom: number): void => void (goal.zoom = clamp(zoom, 1 / cover, LARGEST));
 
   const view = (): CaptureCamera => {
     const x = clamp(place.x, -1, 1);
@@ -78,6 +79,7 @@ export function createPlaneMode(field: EigenField): PlaneMode {
     closer: (factor) => setZoom(goal.zoom * factor),
     forward: (amount) => setDolly(goal.dolly + amount),
     step: (seconds) => {
+      setZoom(goal.zoom); // a device that was turned has another limit
       if (!held && !pushed) setGoal(goal.x, goal.y, 1);
       pushed = false;
       place.x = approach(place.x, soft(goal.x), seconds, SMOOTH, 2e-4);
@@ -88,7 +90,11 @@ export function createPlaneMode(field: EigenField): PlaneMode {
         place.x !== soft(goal.x) || place.y !== soft(goal.y) || place.zoom !== goal.zoom || place.dolly !== goal.dolly
       );
     },
-    place: (camera: PerspectiveCamera, aspect: number): Frame => placeCamera(field, camera, view(), aspect, place.zoom),
+    place: (camera: PerspectiveCamera, aspect: number): Frame => {
+      const seen = view();
+      cover = fillsHeight(aspect) ? Math.max(1, seen.width / seen.height / aspect) : 1;
+      return placeCamera(field, camera, seen, aspect, cover * place.zoom);
+    },
     outside: () => false,
   };
 }

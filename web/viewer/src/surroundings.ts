@@ -3,10 +3,12 @@
 import { Box3, Matrix3, type Object3D, Sphere, Vector2, Vector3 } from "three";
 import type { EigenField } from "eigenfield-three";
 import { row } from "./geometry";
+import { clamp } from "./mode";
 import type { Surroundings } from "./orbit-mode";
 
 const EDGE = 1.03; // view-plane units: a little beyond the array is no lie yet
 const AGREED = 0.5; // length of the mean of unit vectors that have a direction in common
+const LEVEL = 1e-5; // sine of the angle to the view plane under which a ray misses it
 const LEAST_ANGLE = 0.15; // radians between the eye and the nearest camera that are always fine
 
 export function surroundingsOf(field: EigenField): Surroundings {
@@ -27,21 +29,25 @@ export function surroundingsOf(field: EigenField): Surroundings {
   const normal = new Vector3().crossVectors(right, upwards);
   const origin = placed(viewPlane.origin);
   const [halfWidth, halfHeight] = viewPlane.extent;
-  const beyondPlane = (eye: Vector3, target: Vector3): boolean => {
-    const ray = eye.clone().sub(target);
-    const along = ray.dot(normal);
+  const slack = (EDGE - 1) * Math.max(halfWidth, halfHeight);
+  const beyondPlane = (eye: Vector3, target: Vector3): number => {
+    const ray = eye.clone().sub(target).normalize();
     const height = origin.clone().sub(target).dot(normal);
-    if (along * height <= 0 || Math.abs(along) < 1e-5 * ray.length()) return true;
-    const met = target.clone().addScaledVector(ray, height / along).sub(origin);
-    const slack = (EDGE - 1) * Math.max(halfWidth, halfHeight);
-    return Math.abs(met.dot(right)) > halfWidth + slack || Math.abs(met.dot(upwards)) > halfHeight + slack;
+    const along = Math.max(ray.dot(normal) * Math.sign(height), LEVEL); // a ray that misses the plane meets it far off
+    const met = target.clone().addScaledVector(ray, Math.abs(height) / along).sub(origin);
+    const [x, y] = [met.dot(right), met.dot(upwards)];
+    const [width, high] = [halfWidth + slack, halfHeight + slack];
+    if (along > LEVEL && Math.abs(x) <= width && Math.abs(y) <= high) return 0;
+    const nearest = origin.clone().addScaledVector(right, clamp(x, -width, width));
+    nearest.addScaledVector(upwards, clamp(y, -high, high));
+    return ray.angleTo(nearest.sub(target));
   };
 
   const centres = cameras.map((camera) => placed(camera.centre));
   const widest = Math.max(LEAST_ANGLE, gap(centres, centre));
-  const farFromAll = (eye: Vector3, target: Vector3): boolean => {
+  const beyondAll = (eye: Vector3, target: Vector3): number => {
     const ray = eye.clone().sub(target);
-    return centres.every((place) => place.clone().sub(target).angleTo(ray) > widest);
+    return Math.max(0, Math.min(...centres.map((place) => place.clone().sub(target).angleTo(ray))) - widest);
   };
 
   const view = cameras[reference];
@@ -49,7 +55,8 @@ export function surroundingsOf(field: EigenField): Surroundings {
     ? new Vector2(view.width / (2 * row(view.K, 0)[0]), view.height / (2 * row(view.K, 1)[1]))
     : new Vector2(0.5, 0.5);
   const focus = facesPlane ? null : focusOf(centres, cameras.map((camera) => outwards(row(camera.R, 2))));
-  return { up: up.normalize(), centre, radius, tangents, focus, outside: facesPlane ? beyondPlane : farFromAll };
+  const beyond = facesPlane ? beyondPlane : beyondAll;
+  return { up: up.normalize(), centre, radius, tangents, focus, framed: facesPlane, beyond };
 }
 
 /** The point nearest to all optical axes, least squares: sum of (1 - f fT) (p - c) = 0. Null if they are parallel. */

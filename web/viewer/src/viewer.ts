@@ -17,6 +17,7 @@ import { createPlaces } from "./places";
 import { emptySession, type Message, type ModeName, type Progress, type Scene, type Status } from "./session";
 import type { Source } from "./source";
 import { createStage, type Stage } from "./stage";
+import { createSway } from "./sway";
 import { createWireframe } from "./wireframe";
 
 export interface Viewer {
@@ -41,6 +42,8 @@ export interface Viewer {
   toCamera(index: number): void;
   nextCamera(step: number): void;
   nearestCamera(): void;
+  /** Name of the captured camera that is looked through, else of the nearest. */
+  nearestName(): string | null;
   cameraOrder(): CameraOrder;
   /** X, Y of the eye: on the view plane, or dropped onto it. */
   coordinates(): { x: number; y: number };
@@ -52,6 +55,12 @@ export interface Viewer {
   hasPhotograph(): boolean;
   photographShown(): boolean;
   showPhotograph(shown: boolean): void;
+  /** Nobody has moved anything yet, and the page shows its own first view. */
+  untouched(): boolean;
+  /** The picture moves by itself. */
+  swaying(): boolean;
+  /** A hand lies on the picture: it no longer moves by itself. */
+  hold(): void;
   /** The mode that is moved now; looking through a captured camera ends with it. */
   moving(): Mode | null;
   frame(): Frame;
@@ -102,8 +111,9 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
   const loop = createLoop(
     (seconds) => {
       const active = pushed(seconds);
+      const swayed = sway.step(seconds);
       const moved = session.captured === null && places.mode()?.step(seconds) === true;
-      return active || moved;
+      return active || swayed || moved;
     },
     ({ now, moves, follows }) => draw(pace.frame(now, moves, follows)),
     () => {
@@ -122,7 +132,16 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
   });
   const places = createPlaces(session, stage);
   const captured = createCaptured(session, places, photographs, changed);
-  const movement = createMovement(session, stage, places, captured, changed);
+  const movement = createMovement(session, stage, places, captured, config.start, changed);
+  const coarse = (): boolean => detail.scale < 1;
+  const sway = createSway(session, config.ownView, places.mode, movement.home, coarse);
+  /** The same, and nothing moves by itself any more. */
+  const moves = <Given extends unknown[], Made>(act: (...given: Given) => Made): ((...given: Given) => Made) => {
+    return (...given) => {
+      sway.end();
+      return act(...given);
+    };
+  };
   const painter = createPainter(session, stage, places, captured);
 
   const removeWireframe = (): void => {
@@ -162,6 +181,7 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
   };
   const settled = async (): Promise<void> => {
     await opening.done();
+    sway.settle();
     do await new Promise<void>((done) => void (restWaiters.push(done), loop.request()));
     while (photographs.pending() || !loop.idle() || pace.waiting());
   };
@@ -187,27 +207,31 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
     progress: () => session.progress,
     options: () => options,
     modeName: () => session.mode,
-    setMode: movement.setMode,
+    setMode: moves(movement.setMode),
     captured: () => session.captured,
-    toCamera: captured.to,
-    nextCamera: captured.next,
-    nearestCamera: captured.nearest,
+    toCamera: moves(captured.to),
+    nextCamera: moves(captured.next),
+    nearestCamera: moves(captured.nearest),
+    nearestName: captured.nearestName,
     cameraOrder: captured.order,
     coordinates: places.coordinates,
-    goTo: (x, y) => {
+    goTo: moves((x, y) => {
       movement.goTo(x, y);
       loop.touch();
-    },
-    home: movement.home,
-    comeBack: movement.comeBack,
+    }),
+    home: moves(movement.home),
+    comeBack: moves(movement.comeBack),
     outside: places.outside,
     hasPhotograph: captured.hasPhotograph,
     photographShown: () => session.photographShown,
-    showPhotograph: captured.showPhotograph,
-    moving: () => {
+    showPhotograph: moves(captured.showPhotograph),
+    untouched: sway.untouched,
+    swaying: sway.swaying,
+    hold: sway.stop,
+    moving: moves(() => {
       loop.touch();
       return movement.moving();
-    },
+    }),
     frame: painter.frame,
     detail: () => detail,
     request: loop.request,
@@ -219,6 +243,7 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
     },
     suspend: () => {
       suspended = true;
+      sway.end();
       captured.leave();
       stage.setScale(FULL.scale);
       loop.pause();

@@ -22,6 +22,7 @@ export function createHeadset(viewer: Viewer, entered: (inside: boolean) => void
   const { renderer, camera, root: stageRoot } = viewer.stage;
   const root = button("Enter VR", ICONS.headset, () => void enter());
   root.hidden = true;
+  root.classList.add("plain");
   renderer.xr.setReferenceSpaceType("local");
   let session: XRSession | null = null;
   const shift = { x: 0, y: 0 }; // where sticks have moved the eye, view-plane units

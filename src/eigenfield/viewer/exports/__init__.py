@@ -12,6 +12,7 @@ from eigenfield.viewer.exports.glb import write_glb
 from eigenfield.viewer.exports.maps import write_maps
 from eigenfield.viewer.exports.names import file_names
 from eigenfield.viewer.exports.obj import refuse_obj, write_obj, write_obj_folder
+from eigenfield.viewer.exports.plain import refuse_plain, write_plain_page
 from eigenfield.viewer.exports.quilt import quilt_of, write_quilt
 from eigenfield.viewer.page import write_page
 
@@ -22,11 +23,13 @@ __all__ = [
     "quilt_of",
     "refuse_folder",
     "refuse_obj",
+    "refuse_plain",
     "write_colmap",
     "write_glb",
     "write_maps",
     "write_obj",
     "write_obj_folder",
     "write_page",
+    "write_plain_page",
     "write_quilt",
 ]

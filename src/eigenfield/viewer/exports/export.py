@@ -25,12 +25,13 @@ from eigenfield.viewer.exports.folder import refuse_folder
 from eigenfield.viewer.exports.glb import check_image, write_glb
 from eigenfield.viewer.exports.maps import write_maps
 from eigenfield.viewer.exports.obj import refuse_obj, write_obj, write_obj_folder
+from eigenfield.viewer.exports.plain import plain_files, refuse_plain, write_plain_page
 from eigenfield.viewer.exports.quilt import quilt_of, write_quilt
 from eigenfield.viewer.page import write_page
 
 PICTURE_OPTIONS = {"resolution", "background", "weights", "filter", "textures", "samples", "renderer"}
 OPTIONS = {  # of each kind, beside the options of all
-    "html": {"title", "metres_per_unit"},
+    "html": {"title", "metres_per_unit", "at", "plain", "url"},
     "mp4": PICTURE_OPTIONS | {"path", "frames", "fps"},
     "png": PICTURE_OPTIONS | {"path", "frames"},
     "glb": {"at", "image", "draco", "metres_per_unit"},
@@ -65,8 +66,8 @@ def export(
         overwrite: Whether existing files, and folders that an export wrote, are replaced.
         progress: Reports each picture; by default a bar in a notebook.
         options: Of the kind (`OPTIONS`): fields of `RenderJob` for pictures; `path` and `frames` (`path_points`) and
-            `fps` of a flight; `title` and `metres_per_unit` of a page; `at`, `image`, `draco` and
-            `metres_per_unit` of a glb (`write_glb`); `quilt` (columns, rows), `spread`; `residual`.
+            `fps` of a flight; `title`, `metres_per_unit`, `at`, `plain` and `url` of a page (`write_plain_page`); `at`,
+            `image`, `draco` and `metres_per_unit` of a glb (`write_glb`); `quilt` (columns, rows), `spread`; `residual`.
 
     Returns:
         The file or folder that was written, and what it holds, for people.
@@ -82,6 +83,8 @@ def export(
     points = None
     if chosen in ("mp4", "png") or "path" in options:
         points = path_points(options.get("path", FLIGHT_DEFAULT_PATH), options.get("frames", FLIGHT_FRAMES))
+    if options.get("plain"):
+        refuse_plain(output, overwrite)
     _refuse(chosen, output, points, overwrite)
     if chosen == "glb" and not isinstance(scene, Scene) and output.exists() and output.samefile(scene):
         raise OptionError("output-kind", f"{output} is the scene itself", remedy="name another file")
@@ -110,8 +113,13 @@ def _write(
     scene = job.scene
     how: dict[str, Any] = {"overwrite": overwrite, "progress": progress}
     if kind == "html":
-        write_page(scene, output, overwrite=overwrite, **options)
-        return output, f"{output.stat().st_size / 1e6:.1f} MB"
+        plain = {name: value for name, value in options.items() if name != "plain"}
+        if not options.get("plain"):
+            write_page(scene, output, overwrite=overwrite, **plain)
+            return output, f"{output.stat().st_size / 1e6:.1f} MB"
+        frame = write_plain_page(scene, output, overwrite=overwrite, **plain)
+        what = f"{output.stat().st_size / 1e6:.1f} MB, and {plain_files(output)[0].name}, its poster"
+        return output, f"{what}; in a page of yours:\n{frame}"
     if kind == "glb":
         write_glb(scene, output, overwrite=overwrite, **options)
         return output, f"{output.stat().st_size / 1e6:.1f} MB, for any viewer"
@@ -189,3 +197,7 @@ def _check(kind: str, output: Path, given: dict[str, Any]) -> None:
     check_scale(given.get("metres_per_unit"))
     if kind == "glb":
         check_image(given.get("image", "png"), given.get("draco", False))
+    if "url" in given and not given.get("plain"):
+        raise OptionError("unused-option", "--url is for --plain", remedy="leave it out")
+    if not str(given.get("url", "https:")).startswith(("https:", "http:")):
+        raise OptionError("url", f"{given['url']} is no address", remedy="give one that begins with https://")

@@ -1,0 +1,16 @@
+// The whole page on the whole screen, where the browser and the page around it allow that.
+
+import { button, ICONS } from "./dom";
+
+export function createFullscreen(): HTMLButtonElement {
+  const root = button("Full screen", ICONS.fullscreen, () => {
+    if (document.fullscreenElement) void document.exitFullscreen();
+    else void document.documentElement.requestFullscreen();
+  });
+  root.classList.add("plain");
+  root.hidden = !document.fullscreenEnabled;
+  document.addEventListener("fullscreenchange", () => {
+    root.setAttribute("aria-pressed", String(document.fullscreenElement !== null));
+  });
+  return root;
+}
