@@ -11,14 +11,13 @@ const HIGH = 0.03;
 export interface Sway {
   /** One frame's movement; true while there is more to come. */
   step(seconds: number): boolean;
-  /** Nobody has moved anything yet. */
+  /** Nobody has moved or set anything yet. */
   untouched(): boolean;
-  swaying(): boolean;
   /** It stops where it is: a hand lies on the picture. */
   stop(): void;
   /** It stops, and the first view is back: somebody wants a picture that is still. */
   settle(): void;
-  /** Somebody moves. */
+  /** Somebody moves or sets something. */
   end(): void;
 }
 
@@ -45,7 +44,6 @@ export function createSway(
 
   return {
     untouched: () => untouched,
-    swaying: () => !stopped && time > 0,
     step: (seconds) => {
       const { scene } = session;
       if (stopped || !scene?.field || session.status !== "ready" || session.arriving) return false;

@@ -9,14 +9,13 @@ const PAUSE = 300; // milliseconds between two writings
 export function keepAddress(viewer: Viewer): void {
   let timer: number | null = null;
   let written = location.hash;
-  let own = ""; // of the view that the page opened with: it needs no address
   let read: unknown = null; // the source whose first view came from the address
 
   const write = (): void => {
     timer = null;
-    if (viewer.scene()?.source !== read || viewer.status() !== "ready" || viewer.swaying()) return;
+    if (viewer.scene()?.source !== read || viewer.status() !== "ready" || viewer.untouched()) return;
     const hash = hashOf(viewer);
-    if (hash === location.hash || (hash === own && location.hash === "")) return;
+    if (hash === location.hash) return;
     written = hash;
     try {
       history.replaceState(history.state, "", hash);
@@ -32,7 +31,6 @@ export function keepAddress(viewer: Viewer): void {
     if (!scene || scene.source === read) return;
     const first = read === null;
     read = scene.source;
-    if (first) own = hashOf(viewer);
     if (first) applyHash(viewer, written);
   });
   addEventListener("hashchange", () => {

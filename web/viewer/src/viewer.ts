@@ -55,10 +55,8 @@ export interface Viewer {
   hasPhotograph(): boolean;
   photographShown(): boolean;
   showPhotograph(shown: boolean): void;
-  /** Nobody has moved anything yet, and the page shows its own first view. */
+  /** Nobody has moved or set anything yet, and the page shows its own first view. */
   untouched(): boolean;
-  /** The picture moves by itself. */
-  swaying(): boolean;
   /** A hand lies on the picture: it no longer moves by itself. */
   hold(): void;
   /** The mode that is moved now; looking through a captured camera ends with it. */
@@ -189,7 +187,7 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
   return {
     stage,
     config,
-    set,
+    set: moves(set),
     say,
     settled,
     scene: () => session.scene,
@@ -226,7 +224,6 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
     photographShown: () => session.photographShown,
     showPhotograph: moves(captured.showPhotograph),
     untouched: sway.untouched,
-    swaying: sway.swaying,
     hold: sway.stop,
     moving: moves(() => {
       loop.touch();
