@@ -66,8 +66,9 @@ def export(
         overwrite: Whether existing files, and folders that an export wrote, are replaced.
         progress: Reports each picture; by default a bar in a notebook.
         options: Of the kind (`OPTIONS`): fields of `RenderJob` for pictures; `path` and `frames` (`path_points`) and
-            `fps` of a flight; `title`, `metres_per_unit`, `at`, `plain` and `url` of a page (`write_plain_page`); `at`,
-            `image`, `draco` and `metres_per_unit` of a glb (`write_glb`); `quilt` (columns, rows), `spread`; `residual`.
+            `fps` of a flight; `title`, `metres_per_unit`, `at`, `plain` and `url` of a page (`write_plain_page`);
+            `at`, `image`, `draco` and `metres_per_unit` of a glb (`write_glb`); `quilt` (columns, rows), `spread`;
+            `residual`.
 
     Returns:
         The file or folder that was written, and what it holds, for people.
