@@ -6,6 +6,7 @@ import io
 import json
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 from jsonschema import Draft202012Validator
@@ -14,6 +15,7 @@ from PIL import Image
 from eigenfield.capture import open_capture
 from eigenfield.capture.overlay import draw_overlay, proxy_lines
 from eigenfield.capture.survey import corners_and_centre, find_focus, measure_array
+from eigenfield.cli.inspect import report_lines
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, OptionError, OutputError
 from eigenfield.core.mesh import Mesh
@@ -65,6 +67,24 @@ def test_json(capture, inspect):
     assert array["grid"] == {"rows": 3, "columns": 3} and not array["line"]
     assert np.isclose([array["width"], array["height"], array["spacing"]], [1, 1, 0.5]).all()
     assert np.allclose(report["cameras"][4]["centre"], [0, 0, -3]) and report["cameras"][0]["name"] == "view_00.png"
+
+
+def test_what_the_capture_is_good_for(tmp_path, inspect):
+    folder = write_capture(tmp_path / "c", row_grid(9, 320, 280))
+    blurred = folder / "images" / "view_04.png"
+    pixels = np.asarray(Image.open(blurred))
+    Image.fromarray(cv2.GaussianBlur(pixels, (0, 0), 3)).save(blurred)
+    report = json.loads(inspect(folder, "--json"))
+    found = report["neighbours"]
+    assert report["blurred"] == ["view_04.png"] and found["pairs"] >= 4 and found["parallax"] > 0
+    assert found["exposure"] < 0.1 and 0.5 < found["overlap"] <= 1
+    text = inspect(folder)
+    assert "  parallax   neighbours are " in text and "up to about 20 px is drawn well between" in text
+    assert "  blurred    view_04.png: " in text
+    far = {"widest": {"photographs": ["a", "b"], "parallax": 41.2}, "overlap": 0.5, "exposure": 0.8}
+    lines = "\n".join(report_lines(report | {"neighbours": found | far}))
+    assert "widest: 41.2 px, between a and b; take more photographs there" in lines
+    assert "50% of the same: too little" in lines and "0.80 stops: fix the exposure" in lines
 
 
 def test_all_damaged_files_are_listed_together(tmp_path, inspect):

@@ -8,17 +8,20 @@ from eigenfield.calibration.lenses import KnownLens
 from eigenfield.calibration.motion.calibrate import calibrate
 from eigenfield.calibration.motion.sfm import SfmResult, structure_from_motion
 from eigenfield.calibration.motion.triangulate import triangulate_points
+from eigenfield.calibration.neighbours import NeighbourPair, measure_neighbours
 from eigenfield.calibration.planar.joint import PlanarArray, refine_planar, register_views
 from eigenfield.calibration.planar.start import PlanarStart, start_given, start_planar
 
 __all__ = [
     "KnownLens",
+    "NeighbourPair",
     "PlanarArray",
     "PlanarStart",
     "SfmResult",
     "align_similarity",
     "calibrate",
     "calibration_error",
+    "measure_neighbours",
     "read_known_lenses",
     "refine_planar",
     "register_views",

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,6 +20,7 @@ from eigenfield.core.viewplane import Grid, ViewPlane, find_grid, fit_view_plane
 from eigenfield.runtime.parallel import parallel_stream
 
 ONE_PLACE_ROUNDING = 1e-9  # of the cameras' distance from the origin
+BLURRED_MAX_RATIO = 0.25  # of a photograph's sharpness to the median of the capture's
 FOCUS_MIN_EIGENVALUE = 1e-7  # rays whose normal matrix has a smaller eigenvalue than this meet nowhere
 
 
@@ -113,16 +115,25 @@ def file_kinds(capture: Capture) -> list[tuple[str, int, bool, int]]:
     return [(*kind, count) for kind, count in sorted(kinds.items(), key=lambda item: (-item[1], item[0]))]
 
 
-def decode_all(capture: Capture, progress: Progress | None = None) -> list[CaptureError]:
-    """Decode every photograph and mask once; what cannot be decoded or is hidden altogether, in the capture's order."""
+def decode_all(capture: Capture, progress: Progress | None = None) -> tuple[list[CaptureError], list[int]]:
+    """Decode every photograph and mask once.
 
-    def attempt(index: int) -> CaptureError | None:
+    Args:
+        capture: The photographs.
+        progress: Reports them.
+
+    Returns:
+        What cannot be decoded or is hidden altogether, in the capture's order; and the indices of photographs that are
+        blurred, where the others are not (BLURRED_MAX_RATIO).
+    """
+
+    def attempt(index: int) -> CaptureError | float:
         try:
             photograph = capture.photograph(index)
         except CaptureError as error:
             return error
         if photograph.mask is None or photograph.mask.any():
-            return None
+            return _sharpness(photograph.pixels)
         source = capture.sources[index]
         return CaptureError(
             "mask-black",
@@ -132,8 +143,17 @@ def decode_all(capture: Capture, progress: Progress | None = None) -> list[Captu
         )
 
     total = len(capture)
-    outcomes = track(parallel_stream(attempt, range(total)), "decoding photographs", total, progress)
-    return [outcome for outcome in outcomes if outcome is not None]
+    outcomes = list(track(parallel_stream(attempt, range(total)), "decoding photographs", total, progress))
+    damaged = [outcome for outcome in outcomes if isinstance(outcome, CaptureError)]
+    sharp = {index: outcome for index, outcome in enumerate(outcomes) if not isinstance(outcome, CaptureError)}
+    usual = float(np.median(list(sharp.values()))) if sharp else 0.0
+    return damaged, [index for index, value in sharp.items() if value < BLURRED_MAX_RATIO * usual]
+
+
+def _sharpness(pixels: NDArray[np.float32]) -> float:
+    """The mean square of the Laplacian over the variance: how much of the contrast is between neighbouring pixels."""
+    grey = pixels.mean(axis=2)
+    return float(np.square(cv2.Laplacian(grey, cv2.CV_32F)).mean() / max(float(grey.var()), 1e-6))
 
 
 def corners_and_centre(cameras: Sequence[Camera]) -> list[int]:

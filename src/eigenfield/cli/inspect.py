@@ -16,12 +16,14 @@ from eigenfield.cli.common import (
     capture_options,
     common_options,
     echo_json,
+    first_names,
     note,
 )
 from eigenfield.cli.progress import progress_bars
 from eigenfield.core.errors import EigenfieldError, OptionError
 
 if TYPE_CHECKING:
+    from eigenfield.calibration import NeighbourPair
     from eigenfield.capture import Capture, GridLayout, LightField, PhotoSet
     from eigenfield.capture.lightfield import View
     from eigenfield.capture.survey import CameraArray
@@ -29,6 +31,9 @@ if TYPE_CHECKING:
     from eigenfield.core.mesh import Mesh
 
 SCHEMA = "eigenfield.inspect/1"
+NEIGHBOUR_MAX_PARALLAX_PIXELS = 20  # up to which views between photographs were drawn well: docs/captures.md
+NEIGHBOUR_MIN_OVERLAP = 0.6  # of a photograph
+NEIGHBOUR_MAX_STOPS = 0.3  # of exposure
 
 
 @click.command(
@@ -76,6 +81,7 @@ def command(
 
         refuse_existing(overlay, overwrite)
 
+    from eigenfield.calibration import measure_neighbours
     from eigenfield.capture import open_any
     from eigenfield.capture.archive import is_zip
     from eigenfield.capture.photographs.kinds import VIDEO_EXTENSIONS
@@ -94,13 +100,18 @@ def command(
 
         mesh = read_mesh(proxy, opened.light_field.origin)
     with progress_bars(quiet) as progress:
-        damaged = decode_all(opened, progress)
+        damaged, blurred = decode_all(opened, progress)
+        broken = {error.path for error in damaged}
+        sound = [i for i, one in enumerate(opened.sources) if not broken & {str(one.path), str(one.mask)}]
+        pairs = measure_neighbours(opened, sound, progress)
     refusal = _refusal(capture, place, opened, damaged, proxy)
     report = describe(opened, damaged)
     if is_zip(capture) or capture.suffix.lower() in VIDEO_EXTENSIONS:  # read from a temporary folder
         report["root"] = str(capture)
     report["refused"] = None if refusal is None else _error(refusal)
     report["next"] = _next_commands(report, capture, place)
+    report["blurred"] = [opened.names[index] for index in blurred]
+    report["neighbours"] = _neighbours(opened, pairs) if pairs else None
     if mesh is not None and opened.light_field is not None:
         report["proxy"] = _proxy(mesh, opened, damaged, overlay, overwrite)
         if overlay is not None:
@@ -172,6 +183,25 @@ def describe(capture: Capture, damaged: list[CaptureError]) -> dict[str, Any]:
         "photographs": [] if capture.light_field is not None else _photographs(capture),
         "refused": None,
         "next": [],
+        "blurred": [],
+        "neighbours": None,
+    }
+
+
+def _neighbours(capture: Capture, pairs: Sequence[NeighbourPair]) -> dict[str, Any]:
+    from statistics import median
+
+    widest = max(pairs, key=lambda pair: pair.parallax)
+    return {
+        "pairs": len(pairs),
+        "parallax": median(pair.parallax for pair in pairs),
+        "parallax_limit": NEIGHBOUR_MAX_PARALLAX_PIXELS,
+        "widest": {
+            "photographs": [capture.names[widest.first], capture.names[widest.second]],
+            "parallax": widest.parallax,
+        },
+        "overlap": min(pair.overlap for pair in pairs),
+        "exposure": max(abs(pair.stops) for pair in pairs),
     }
 
 
@@ -298,6 +328,10 @@ def report_lines(report: dict[str, Any]) -> list[str]:
         lines += _layout_lines(report["layout"], bare > 0)
     if report["array"] is not None:
         lines += _array_lines(report["array"])
+    if report["neighbours"] is not None:
+        lines += _neighbour_lines(report["neighbours"])
+    if report["blurred"]:
+        lines.append(f"  blurred    {first_names(report['blurred'], 5)}: take them again, or leave them out")
     if report["proxy"] is not None:
         lines += _proxy_lines(report["proxy"])
     lines.append(f"  problems   {len(report['problems']) or 'none'}")
@@ -347,6 +381,22 @@ def _array_lines(array: dict[str, Any]) -> list[str]:
         return [*lines, "  cone       none: the cameras look in parallel or apart"]
     place = ", ".join(f"{v:.4g}" for v in array["focus"])
     return [*lines, f"  cone       {array['cone']:.1f} degrees about ({place}), {array['distance']:.4g} away"]
+
+
+def _neighbour_lines(neighbours: dict[str, Any]) -> list[str]:
+    parallax, limit, widest = neighbours["parallax"], neighbours["parallax_limit"], neighbours["widest"]
+    names = " and ".join(widest["photographs"])
+    lines = [
+        f"  parallax   neighbours are {parallax:.3g} px apart (median); up to about {limit} px is drawn well between"
+    ]
+    if widest["parallax"] > limit:
+        lines.append(f"             widest: {widest['parallax']:.3g} px, between {names}; take more photographs there")
+    overlap, stops = neighbours["overlap"], neighbours["exposure"]
+    shared = "" if overlap >= NEIGHBOUR_MIN_OVERLAP else ": too little, take them nearer to each other"
+    lines.append(f"  overlap    neighbours show at least {overlap:.0%} of the same{shared}")
+    drift = "" if stops <= NEIGHBOUR_MAX_STOPS else ": fix the exposure, or encode with --fit none --harmonise"
+    lines.append(f"  exposure   neighbours differ by at most {stops:.2f} stops{drift}")
+    return lines
 
 
 def _proxy_lines(proxy: dict[str, Any]) -> list[str]:

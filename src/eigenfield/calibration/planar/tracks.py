@@ -40,7 +40,7 @@ def find_tracks(pictures: Sequence[NDArray[np.uint8]], centre: int) -> Tracks:
     """
     height, width = pictures[centre].shape[:2]
     scale = min(1.0, TRACK_MAX_SEARCH_PIXELS / max(height, width))
-    features = parallel_map(lambda picture: _features(picture, scale), pictures)
+    features = parallel_map(lambda picture: find_features(picture, scale), pictures)
     points, descriptors = features[centre]
     found = np.full((len(pictures), len(points), 2), np.nan)
     if len(points) >= 2:
@@ -48,7 +48,7 @@ def find_tracks(pictures: Sequence[NDArray[np.uint8]], centre: int) -> Tracks:
         def match(index: int) -> None:
             others, theirs = features[index]
             if len(others) >= 2:
-                here, there = _mutual_matches(descriptors, theirs)
+                here, there = mutual_matches(descriptors, theirs)
                 found[index, here] = others[there]
 
         parallel_map(match, range(len(pictures)))
@@ -56,7 +56,13 @@ def find_tracks(pictures: Sequence[NDArray[np.uint8]], centre: int) -> Tracks:
     return Tracks(points, found)
 
 
-def _features(picture: NDArray[np.uint8], scale: float) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
+def find_features(picture: NDArray[np.uint8], scale: float) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
+    """(n, 2) pixels of a picture's SIFT features, centres at +0.5, and (n, 128) descriptors.
+
+    Args:
+        picture: (H, W, 3) R, G, B.
+        scale: Of the size at which features are searched.
+    """
     grey = cv2.cvtColor(np.ascontiguousarray(picture), cv2.COLOR_RGB2GRAY)
     if scale < 1:
         grey = cv2.resize(grey, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
@@ -70,8 +76,13 @@ def _features(picture: NDArray[np.uint8], scale: float) -> tuple[NDArray[np.floa
     return (positions[order] + 0.5) / scale, root[order].astype(np.float32)
 
 
-def _mutual_matches(a: NDArray[np.float32], b: NDArray[np.float32]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Indices of mutual best matches that are clearly better than the second best."""
+def mutual_matches(a: NDArray[np.float32], b: NDArray[np.float32]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Indices of mutual best matches that are clearly better than the second best.
+
+    Args:
+        a: (n, 128) descriptors.
+        b: (m, 128) of the other photograph, at least two.
+    """
     matcher = cv2.BFMatcher(cv2.NORM_L2)
     forth = np.array([[m[0].trainIdx, m[0].distance, m[1].distance] for m in matcher.knnMatch(a, b, k=2)])
     back = np.array([m[0].trainIdx for m in matcher.knnMatch(b, a, k=1)])

@@ -1,0 +1,185 @@
+"""How far neighbouring photographs are apart: parallax, overlap and brightness, from points that both show.
+
+It is a look beforehand, in seconds: a few pairs, at a small size.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import KDTree
+
+from eigenfield.calibration.planar.tracks import find_features, mutual_matches
+from eigenfield.capture import Capture
+from eigenfield.core.progress import Progress
+from eigenfield.imaging.colour import LUMA_BT709
+from eigenfield.imaging.metrics import to_codes
+from eigenfield.runtime.parallel import parallel_map, tracked_map
+
+
+@dataclass(frozen=True)
+class NeighbourTuning:
+    """Constants of `measure_neighbours`.
+
+    Attributes:
+        max_pairs: Pairs that are looked at, evenly spread.
+        max_side_pixels: Longer side of the photographs there.
+        min_matches: Points that both photographs must show.
+        epipolar_pixels: From its epipolar line, at that size, up to which a match counts.
+        outer_percentile: Of the points' shifts, left out at either end.
+        overlap_samples: Along each side of the frame.
+        gamma: Of the photographs' values, for brightness.
+    """
+
+    max_pairs: int = 6
+    max_side_pixels: int = 640
+    min_matches: int = 30
+    epipolar_pixels: float = 1.5
+    outer_percentile: float = 5.0
+    overlap_samples: int = 24
+    gamma: float = 2.2
+
+
+NEIGHBOUR_TUNING = NeighbourTuning()
+
+
+@dataclass(frozen=True)
+class NeighbourPair:
+    """Two neighbouring photographs.
+
+    Attributes:
+        first: Index of one.
+        second: Index of the other.
+        parallax: Pixels of the first by which near and far things that both show shift against each other, beside the
+            similarity that fits all shifts best.
+        overlap: Part of the first that the second shows, too.
+        stops: By which the second is the brighter.
+    """
+
+    first: int
+    second: int
+    parallax: float
+    overlap: float
+    stops: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Look:
+    """Features of a photograph: (n, 2) pixels, (n, 128) descriptors, and (n,) luma around each."""
+
+    points: NDArray[np.float64]
+    descriptors: NDArray[np.float32]
+    luma: NDArray[np.float32]
+
+
+def measure_neighbours(capture: Capture, sound: Sequence[int], progress: Progress | None = None) -> list[NeighbourPair]:
+    """Pairs of neighbours, those left out of which too little is seen in both.
+
+    Neighbours are the nearest cameras or places of a grid; without either, those that follow by name.
+
+    Args:
+        capture: The photographs.
+        sound: Indices of those that can be decoded.
+        progress: Reports the photographs that are looked at.
+    """
+    chosen = _spread(neighbours_of(capture, sound), NEIGHBOUR_TUNING.max_pairs)
+    wanted = sorted({index for pair in chosen for index in pair})
+    looks = dict(
+        zip(wanted, tracked_map(lambda index: _look(capture, index), wanted, "neighbours", progress), strict=True)
+    )
+
+    def measure(pair: tuple[int, int]) -> NeighbourPair | None:
+        a, b = pair
+        return _measure(pair, looks[a], looks[b], capture.sizes[a], capture.sizes[b])
+
+    return [found for found in parallel_map(measure, chosen) if found is not None]
+
+
+def neighbours_of(capture: Capture, sound: Sequence[int]) -> list[tuple[int, int]]:
+    """Each photograph with its nearest, by cameras or the places of a grid; without either with the next by name.
+
+    Args:
+        capture: The photographs.
+        sound: Indices of those that take part.
+    """
+    if len(sound) < 2:
+        return []
+    if capture.light_field is not None:
+        places = np.array([capture.light_field.cameras[index].centre for index in sound])
+    elif capture.layout is not None:
+        places = np.asarray(capture.layout.positions, np.float64)[list(sound)]
+    else:
+        return list(zip(sound[:-1], sound[1:], strict=True))
+    nearest = np.asarray(KDTree(places).query(places, k=2)[1])
+    # of cameras in one place, either may come first
+    other = np.where(nearest[:, 0] == np.arange(len(sound)), nearest[:, 1], nearest[:, 0])
+    pairs = {(min(i, int(j)), max(i, int(j))) for i, j in enumerate(other)}
+    return [(sound[i], sound[j]) for i, j in sorted(pairs)]
+
+
+def _spread(pairs: Sequence[tuple[int, int]], most: int) -> list[tuple[int, int]]:
+    """At most so many of them, evenly spread."""
+    places = np.unique(np.linspace(0, len(pairs) - 1, min(most, len(pairs))).round().astype(int))
+    return [pairs[place] for place in places.tolist()]
+
+
+def _look(capture: Capture, index: int) -> _Look:
+    codes = to_codes(capture.photograph(index).pixels)
+    scale = min(1.0, NEIGHBOUR_TUNING.max_side_pixels / max(codes.shape[:2]))
+    points, descriptors = find_features(codes, scale)
+    luma = cv2.boxFilter(cv2.transform(codes, np.array([LUMA_BT709])), -1, (9, 9)).astype(np.float32)
+    column, row = np.minimum(points, np.array(luma.shape[::-1]) - 1).astype(int).T
+    return _Look(points, descriptors, luma[row, column])
+
+
+def _measure(
+    pair: tuple[int, int], a: _Look, b: _Look, size: tuple[int, int], other: tuple[int, int]
+) -> NeighbourPair | None:
+    """As `measure_neighbours`, of one pair with (width, height) each."""
+    tuning = NEIGHBOUR_TUNING
+    if min(len(a.points), len(b.points)) < tuning.min_matches:
+        return None
+    here, there = mutual_matches(a.descriptors, b.descriptors)
+    if len(here) < tuning.min_matches:
+        return None
+    reach = tuning.epipolar_pixels * max(1.0, max(size) / tuning.max_side_pixels)
+    good = cv2.findFundamentalMat(a.points[here], b.points[there], cv2.USAC_MAGSAC, reach, 0.999)[1]
+    kept = np.zeros(len(here), np.bool_) if good is None else good.reshape(-1) > 0
+    here, there = here[kept], there[kept]
+    if len(here) < tuning.min_matches:
+        return None
+    source, target = a.points[here], b.points[there]
+    similarity = cv2.estimateAffinePartial2D(source, target, method=cv2.LMEDS)[0]
+    if similarity is None:
+        return None
+    ratio = (np.maximum(b.luma[there], 1) / np.maximum(a.luma[here], 1)) ** tuning.gamma
+    return NeighbourPair(  # fmt: skip
+        *pair,
+        _range(target - _moved(source, similarity)),
+        _overlap(similarity, size, other),
+        float(np.median(np.log2(ratio))),
+    )
+
+
+def _moved(points: NDArray[np.float64], similarity: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray(points @ similarity[:, :2].T + similarity[:, 2], np.float64)
+
+
+def _range(shifts: NDArray[np.float64]) -> float:
+    """Between the least and the greatest of (n, 2) shifts, along the direction in which they differ most."""
+    away = shifts - np.median(shifts, axis=0)
+    axis = np.linalg.svd(away, full_matrices=False)[2][0]
+    outer = NEIGHBOUR_TUNING.outer_percentile
+    low, high = np.percentile(away @ axis, [outer, 100 - outer])
+    return float(high - low)
+
+
+def _overlap(similarity: NDArray[np.float64], size: tuple[int, int], other: tuple[int, int]) -> float:
+    steps = (np.arange(NEIGHBOUR_TUNING.overlap_samples) + 0.5) / NEIGHBOUR_TUNING.overlap_samples
+    grid = np.stack(np.meshgrid(steps * size[0], steps * size[1]), axis=-1).reshape(-1, 2)
+    seen = _moved(grid, similarity)
+    return float(((seen > 0) & (seen < other)).all(axis=1).mean())
