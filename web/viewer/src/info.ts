@@ -60,13 +60,21 @@ function rowsOf(rows: Rows): HTMLElement {
 function measured({ scores }: SceneInfo, label: string, ...path: string[]): Rows {
   const [psnr, ssim] = [figure(scores, ...path, "psnr"), figure(scores, ...path, "ssim")];
   if (psnr === null && ssim === null) return [];
-  return [[label, `${shown(psnr, 2, "\u00a0dB")}\u00a0· SSIM\u00a0${shown(ssim, 4)}`]];
+  const rest = ssim === null ? "" : `\u00a0· SSIM\u00a0${shown(ssim, 4)}`;
+  return [[label, `${shown(psnr, 2, "\u00a0dB")}${rest}`]];
 }
 
 const imageQuality = (info: SceneInfo): Rows => [
   ...measured(info, "encoded views", "image", "encoded"),
   ...measured(info, "held-out views", "image", "held_out"),
+  ...between(info),
 ];
+
+/** The lower estimate of `encode`. */
+function between({ scores }: SceneInfo): Rows {
+  const psnr = figure(scores, "between", "psnr_luma_at_least");
+  return psnr === null ? [] : [["between its views", `at least ${shown(psnr, 1, "\u00a0dB")} of luma`]];
+}
 
 function quality(info: SceneInfo): Rows {
   const rows = [...measured(info, "texture maps", "uv"), ...imageQuality(info)];
