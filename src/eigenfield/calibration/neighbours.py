@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import cv2
 import numpy as np
@@ -113,7 +114,7 @@ def neighbours_of(capture: Capture, sound: Sequence[int]) -> list[tuple[int, int
     elif capture.layout is not None:
         places = np.asarray(capture.layout.positions, np.float64)[list(sound)]
     else:
-        return list(zip(sound[:-1], sound[1:], strict=True))
+        return list(pairwise(sound))
     nearest = np.asarray(KDTree(places).query(places, k=2)[1])
     # of cameras in one place, either may come first
     other = np.where(nearest[:, 0] == np.arange(len(sound)), nearest[:, 1], nearest[:, 0])
@@ -157,7 +158,7 @@ def _measure(
     if similarity is None:
         return None
     ratio = (np.maximum(b.luma[there], 1) / np.maximum(a.luma[here], 1)) ** tuning.gamma
-    return NeighbourPair(  # fmt: skip
+    return NeighbourPair(
         *pair,
         _range(target - _moved(source, similarity)),
         _overlap(similarity, size, other),

@@ -134,6 +134,7 @@ def command(
     calibration, several such folders, a zip, or one video of a walk (`eigenfield inspect CAPTURE` says what is found).
     """  # fmt: skip
     from eigenfield.encoding import encode
+    from eigenfield.encoding.between import score_words
     from eigenfield.encoding.estimated import reconstruction_settings, refuse_unused
     from eigenfield.encoding.views import check_selection
     from eigenfield.gltf import parts, refuse_output, save
@@ -172,6 +173,8 @@ def command(
         f"atlas {width}x{height}, for {photographs['count']} photographs ({photographs['bytes'] / 1e6:.1f} MB), "
         f"{len(scene.proxy.mesh.faces)} triangles, {time.monotonic() - started:.0f} s"
     )
+    if words := score_words(scene.scores):
+        click.echo("  " + ", ".join(words))
 
 
 def announce(

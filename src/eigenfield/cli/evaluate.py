@@ -137,7 +137,8 @@ def command(
     else:
         click.echo("\n".join(table(scene.name, figures, fitted=loaded.appearance.to_rgb is not None)))
     if store:
-        store_scores(scene, stored_scores(figures))
+        kept = {"between": loaded.scores["between"]} if "between" in loaded.scores else {}
+        store_scores(scene, kept | stored_scores(figures))
 
 
 def table(name: str, figures: Mapping[str, Any], fitted: bool = False) -> list[str]:

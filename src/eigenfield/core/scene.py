@@ -63,7 +63,7 @@ class Scene:
         rig: The cameras.
         appearance: Textures and weights drawn on the surface.
         settings: JSON object: the options with which it was made.
-        scores: JSON object: measures by `evaluate --store`.
+        scores: JSON object: measures by `encode` or `evaluate --store`.
         generator: Name and version of the program that made it.
         residual: Difference of captured views to their renderings, or None. It improves no other view.
         times: The instants of its observations, in seconds; one for a still scene.

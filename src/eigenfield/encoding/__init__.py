@@ -73,6 +73,7 @@ def encode(
         CaptureError, ProxyError, OptionError, OutputError: Each names the file and the remedy.
     """
     # what the stages need takes a second to load, and the command line's help needs none of it
+    from eigenfield.encoding.between import measure_scene
     from eigenfield.encoding.estimated import calibrated, estimate, reconstruction_settings, refuse_unused
     from eigenfield.encoding.fitted.encode import encode_fitted
     from eigenfield.encoding.plan import plan_encoding
@@ -102,6 +103,7 @@ def encode(
     folder = None if work is None else Path(work)
     plan = plan_encoding(capture, proxy, asked, folder, progress)
     scene = (encode_projected if projected else encode_fitted)(plan, folder, progress)
+    scene = replace(scene, scores=measure_scene(scene, plan, folder, progress))
 
     if meant.residual is None:
         return scene

@@ -121,7 +121,7 @@ def _sparse_weights(scene: Scene, at: tuple[float, float], mode: str) -> _Sparse
     if scene.rig.view_plane.is_line:
         point[1] = 0.0
     if mode == "delaunay":
-        return _delaunay(point, places, scene.rig.triangles)
+        return delaunay_weights(point, places, scene.rig.triangles)
     if mode == "nearest3":
         return _nearest3(point, places)
     if mode == "bilinear":
@@ -203,7 +203,19 @@ def _barycentric(point: NDArray[np.float64], corners: NDArray[np.float64]) -> ND
     return np.stack([1 - second - third, second, third], axis=1)
 
 
-def _delaunay(point: NDArray[np.float64], places: NDArray[np.float64], triangles: NDArray[np.int32]) -> _Sparse:
+def delaunay_weights(
+    point: NDArray[np.float64], places: NDArray[np.float64], triangles: NDArray[np.int32]
+) -> tuple[NDArray[np.integer], NDArray[np.float64]]:
+    """What a point takes of places around it, as `place_weights` does of cameras.
+
+    Args:
+        point: (2,).
+        places: (n, 2).
+        triangles: (T, 3) of `delaunay_triangles`.
+
+    Returns:
+        (k,) indices of places, and (k,) their weights.
+    """
     if len(triangles) == 0:
         return _along_line(point, places)
     inside = _barycentric(point, places[triangles])

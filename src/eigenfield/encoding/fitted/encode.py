@@ -28,6 +28,7 @@ log = logging.getLogger("eigenfield.encode")
 REFIT_MIN_MESH_RATIO = 0.03  # of a file's bytes by which another mesh must differ for a second fit
 REFIT_MAX_NEAR_QUALITIES = 3  # from the plan's quality, within which mesh and atlas are nearly the same
 REFIT_MIN_ATLAS_RATIO = 0.1  # of its side by which another atlas must differ for a second fit
+SCORES_MAX_BYTES = 240  # of the scores that `encode` adds
 FIGURES_MAX_BYTES = 16  # that the PSNR of two planes takes more than its placeholders, which may deflate to nothing
 TARGET_MAX_OBSERVATIONS = 48  # evenly spread, over which a PSNR or SSIM is measured
 
@@ -104,7 +105,7 @@ def _search(target: Target, encoder: FittedEncoder, first: int = TARGET_FIRST_QU
     def code(quality: int) -> Attempt[EncodedScene]:
         scene = encoder.encode_without_figures(quality)
         measured = 0.0 if target.size else _mean_measure(target, scene, encoder.data)
-        return Attempt(quality, len(encode_scene(scene)) + FIGURES_MAX_BYTES, measured, scene)
+        return Attempt(quality, len(encode_scene(scene)) + FIGURES_MAX_BYTES + SCORES_MAX_BYTES, measured, scene)
 
     return search_quality(target, code, first)
 

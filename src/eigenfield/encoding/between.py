@@ -1,0 +1,211 @@
+"""How near a finished scene comes to photographs: to those it was made from, and between them.
+
+Photographs that were held out are drawn and compared. Where none were, mean and eigen textures are made again in a
+short way, on the finished geometry and without some photographs, and drawn at their cameras. That is a lower estimate
+of what the scene draws there: docs/measures.md compares it with held-out views.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.core.progress import Progress
+from eigenfield.core.rig import Rig
+from eigenfield.core.scene import Scene
+from eigenfield.encoding.fitted.colour import split_matrix
+from eigenfield.encoding.fitted.fit import MEAN_WANTED, NOTHING_WANTED
+from eigenfield.encoding.fitted.model import PlaneModel
+from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_subsampled
+from eigenfield.encoding.fitted.passes import psnr_of
+from eigenfield.encoding.fitted.planes import plane_size
+from eigenfield.encoding.fitted.solve import fit_textures, measure_scales, residual
+from eigenfield.encoding.fitted.start import principal_block
+from eigenfield.encoding.plan import EncodePlan
+from eigenfield.imaging.metrics import psnr
+from eigenfield.rendering import Renderer, camera_weights, delaunay_triangles
+from eigenfield.rendering.weights import delaunay_weights, hull
+from eigenfield.runtime.parallel import parallel_map
+
+log = logging.getLogger("eigenfield.encode")
+
+BETWEEN_MIN_CAMERAS, BETWEEN_MAX_CAMERAS = 5, 49  # encoded ones of which some can be left out, and worth the time
+BETWEEN_LEFT_OUT_RATIO = 1 / 4  # of the cameras, at most
+BETWEEN_PIXEL_STEP = 2  # each way
+BETWEEN_DENSITIES = (0.07, 0.14, 0.28, 0.55)  # of the atlas's, one after the other: coarse ones fill what few see
+BETWEEN_TEXTURE_DENSITY = 0.28  # likewise
+BETWEEN_ITERATIONS = 4  # of conjugate gradients at each
+BETWEEN_SMOOTHNESS = 8.0  # of the fit's
+BETWEEN_WARN_BELOW_DB = 26.0
+MEASURED_MAX_CAMERAS = 16  # of the captured ones, evenly spread
+
+
+def measure_scene(
+    scene: Scene, plan: EncodePlan, work: Path | None = None, progress: Progress | None = None
+) -> dict[str, Any]:
+    """The scores of a fitted scene of few cameras, for its file (docs/measures.md); empty for others.
+
+    Args:
+        scene: Fitted to the plan's photographs.
+        plan: Its plan.
+        work: Folder for scratch files of 4 bytes a pixel and about 9 more.
+        progress: Reports the photographs.
+
+    Raises:
+        CaptureError: A photograph cannot be read.
+        OutputError: `disk-full`.
+    """
+    encoded = plan.views.rig.encoded
+    if not is_measured(plan):
+        return {}
+    some = np.unique(np.linspace(0, len(encoded) - 1, min(len(encoded), MEASURED_MAX_CAMERAS)).round().astype(int))
+    image = {"encoded": _drawn(scene, plan, encoded[some].tolist())}
+    held_out = np.flatnonzero(plan.views.rig.held_out).tolist()
+    if held_out:
+        return {"image": {**image, "held_out": _drawn(scene, plan, held_out)}}
+    left_out = spread_inside(plan.views.rig)
+    values = _drawn_by_others(plan, left_out, work, progress)
+    worst = left_out[int(np.argmin(values))]
+    names = plan.views.rig.names
+    widest = [names[encoded[worst]], names[encoded[_farthest_neighbour(plan.views.rig, worst)]]]
+    between = {"cameras": len(left_out), "psnr_luma_at_least": round(float(np.mean(values)), 2), "widest": widest}
+    if between["psnr_luma_at_least"] < BETWEEN_WARN_BELOW_DB:
+        words = "views between the photographs may show errors: take more between %s and %s, nearer to each other"
+        log.warning(words + " where thin parts are", *widest)
+    return {"image": image, "between": between}
+
+
+def is_measured(plan: EncodePlan) -> bool:
+    """Whether a scene of a plan gets scores: a still, fitted one of few cameras."""
+    count, still = len(plan.views.rig.encoded), len(plan.views.capture.times) == 1
+    return plan.options.fit != "none" and still and BETWEEN_MIN_CAMERAS <= count <= BETWEEN_MAX_CAMERAS
+
+
+def score_words(scores: dict[str, Any]) -> list[str]:
+    """The scores of `measure_scene` as parts of a line for people.
+
+    Args:
+        scores: Of `measure_scene`.
+    """
+    image, between = scores.get("image", {}), scores.get("between")
+    words = [f"{image['encoded']['psnr']:.1f} dB in captured views"] if image.get("encoded") else []
+    if image.get("held_out"):
+        words.append(f"{image['held_out']['psnr']:.1f} dB in held-out views")
+    if between is not None:
+        words.append(f"at least about {between['psnr_luma_at_least']:.1f} dB of luma between them")
+    return words
+
+
+def spread_inside(rig: Rig) -> list[int]:
+    """Cameras to leave out, counted among the encoded ones: inside their hull if any are, and no two are neighbours.
+
+    Args:
+        rig: With at least `BETWEEN_MIN_CAMERAS` encoded cameras.
+    """
+    near = _neighbours(rig)
+    rim = set(hull(rig.triangles).ravel().tolist()) or {index for index, ones in enumerate(near) if len(ones) < 2}
+    inner = [index for index in range(len(near)) if index not in rim] or list(range(len(near)))
+    gaps = _gaps(rig)
+    chosen: list[int] = []
+    for index in sorted(inner, key=lambda i: -max(gaps[i, j] for j in near[i])):
+        if not near[index] & set(chosen) and len(chosen) < max(1, int(len(near) * BETWEEN_LEFT_OUT_RATIO)):
+            chosen.append(index)
+    return sorted(chosen)
+
+
+def _gaps(rig: Rig) -> NDArray[np.float64]:
+    """(Ne, Ne) distances between encoded cameras, in world units."""
+    centres = np.array([camera.centre for camera in rig.encoded_cameras])
+    return np.asarray(np.linalg.norm(centres[:, None] - centres, axis=2))
+
+
+def _neighbours(rig: Rig) -> list[set[int]]:
+    """Of each encoded camera, those with which it has an edge; on a line the nearest along it."""
+    near: list[set[int]] = [set() for _ in rig.encoded]
+    pairs = rig.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    if not len(pairs):
+        places = rig.view_plane.coordinates([camera.centre for camera in rig.encoded_cameras])
+        order = np.lexsort((places[:, 1], places[:, 0]))
+        pairs = np.stack([order[:-1], order[1:]], axis=1)
+    for a, b in pairs.tolist():
+        near[a].add(b)
+        near[b].add(a)
+    return near
+
+
+def _farthest_neighbour(rig: Rig, index: int) -> int:
+    return max(sorted(_neighbours(rig)[index]), key=lambda other: float(_gaps(rig)[index, other]))
+
+
+def _drawn(scene: Scene, plan: EncodePlan, cameras: Sequence[int]) -> dict[str, Any]:
+    """Mean PSNR of photographs, drawn as `evaluate` does."""
+    renderer, capture = Renderer(scene), plan.views.capture
+    of_camera = {capture.camera_of(index): index for index in range(len(capture))}
+
+    def measure(camera: int) -> float | None:
+        drawn = renderer.draw(scene.rig.cameras[camera], camera_weights(scene, camera))
+        photograph = capture.photograph(of_camera[camera])
+        covered = drawn.covered if photograph.mask is None else drawn.covered & (photograph.mask > 0.5)
+        return psnr(drawn.image, photograph.pixels, covered)
+
+    values = [value for value in parallel_map(measure, cameras) if value is not None]
+    return {"cameras": len(values), "psnr": round(float(np.mean(values)), 2) if values else None}
+
+
+def _drawn_by_others(
+    plan: EncodePlan, left_out: Sequence[int], work: Path | None, progress: Progress | None
+) -> list[float]:
+    """dB of luma for each camera left out, drawn from the others."""
+    rig, observations = plan.views.rig, plan.views.observations
+    others = [index for index in range(len(rig.encoded)) if index not in left_out]
+    size, order = (plan.atlas[1], plan.atlas[0]), [*others, *left_out]
+    with (
+        open_fit_data(
+            rig.encoded_cameras, observations, plan.proxy, size, work, progress, rig.encoded_reference
+        ) as all_,
+        open_subsampled(all_, BETWEEN_PIXEL_STEP, work, order) as data,
+    ):
+        known = _first(data, len(others))
+        grid = plane_size(size, BETWEEN_TEXTURE_DENSITY)
+        model = PlaneModel(split_matrix()[0], np.full((1, 1, 1), 0.5, np.float32), grid, [])
+        for density in BETWEEN_DENSITIES:
+            rows, columns = plane_size(size, density)
+            finer = cv2.resize(model.mean[0], (columns, rows), interpolation=cv2.INTER_CUBIC)
+            model = replace(model, mean=np.ascontiguousarray(finer, np.float32).reshape(1, rows, columns))
+            scales = measure_scales(known, model)
+            scales = replace(scales, smooth=(BETWEEN_SMOOTHNESS * scales.smooth[0], scales.smooth[1]))
+            left = residual(known, model, MEAN_WANTED)
+            fit_textures(known, model, scales, left, BETWEEN_ITERATIONS, mean_only=True)
+        block = principal_block(known, model, scales, len(others) - 1, (0, grid[0], 0, grid[1]), work)
+        weights = np.concatenate([block.weights, _interpolation(rig, others, left_out) @ block.weights])
+        model = replace(model, blocks=[replace(block, weights=weights.astype(np.float32))])
+        found = residual(data, model, NOTHING_WANTED)
+    at = range(len(others), len(order))
+    return [psnr_of(found.squares[i : i + 1], found.pixels[i : i + 1]) if found.pixels[i] else np.inf for i in at]
+
+
+def _interpolation(rig: Rig, others: Sequence[int], left_out: Sequence[int]) -> NDArray[np.float64]:
+    """(left out, others): what each camera left out takes of the others."""
+    places = rig.view_plane.coordinates([camera.centre for camera in rig.encoded_cameras])
+    known, matrix = places[list(others)], np.zeros((len(left_out), len(others)))
+    triangles = delaunay_triangles(known)
+    for row, index in zip(matrix, left_out, strict=True):
+        among, weights = delaunay_weights(np.clip(places[index], -1, 1), known, triangles)
+        row[among] = weights
+    return matrix
+
+
+def _first(data: FitData, count: int) -> FitData:
+    """The first so many observations."""
+    given = data.observations
+    part = replace(
+        given, cameras=given.cameras[:count], shapes=given.shapes[:count], offsets=given.offsets[: count + 1]
+    )
+    return replace(data, observations=part)

@@ -1,0 +1,90 @@
+"""What `encode` says of views between the photographs: true figures of held-out ones, else a lower estimate."""
+
+from __future__ import annotations
+
+import json
+import logging
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import eigenfield as ef
+from eigenfield.capture import open_capture
+from eigenfield.core.camera import Camera
+from eigenfield.encoding import between as between_module
+from eigenfield.encoding.between import score_words, spread_inside
+from eigenfield.encoding.views import make_rig
+from eigenfield.gltf import load, save
+from support.captures import write_capture
+from support.program import call
+from support.scenes import row_grid
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory) -> Path:
+    return write_capture(tmp_path_factory.mktemp("between") / "nine", row_grid(9, 192, 168))
+
+
+def encoded(folder, **options):
+    return ef.encode(open_capture(folder), proxy=folder / "proxy.ply", textures=6, **options)
+
+
+def test_the_estimate_is_below_the_true_figure_and_near_it(folder, caplog, monkeypatch):
+    """The middle photograph is the one that is left out; the truth is a scene that is made without it."""
+    monkeypatch.setattr(between_module, "BETWEEN_WARN_BELOW_DB", 60.0)
+    with caplog.at_level(logging.WARNING):
+        scores = encoded(folder).scores
+    held = encoded(folder, hold_out="view_04.png")
+    truth = ef.evaluate(held, open_capture(folder), progress=None)["image"]["held_out"]
+    assert held.scores["image"]["held_out"] == {"cameras": 1, "psnr": pytest.approx(truth["psnr"], abs=0.01)}
+    between = scores["between"]
+    assert between["cameras"] == 1 and between["widest"][0] == "view_04.png"
+    assert 0.7 * truth["psnr_luma"] < between["psnr_luma_at_least"] < truth["psnr_luma"] + 0.3
+    assert scores["image"]["encoded"]["psnr"] > between["psnr_luma_at_least"] + 3
+    assert f"take more between {' and '.join(between['widest'])}, nearer to each other" in caplog.text
+
+
+def test_the_captured_figure_is_that_of_evaluate(folder):
+    scene = encoded(folder)
+    truth = ef.evaluate(scene, open_capture(folder), progress=None)["image"]["encoded"]
+    assert scene.scores["image"]["encoded"] == {"cameras": 9, "psnr": pytest.approx(truth["psnr"], abs=0.01)}
+
+
+def test_it_is_in_the_file_and_stays_there(folder, tmp_path, run):
+    file = tmp_path / "scene.glb"
+    assert call("encode", folder, "--proxy", folder / "proxy.ply", "-n", "4", "-q", "-o", file) == 0
+    between = load(file).scores["between"]
+    assert run("evaluate", file, folder, "--store", "-q")[0] == 0
+    stored = load(file).scores
+    assert stored["between"] == between and "ssim" in stored["image"]["encoded"]
+    assert json.loads(run("info", file, "--json")[1])["scores"]["between"] == between
+    assert "psnr_luma_at_least" in run("info", file)[1]
+
+
+def test_scenes_of_texture_maps_and_of_few_cameras_have_no_scores(folder, tmp_path):
+    assert encoded(folder, fit="none").scores == {}
+    few = write_capture(tmp_path / "four", row_grid(4, 64, 56))
+    scene = encoded(few)
+    save(scene, tmp_path / "four.glb")
+    assert scene.scores == {} and load(tmp_path / "four.glb").scores == {}
+
+
+def test_cameras_left_out_are_inside_and_no_neighbours():
+    def chosen(centres):
+        K = np.array([[60.0, 0, 32], [0, 60, 28], [0, 0, 1]])
+        cameras = [Camera(K, np.eye(3), -np.array([x, y, -3.0]), 64, 56) for x, y in centres]
+        return spread_inside(make_rig([str(i) for i in range(len(cameras))], cameras, np.zeros(len(cameras), bool), 0))
+
+    assert chosen([(x, y) for y in range(3) for x in range(3)]) == [4]
+    inner = chosen([(x, y) for y in range(5) for x in range(5)])
+    assert 2 <= len(inner) <= 6 and all(i % 5 not in (0, 4) and i // 5 not in (0, 4) for i in inner)
+    assert chosen([(x, 0) for x in (0, 1, 2, 4, 7)]) == [3]
+
+
+def test_words():
+    scores = {"image": {"encoded": {"cameras": 9, "psnr": 35.14}}, "between": {"psnr_luma_at_least": 25.96}}
+    assert score_words(scores) == ["35.1 dB in captured views", "at least about 26.0 dB of luma between them"]
+    held = {"image": {"encoded": {"psnr": 35.14}, "held_out": {"psnr": 27.38}}}
+    assert score_words(held) == ["35.1 dB in captured views", "27.4 dB in held-out views"]
+    assert score_words({}) == []
