@@ -154,9 +154,10 @@ def _measure(
     if len(here) < tuning.min_matches:
         return None
     source, target = a.points[here], b.points[there]
-    similarity = cv2.estimateAffinePartial2D(source, target, method=cv2.LMEDS)[0]
-    if similarity is None:
+    fitted = cv2.estimateAffinePartial2D(source, target, method=cv2.LMEDS)[0]
+    if fitted is None:
         return None
+    similarity = np.asarray(fitted, np.float64)
     ratio = (np.maximum(b.luma[there], 1) / np.maximum(a.luma[here], 1)) ** tuning.gamma
     return NeighbourPair(
         *pair,

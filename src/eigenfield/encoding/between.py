@@ -8,7 +8,7 @@ of what the scene draws there: docs/measures.md compares it with held-out views.
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -75,7 +75,11 @@ def measure_scene(
     worst = left_out[int(np.argmin(values))]
     names = plan.views.rig.names
     widest = [names[encoded[worst]], names[encoded[_farthest_neighbour(plan.views.rig, worst)]]]
-    between = {"cameras": len(left_out), "psnr_luma_at_least": round(float(np.mean(values)), 2), "widest": widest}
+    between: dict[str, Any] = {
+        "cameras": len(left_out),
+        "psnr_luma_at_least": round(float(np.mean(values)), 2),
+        "widest": widest,
+    }
     if between["psnr_luma_at_least"] < BETWEEN_WARN_BELOW_DB:
         words = "views between the photographs may show errors: take more between %s and %s, nearer to each other"
         log.warning(words + " where thin parts are", *widest)
@@ -88,7 +92,7 @@ def is_measured(plan: EncodePlan) -> bool:
     return plan.options.fit != "none" and still and BETWEEN_MIN_CAMERAS <= count <= BETWEEN_MAX_CAMERAS
 
 
-def score_words(scores: dict[str, Any]) -> list[str]:
+def score_words(scores: Mapping[str, Any]) -> list[str]:
     """The scores of `measure_scene` as parts of a line for people.
 
     Args:
