@@ -173,8 +173,8 @@ def _drawn_by_others(
     with (
         open_fit_data(
             rig.encoded_cameras, observations, plan.proxy, size, work, progress, rig.encoded_reference
-        ) as all_,
-        open_subsampled(all_, BETWEEN_PIXEL_STEP, work, order) as data,
+        ) as whole,
+        open_subsampled(whole, BETWEEN_PIXEL_STEP, work, order) as data,
     ):
         known = _first(data, len(others))
         grid = plane_size(size, BETWEEN_TEXTURE_DENSITY)

@@ -13,6 +13,7 @@ import numpy as np
 
 from eigenfield.core.progress import Progress
 from eigenfield.core.scene import EncodedScene
+from eigenfield.encoding.between import is_measured
 from eigenfield.encoding.fitted.encoder import FittedEncoder, open_encoder
 from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.encoding.options import resolved_value
@@ -102,10 +103,12 @@ def _other_plan(
 def _search(target: Target, encoder: FittedEncoder, first: int = TARGET_FIRST_QUALITY) -> Attempt[EncodedScene]:
     """As `search_quality`, of what the encoder makes."""
 
+    added = FIGURES_MAX_BYTES + (SCORES_MAX_BYTES if is_measured(encoder.plan) else 0)
+
     def code(quality: int) -> Attempt[EncodedScene]:
         scene = encoder.encode_without_figures(quality)
         measured = 0.0 if target.size else _mean_measure(target, scene, encoder.data)
-        return Attempt(quality, len(encode_scene(scene)) + FIGURES_MAX_BYTES + SCORES_MAX_BYTES, measured, scene)
+        return Attempt(quality, len(encode_scene(scene)) + added, measured, scene)
 
     return search_quality(target, code, first)
 
