@@ -1,4 +1,4 @@
-# make demo   a capture is drawn, encoded, flown through and measured; look into demo/
+# make demo   a capture is drawn, encoded, flown through and measured; open demo/scene.html
 # make test   the fast tests, two files at a time
 # make web    build the web viewer again after a change in web/ (Node.js; users need none, the build is kept here)
 # The first two make .venv first. PYTHON names the interpreter (3.11 or newer).

@@ -135,7 +135,7 @@ def main() -> None:
 def measured(name: str, demo: Path) -> dict[str, Any]:
     if name == "demo" and not (demo / "capture").exists():
         demo.mkdir(parents=True, exist_ok=True)
-        draw_demo_capture(demo / "capture")
+        draw_demo_capture(demo / "capture", rows=17, columns=17)
     cases = {label: coded(name, demo, options) for label, options in CASES[name]}
     if name == "tarot":
         cases["all encoded"]["uncoded"] = uncoded(named(name, demo))

@@ -60,7 +60,7 @@ def estimate(capture: Capture, work: Path) -> dict[str, Any]:
     work.mkdir(parents=True, exist_ok=True)
     if capture.name == "demo" and not (capture.folder / "proxy.ply").exists():
         capture.folder.parent.mkdir(parents=True, exist_ok=True)
-        draw_demo_capture(capture.folder)
+        draw_demo_capture(capture.folder, rows=17, columns=17)
     figures: dict[str, Any] = {"reconstructed": capture.proxy is None}
     if capture.proxy is not None:
         cameras = opened(words(capture)).cameras

@@ -14,10 +14,9 @@ from eigenfield.core.errors import OptionError, OutputError
 from eigenfield.core.viewplane import find_grid, fit_view_plane
 from eigenfield.demo import draw_demo_capture
 from eigenfield.demo.cameras import DEMO_HALF_ARRAY_UNITS, array_camera, array_cameras
-from eigenfield.demo.capture import draw_view
-from eigenfield.demo.geometry import build_geometry
-from eigenfield.demo.light import environment_map, radiance
-from eigenfield.demo.surface import bake_surface
+from eigenfield.demo.capture import bake_look, draw_view
+from eigenfield.demo.geometry import SURFACE_PARTS, build_geometry
+from eigenfield.demo.light import radiance
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy import atlas_fault, atlas_statistics, read_mesh
 from eigenfield.runtime.parallel import set_threads
@@ -132,7 +131,7 @@ def test_two_drawings_have_the_same_bytes_at_one_and_two_threads(tmp_path):
 
 @pytest.fixture(scope="module")
 def look():
-    return bake_surface(512), environment_map()
+    return bake_look(512)
 
 
 def test_a_view_is_the_surface_where_the_mesh_says_it_is(look):
@@ -144,7 +143,7 @@ def test_a_view_is_the_surface_where_the_mesh_says_it_is(look):
     glow = np.zeros((512 * 512, 8), np.float32)
     glow[:, 4] = 1
     glow[atlas.texel, :3] = (atlas.position + 2) / 8
-    picture = draw_view(mesh, camera, glow.reshape(512, 512, 8), look[1])
+    picture = draw_view(camera, look._replace(surface=glow.reshape(512, 512, 8)))
     raster = rasterise_view(mesh, camera)
     row, column = 78, 20  # on the floor, away from edges
     b = raster.edges[raster.face[row, column]] @ (column + 0.5, row + 0.5, 1.0)
@@ -157,22 +156,36 @@ def test_a_view_is_the_surface_where_the_mesh_says_it_is(look):
 def test_highlights_move_with_the_camera_and_paint_does_not(look):
     """The same points of the jar, seen from both ends of the array: reflections change what paint alone would not."""
     mesh = build_geometry().mesh
-    dull = look[0].copy()
+    dull = look.surface.copy()
     dull[..., 6] = 0
     x, y, z = mesh.vertices.T
     points = mesh.vertices[(np.hypot(x, z) < 0.58) & (np.abs(x) < 0.3) & (z > 0.35) & (y > 0.6) & (y < 0.9)]
     assert len(points) > 300
     change = []
-    for surface in (look[0], dull):
+    for surface in (look.surface, dull):
         values = []
         for x in (-DEMO_HALF_ARRAY_UNITS, DEMO_HALF_ARRAY_UNITS):
             camera = array_camera(x, 0.0, 256)
-            picture = draw_view(mesh, camera, surface, look[1]).astype(np.float32)
+            picture = draw_view(camera, look._replace(surface=surface)).astype(np.float32)
             place = camera.project(points)[0]
             values.append(cv2.remap(picture, *(place[None, :, k].astype(np.float32) - 0.5 for k in (0, 1)), 1))
         change.append(np.quantile(np.abs(values[0] - values[1]), 0.97))
     assert change[0] > 25
     assert change[0] > 2 * change[1]
+
+
+def test_chrome_and_glass_show_the_scene_and_nothing_else_does(look):
+    """With all other things' surfaces black and without reflections, only the two balls change."""
+    scene, camera = build_geometry(), array_camera(0.0, 0.0, 128)
+    around = np.zeros_like(look.around)
+    around[..., 4] = 1  # a normal
+    dark = draw_view(camera, look._replace(around=around))
+    changed = (dark != draw_view(camera, look)).any(axis=2)
+    face = rasterise_view(scene.mesh, camera).face
+    for name in SURFACE_PARTS:
+        inner = cv2.erode((scene.part[face] == SURFACE_PARTS.index(name)).astype(np.uint8), np.ones((3, 3))) > 0
+        assert inner.sum() > 30
+        assert changed[inner].mean() > 0.3 if name in ("chrome", "glass") else not changed[inner].any()
 
 
 def test_highlights_are_about_ten_degrees_wide():
@@ -186,7 +199,7 @@ def test_highlights_are_about_ten_degrees_wide():
 
 
 def test_no_pixel_is_blank_and_fine_detail_is_there(look):
-    picture = draw_view(build_geometry().mesh, array_camera(0.0, 0.0, 128), *look).astype(np.float32)
+    picture = draw_view(array_camera(0.0, 0.0, 128), look).astype(np.float32)
     assert picture.mean() > 60 and 100 * (picture > 250).mean() < 3
     assert np.abs(np.diff(picture, axis=1)).mean() > 8
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,12 +13,12 @@ from eigenfield.capture.lightfield import LightField, View
 from eigenfield.capture.writers.transforms import transforms_document
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError, OutputError
-from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress, track
 from eigenfield.demo.cameras import array_cameras
-from eigenfield.demo.geometry import build_geometry
-from eigenfield.demo.kernels import shade_view
+from eigenfield.demo.geometry import CHROME_SPHERE, GLASS_SPHERE, SURFACE_PARTS, build_geometry, build_surroundings
 from eigenfield.demo.light import environment_map
+from eigenfield.demo.rays import Tree, build_tree
+from eigenfield.demo.shading import shade_view
 from eigenfield.demo.surface import bake_surface
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy import write_ply
@@ -25,14 +26,52 @@ from eigenfield.runtime.files import output_errors
 from eigenfield.runtime.parallel import parallel_stream
 from eigenfield.runtime.temporary import temporary_folder
 
+DEMO_ROWS, DEMO_COLUMNS = 9, 9  # of the array
 DEMO_SAMPLES_PER_SIDE = 3  # of a pixel
 DEMO_EXPOSURE = 1.05
 DEMO_TEXELS_PER_PIXEL = 4  # side of the atlas over side of the picture
 DEMO_MAX_ATLAS_TEXELS = 4096
+BALLS = {"chrome": CHROME_SPHERE, "glass": GLASS_SPHERE}  # that show what is around them
+
+
+class Look(NamedTuple):
+    """What a view is shaded with, beside the geometry; see `shade_view`.
+
+    Attributes:
+        surface: (h, w, 8) of `build_geometry`.
+        around: (h, w, 8) of `build_surroundings`.
+        tree: Of `build_surroundings`.
+        room: (3, e, e, 3).
+    """
+
+    surface: NDArray[np.float32]
+    around: NDArray[np.float32]
+    tree: Tree
+    room: NDArray[np.float32]
+
+
+def bake_look(side: int) -> Look:
+    """All that the views share.
+
+    Args:
+        side: Of the surface's atlas, in texels.
+    """
+    around = build_surroundings()
+    return Look(
+        bake_surface(build_geometry(), side),
+        bake_surface(around, max(3 * side // 4, 64)),
+        build_tree(around.mesh),
+        environment_map(),
+    )
 
 
 def draw_demo_capture(
-    folder: Path, *, rows: int = 17, columns: int = 17, size: int = 512, progress: Progress | None = None
+    folder: Path,
+    *,
+    rows: int = DEMO_ROWS,
+    columns: int = DEMO_COLUMNS,
+    size: int = 512,
+    progress: Progress | None = None,
 ) -> None:
     """Draw the array's views into a folder: images/*.png, transforms.json (nerfstudio's form) and proxy.ply.
 
@@ -78,10 +117,10 @@ def _draw_into(folder: Path, rows: int, columns: int, size: int, progress: Progr
     document = transforms_document(LightField(folder, views, (), "transforms"), folder, None)
     (folder / "images").mkdir()
     (folder / "transforms.json").write_text(json.dumps(document, indent=1), encoding="utf-8")
-    surface, room = bake_surface(min(DEMO_TEXELS_PER_PIXEL * size, DEMO_MAX_ATLAS_TEXELS)), environment_map()
+    look = bake_look(min(DEMO_TEXELS_PER_PIXEL * size, DEMO_MAX_ATLAS_TEXELS))
 
     def png(camera: Camera) -> bytes:
-        picture = draw_view(mesh, camera, surface, room)
+        picture = draw_view(camera, look)
         done, data = cv2.imencode(".png", picture[..., ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 2])
         assert done
         return data.tobytes()
@@ -91,23 +130,29 @@ def _draw_into(folder: Path, rows: int, columns: int, size: int, progress: Progr
         (folder / name).write_bytes(data)
 
 
-def draw_view(mesh: Mesh, camera: Camera, surface: NDArray[np.float32], room: NDArray[np.float32]) -> NDArray[np.uint8]:
+def draw_view(camera: Camera, look: Look) -> NDArray[np.uint8]:
     """(H, W, 3) uint8 sRGB: the scene as a camera sees it, averaged over several points a pixel in linear light.
 
     Args:
-        mesh: The demo's geometry.
         camera: The camera.
-        surface: Of `bake_surface`.
-        room: Of `environment_map`.
+        look: Of `bake_look`.
     """
+    scene = build_geometry()
+    mesh = scene.mesh
     assert mesh.uv is not None
     fine = camera.resize(DEMO_SAMPLES_PER_SIDE * camera.width, DEMO_SAMPLES_PER_SIDE * camera.height)
     raster = rasterise_view(mesh, fine)
     rays = np.ascontiguousarray(fine.R.T @ np.linalg.inv(fine.K))
     picture = np.empty((camera.height, camera.width, 3), np.float32)
-    texels = np.concatenate([mesh.uv * float(surface.shape[0]), np.ones((len(mesh.uv), 1))], axis=1)[mesh.faces]
+    texels = np.concatenate([mesh.uv * float(look.surface.shape[0]), np.ones((len(mesh.uv), 1))], axis=1)[mesh.faces]
     maps = np.einsum("fkt,fke->fte", texels, raster.edges)
-    shade_view(raster.face, maps, rays, surface, room, DEMO_SAMPLES_PER_SIDE, picture)
+    balls = np.full(len(SURFACE_PARTS), -1)
+    balls[[SURFACE_PARTS.index(name) for name in BALLS]] = range(len(BALLS))
+    spheres = np.array([(*middle, radius) for middle, radius in BALLS.values()])
+    shade_view(
+        raster.face, maps, balls[scene.part], rays, camera.centre, look.surface, look.around, *look.tree, spheres,
+        look.room, DEMO_SAMPLES_PER_SIDE, picture,
+    )  # fmt: skip
     return _tone_map(picture)
 
 

@@ -1,8 +1,9 @@
-"""The demo's exact geometry: a lidded jar, two balls and a letter block on a floor before a wall, with an atlas.
+"""The demo's exact geometry: a lidded jar, four balls and a letter block on a floor before a wall, with an atlas.
 
 World axes: x right, y up, z towards the cameras; one unit is about 210 pixels. Surfaces that face away from all cameras
 are left out, as in a scan. Charts are laid out at about one density as the middle camera sees them: floor and wall by
-its own projection, the round surfaces by equal-area maps.
+its own projection, the round surfaces by equal-area maps. `build_surroundings` has what the chrome and the glass ball
+show instead: all sides, and a floor and a wall that go on outside the picture.
 """
 
 from __future__ import annotations
@@ -32,9 +33,17 @@ LID_PROFILE = np.array([(0.346, 1.084), (0.354, 1.092), (0.358, 1.110), (0.345, 
                 (0.062, 1.268), (0.055, 1.295), (0.088, 1.335), (0.080, 1.385), (0.001, 1.420)])  # fmt: skip
 ORANGE_SPHERE = (np.array([-0.735, 0.205, 0.42]), 0.205)
 MARBLE_SPHERE = (np.array([0.36, 0.125, 0.80]), 0.125)
+CHROME_SPHERE = (np.array([0.86, 0.33, -0.60]), 0.33)
+GLASS_SPHERE = (np.array([-0.27, 0.22, 0.93]), 0.22)
 BLOCK_CENTRE, BLOCK_SIDE_UNITS, BLOCK_ANGLE_RADIANS = np.array([0.80, 0.18, 0.28]), 0.36, np.radians(34)
+VISIBLE_BLOCK_SIDES = ((2, 1), (0, -1), (0, 1), (1, 1))  # axis and sign of those seen from above and in front
+BLOCK_SIDES = (*VISIBLE_BLOCK_SIDES, (2, -1))  # it stands on the sixth
+FRONT_POLAR_RADIANS = np.radians(104)  # of a ball, from the middle camera: all that a camera can see
 
-SURFACE_PARTS = ("floor", "wall", "body", "lid", "orange", "marble", "block")
+SURFACE_PARTS = ("floor", "wall", "body", "lid", "orange", "marble", "block", "chrome", "glass")
+SURROUNDINGS_HALF_WIDTH_UNITS, SURROUNDINGS_HEIGHT_UNITS, SURROUNDINGS_FRONT_UNITS = 3.0, 2.4, 3.8
+SURROUNDINGS_PIXELS_PER_UNIT = 200.0  # of the chart of this floor and wall
+SURROUNDINGS_CELL_UNITS = 0.5  # triangles of floor and wall: small ones make a good tree
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,13 +85,35 @@ class DemoGeometry:
 @cache
 def build_geometry() -> DemoGeometry:
     """All parts in one mesh, with charts packed into the unit square. A PLY restores its float32 numbers exactly."""
-    parts = [
-        *_background(),
+    balls = [
+        _ball("chrome", CHROME_SPHERE, 26, 64, FRONT_POLAR_RADIANS),
+        _ball("glass", GLASS_SPHERE, 22, 56, FRONT_POLAR_RADIANS),
+    ]
+    parts = [*_background(), *_things(FRONT_POLAR_RADIANS), *_block(VISIBLE_BLOCK_SIDES), *balls]
+    return _join([part for part in map(_cull_back_faces, parts) if len(part.faces)])
+
+
+@cache
+def build_surroundings() -> DemoGeometry:
+    """What rays from the chrome and the glass ball meet, these two left out."""
+    left, right = -SURROUNDINGS_HALF_WIDTH_UNITS, SURROUNDINGS_HALF_WIDTH_UNITS
+    floor = _rectangle("floor", (left, right), (WALL_Z_UNITS, SURROUNDINGS_FRONT_UNITS), 1)
+    wall = _rectangle("wall", (left, right), (0.0, SURROUNDINGS_HEIGHT_UNITS), 2)
+    return _join([floor, wall, *_things(np.pi), *_block(BLOCK_SIDES)])
+
+
+def _things(polar: float) -> list[SurfacePart]:
+    """The jar, and balls up to an angle from the middle camera."""
+    return [
         _surface_of_revolution("body", BODY_PROFILE, 66, 128),
         _surface_of_revolution("lid", LID_PROFILE, 34, 96),
+        _ball("orange", ORANGE_SPHERE, 22, 48, polar),
+        _ball("marble", MARBLE_SPHERE, 18, 40, polar),
     ]
-    parts += [_ball("orange", *ORANGE_SPHERE, 22, 48), _ball("marble", *MARBLE_SPHERE, 18, 40), *_block()]
-    parts = [part for part in map(_cull_back_faces, parts) if len(part.faces)]
+
+
+def _join(parts: list[SurfacePart]) -> DemoGeometry:
+    """The parts as one mesh, of which the first two share a chart."""
     background, others = parts[:2], parts[2:]
     blocks = [np.concatenate([part.chart for part in background]), *(part.chart for part in others)]
     lows = [chart.min(axis=0) for chart in blocks]
@@ -123,6 +154,19 @@ def _background() -> list[SurfacePart]:
         normals = np.tile(normal, (len(points), 1))
         parts.append(SurfacePart(name, points, faces, normals, pixels, normals))
     return parts[::-1]
+
+
+def _rectangle(name: str, across: tuple[float, float], along: tuple[float, float], axis: int) -> SurfacePart:
+    """A part of the floor (axis 1) or of the wall (axis 2), with a chart in which they join at the crease."""
+    steps = [round((high - low) / SURROUNDINGS_CELL_UNITS) + 1 for low, high in (across, along)]
+    u, v = np.meshgrid(np.linspace(*across, steps[0]), np.linspace(*along, steps[1]))
+    points = np.zeros((u.size, 3))
+    points[:, 0], points[:, 3 - axis] = u.reshape(-1), v.reshape(-1)
+    points[:, axis] = 0.0 if axis == 1 else WALL_Z_UNITS
+    down = points[:, 2] - WALL_Z_UNITS - points[:, 1]
+    normals = np.tile(np.eye(3)[axis], (len(points), 1))
+    chart = np.column_stack([points[:, 0], down]) * SURROUNDINGS_PIXELS_PER_UNIT
+    return SurfacePart(name, points, _grid(steps[1], steps[0]), normals, chart, normals)
 
 
 def _surface_of_revolution(name: str, profile: Array, rows: int, columns: int) -> SurfacePart:
@@ -176,18 +220,19 @@ def emboss_height(name: str, angle: Array, along: Array) -> Array:
     return np.asarray(flutes + belly + rings)
 
 
-def _ball(name: str, centre: Array, radius: float, rings: int, sectors: int) -> SurfacePart:
-    """A sphere about the axis to the middle camera; the far side is left out.
+def _ball(name: str, sphere: tuple[Array, float], rings: int, sectors: int, polar_end: float) -> SurfacePart:
+    """A sphere about the axis to the middle camera, as far as an angle from it.
 
     The chart is Lambert's azimuthal map (radius 2 sin(angle / 2)), which preserves areas.
     """
+    centre, radius = sphere
     axis = array_centre() - centre
     depth = float(np.linalg.norm(axis))
     axis /= depth
     right = np.array([axis[2], 0.0, -axis[0]]) / np.hypot(axis[0], axis[2])
     up = np.cross(axis, right)
     polar, angles = np.meshgrid(
-        np.linspace(0, np.radians(104), rings + 1), np.linspace(0, 2 * np.pi, sectors + 1), indexing="ij"
+        np.linspace(0, polar_end, rings + 1), np.linspace(0, 2 * np.pi, sectors + 1), indexing="ij"
     )
     angles[:, -1] = 0.0
     normals = (
@@ -206,14 +251,14 @@ def _ball(name: str, centre: Array, radius: float, rings: int, sectors: int) -> 
     return SurfacePart(name, centre + radius * normals, faces[whole], normals, chart, normals)
 
 
-def _block() -> list[SurfacePart]:
-    """The visible sides of the letter block, one chart each."""
+def _block(sides: tuple[tuple[int, int], ...]) -> list[SurfacePart]:
+    """Sides of the letter block, one chart each: axis and sign."""
     c, s = np.cos(BLOCK_ANGLE_RADIANS), np.sin(BLOCK_ANGLE_RADIANS)
     frame = np.array([(c, 0, -s), (0, 1, 0), (s, 0, c)])  # rows: the block's axes in the world
     scale = BLOCK_SIDE_UNITS * DEMO_FOCAL_WIDTHS * CHART_FRAME_PIXELS / np.linalg.norm(array_centre() - BLOCK_CENTRE)
     grid = np.stack(np.meshgrid(np.linspace(-0.5, 0.5, 9), np.linspace(-0.5, 0.5, 9)), axis=-1).reshape(-1, 2)
     parts = []
-    for axis, sign in ((2, 1), (0, -1), (0, 1), (1, 1)):  # those that are visible from above and in front
+    for axis, sign in sides:
         out = sign * frame[axis]
         up = frame[1] if axis != 1 else -frame[2]
         right = np.cross(up, out)

@@ -31,8 +31,8 @@ POSTER = PosterSheet(-1.19, 1.56, 0.82, 0.90)
 POSTER_DOTS_PER_WIDTH = 640  # raster of the poster
 BLOCK_LETTERS = ("V", "W", "E")  # on the sides across the block's x, y and z
 POSTER_LINES = (  # text, cap height and baseline, in sheet widths
-    ("E I G E N", 0.125, 0.235), ("F I E L D", 0.125, 0.400), ("seventeen by seventeen views", 0.034, 0.475),
-    ("of a jar, an orange, a block and a ball", 0.030, 0.530),
+    ("E I G E N", 0.125, 0.235), ("F I E L D", 0.125, 0.400), ("nine by nine views", 0.034, 0.475),
+    ("of a jar, glass, chrome, an orange and a block", 0.030, 0.530),
     ("T = mean + w1 E1 + w2 E2 + w3 E3 + w4 E4", 0.028, 0.640),
     ("L I G H T", 0.085, 0.785), ("THE  SMALL  PRINT  IS  A  FEW  PIXELS  HIGH", 0.024, 0.850),
     ("each ray that leaves a thing is kept; what they have in", 0.019, 0.900),

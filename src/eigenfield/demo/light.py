@@ -6,12 +6,15 @@ picture, blurred to the width of the reflection lobe.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import RegularGridInterpolator
 
-Array = NDArray[np.float64]
+from eigenfield.demo.geometry import CHROME_SPHERE, GLASS_SPHERE, Array
+from eigenfield.demo.rays import GLASS_INDEX
 
 LIGHT_OCTAHEDRON_TEXELS = 256  # side of the environment's pictures
 
@@ -38,7 +41,11 @@ SOFT_BOXES = (
     SoftBox((0.86, 0.34, 0.38), (4.0, 13.0), (9.0, 11.0, 14.0), (0.15, 0.20, 0.28)),  # a door on the right
     SoftBox((0.30, 0.45, 0.84), (3.5, 3.5), (20.0, 14.5, 9.0), (0.0, 0.0, 0.0)),  # a lamp behind the cameras
     SoftBox((0.10, 0.20, -0.97), (16.0, 6.0), (1.2, 1.15, 1.1), (0.0, 0.0, 0.0)),  # the wall's sheen at grazing angles
+    # dark posts and rails: the gantry that carries the cameras
+    *(SoftBox((x, 0.29, 0.93), (0.9, 19.0), (-0.2, -0.2, -0.2), (0.0, 0.0, 0.0)) for x in (-0.30, 0.30)),
+    *(SoftBox((0.0, y, 0.93), (17.5, 0.9), (-0.2, -0.2, -0.2), (0.0, 0.0, 0.0)) for y in (-0.03, 0.62)),
 )
+CEILING_TANGENT = 0.62  # the ceiling's edge above the horizon, seen square to a wall
 LIGHT_KEY_COUNT = 2  # these first lights shine through a window frame, which casts a shadow on the scene
 WINDOW_CENTRE_UNITS, WINDOW_HALF_SIZE_UNITS, WINDOW_BLUR_UNITS = (0.42, 0.62), (1.15, 1.02), 0.13
 WINDOW_BAR_OFFSETS_UNITS, WINDOW_BAR_HALF_WIDTH_UNITS = (-0.74, 0.58), 0.035
@@ -51,7 +58,10 @@ SHADOW_SPHERES = {  # spheres (centre, radius) that stand for the parts
     "marble": (((0.36, 0.125, 0.80), 0.125),),
     "block": (((0.80, 0.14, 0.28), 0.19), ((0.80, 0.26, 0.28), 0.18), ((0.88, 0.13, 0.17), 0.14),
               ((0.72, 0.13, 0.39), 0.14)),
+    "chrome": ((tuple(CHROME_SPHERE[0]), CHROME_SPHERE[1]),), "glass": ((tuple(GLASS_SPHERE[0]), GLASS_SPHERE[1]),),
 }  # fmt: skip
+GLASS_DARKNESS_FRACTION = 0.3  # of the ambient light that it keeps off, to that of a solid ball
+CAUSTIC_RAYS = 60_000
 
 
 def radiance(directions: Array, softness: float) -> Array:
@@ -61,10 +71,14 @@ def radiance(directions: Array, softness: float) -> Array:
         directions: (n, 3) unit vectors.
         softness: Degrees.
     """
-    _, y, z = directions.T
+    x, y, z = directions.T
+    blur = np.sin(np.radians(softness))
     level = 1 / (1 + np.exp(-y / np.sin(np.radians(softness + 6))))
     floor, room = np.array([0.10, 0.075, 0.055]), np.array([0.30, 0.29, 0.28])
     total = floor + (room * (0.55 + 0.45 * y[:, None]) - floor) * level[:, None]
+    ceiling = _soft_step(y - CEILING_TANGENT * np.maximum(np.abs(x), z), blur)
+    side = _soft_step(np.abs(x) - z, blur)
+    total *= (1 + 0.9 * ceiling - 0.3 * side * (1 - ceiling))[:, None]
     total += 0.10 * np.maximum(z, 0)[:, None] * (1.0, 0.96, 0.9)
     for light in SOFT_BOXES:
         axis = _unit(np.array(light.direction))
@@ -79,7 +93,11 @@ def radiance(directions: Array, softness: float) -> Array:
             _soft_interval(across, wide[0], softness / 2) * _soft_interval(above, wide[1], softness / 2) * (ahead > 0)
         )
         total += inside[:, None] * np.array(light.radiance) * area / (wide[0] * wide[1])
-    return np.asarray(total)
+    return np.maximum(total, 0.02)
+
+
+def _soft_step(value: Array, width: float) -> Array:
+    return np.asarray(0.5 + 0.5 * np.tanh(value / width))
 
 
 def _soft_interval(angle: Array, half: float, softness: float) -> Array:
@@ -88,7 +106,7 @@ def _soft_interval(angle: Array, half: float, softness: float) -> Array:
 
 
 def environment_map() -> NDArray[np.float32]:
-    """(2, e, e, 3): the room over the octahedron, through a lobe of about 4 degrees and one of about 22."""
+    """(3, e, e, 3): the room over the octahedron, sharp, and through lobes of about 4 and 22 degrees."""
     t = np.linspace(-1, 1, LIGHT_OCTAHEDRON_TEXELS)
     z, x = np.meshgrid(t, t, indexing="ij")
     y = 1 - np.abs(x) - np.abs(z)
@@ -98,7 +116,7 @@ def environment_map() -> NDArray[np.float32]:
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     layers = [
         radiance(directions, softness).reshape(LIGHT_OCTAHEDRON_TEXELS, LIGHT_OCTAHEDRON_TEXELS, 3)
-        for softness in (4.0, 22.0)
+        for softness in (0.8, 4.0, 22.0)
     ]
     return np.stack(layers).astype(np.float32)
 
@@ -116,15 +134,19 @@ def irradiance(points: Array, normals: Array, owner: str) -> tuple[Array, Array]
     """
     ambient = np.ones(len(points))
     visible = [np.ones(len(points)) for _ in SOFT_BOXES]
-    others = [name for name in SHADOW_SPHERES if name != owner and (name, owner) != ("body", "lid")]
-    for centre, radius in (sphere for name in others for sphere in SHADOW_SPHERES[name]):
+    others = [part for part in SHADOW_SPHERES if part != owner and (part, owner) != ("body", "lid")]
+    for name, (centre, radius) in ((part, sphere) for part in others for sphere in SHADOW_SPHERES[part]):
         offset = np.array(centre) - points
         square = dot_rows(offset, offset)
         toward = dot_rows(offset, normals) / np.sqrt(square)
-        ambient *= 1 - 0.62 * np.clip(toward * 0.8 + 0.2, 0, 1) * np.minimum(radius**2 / square, 1)
+        dark = GLASS_DARKNESS_FRACTION if name == "glass" else 1.0
+        ambient *= 1 - 0.62 * dark * np.clip(toward * 0.8 + 0.2, 0, 1) * np.minimum(radius**2 / square, 1)
         for light, fraction in zip(SOFT_BOXES, visible, strict=True):
             if sum(light.irradiance) > 0:
-                fraction *= _sphere_shadow(offset, square, _unit(np.array(light.direction)), radius)
+                along = offset @ _unit(np.array(light.direction))
+                miss = np.sqrt(np.maximum(square - along**2, 0))
+                through = _focused_light()(np.column_stack([along, miss]) / radius) if name == "glass" else 0.0
+                fraction *= _sphere_shadow(along, miss, radius) + through
     total = np.array([0.235, 0.245, 0.27]) * (0.72 + 0.28 * normals[:, 1:2]) * ambient[:, None]
     total = total + np.array([0.08, 0.06, 0.045]) * (0.5 - 0.5 * normals[:, 1:2]) * ambient[:, None]
     for k, (light, fraction) in enumerate(zip(SOFT_BOXES, visible, strict=True)):
@@ -153,13 +175,37 @@ def _smooth_step(distance: Array) -> Array:
     return np.asarray(t * t * (3 - 2 * t))
 
 
-def _sphere_shadow(offset: Array, square: Array, direction: Array, radius: float) -> Array:
-    """The fraction of a soft light that a sphere at `offset` lets through: smooth in clearance over distance."""
-    along = offset @ direction
-    miss = np.sqrt(np.maximum(square - along**2, 0))
+def _sphere_shadow(along: Array, miss: Array, radius: float) -> Array:
+    """The fraction of a soft light that passes a sphere: smooth in clearance over distance."""
     clearance = (miss - radius) / np.maximum(along, 1e-3)
     fraction = np.clip(0.5 + clearance / (2 * SHADOW_SOFTNESS_TANGENT), 0, 1)
     return np.where(along > 0, fraction * fraction * (3 - 2 * fraction), 1.0)
+
+
+@cache
+def _focused_light() -> RegularGridInterpolator:
+    """Light that a glass sphere focuses, over that of the lamp: a function of how far a point is behind the sphere's
+    centre and from its axis, in radii. Rays that fill the sphere evenly are counted in rings around the axis."""
+    index = np.arange(CAUSTIC_RAYS)
+    turn = 2 * np.pi * index * (np.sqrt(5) - 1) / 2  # the golden angle: a sunflower's seeds
+    offset = np.sqrt((index + 0.5) / CAUSTIC_RAYS)
+    incident = np.arcsin(offset)
+    refracted = np.arcsin(offset / GLASS_INDEX)
+    bend = incident - refracted  # at each surface
+    leaves = 2 * np.cos(refracted) * np.cos(bend) - np.cos(incident), offset - 2 * np.cos(refracted) * np.sin(bend)
+    passed = np.cos(incident) ** 0.2  # about what Fresnel's reflections at both surfaces leave
+    lamp = np.sqrt(index * np.sqrt(2) % 1)[:, None] * _circle(2 * np.pi * (index * np.sqrt(3) % 1))
+    behind, rings = np.linspace(0, 6, 40), np.linspace(0, 3, 61)
+    table = np.empty((len(behind), len(rings) - 1))
+    for row, depth in zip(table, behind, strict=True):
+        height = leaves[1] - np.maximum(depth - leaves[0], 0) * np.tan(2 * bend)
+        place = height[:, None] * _circle(turn) + depth * SHADOW_SOFTNESS_TANGENT * lamp
+        row[:] = np.histogram(np.hypot(*place.T), rings, weights=passed)[0] / CAUSTIC_RAYS / np.diff(rings**2)
+    return RegularGridInterpolator((behind, rings[:-1]), table, bounds_error=False, fill_value=0.0)
+
+
+def _circle(angle: Array) -> Array:
+    return np.column_stack([np.cos(angle), np.sin(angle)])
 
 
 def dot_rows(a: Array, b: Array) -> Array:

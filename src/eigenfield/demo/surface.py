@@ -20,11 +20,11 @@ from eigenfield.demo.geometry import (
     ORANGE_SPHERE,
     SURFACE_PARTS,
     Array,
-    build_geometry,
+    DemoGeometry,
 )
-from eigenfield.demo.kernels import fractal_noise
 from eigenfield.demo.lettering import BLOCK_LETTERS, POSTER, letter_mask, poster_mask
 from eigenfield.demo.light import dot_rows, irradiance
+from eigenfield.demo.noise import fractal_noise
 from eigenfield.imaging.colour import linear_of_srgb
 from eigenfield.imaging.raster import rasterise_atlas
 from eigenfield.runtime.parallel import parallel_map, pieces
@@ -47,13 +47,13 @@ class Finish(NamedTuple):
     roughness: Array | float
 
 
-def bake_surface(side: int) -> NDArray[np.float32]:
-    """(side, side, 8) float32: see `shade_view`; charts are extended into the gutters.
+def bake_surface(scene: DemoGeometry, side: int) -> NDArray[np.float32]:
+    """(side, side, 8) float32: see `shade_view`; charts are extended into the gutters. Mirrors and glass are zero.
 
     Args:
+        scene: With its parts.
         side: Texels.
     """
-    scene = build_geometry()
     raster = rasterise_atlas(scene.mesh, side, side)
     texel = np.flatnonzero(raster.face >= 0)
     surface = np.zeros((side * side, 8), np.float32)
@@ -64,6 +64,7 @@ def bake_surface(side: int) -> NDArray[np.float32]:
     jobs = [
         (name, bounds[k] + start, bounds[k] + stop)
         for k, name in enumerate(SURFACE_PARTS)
+        if name in SURFACE_FINISHES
         for start, stop in pieces(int(bounds[k + 1] - bounds[k]), DEMO_TEXELS_PER_TASK)
     ]
     corners, normals = scene.mesh.vertices.astype(np.float64)[scene.mesh.faces], scene.normals[scene.mesh.faces]
