@@ -54,6 +54,15 @@ def test_steps_are_numbered_and_the_rest_follows_this_machines_pace(monkeypatch:
     assert len(told.headings) == 2
 
 
+def test_layers_change_what_is_to_come(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock, told = Clock(monkeypatch), Told()
+    told.plan({"trial": 100, "layers": 0, "fit": 100}, {}, {"layers": 300, "fit": 240})
+    told.begin("trial")
+    clock.now = 100
+    told.begin("layers")
+    assert told.headings == ["step 1 of 3: trial, about 3 min left", "step 2 of 3: layers, about 9 min left"]
+
+
 def test_time_of_compilation_says_nothing_about_the_pace(monkeypatch: pytest.MonkeyPatch) -> None:
     clock, told = Clock(monkeypatch), Told()
     told.plan({"array": 100, "fit": 100}, {})
@@ -116,6 +125,7 @@ def test_a_capture_with_cameras_has_the_steps_that_its_encode_takes(fitted: tupl
     cost = expected_cost(opened, options, settings, threads=1)
     assert list(cost.steps) == ["array", "relief", "trial", "layers", "mesh", "fit", "code"]
     assert cost.seconds == pytest.approx(sum(cost.steps.values()))
+    assert cost.seconds < cost.layered_seconds
     assert expected_cost(opened, options, settings, threads=4).seconds < cost.seconds / 2
     assert list(expected_cost(opened, options, None, 1).steps) == ["mesh", "fit", "code"]
     paper = EncodeOptions(fit="none")
@@ -145,7 +155,7 @@ def run_on_a_terminal(words: list[str]) -> str:
 def test_an_encode_says_its_cost_and_its_steps(fitted: tuple[Path, Path], tmp_path: Path) -> None:
     words = ["encode", str(fitted[0]), "--proxy", str(fitted[0] / "proxy.ply"), "-o", str(tmp_path / "out.glb")]
     shown = run_on_a_terminal([*words, "--preset", "small"])
-    assert re.search(r"9 photographs, 0.0 megapixels: about \d+ s with \d+ threads", shown)
+    assert re.search(r"9 photographs, 0.0 megapixels: about \d+ s with \d+ threads; ", shown)
     for line in ("step 1 of 3: mesh, about", "step 2 of 3: fit, about", "step 3 of 3: coding, about"):
         assert line in shown
     words[-1] = str(tmp_path / "lines.glb")

@@ -135,7 +135,7 @@ def test_several_planes_and_bases_of_their_own_sizes(tmp_path):
     for codec in CODECS:
         back = reloaded(scene, tmp_path, codec=codec)
         assert_same_but_pictures(scene, back)
-        assert back.appearance.textures == 5
+        assert back.appearance.textures == 3
 
 
 def test_a_mean_of_any_range_keeps_it(tmp_path):

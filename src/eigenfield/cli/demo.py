@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 DEMO_HOLD_OUT = "every:10"  # enough to say how good the views between the cameras are
 DEMO_FRAMES = 96
-DEMO_STEP_SECONDS = {"draw": 45.0, "encode": 140.0, "fly": 20.0, "measure": 15.0, "page": 1.0}  # on two cores
+DEMO_STEP_SECONDS = {"draw": 45.0, "encode": 90.0, "fly": 12.0, "measure": 10.0, "page": 1.0}  # on two cores
 
 
 @click.command(
@@ -42,7 +42,7 @@ def command(output: Path, quiet: bool) -> None:
 
     DIR then holds capture/ (81 photographs of a scene that exists only here, transforms.json, the exact proxy.ply),
     scene.glb, flight.mp4, evaluation.json, plots/, of which contact-sheet.png shows photograph, drawing and error, and
-    scene.html, which opens in a browser. It takes about 4 minutes on two cores.
+    scene.html, which opens in a browser. It takes about 3 minutes on two cores.
     """  # fmt: skip
     from eigenfield.capture import open_capture
     from eigenfield.demo import DEMO_COLUMNS, DEMO_ROWS, draw_demo_capture

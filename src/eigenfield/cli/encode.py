@@ -196,13 +196,14 @@ def announce(
     count = threads()
     cost = expected_cost(capture, options, settings, count)
     pixels = sum(width * height for width, height in capture.sizes)
+    layered = f", or {duration(cost.layered_seconds)} if layers turn out to be better" if cost.layered else ""
     note(
         f"{len(capture.sizes)} photographs, {pixels / 1e6:.1f} megapixels: {duration(cost.seconds)} with {count} "
-        f"threads, {cost.memory / 1e9:.1f} GB of memory, {cost.scratch / 1e6:.0f} MB of scratch files"
+        f"threads{layered}; {cost.memory / 1e9:.1f} GB of memory, {cost.scratch / 1e6:.0f} MB of scratch files"
     )
     if settings is not None:
         note("Ctrl-C stops it; the same command goes on after the last finished step")
-    progress.plan(cost.steps, {name: step.words for name, step in STEPS.items()})
+    progress.plan(cost.steps, {name: step.words for name, step in STEPS.items()}, cost.layered)
 
 
 def _open_capture(capture: Path, place: Mapping[str, Any], scratch: Path, quiet: bool) -> LightField:

@@ -41,6 +41,7 @@ class StepProgress:
 
     def __init__(self) -> None:
         self.planned: dict[str, float] = {}
+        self._layered: dict[str, float] = {}
         self._words: dict[str, str] = {}
         self._step: str | None = None
         self._step_started = time.monotonic()
@@ -48,14 +49,17 @@ class StepProgress:
         self._compiling_since: float | None = None
         self._compiled = 0.0  # seconds of this step, which tell nothing about the next
 
-    def plan(self, seconds: Mapping[str, float], words: Mapping[str, str]) -> None:
+    def plan(
+        self, seconds: Mapping[str, float], words: Mapping[str, str], layered: Mapping[str, float] | None = None
+    ) -> None:
         """Say what is to come.
 
         Args:
             seconds: Expected of each step, by its name, in order.
             words: What the steps are called.
+            layered: Of those that take others once the step "layers" begins.
         """
-        self.planned, self._words = dict(seconds), dict(words)
+        self.planned, self._words, self._layered = dict(seconds), dict(words), dict(layered or {})
 
     def begin(self, step: str) -> None:
         """A step begins, and the one before has ended. Steps between them were not needed."""
@@ -65,6 +69,8 @@ class StepProgress:
         if self._step in self.planned:
             self._spent += now - self._step_started - self._compiled
             self._expected += self.planned[self._step]
+        if step == "layers":
+            self.planned |= self._layered
         self._step, self._step_started, self._compiled = step, now, 0.0
         self.show_step(self.heading())
 

@@ -37,6 +37,7 @@ from eigenfield.runtime.parallel import parallel_map
 log = logging.getLogger("eigenfield.encode")
 
 BETWEEN_MIN_CAMERAS, BETWEEN_MAX_CAMERAS = 5, 49  # encoded ones of which some can be left out, and worth the time
+BETWEEN_MIN_SIDE_PIXELS = 128  # of smaller photographs the short way says far too little
 BETWEEN_LEFT_OUT_RATIO = 1 / 4  # of the cameras, at most
 BETWEEN_PIXEL_STEP = 2  # each way
 BETWEEN_DENSITIES = (0.07, 0.14, 0.28, 0.55)  # of the atlas's, one after the other: coarse ones fill what few see
@@ -88,8 +89,10 @@ def measure_scene(
 
 def is_measured(plan: EncodePlan) -> bool:
     """Whether a scene of a plan gets scores: a still, fitted one of few cameras."""
-    count, still = len(plan.views.rig.encoded), len(plan.views.capture.times) == 1
-    return plan.options.fit != "none" and still and BETWEEN_MIN_CAMERAS <= count <= BETWEEN_MAX_CAMERAS
+    cameras, still = plan.views.rig.encoded_cameras, len(plan.views.capture.times) == 1
+    large = min(min(camera.width, camera.height) for camera in cameras) >= BETWEEN_MIN_SIDE_PIXELS
+    few = BETWEEN_MIN_CAMERAS <= len(cameras) <= BETWEEN_MAX_CAMERAS
+    return plan.options.fit != "none" and still and few and large
 
 
 def score_words(scores: Mapping[str, Any]) -> list[str]:

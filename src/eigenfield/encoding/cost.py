@@ -17,28 +17,33 @@ from eigenfield.reconstruction.layers import LAYERS_TUNING
 
 
 class StepCost(NamedTuple):
-    """A step's words, and the seconds that one thread needs for it: some, and some for each megapixel."""
+    """A step's words, and the seconds that one thread needs for it: some, some for each megapixel of all photographs,
+    and some for each megapixel of one."""
 
     words: str
     fixed: float
-    a_megapixel: float
+    of_all: float = 0.0
+    of_one: float = 0.0
 
 
 STEPS = {  # by the name with which a step begins
-    "motion": StepCost("cameras", 5.0, 1.5),
-    "array": StepCost("depth", 10.0, 2.0),
-    "relief": StepCost("surface", 2.0, 0.2),
-    "surface": StepCost("surface", 30.0, 8.0),
-    "proxy": StepCost("atlas", 5.0, 0.0),
-    "trial": StepCost("trial of layers", 60.0, 2.0),
-    "layers": StepCost("layers", 120.0, 10.0),
-    "mesh": StepCost("mesh", 5.0, 0.8),
-    "maps": StepCost("texture maps", 5.0, 1.0),
-    "fit": StepCost("fit", 10.0, 2.5),
-    "code": StepCost("coding", 5.0, 0.3),
+    "motion": StepCost("cameras", 5, 3),
+    "array": StepCost("depth", 15, 0, 130),
+    "relief": StepCost("surface", 10),
+    "surface": StepCost("surface", 30, 8),
+    "proxy": StepCost("atlas", 10),
+    "trial": StepCost("trial of layers", 90),
+    "layers": StepCost("layers", 20, 40),
+    "mesh": StepCost("mesh", 5, 1.8),
+    "maps": StepCost("texture maps", 5, 1),
+    "fit": StepCost("fit", 5, 4.5),
+    "code": StepCost("coding", 10, 0.8),
 }
+DENSE_TRIAL = StepCost("trial of layers", 30)  # which ends with the fewest layers, as a rule
+LAYERED = {"layers": STEPS["layers"], "mesh": StepCost("mesh", 0, 45), "fit": StepCost("fit", 0, 38)}
+DENSE_LAYERS_RATIO = 1 / 3  # of the time of layers: dense arrays have fewer
 THREADS_POWER = 0.8  # of the number of threads, by which time falls
-MEMORY_FIXED_BYTES, MEMORY_BYTES_A_PIXEL = 6e8, 16.0
+MEMORY_FIXED_BYTES, MEMORY_BYTES_A_PIXEL = 9e8, 50.0
 SCRATCH_BYTES_A_PIXEL = 17.0
 
 
@@ -47,19 +52,26 @@ class Cost:
     """What a run is expected to take.
 
     Attributes:
-        steps: Seconds of each step, by its name, in order. Some may turn out to be needless.
+        steps: Seconds of each step, by its name, in order. Some may turn out to be needless; those of layers are 0.
+        layered: Seconds of the steps that take others if there are layers; empty where there can be none.
         memory: Bytes.
         scratch: Bytes of files that are removed again.
     """
 
     steps: dict[str, float]
+    layered: dict[str, float]
     memory: float
     scratch: float
 
     @property
     def seconds(self) -> float:
-        """Of all steps."""
+        """Of all steps, without layers."""
         return sum(self.steps.values())
+
+    @property
+    def layered_seconds(self) -> float:
+        """Of all steps, with layers."""
+        return sum((self.steps | self.layered).values())
 
 
 def expected_cost(capture: Capture, options: EncodeOptions, settings: Mapping[str, Any] | None, threads: int) -> Cost:
@@ -71,11 +83,24 @@ def expected_cost(capture: Capture, options: EncodeOptions, settings: Mapping[st
         settings: The arguments of `reconstruct`; None: the proxy is given.
         threads: Number of threads.
     """
-    pixels = float(sum(width * height for width, height in capture.sizes))
+    sizes, share = capture.sizes, threads**-THREADS_POWER
+    pixels = float(sum(width * height for width, height in sizes))
+
+    def seconds(step: StepCost) -> float:
+        return share * (step.fixed + 1e-6 * pixels * (step.of_all + step.of_one / len(sizes)))
+
     names = [*([] if settings is None else _estimation(capture, settings)), *_textures(options)]
-    share = threads**-THREADS_POWER
-    steps = {name: share * (STEPS[name].fixed + STEPS[name].a_megapixel * pixels / 1e6) for name in names}
-    return Cost(steps, MEMORY_FIXED_BYTES + MEMORY_BYTES_A_PIXEL * pixels, SCRATCH_BYTES_A_PIXEL * pixels)
+    steps = {name: seconds(STEPS[name]) for name in names}
+    layered = {name: seconds(step) for name, step in LAYERED.items()} if "layers" in steps else {}
+    if settings is not None and settings["surface"] == "layers":
+        steps |= layered
+    elif layered:
+        steps["layers"] = 0.0
+        if len(sizes) >= LAYERS_TUNING.dense_views:
+            steps["trial"] = seconds(DENSE_TRIAL)
+            layered = {name: DENSE_LAYERS_RATIO * spent for name, spent in layered.items()}
+    memory = MEMORY_FIXED_BYTES + MEMORY_BYTES_A_PIXEL * pixels
+    return Cost(steps, layered, memory, SCRATCH_BYTES_A_PIXEL * pixels)
 
 
 def _estimation(capture: Any, settings: Mapping[str, Any]) -> list[str]:
@@ -91,8 +116,7 @@ def _estimation(capture: Any, settings: Mapping[str, Any]) -> list[str]:
     may_have_layers = settings["layers"] != 1 and capture_fault(capture) is None
     if settings["surface"] in ("auto", "layers") and may_have_layers:
         found += ["trial"] if settings["layers"] is None else []
-        few = len(capture.sizes) < LAYERS_TUNING.dense_views
-        found += ["layers"] if few or settings["surface"] == "layers" else []
+        found += ["layers"]
     return found
 
 

@@ -293,6 +293,8 @@ def _decode_values(path: Path, upright: bool) -> tuple[NDArray[np.float32], byte
         profile = image.info.get("icc_profile")
     except DECODER_ERRORS as error:
         raise decoder_error(path, error) from error
+    if name == "HEIC" and image.size != (header.width, header.height):  # the decoder corrects what the file says
+        raise unreadable_error(path, f"it says {header.width}x{header.height} pixels and has {image.size}")
     values = _decode_over_8bit(data, header, image, path) if header.depth > 8 else None
     if values is None:
         image, profile = _convert_8bit_mode(image, profile, path)
