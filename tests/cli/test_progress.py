@@ -107,6 +107,9 @@ def test_compilation_is_said_once_if_it_takes_long(
     monkeypatch.setattr(progress_module.click, "echo", lambda text, err: (print(text), said.set()))
     with progress_bars(quiet=False) as shown:
         assert isinstance(shown, StepProgress)
+        shown.compiling(True)  # before any step
+        shown.compiling(False)
+        shown._step = "fit"
         for _ in range(2):
             shown.compiling(True)
             assert said.wait(10)

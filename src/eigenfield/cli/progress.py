@@ -186,7 +186,7 @@ class _Lines(StepProgress):
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
-        if now and not self._said_compiling:
+        if now and self._step is not None and not self._said_compiling:  # of short work nothing is said
             self._timer = threading.Timer(COMPILING_SECONDS, self._say_compiling)
             self._timer.daemon = True
             self._timer.start()
