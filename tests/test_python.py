@@ -34,7 +34,7 @@ def nine(tmp_path_factory) -> Path:
 @pytest.mark.parametrize(
     ("words", "options"),
     [
-        (["--surface", "relief"], {"surface": "relief"}),
+        pytest.param(["--surface", "relief"], {"surface": "relief"}, marks=pytest.mark.slow),
         (["--fit", "none", "--textures", "3", "--hold-out", "every:5", "--blind"],
          {"fit": "none", "textures": 3, "hold_out": "every:5", "blind": True}),
     ],
