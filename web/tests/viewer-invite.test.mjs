@@ -88,6 +88,18 @@ test("orbit yields less and less beyond the captured views, and comes back at on
   await close();
 });
 
+test("H closes what H opens, and ? what ? opens", async () => {
+  const { page, close } = await openViewer(browser, "scene.glb");
+  await settled(page);
+  for (const key of ["h", "?"]) {
+    await page.keyboard.press(key);
+    await page.waitForSelector("dialog[open]");
+    await page.keyboard.press(key);
+    await page.waitForSelector("dialog", { state: "hidden" });
+  }
+  await close();
+});
+
 test("at rest the panel says what is drawn and which camera is near", async () => {
   const { page, close } = await openViewer(browser, "scene.glb", { width: 900, height: 600 });
   await settled(page);

@@ -54,7 +54,7 @@ export function createHelp(version: string | null): Help {
     if (event.target === root) root.close(); // beside the sheet
   });
   root.addEventListener("keydown", (event) => {
-    if (!["h", "?"].includes(event.key.toLowerCase())) return;
+    if (!root.open || !["h", "?"].includes(event.key.toLowerCase())) return; // closed, it keeps the focus for a moment
     event.stopPropagation(); // the page would open it again
     root.close();
   });
