@@ -142,6 +142,16 @@ def sphere_distance(origin, ray, sphere):
     return distance if distance > RAY_START_UNITS else np.inf
 
 
+@kernel(inline=True)
+def _meet_sphere(origin, ray, sphere, distance):
+    """Move a ray to a sphere's surface, in place; the cosine of incidence."""
+    cosine = 0.0
+    for c in range(3):
+        origin[c] += distance * ray[c]
+        cosine -= ray[c] * (origin[c] - sphere[c]) / sphere[3]
+    return cosine
+
+
 @kernel()
 def mirror_ray(origin, ray, sphere, distance):
     """Move a ray to a sphere's surface and reflect it, in place.
@@ -155,10 +165,7 @@ def mirror_ray(origin, ray, sphere, distance):
     Returns:
         The cosine of incidence.
     """
-    cosine = 0.0
-    for c in range(3):
-        origin[c] += distance * ray[c]
-        cosine -= ray[c] * (origin[c] - sphere[c]) / sphere[3]
+    cosine = _meet_sphere(origin, ray, sphere, distance)
     for c in range(3):
         ray[c] += 2.0 * cosine * (origin[c] - sphere[c]) / sphere[3]
     return cosine
@@ -177,10 +184,7 @@ def refract_ray(origin, ray, sphere, distance):
     Returns:
         The length of its way in the glass.
     """
-    cosine = 0.0
-    for c in range(3):
-        origin[c] += distance * ray[c]
-        cosine -= ray[c] * (origin[c] - sphere[c]) / sphere[3]
+    cosine = _meet_sphere(origin, ray, sphere, distance)
     within = np.sqrt(1.0 - (1.0 - cosine * cosine) / (GLASS_INDEX * GLASS_INDEX))
     chord = 2.0 * sphere[3] * within
     for c in range(3):
