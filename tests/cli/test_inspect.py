@@ -77,9 +77,10 @@ def test_what_the_capture_is_good_for(tmp_path, inspect):
     report = json.loads(inspect(folder, "--json"))
     found = report["neighbours"]
     assert report["blurred"] == ["view_04.png"] and found["pairs"] >= 4 and found["parallax"] > 0
+    assert found["parallax_limit"] == pytest.approx(0.03 * 320)
     assert found["exposure"] < 0.1 and 0.5 < found["overlap"] <= 1
     text = inspect(folder)
-    assert "  parallax   neighbours are " in text and "up to about 20 px is drawn well between" in text
+    assert "  parallax   neighbours are " in text and "up to about 10 px is drawn well between" in text
     assert "  blurred    view_04.png: " in text
     far = {"widest": {"photographs": ["a", "b"], "parallax": 41.2}, "overlap": 0.5, "exposure": 0.8}
     lines = "\n".join(report_lines(report | {"neighbours": found | far}))

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from eigenfield.core.mesh import Mesh
 
 SCHEMA = "eigenfield.inspect/1"
-NEIGHBOUR_MAX_PARALLAX_PIXELS = 20  # up to which views between photographs were drawn well: docs/captures.md
+NEIGHBOUR_MAX_PARALLAX_RATIO = 0.03  # of the longer side, up to which views between were drawn well: docs/captures.md
 NEIGHBOUR_MIN_OVERLAP = 0.6  # of a photograph
 NEIGHBOUR_MAX_STOPS = 0.3  # of exposure
 
@@ -195,7 +195,7 @@ def _neighbours(capture: Capture, pairs: Sequence[NeighbourPair]) -> dict[str, A
     return {
         "pairs": len(pairs),
         "parallax": median(pair.parallax for pair in pairs),
-        "parallax_limit": NEIGHBOUR_MAX_PARALLAX_PIXELS,
+        "parallax_limit": NEIGHBOUR_MAX_PARALLAX_RATIO * median(max(size) for size in capture.sizes),
         "widest": {
             "photographs": [capture.names[widest.first], capture.names[widest.second]],
             "parallax": widest.parallax,
@@ -386,9 +386,8 @@ def _array_lines(array: dict[str, Any]) -> list[str]:
 def _neighbour_lines(neighbours: dict[str, Any]) -> list[str]:
     parallax, limit, widest = neighbours["parallax"], neighbours["parallax_limit"], neighbours["widest"]
     names = " and ".join(widest["photographs"])
-    lines = [
-        f"  parallax   neighbours are {parallax:.3g} px apart (median); up to about {limit} px is drawn well between"
-    ]
+    fine = f"up to about {limit:.0f} px is drawn well between"
+    lines = [f"  parallax   neighbours are {parallax:.3g} px apart (median); {fine}"]
     if widest["parallax"] > limit:
         lines.append(f"             widest: {widest['parallax']:.3g} px, between {names}; take more photographs there")
     overlap, stops = neighbours["overlap"], neighbours["exposure"]
