@@ -12,6 +12,7 @@ import click
 
 from eigenfield.cli.common import PATH, common_options, note
 from eigenfield.cli.progress import StepProgress, progress_bars
+from eigenfield.core.progress import begin_step
 
 if TYPE_CHECKING:
     from eigenfield.core.scene import Scene
@@ -71,33 +72,29 @@ def command(output: Path, quiet: bool) -> None:
     }
     with progress_bars(quiet) as shown:
 
-        def step(name: str) -> None:
-            if isinstance(shown, StepProgress):
-                shown.begin(name)
-
         def progress(stage: str, done: int, total: int) -> None:  # `encode` has steps, which are one here
             if shown is not None:
                 shown(stage, done, total)
 
         if isinstance(shown, StepProgress):
             shown.plan(seconds, words)
-        step("draw")
+        begin_step(shown, "draw")
         if not there:
             draw_demo_capture(folder, progress=progress)
         capture = open_capture(folder)
-        step("encode")
+        begin_step(shown, "encode")
         scene = encode(capture, folder / "proxy.ply", hold_out=DEMO_HOLD_OUT, work=output, progress=progress)
         save(scene, path, overwrite=True, progress=progress)
         scene = load(path)
-        step("fly")
+        begin_step(shown, "fly")
         points = path_points("circle", DEMO_FRAMES)
         write_flight(RenderJob(scene), points, output / "flight.mp4", Fraction(30), overwrite=True, progress=progress)
-        step("measure")
+        begin_step(shown, "measure")
         figures = evaluate(scene, capture, path=path, progress=progress)
         write_bytes(output / "evaluation.json", json.dumps(figures, indent=1).encode(), overwrite=True)
         write_plots(figures, scene, capture, output / "plots", overwrite=True)
         store_scores(path, stored_scores(figures))
-        step("page")
+        begin_step(shown, "page")
         export(path, page, overwrite=True, progress=progress)
     click.echo(_summary(path, page, scene, figures, time.monotonic() - started))
 

@@ -93,7 +93,7 @@ def expected_cost(capture: Capture, options: EncodeOptions, settings: Mapping[st
     steps = {name: seconds(STEPS[name]) for name in names}
     layered = {name: seconds(step) for name, step in LAYERED.items()} if "layers" in steps else {}
     if settings is not None and settings["surface"] == "layers":
-        steps |= layered
+        steps, layered = steps | layered, {}
     elif layered:
         steps["layers"] = 0.0
         if len(sizes) >= LAYERS_TUNING.dense_views:
