@@ -99,7 +99,7 @@ def check_image(image: str, draco: bool) -> None:
         OptionError: `image`, `draco-missing`.
     """
     if image == "ktx2":
-        remedy = "write png or jpeg, and convert the file: `gltf-transform uastc plain.glb small.glb`"
+        remedy = "write png, and convert it by `gltf-transform uastc plain.glb small.glb`, which needs Khronos' ktx"
         raise OptionError("image", "eigenfield has no encoder of KTX2", remedy=remedy)
     if image not in IMAGES:
         raise OptionError("image", f"no picture is called {image}", remedy=f"use one of {', '.join(IMAGES)}")
