@@ -190,6 +190,24 @@ test("every part of the address", async () => {
   await close();
 });
 
+test("an address that is typed while the page is about to write its own stands", async () => {
+  const { page, close } = await openViewer(browser, "scene.glb");
+  await settled(page);
+  await page.waitForTimeout(400); // nothing is left to write
+  await page.evaluate(async () => {
+    const { setTimeout } = window;
+    const late = []; // what the page does 300 ms after it has drawn
+    window.setTimeout = (task, pause) => (pause === 300 ? late.push(task) : setTimeout(task, pause));
+    window.eigenfield.goTo(0.25, -0.5);
+    await window.eigenfield.settled();
+    location.hash = "#camera=view_1_2";
+    late.forEach((write) => write()); // before the event that tells of the new address
+    if (late.length === 0) throw new Error("nothing was about to be written");
+  });
+  await page.waitForFunction(() => window.eigenfield.state().camera === "view_1_2");
+  await close();
+});
+
 test("the view is in the address, and comes from it", async () => {
   const first = await openViewer(browser, "scene.glb");
   await first.page.evaluate(() => window.eigenfield.goTo(0.25, -0.5));

@@ -15,10 +15,11 @@ export function keepAddress(viewer: Viewer): void {
     timer = null;
     if (viewer.scene()?.source !== read || viewer.status() !== "ready" || viewer.untouched()) return;
     const hash = hashOf(viewer);
-    if (hash === location.hash) return;
-    written = hash;
+    if (location.hash !== written) return; // changed by a person: `hashchange` is on its way
+    if (hash === written) return;
     try {
       history.replaceState(history.state, "", hash);
+      written = location.hash;
     } catch {
       // a page within a page, as in a notebook, has no address of its own
     }
