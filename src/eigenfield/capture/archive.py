@@ -6,6 +6,7 @@ import lzma
 import re
 import shutil
 import stat
+import sys
 import zipfile
 import zlib
 from pathlib import Path, PurePosixPath
@@ -24,6 +25,7 @@ ZIP_MAX_NAME_BYTES = 255  # of a folder or a file
 ZIP_BLOCK_BYTES = 1 << 20
 ZIP_ENCRYPTED_FLAG = 0x1
 ZIP_BAD_CHARACTERS = re.compile(r"[\0-\x1f\x7f]")
+ZIP_WINDOWS_FORBIDDEN = re.compile(r'[<>:"|?*]|[. ]$|^(con|prn|aux|nul|com[0-9]|lpt[0-9])(\.|$)', re.IGNORECASE)
 ZIP_IGNORED = re.compile(r"__MACOSX|\.DS_Store|Thumbs\.db|desktop\.ini|\._.*", re.IGNORECASE)  # of file managers
 ZIP_REMEDY = "unpack it yourself, and name the folder"
 ZIP_ERRORS = zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, NotImplementedError, RuntimeError, ValueError
@@ -110,6 +112,8 @@ def _safe_path(info: zipfile.ZipInfo, path: Path) -> PurePosixPath | None:
     parts = name.split("/")
     if name.startswith("/") or ".." in parts or ":" in parts[0] or ZIP_BAD_CHARACTERS.search(name):
         raise _error("path", f"holds a path that leaves its folder or is none ({shown})", path)
+    if sys.platform == "win32" and any(ZIP_WINDOWS_FORBIDDEN.search(part) for part in parts):
+        raise _error("path", f"holds a name that Windows does not allow ({shown})", path)
     if any(len(part.encode("utf-8", "surrogateescape")) > ZIP_MAX_NAME_BYTES for part in parts):
         raise _error("path", f"holds a name that is too long ({shown})", path)
     return None if name.endswith("/") or kind == stat.S_IFDIR else PurePosixPath(name)
@@ -118,6 +122,13 @@ def _safe_path(info: zipfile.ZipInfo, path: Path) -> PurePosixPath | None:
 def _write(archive: zipfile.ZipFile, info: zipfile.ZipInfo, target: Path) -> None:
     """One file. `zipfile` gives no more bytes than the file states, and checks them."""
     target.parent.mkdir(parents=True, exist_ok=True)
-    with target.open("xb") as out, archive.open(info) as packed:
+    try:
+        out = target.open("xb")
+    except FileExistsError as error:  # on Windows and macOS, where case does not count
+        shown = escape_name(target.name)
+        raise _error(
+            "path", f"holds two names that are one file here ({shown})", Path(str(archive.filename))
+        ) from error
+    with out, archive.open(info) as packed:
         while block := packed.read(ZIP_BLOCK_BYTES):
             out.write(block)

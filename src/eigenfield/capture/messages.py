@@ -36,8 +36,12 @@ def natural_key(name: str) -> tuple[list[tuple[int, str]], str]:
 
 
 def unique_names(paths: Sequence[Path]) -> list[str]:
-    """File names, or where several files have one name their paths relative to the folder above all of these."""
+    """File names, or where several files have one name their paths relative to the folder above all of these; whole
+    paths where they lie on several drives (Windows)."""
     times = Counter(path.name for path in paths)
     shared = [path for path in paths if times[path.name] > 1]
-    common = Path(os.path.commonpath([path.parent for path in shared])) if shared else Path()
+    try:
+        common = os.path.commonpath([path.parent for path in shared]) if shared else ""
+    except ValueError:
+        return [escape_name(path.name if times[path.name] == 1 else path.as_posix()) for path in paths]
     return [escape_name(path.name if times[path.name] == 1 else path.relative_to(common).as_posix()) for path in paths]

@@ -171,8 +171,13 @@ def _open_folders(
             remedy="name one folder that holds them all, or leave out the other options",
         )
     folders = [Path(path) for path in paths]
+    try:
+        root = Path(os.path.commonpath([folder.absolute() for folder in folders]))
+    except ValueError as error:
+        raise OptionError(
+            "folders-drives", "the folders are on several drives", remedy="copy them to one drive"
+        ) from error
     arrangement = read_folders(folders)
-    root = Path(os.path.commonpath([folder.absolute() for folder in folders]))
     return _finish(make_photo_set(arrangement, root, masks=None if masks is None else Path(masks), strict=strict))
 
 

@@ -22,7 +22,7 @@ from eigenfield.demo.shading import shade_view
 from eigenfield.demo.surface import bake_surface
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy import write_ply
-from eigenfield.runtime.files import output_errors
+from eigenfield.runtime.files import output_errors, rename
 from eigenfield.runtime.parallel import parallel_stream
 from eigenfield.runtime.temporary import temporary_folder
 
@@ -103,7 +103,7 @@ def draw_demo_capture(
     with output_errors(folder), temporary_folder(folder.name, parent) as work:
         _draw_into(work, rows, columns, size, progress)
         work.chmod(0o755)  # it was its maker's alone
-        work.replace(folder)
+        rename(work, folder)
 
 
 def _draw_into(folder: Path, rows: int, columns: int, size: int, progress: Progress | None) -> None:
@@ -116,7 +116,7 @@ def _draw_into(folder: Path, rows: int, columns: int, size: int, progress: Progr
     views = tuple(View(name, folder / name, camera) for name, camera in zip(names, cameras, strict=True))
     document = transforms_document(LightField(folder, views, (), "transforms"), folder, None)
     (folder / "images").mkdir()
-    (folder / "transforms.json").write_text(json.dumps(document, indent=1), encoding="utf-8")
+    (folder / "transforms.json").write_text(json.dumps(document, indent=1), encoding="utf-8", newline="\n")
     look = bake_look(min(DEMO_TEXELS_PER_PIXEL * size, DEMO_MAX_ATLAS_TEXELS))
 
     def png(camera: Camera) -> bytes:

@@ -7,7 +7,9 @@ import errno
 import os
 import re
 import shutil
+import sys
 import tempfile
+import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO, Any
@@ -22,6 +24,8 @@ from eigenfield.runtime.temporary import temporary_file, temporary_folder
 _NUMBER_PLACE = re.compile(r"%0?\d{0,2}d")
 _DISK_FULL_ERRORS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 _NOT_WRITABLE_ERRORS = PermissionError, NotADirectoryError, IsADirectoryError, FileNotFoundError
+_SHARING_VIOLATION = 32  # of Windows: another program has the file open
+_RENAME_WAITS_SECONDS = 0.05, 0.2, 0.75  # virus scanners and indexers of Windows open every new file for a moment
 
 
 @contextlib.contextmanager
@@ -33,6 +37,9 @@ def output_errors(path: str | os.PathLike[str]) -> Iterator[None]:
         if error.errno in _DISK_FULL_ERRORS:
             message, remedy = "no room left on the disk", "free some or write elsewhere"
             raise OutputError("disk-full", message, path=path, remedy=remedy) from error
+        if getattr(error, "winerror", None) == _SHARING_VIOLATION:
+            message, remedy = "is open in another program", "close it there or name another file"
+            raise OutputError("not-writable", message, path=path, remedy=remedy) from error
         if isinstance(error, _NOT_WRITABLE_ERRORS) or error.errno == errno.EROFS:
             message, remedy = error.strerror or "cannot be written", "name a place that can be written"
             raise OutputError("not-writable", message, path=path, remedy=remedy) from error
@@ -76,7 +83,7 @@ def atomic_writer(path: Path, *, overwrite: bool = False) -> Iterator[IO[bytes]]
             file.flush()
             os.fsync(file.fileno())
         part.chmod(0o666 & ~current_umask())  # it was its maker's alone
-        part.replace(path)
+        rename(part, path)
 
 
 def write_bytes(path: Path, data: bytes, *, overwrite: bool = False) -> None:
@@ -111,7 +118,7 @@ def _replace_all(places: Sequence[Path], targets: Sequence[Path], old: Path) -> 
             if target.exists():
                 _link_or_copy(target, old / target.name)
             done.append(target)
-            place.replace(target)
+            rename(place, target)
     except BaseException:
         for target in done:
             before = old / target.name
@@ -121,6 +128,19 @@ def _replace_all(places: Sequence[Path], targets: Sequence[Path], old: Path) -> 
                 else:
                     target.unlink()
         raise
+
+
+def rename(source: Path, target: Path) -> None:
+    """Rename a file or folder, replacing a file; on Windows again a little later where another program has it open."""
+    for seconds in _RENAME_WAITS_SECONDS if sys.platform == "win32" else ():
+        try:
+            source.replace(target)
+            return
+        except PermissionError:
+            if target.is_dir():  # which Windows never replaces
+                raise
+            time.sleep(seconds)
+    source.replace(target)
 
 
 def _link_or_copy(path: Path, copy: Path) -> None:
@@ -133,9 +153,10 @@ def _link_or_copy(path: Path, copy: Path) -> None:
 
 def flush_folder(folder: Path) -> None:
     """Flush every file below `folder` to the disk."""
+    mode = os.O_RDWR if sys.platform == "win32" else os.O_RDONLY  # Windows flushes only what may be written
     for inside, _, files in os.walk(folder):
         for name in files:
-            handle = os.open(Path(inside) / name, os.O_RDONLY)
+            handle = os.open(Path(inside) / name, mode)
             try:
                 os.fsync(handle)
             finally:
@@ -153,8 +174,8 @@ def current_umask() -> int:
 def scratch_array(shape: tuple[int, ...], dtype: DTypeLike, folder: Path | None = None) -> Iterator[NDArray[Any]]:
     """A zeroed array in a memory-mapped temporary file, deleted after the block (or when the process ends).
 
-    Space is allocated at once where the system can: a sparse file on a disk that fills up later would end the process
-    by SIGBUS instead of by an OutputError.
+    Space is allocated at once where the system can, else free space is checked: a sparse file on a disk that fills up
+    later would end the process by SIGBUS instead of by an OutputError.
 
     Args:
         shape: Of the array.
@@ -172,6 +193,8 @@ def scratch_array(shape: tuple[int, ...], dtype: DTypeLike, folder: Path | None 
             if hasattr(os, "posix_fallocate"):
                 os.posix_fallocate(file.fileno(), 0, size)
             else:
+                if shutil.disk_usage(place).free < size:
+                    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
                 file.truncate(size)
             array = np.memmap(file, dtype=dtype, mode="r+", shape=shape)
         yield array

@@ -8,8 +8,9 @@ import threading
 from collections.abc import Iterator
 from typing import Any
 
-# those that ask a process to stop; Windows has no SIGHUP
-STOP_SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+# those that ask a process to stop. Windows has no SIGHUP, but SIGBREAK, which comes when its console is closed
+_STOP_NAMES = "SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK"
+STOP_SIGNALS = tuple(getattr(signal, name) for name in _STOP_NAMES if hasattr(signal, name))
 
 
 held = threading.RLock()  # whoever ends the process takes it first
@@ -17,7 +18,7 @@ held = threading.RLock()  # whoever ends the process takes it first
 
 @contextlib.contextmanager
 def hold_signals() -> Iterator[None]:
-    """Deliver Ctrl-C, SIGTERM and SIGHUP at the end of the block."""
+    """Deliver the signals that ask to stop at the end of the block."""
     caught: list[int] = []
     handlers: dict[int, Any] = {}
     try:

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from eigenfield.core.errors import OutputError
-from eigenfield.runtime.files import flush_folder, output_errors
+from eigenfield.runtime.files import flush_folder, output_errors, rename
 from eigenfield.runtime.temporary import temporary_folder
 
 log = logging.getLogger("eigenfield.stages")
@@ -88,7 +88,7 @@ class Stages:
             part.chmod(0o755)
             flush_folder(part)
             try:
-                part.replace(place)
+                rename(part, place)
             except OSError:
                 if not place.is_dir():  # another run may have finished the same stage meanwhile
                     raise

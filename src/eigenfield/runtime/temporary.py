@@ -12,6 +12,7 @@ import os
 import re
 import secrets
 import shutil
+import sys
 import tempfile
 import threading
 from collections.abc import Callable, Iterator
@@ -41,7 +42,9 @@ def temporary_folder(prefix: str = PREFIX, folder: Path | None = None) -> Iterat
         prefix: Of its name: what a killed process left under the same prefix is removed.
         folder: Where it is made; None: the system's temporary folder.
     """
-    with _temporary(prefix, folder, lambda path: path.mkdir(0o700)) as path:
+    # Python gives 0o700 on Windows an access list that files keep when they are moved out of the folder
+    mode = 0o777 if sys.platform == "win32" and folder is not None else 0o700
+    with _temporary(prefix, folder, lambda path: path.mkdir(mode)) as path:
         yield path
 
 

@@ -16,7 +16,7 @@ from eigenfield.capture.readers.transforms import TRANSFORMS_FILE
 from eigenfield.capture.writers.colmap import colmap_model
 from eigenfield.capture.writers.transforms import transforms_document
 from eigenfield.core.errors import OutputError
-from eigenfield.runtime.files import current_umask, flush_folder, output_errors
+from eigenfield.runtime.files import current_umask, flush_folder, output_errors, rename
 from eigenfield.runtime.signals import hold_signals
 from eigenfield.runtime.temporary import temporary_folder
 
@@ -125,10 +125,10 @@ def _move_into_place(part: Path, place: Path) -> None:
     if not place.exists() or not any(place.iterdir()):
         if place.exists():
             place.rmdir()
-        part.replace(place)
+        rename(part, place)
         return
     for entry in sorted(part.iterdir()):
         target = place / entry.name
         if target.is_dir() and not target.is_symlink():
-            target.replace(part / f"old-{entry.name}")  # goes with `part`
-        entry.replace(target)
+            rename(target, part / f"old-{entry.name}")  # goes with `part`
+        rename(entry, target)

@@ -81,5 +81,8 @@ def _frame(view: View, folder: Path) -> dict[str, Any]:
 
 
 def relative_path(path: Path, folder: Path) -> str:
-    """A path relative to a folder, with forward slashes."""
-    return Path(os.path.relpath(path.absolute(), folder.absolute())).as_posix()
+    """A path relative to a folder, with forward slashes; the whole path where it is on another drive (Windows)."""
+    try:
+        return Path(os.path.relpath(path.absolute(), folder.absolute())).as_posix()
+    except ValueError:
+        return path.absolute().as_posix()

@@ -12,7 +12,7 @@ from typing import Any
 
 from eigenfield.core.errors import OutputError
 from eigenfield.core.version import __version__
-from eigenfield.runtime.files import flush_folder, output_errors
+from eigenfield.runtime.files import flush_folder, output_errors, rename
 from eigenfield.runtime.signals import hold_signals
 from eigenfield.runtime.temporary import is_temporary, temporary_folder
 
@@ -80,7 +80,7 @@ def atomic_folder(folder: Path, overwrite: bool) -> Iterator[Path]:
                 with hold_signals():
                     _exchange(folder, part)
             else:
-                new.replace(folder)
+                rename(new, folder)
 
 
 def write_file(path: Path, data: bytes) -> None:
@@ -107,7 +107,7 @@ def write_listing(folder: Path, kind: str, more: Mapping[str, Any]) -> None:
     files = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
     document = {"kind": kind, "generator": f"eigenfield {__version__}", **more, "files": [*files, LISTING_FILE]}
     text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
-    (folder / LISTING_FILE).write_text(text + "\n", encoding="utf-8")
+    (folder / LISTING_FILE).write_text(text + "\n", encoding="utf-8", newline="\n")
 
 
 def _not_ours(folder: Path) -> str | None:
@@ -143,13 +143,13 @@ def _exchange(folder: Path, part: Path) -> None:
         shutil.copy2(listing, old)
     both.write_text(json.dumps({"files": sorted(_listed(folder) | _listed(new))}), encoding="utf-8")
     try:
-        both.replace(listing)
+        rename(both, listing)
         for source, target in ((folder, old), (new, folder)):
             for entry in sorted(source.iterdir()):
                 if entry.name not in (part.name, LISTING_FILE):
                     moved.append((entry, target / entry.name))
-                    entry.replace(target / entry.name)
-        (new / LISTING_FILE).replace(listing)
+                    rename(entry, target / entry.name)
+        rename(new / LISTING_FILE, listing)
     except BaseException:
         for before, now in reversed(moved):
             with contextlib.suppress(OSError):
