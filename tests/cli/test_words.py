@@ -165,17 +165,6 @@ def test_help_shows_pages_and_the_options_of_commands(run):
     assert "`eigenfield help` lists them" in refused(run, "help", "nothing")
 
 
-@pytest.mark.slow
-def test_a_wheel_holds_the_pages(tmp_path):
-    build = [sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation", "-q", "-w", tmp_path, ROOT]
-    if subprocess.run(build, capture_output=True).returncode:
-        pytest.skip("setuptools is not installed, or too old")
-    import zipfile
-
-    names = zipfile.ZipFile(next(tmp_path.glob("*.whl"))).namelist()
-    assert {f"eigenfield/docs/{topic}.md" for topic in TOPICS} <= set(names)
-
-
 def test_a_command_that_does_not_exist_brings_the_nearest(run):
     code, _, err = run("encod", "photos")
     assert code == 2 and "did you mean encode?" in err

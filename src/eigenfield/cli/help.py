@@ -1,4 +1,4 @@
-"""`eigenfield help`: the pages of the documentation, which a wheel holds too (`setup.py` puts them in)."""
+"""`eigenfield help`: the pages of the documentation, which a wheel holds too (`pyproject.toml` puts them in)."""
 
 from __future__ import annotations
 

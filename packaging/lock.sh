@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# Writes the requirements with hashes that the workflows install, from constraints.txt. It needs uv (`pip install uv`).
+set -euo pipefail
+cd "$(dirname "$0")/.."
+lock() {
+  uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
+    --constraint constraints.txt pyproject.toml "${@:2}" --output-file "packaging/requirements-$1.txt"
+}
+lock run
+lock test --extra test --extra benchmark --extra report
+lock lint --extra lint
+lock release --extra release
