@@ -13,6 +13,7 @@
 
 import { Vector3 } from "three";
 import type { EigenField, Frame } from "eigenfield-three";
+import { words } from "./language";
 import type { Options } from "./options";
 import type { Detail } from "./pace";
 import { bytesWith, uvSsim } from "./scores";
@@ -103,7 +104,7 @@ export function createApi(viewer: Viewer): Embedded {
       viewer.set(options);
       if (photograph !== undefined) viewer.showPhotograph(photograph);
     },
-    open: (from, name = "scene") =>
+    open: (from, name = words("scene")) =>
       viewer.open({ name, from, bytes: typeof from === "string" ? null : from.size, own: false }),
     settled: viewer.settled,
     pixels: () => {

@@ -2,6 +2,7 @@
 
 import type { SceneInfo } from "eigenfield-three";
 import { element } from "./dom";
+import { words } from "./language";
 import { clamp } from "./mode";
 import type { Viewer } from "./viewer";
 
@@ -20,7 +21,7 @@ export function createCameraMap(viewer: Viewer): CameraMap {
   const canvas = element("canvas");
   const root = element(
     "div",
-    { class: "map", role: "img", "aria-label": "Map of the captured cameras with the place of the eye" },
+    { class: "map", role: "img", "aria-label": words("map") },
     canvas,
   );
   const size = { width: SIDE, height: SIDE };

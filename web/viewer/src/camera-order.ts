@@ -3,6 +3,7 @@
 
 import type { SceneInfo } from "eigenfield-three";
 import { add, dot, scaled } from "./geometry";
+import { words } from "./language";
 
 export interface CameraGroup {
   label: string | null; // null: the only group
@@ -29,7 +30,7 @@ export function inOrder(info: SceneInfo): CameraOrder {
   const cuts = [...steps.keys()].sort((a, b) => at(steps, b) - at(steps, a)).slice(0, grid.rows - 1);
   const ends = [...cuts.sort((a, b) => a - b), fromTop.length];
   return ends.map((end, row) => ({
-    label: `Row ${row + 1} of ${grid.rows}`,
+    label: words("row", { row: row + 1, rows: grid.rows }),
     indices: fromTop.slice(row === 0 ? 0 : ends[row - 1], end).sort((a, b) => at(across, a) - at(across, b)),
   }));
 }

@@ -1,6 +1,7 @@
 // Files that people bring: dropped on the page, or chosen.
 
 import { element } from "./dom";
+import { words } from "./language";
 
 export interface FileChooser {
   readonly root: HTMLInputElement;
@@ -9,7 +10,7 @@ export interface FileChooser {
 
 export function takeFiles(take: (file: File) => void, hover: (over: boolean) => void): FileChooser {
   const accept = ".glb,model/gltf-binary";
-  const input = element("input", { type: "file", accept, hidden: "", "aria-label": "Scene file" });
+  const input = element("input", { type: "file", accept, hidden: "", "aria-label": words("sceneFile") });
   input.addEventListener("change", () => {
     const file = input.files?.[0];
     input.value = ""; // so that the same file can be chosen again

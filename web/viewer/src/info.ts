@@ -2,6 +2,7 @@
 
 import type { EigenField, SceneInfo } from "eigenfield-three";
 import { element } from "./dom";
+import { pluginWords, words } from "./language";
 import { bytes, figure, shown, whole } from "./text";
 import type { Viewer } from "./viewer";
 
@@ -22,18 +23,18 @@ export function createInfo(viewer: Viewer): Info {
       if (!scene) return root.replaceChildren();
       if (!field) {
         return root.replaceChildren(
-          element("p", {}, "A plain glTF file: no eigen textures. It is shown as it is."),
+          element("p", {}, `${words("plainGltf")} ${words("plainGltfShown")}`),
         );
       }
       root.replaceChildren(
-        ...section("Quality, as measured on the photographs", quality(field.info)),
-        ...section("Bytes", sizes(field.info)),
-        ...section("Scene", facts(field.info)),
-        ...section("Here", [
-          ["GPU memory", bytes(field.gpuBytes)],
-          ["eigen textures", `${field.loaded} of ${field.total}`],
+        ...section(words("quality"), quality(field.info)),
+        ...section(words("bytes"), sizes(field.info)),
+        ...section(words("sceneFacts"), facts(field.info)),
+        ...section(words("here"), [
+          [words("gpuMemory"), bytes(field.gpuBytes)],
+          [words("eigenTexturesHere"), words("outOf", { part: field.loaded, whole: field.total })],
         ]),
-        ...(field.limitation === null ? [] : [element("p", { class: "warning" }, field.limitation)]),
+        ...(field.limitation === null ? [] : [element("p", { class: "warning" }, pluginWords("limited", field.limitation))]),
         ...settings(field),
       );
     },
@@ -42,7 +43,7 @@ export function createInfo(viewer: Viewer): Info {
 
 /** What one wants to know first: how near it comes to its photographs, and what it takes here. */
 export function briefly({ info, gpuBytes }: EigenField): HTMLElement {
-  return rowsOf([...imageQuality(info), ["GPU memory", bytes(gpuBytes)]]);
+  return rowsOf([...imageQuality(info), [words("gpuMemory"), bytes(gpuBytes)]]);
 }
 
 function section(title: string, rows: Rows): Node[] {
@@ -65,59 +66,61 @@ function measured({ scores }: SceneInfo, label: string, ...path: string[]): Rows
 }
 
 const imageQuality = (info: SceneInfo): Rows => [
-  ...measured(info, "encoded views", "image", "encoded"),
-  ...measured(info, "held-out views", "image", "held_out"),
+  ...measured(info, words("encodedViews"), "image", "encoded"),
+  ...measured(info, words("heldOutViews"), "image", "held_out"),
   ...between(info),
 ];
 
 /** The lower estimate of `encode`. */
 function between({ scores }: SceneInfo): Rows {
   const psnr = figure(scores, "between", "psnr_luma_at_least");
-  return psnr === null ? [] : [["between its views", `at least ${shown(psnr, 1, "\u00a0dB")} of luma`]];
+  return psnr === null ? [] : [[words("betweenViews"), words("atLeastLuma", { value: shown(psnr, 1, "\u00a0dB") })]];
 }
 
 function quality(info: SceneInfo): Rows {
-  const rows = [...measured(info, "texture maps", "uv"), ...imageQuality(info)];
+  const rows = [...measured(info, words("textureMaps"), "uv"), ...imageQuality(info)];
   const ratio = figure(info.scores, "ratio", "photographs");
-  if (ratio !== null) rows.push(["smaller than its photographs", `${shown(ratio, 1)} ×`]);
-  return rows.length > 0 ? rows : [["not measured", "eigenfield evaluate --store"]];
+  if (ratio !== null) rows.push([words("ratio"), `${shown(ratio, 1)} ×`]);
+  return rows.length > 0 ? rows : [[words("notMeasured"), "eigenfield evaluate --store"]];
 }
 
 function sizes({ bytes: parts }: SceneInfo): Rows {
   const textures = parts.textures.reduce((a, b) => a + b, 0);
   return [
-    ["file", bytes(parts.total)],
-    ["mesh", bytes(parts.mesh)],
-    ...(parts.opacity ? [["opacity", bytes(parts.opacity)] as [string, string]] : []),
-    ["mean", bytes(parts.mean)],
-    [`${parts.textures.length} eigen textures`, bytes(textures)],
-    ["weights", bytes(parts.weights)],
-    ["calibration and the rest", bytes(parts.other)],
+    [words("file"), bytes(parts.total)],
+    [words("mesh"), bytes(parts.mesh)],
+    ...(parts.opacity ? [[words("opacity"), bytes(parts.opacity)] as [string, string]] : []),
+    [words("mean"), bytes(parts.mean)],
+    [words("countTextures", { count: parts.textures.length }), bytes(textures)],
+    [words("weights"), bytes(parts.weights)],
+    [words("rest"), bytes(parts.other)],
   ];
 }
 
 function facts(info: SceneInfo): Rows {
   const held = info.heldOut.filter(Boolean).length;
+  const out = held > 0 ? [words("countHeldOut", { count: held })] : [];
   const grid = info.grid ? ` (${info.grid.columns} × ${info.grid.rows})` : "";
   const view = info.cameras[info.reference];
   return [
-    ["cameras", `${info.cameras.length}${grid}${held > 0 ? `, ${held} held out` : ""}`],
-    ...(view ? [["photographs", `${view.width} × ${view.height}`] as [string, string]] : []),
-    ["texels", `${info.size[0]} × ${info.size[1]}`],
+    [words("cameras"), [`${info.cameras.length}${grid}`, ...out].join(", ")],
+    ...(view ? [[words("photographs"), `${view.width} × ${view.height}`] as [string, string]] : []),
+    [words("texelCount"), `${info.size[0]} × ${info.size[1]}`],
     ...(info.planes.length > 1 ? info.planes.map(plane) : []),
-    ["vertices", whole(info.vertices)],
-    ["triangles", whole(info.triangles)],
-    ...(info.sheets ? [["sheets", `${info.sheets}, one over the other`] as [string, string]] : []),
-    ["format", info.version],
-    ...(info.generator === "" ? [] : [["made by", info.generator] as [string, string]]),
+    [words("vertices"), whole(info.vertices)],
+    [words("triangles"), whole(info.triangles)],
+    ...(info.sheets ? [[words("sheets"), words("sheetsOver", { count: info.sheets })] as [string, string]] : []),
+    [words("format"), info.version],
+    ...(info.generator === "" ? [] : [[words("madeBy"), info.generator] as [string, string]]),
   ];
 }
 
 /** Channels of a plane, and where its mean and eigen textures have other sizes than the atlas. */
 function plane({ channels, mean, bases }: SceneInfo["planes"][number], index: number): [string, string] {
-  const kinds = bases.map(({ textures, grid }) => `${textures} eigen textures of ${grid[0]} × ${grid[1]}`);
-  const parts = [channels === 1 ? "1 channel" : `${channels} channels`, `mean of ${mean[0]} × ${mean[1]}`, ...kinds];
-  return [`plane ${index + 1}`, parts.join(", ")];
+  const size = ([width, height]: readonly [number, number]): string => `${width} × ${height}`;
+  const kinds = bases.map(({ textures, grid }) => words("texturesOf", { count: textures, size: size(grid) }));
+  const parts = [words("channels", { count: channels }), words("meanOf", { size: size(mean) }), ...kinds];
+  return [words("plane", { number: index + 1 }), parts.join(", ")];
 }
 
 function settings({ info }: EigenField): Node[] {
@@ -125,5 +128,5 @@ function settings({ info }: EigenField): Node[] {
   if (entries.length === 0) return [];
   const text = (value: unknown): string => (typeof value === "string" ? value : JSON.stringify(value));
   const rows = entries.map(([key, value]): [string, string] => [key, text(value)]);
-  return [element("details", {}, element("summary", {}, "How it was made"), ...section("", rows).slice(1))];
+  return [element("details", {}, element("summary", {}, words("howMade")), ...section("", rows).slice(1))];
 }

@@ -1,5 +1,6 @@
 // Leaning the device moves the eye on the view plane, from however it was held when tilting was switched on.
 
+import { words } from "./language";
 import type { Viewer } from "./viewer";
 
 const REACH = 18; // degrees from the middle to the array's edge
@@ -49,7 +50,7 @@ export function createTilt(viewer: Viewer, changed: () => void): Tilt {
           addEventListener("deviceorientation", lean);
           on = true;
         } else {
-          viewer.say("This browser does not tell the page how the device is held: allow it motion sensors.");
+          viewer.say(words("tiltDenied"));
         }
       }
       changed();

@@ -11,6 +11,7 @@ import { listenToKeys, type Keys } from "./input-keys";
 import { listenToPointers } from "./input-pointer";
 import { createTilt } from "./input-tilt";
 import { createFullscreen } from "./fullscreen";
+import { LANGUAGE, words } from "./language";
 import { createOverlays } from "./overlays";
 import { createPanel } from "./panel";
 import { takePoster } from "./poster";
@@ -20,20 +21,19 @@ import { keepAddress } from "./url";
 import { createViewer, type Viewer } from "./viewer";
 import { createHeadset } from "./xr";
 
-const NO_WEBGL =
-  "This needs WebGL 2, which this browser does not offer here. " +
-  "A current browser with its graphics acceleration switched on shows the scene.";
 const SMALL = "(max-width: 720px), (max-height: 500px)"; // the panel would leave little of the picture
 
 function start(): void {
+  document.documentElement.lang = LANGUAGE;
   const address = new URL(location.href);
   const config = readConfig(document, address);
   const name = (title: string): void => {
     document.title = config.ui === "full" ? `${title} – eigenfield` : title; // other pages are their owners'
   };
   if (config.title !== null) name(config.title);
-  const label = "The scene: arrow keys move, H lists all controls";
-  const canvas = element("canvas", { class: "view", tabindex: "0", role: "application", "aria-label": label });
+  const canvas = element(
+    "canvas", { class: "view", tabindex: "0", role: "application", "aria-label": words("canvas") },
+  );
   const stageArea = element("main", { class: "stage" }, canvas);
 
   let keys: Keys | null = null;
@@ -48,8 +48,8 @@ function start(): void {
   try {
     viewer = createViewer(canvas, config, pushed);
   } catch {
-    const words = element("div", { class: "message", role: "alert" }, element("p", {}, NO_WEBGL));
-    document.body.append(element("main", { class: "stage" }, words));
+    const said = element("div", { class: "message", role: "alert" }, element("p", {}, words("noWebgl")));
+    document.body.append(element("main", { class: "stage" }, said));
     return;
   }
 
@@ -65,21 +65,21 @@ function start(): void {
     panel.root.hidden = !shown;
     fold.setAttribute("aria-expanded", String(shown));
   };
-  const fold = button("Panel  I", ICONS.panel, () => showPanel(panel.root.hidden !== false));
+  const fold = button(`${words("panel")}  I`, ICONS.panel, () => showPanel(panel.root.hidden !== false));
   fold.setAttribute("aria-controls", "panel");
-  const orbit = button("Orbit  O", ICONS.orbit, () => {
+  const orbit = button(`${words("orbit")}  O`, ICONS.orbit, () => {
     viewer.setMode(viewer.modeName() === "plane" ? "orbit" : "plane");
   });
-  const lean = button("Move by tilting the device", ICONS.tilt, () => void tilt.toggle());
+  const lean = button(words("tilt"), ICONS.tilt, () => void tilt.toggle());
   const fullscreen = createFullscreen();
   let ui = config.ui;
-  const laboratory = element("button", { type: "button", class: "laboratory" }, "Laboratory");
+  const laboratory = element("button", { type: "button", class: "laboratory" }, words("laboratory"));
   laboratory.addEventListener("click", () => showUi(ui === "full" ? "plain" : "full"));
-  const shoot = button("Save the picture  P", ICONS.camera, () => saveScreenshot(viewer));
+  const shoot = button(`${words("savePicture")}  P`, ICONS.camera, () => saveScreenshot(viewer));
   const tools = element(
-    "div", { class: "tools", role: "toolbar", "aria-label": "Tools" },
-    button("First view  Home", ICONS.home, viewer.home), orbit, lean, shoot,
-    button("Open a file", ICONS.open, chooser.choose), button("Controls  H", ICONS.help, help.toggle),
+    "div", { class: "tools", role: "toolbar", "aria-label": words("tools") },
+    button(`${words("firstView")}  ${words("keyHome")}`, ICONS.home, viewer.home), orbit, lean, shoot,
+    button(words("openFile"), ICONS.open, chooser.choose), button(`${words("controls")}  H`, ICONS.help, help.toggle),
     fullscreen, headset.root, fold, laboratory,
   );
   const showUi = (next: Ui): void => {

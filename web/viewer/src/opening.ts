@@ -4,6 +4,7 @@ import { Vector2, Vector3 } from "three";
 import type { GLTF } from "three/addons/loaders/GLTFLoader.js";
 import { type EigenField, loadEigenfield, SceneError } from "eigenfield-three";
 import type { Config } from "./config";
+import { pluginWords, words } from "./language";
 import { createOrbitMode, type Surroundings } from "./orbit-mode";
 import { createPlaneMode } from "./plane-mode";
 import type { Message, Scene, Session } from "./session";
@@ -59,7 +60,7 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
     field.addEventListener("texture", changed);
     field.addEventListener("limited", changed);
     field.addEventListener("error", ({ error }) => {
-      session.message = { text: error.message, code: error.code };
+      session.message = described(error);
       changed();
     });
     await field.complete.catch(() => undefined); // the `error` event has reported it
@@ -101,8 +102,9 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
       openings.splice(openings.indexOf(mine), 1);
       if (!last) return; // another one is on its way
       const field = session.scene?.field;
-      const { text, code } = described(error);
-      session.message = { text: session.scene ? `${source.name} cannot be opened: ${text}` : text, code };
+      const said = described(error);
+      const text = session.scene ? words("cannotOpen", { name: source.name, reason: said.text }) : said.text;
+      session.message = { ...said, text };
       session.status = session.scene ? "ready" : "failed"; // an open scene stays
       session.arriving = field ? field.loaded < field.usable : false;
       changed();
@@ -111,8 +113,7 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
 
   stage.canvas.addEventListener("webglcontextlost", () => {
     session.status = "lost";
-    const text = "The graphics system took its memory back. Waiting until it can draw again …";
-    session.message = { text, code: null };
+    session.message = { text: words("contextLost"), code: null, detail: null };
     changed();
   });
   stage.canvas.addEventListener("webglcontextrestored", () => {
@@ -151,6 +152,9 @@ function plainSurroundings(gltf: GLTF): Surroundings {
 }
 
 function described(error: unknown): Message {
-  if (error instanceof SceneError) return { text: error.message, code: error.code };
-  return { text: error instanceof Error ? error.message : String(error), code: null };
+  const message = error instanceof Error ? error.message : String(error);
+  if (!(error instanceof SceneError)) return { text: message, code: null, detail: null };
+  const { code } = error;
+  const text = pluginWords(code, message);
+  return { text, code, detail: text === message ? null : message };
 }

@@ -1,6 +1,7 @@
 // What lies over the picture: progress, messages, the cue outside the captured views, the invitation to bring a file.
 
 import { button, element, ICONS } from "./dom";
+import { words } from "./language";
 import { bytes } from "./text";
 import type { Viewer } from "./viewer";
 
@@ -14,36 +15,36 @@ export interface Overlays {
 }
 
 export function createOverlays(viewer: Viewer, choose: () => void): Overlays {
-  const bar = element("progress", { "aria-label": "Loading" });
+  const bar = element("progress", { "aria-label": words("loading") });
   const amount = element("p", {});
   const progress = element("div", { class: "progress" }, bar, amount);
 
   const text = element("p", {});
   const code = element("p", { class: "quiet" });
-  const chooseAnother = element("button", { type: "button" }, "Choose another file");
+  const chooseAnother = element("button", { type: "button" }, words("chooseAnother"));
   chooseAnother.addEventListener("click", choose);
-  const dismiss = button("Dismiss", ICONS.close, viewer.dismiss);
+  const dismiss = button(words("dismiss"), ICONS.close, viewer.dismiss);
   const message = element("div", { class: "message", role: "alert", hidden: "" }, text, code, chooseAnother, dismiss);
 
-  const chooseFirst = element("button", { type: "button", class: "primary" }, "Choose a file");
+  const chooseFirst = element("button", { type: "button", class: "primary" }, words("chooseFile"));
   chooseFirst.addEventListener("click", choose);
   const invitation = element(
     "div", { class: "invitation", hidden: "" },
-    element("p", { class: "large" }, "Drop a .glb here, or choose a file"),
+    element("p", { class: "large" }, words("dropHere")),
     chooseFirst,
-    element("p", { class: "quiet" }, "It stays on this machine."),
+    element("p", { class: "quiet" }, words("staysHere")),
   );
-  const drop = element("div", { class: "drop", hidden: "" }, element("p", { class: "large" }, "Drop to open"));
+  const drop = element("div", { class: "drop", hidden: "" }, element("p", { class: "large" }, words("dropToOpen")));
 
-  const back = element("button", { type: "button" }, "Come back");
+  const back = element("button", { type: "button" }, words("comeBack"));
   back.addEventListener("click", viewer.comeBack);
   const cue = element(
     "div", { class: "cue", hidden: "", role: "status" },
-    element("p", {}, "Outside the captured views", element("kbd", {}, "Esc")), back,
+    element("p", {}, words("outside"), element("kbd", {}, words("keyEscape"))), back,
   );
   const tag = element("p", { class: "tag", hidden: "" });
   const title = element("p", { class: "title" });
-  const hint = element("p", { class: "hint", hidden: "" }, "Drag to look around");
+  const hint = element("p", { class: "hint", hidden: "" }, words("hint"));
 
   const update = (): void => {
     const scene = viewer.scene();
@@ -58,16 +59,17 @@ export function createOverlays(viewer: Viewer, choose: () => void): Overlays {
         bar.max = Math.max(total, 1);
         bar.value = loaded;
       }
-      const parts = [total === null ? bytes(loaded) : `${bytes(loaded)} of ${bytes(total)}`];
-      if (field) parts.push(`eigen texture ${field.loaded} of ${field.usable}`);
+      const parts = [total === null ? bytes(loaded) : words("outOf", { part: bytes(loaded), whole: bytes(total) })];
+      if (field) parts.push(words("textureOf", { part: field.loaded, whole: field.usable }));
       amount.textContent = parts.join(" · ");
     }
     const said = viewer.message();
     message.hidden = said === null;
     message.classList.toggle("small", scene !== null && status !== "lost");
-    if (said && (text.textContent !== said.text || code.textContent !== (said.code ?? ""))) {
+    const about = [said?.code, said?.detail].filter(Boolean).join(" · ");
+    if (said && (text.textContent !== said.text || code.textContent !== about)) {
       text.textContent = said.text;
-      code.textContent = said.code ?? "";
+      code.textContent = about;
     }
     chooseAnother.hidden = status !== "failed";
     dismiss.hidden = status !== "ready";
@@ -85,9 +87,12 @@ export function createOverlays(viewer: Viewer, choose: () => void): Overlays {
     tag.hidden = name === undefined;
     if (name === undefined) return;
     const { view, eigen } = viewer.options();
-    const drawn = { picture: "drawn", mean: "mean", eigen: `eigen texture ${eigen + 1}`, error: "error × 5" }[view];
-    const words = `${name} · ${viewer.photographShown() ? "photograph" : drawn}`;
-    if (tag.textContent !== words) tag.textContent = words;
+    const drawn = {
+      picture: words("drawn"), mean: words("mean"), eigen: words("eigenNumber", { number: eigen + 1 }),
+      error: words("errorTimes"),
+    }[view];
+    const shown = `${name} · ${viewer.photographShown() ? words("photograph") : drawn}`;
+    if (tag.textContent !== shown) tag.textContent = shown;
   };
   return {
     roots: [title, tag, cue, hint, progress, message, invitation, drop],

@@ -27,6 +27,7 @@ export interface Progress {
 export interface Message {
   text: string;
   code: string | null;
+  detail: string | null; // what the plug-in said, where the text is a translation
 }
 
 export interface Session {

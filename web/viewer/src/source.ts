@@ -2,6 +2,7 @@
 
 import type { Config } from "./config";
 import { embeddedScene } from "./config";
+import { words } from "./language";
 
 export interface Source {
   name: string; // for people
@@ -12,7 +13,7 @@ export interface Source {
 
 /** What the page or its address names, or null: then somebody has to bring a file. */
 export function namedSource(config: Config, page: Document, address: URL): Source | null {
-  const title = config.title ?? "scene";
+  const title = config.title ?? words("scene");
   if (config.embedded) {
     const blob = embeddedScene(page);
     if (blob) return { name: title, from: blob, bytes: blob.size, own: true };
@@ -30,9 +31,9 @@ export function fileSource(file: File): Source {
 function lastPart(url: string): string {
   const name = url.split(/[?#]/)[0]?.split("/").pop() ?? "";
   try {
-    return withoutSuffix(decodeURIComponent(name)) || "scene";
+    return withoutSuffix(decodeURIComponent(name)) || words("scene");
   } catch {
-    return withoutSuffix(name) || "scene";
+    return withoutSuffix(name) || words("scene");
   }
 }
 

@@ -1,11 +1,17 @@
 // Numbers as people read them.
 
+import { LANGUAGE, words } from "./language";
+
 export function bytes(count: number): string {
-  if (count < 1000) return `${count}\u00a0B`;
-  if (count < 999_500) return `${(count / 1e3).toFixed(count < 99_950 ? 1 : 0)}\u00a0kB`;
-  if (count < 999_500_000) return `${(count / 1e6).toFixed(2)}\u00a0MB`;
-  return `${(count / 1e9).toFixed(2)}\u00a0GB`;
+  const [B, kB, MB, GB] = words("units").split(" ");
+  if (count < 1000) return `${count}\u00a0${B}`;
+  if (count < 999_500) return `${decimal(count / 1e3, count < 99_950 ? 1 : 0)}\u00a0${kB}`;
+  if (count < 999_500_000) return `${decimal(count / 1e6, 2)}\u00a0${MB}`;
+  return `${decimal(count / 1e9, 2)}\u00a0${GB}`;
 }
+
+const decimal = (value: number, digits: number): string =>
+  value.toLocaleString(LANGUAGE, { minimumFractionDigits: digits, maximumFractionDigits: digits, useGrouping: false });
 
 export const whole = (count: number): string => count.toLocaleString("en-GB").replaceAll(",", "\u202f");
 
@@ -19,4 +25,4 @@ export function figure(json: unknown, ...path: string[]): number | null {
 }
 
 export const shown = (value: number | null, digits: number, unit = ""): string =>
-  value === null ? "–" : `${value.toFixed(digits)}${unit}`;
+  value === null ? "–" : `${decimal(value, digits)}${unit}`;

@@ -5,6 +5,7 @@ import type { Frame } from "eigenfield-three";
 import { type CameraOrder } from "./camera-order";
 import { createCaptured } from "./captured";
 import type { Config } from "./config";
+import { words } from "./language";
 import { createLoop } from "./loop";
 import type { Mode } from "./mode";
 import { createMovement } from "./movement";
@@ -121,12 +122,12 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
   );
   const pace = createPace(loop.request, () => options.filter, stage.ratio);
   const say = (text: string): void => {
-    session.message = { text, code: null };
+    session.message = { text, code: null, detail: null };
     changed();
   };
   const photographs = createPhotographs(config.photographs, changed, (name) => {
     session.photographShown = false;
-    say(`The photograph of ${name} could not be loaded: is \`eigenfield view\` still running?`);
+    say(words("photographLost", { name }));
   });
   const places = createPlaces(session, stage);
   const captured = createCaptured(session, places, photographs, changed);

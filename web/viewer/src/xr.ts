@@ -4,6 +4,7 @@
 import { Matrix4, Quaternion, Vector3 } from "three";
 import { button, ICONS } from "./dom";
 import { scaled, add } from "./geometry";
+import { words } from "./language";
 import { extentOf } from "./surroundings";
 import type { Viewer } from "./viewer";
 
@@ -20,7 +21,7 @@ export interface Headset {
 
 export function createHeadset(viewer: Viewer, entered: (inside: boolean) => void): Headset {
   const { renderer, camera, root: stageRoot } = viewer.stage;
-  const root = button("Enter VR", ICONS.headset, () => void enter());
+  const root = button(words("enterVr"), ICONS.headset, () => void enter());
   root.hidden = true;
   root.classList.add("plain");
   renderer.xr.setReferenceSpaceType("local");
