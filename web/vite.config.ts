@@ -26,7 +26,7 @@ function plainTags(): Plugin {
 export default defineConfig({
   root: path("viewer"),
   base: "./",
-  publicDir: false,
+  publicDir: path("viewer/public"),
   resolve: { alias: { "eigenfield-three": path("eigenfield-three/src/index.ts") } },
   plugins: [plainTags()],
   server: { fs: { allow: [path("..")] } },

@@ -31,6 +31,8 @@ def write_build(folder: Path) -> Path:
     (folder / "viewer.js").write_text(script, encoding="utf-8", newline="")
     (folder / "viewer.css").write_text("body::after { content: '</style>' }\n", encoding="utf-8")
     (folder / "eigenfield-three.js").write_text("export {};\n", encoding="utf-8")
+    for name in ("worker.js", "icon.svg", "icon-192.png", "icon-512.png"):
+        (folder / name).write_bytes(name.encode())
     return folder
 
 

@@ -15,7 +15,7 @@ from support import coded_scenes, composed, sheet_scenes, viewer_scenes
 WEB = Path(__file__).parents[2] / "web"
 CHROMIUM = os.environ.get("EIGENFIELD_CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
 FILES = sorted((WEB / "tests").glob("*.test.mjs"))
-PLAIN = {"structure": None, "languages": None, "coding": "vite"}  # what needs no browser, and what of web/node_modules it needs
+PLAIN = {"structure": None, "languages": None, "coding": "vite"}  # no browser, and what of web/node_modules they need
 
 
 def missing(path: Path) -> str | None:
@@ -61,7 +61,7 @@ def run_node(path: Path, **surroundings: str) -> None:
 
 
 def test_there_are_browser_tests():
-    assert len(FILES) >= 16
+    assert len(FILES) >= 19
 
 
 @pytest.mark.parametrize("path", cases(plain=True))

@@ -6,10 +6,12 @@ import errno
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path, PurePosixPath
+from urllib.parse import unquote
 
 import numpy as np
 import pytest
@@ -19,7 +21,7 @@ from PIL import Image
 
 from eigenfield.capture import open_capture
 from eigenfield.core.errors import OutputError
-from eigenfield.gltf import save
+from eigenfield.gltf import save, without_residual
 from eigenfield.rendering import RenderJob
 from eigenfield.runtime.files import atomic_files
 from eigenfield.viewer import exports
@@ -37,6 +39,7 @@ KINDS = {  # output, options, and a file that must be there
     "maps": ("maps", ["--as", "maps"], "maps/view_03.png"),
     "quilt": ("q.png", ["--as", "quilt", "--quilt", "3x2"], "q_qs3x2a1.2.png"),
     "colmap": ("capture", ["--as", "colmap"], "capture/sparse/0/points3D.bin"),
+    "app": ("open", ["--as", "app"], "open/samples/scene.glb"),
 }
 
 
@@ -121,6 +124,46 @@ def test_a_plain_page_names_its_poster_to_crawlers_and_shows_how_to_embed_it(exp
     assert code == 0 and '<iframe src="other.html"' in err and "og:url" not in page
     assert '"start":[0.5,0.0]' in page and 'og:image" content="other.jpg"' in page
     assert (export.place / "other.jpg").read_bytes() != (export.place / "my page.jpg").read_bytes()
+
+
+def test_a_page_that_opens_files_offers_the_scenes_that_are_named(run, export, scene_file, tmp_path):
+    other = tmp_path / "50 % & b.glb"
+    shutil.copy(scene_file, other)
+    place = export.place / "open"
+    code, out, err = run("export", scene_file, other, scene_file, "-o", place, "--as", "app", "--title", "</title>")
+    assert (code, out) == (0, ""), err
+    page = (place / "index.html").read_text(encoding="utf-8")
+    config = json.loads(re.search(r'id="eigenfield-config">(.*?)</script>', page)[1])
+    assert config["title"] == "</title>" and "<title>&lt;/title&gt;</title>" in page
+    assert [sample["name"] for sample in config["samples"]] == ["scene", "50 % & b", "scene"]
+    for sample in config["samples"]:
+        data = (place / unquote(sample["url"])).read_bytes()
+        assert len(data) == sample["bytes"] and data == without_residual(scene_file.read_bytes())
+    manifest = json.loads((place / "manifest.webmanifest").read_text(encoding="utf-8"))
+    assert manifest["name"] == "</title>" and all((place / icon["src"]).is_file() for icon in manifest["icons"])
+
+
+def test_a_page_that_opens_files_needs_no_scene_and_other_exports_need_one(run, tmp_path):
+    code, _, err = run("export", "-o", tmp_path / "open", "--as", "app")
+    assert code == 0 and "a page that opens files; put it on a web server" in err
+    assert not (tmp_path / "open" / "samples").exists()
+    for arguments, says in (
+        (["-o", tmp_path / "a.html"], "0 scenes for html; name one"),
+        (["a.glb", "b.glb", "-o", tmp_path / "a.html"], "2 scenes for html; name one"),
+        ([tmp_path / "missing.glb", "-o", tmp_path / "b", "--as", "app"], "does not exist"),
+        (["-o", tmp_path / "b", "--as", "app", "--plain"], "--plain is not for app"),
+    ):
+        code, _, err = run("export", *arguments)
+        assert code == 2 and says in err and err.count("\n") == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["open"]
+
+
+def test_the_service_worker_keeps_every_file_of_the_page(run, tmp_path):
+    run("export", "-o", tmp_path / "open", "--as", "app")
+    worker = Path(__file__).parents[2] / "src/eigenfield/viewer/static/worker.js"
+    kept = json.loads(re.search(r"PAGE = (\[.*?\]);", worker.read_text(encoding="utf-8"))[1])
+    there = {path.name for path in (tmp_path / "open").iterdir()} - {"index.html", "worker.js", "eigenfield.json"}
+    assert set(kept) == {"./"} | there
 
 
 def test_a_folder_with_files_of_others_is_never_replaced(export):

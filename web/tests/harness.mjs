@@ -34,6 +34,8 @@ const TYPES = {
   ".css": "text/css; charset=utf-8",
   ".json": "application/json",
   ".png": "image/png",
+  ".svg": "image/svg+xml",
+  ".webmanifest": "application/manifest+json",
   ".glb": "model/gltf-binary",
 };
 
@@ -98,7 +100,7 @@ export async function serve({ routes = {}, folders = [] } = {}) {
   const requests = [];
   const server = createServer(async (request, response) => {
     const path = decodeURIComponent(new URL(request.url, "http://localhost").pathname);
-    requests.push(path);
+    requests.push(request.method === "GET" ? path : `${request.method} ${path}`);
     const route = Object.hasOwn(routes, path) ? routes[path] : await fileOf(folders, path);
     if (typeof route === "function") return route(request, response);
     if (route === null) {

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { launch, sceneBytes, scenePath } from "./harness.mjs";
-import { apart, openViewer, picture, state } from "./viewer-page.mjs";
+import { apart, drop, openViewer, picture, state } from "./viewer-page.mjs";
 
 let browser;
 before(async () => {
@@ -152,18 +152,3 @@ test("no WebGL 2: a sentence", async () => {
   assert.match(await page.locator("[role=alert]").innerText(), /needs WebGL 2/);
   await close();
 });
-
-/** Drops a file of the test scenes on the page. */
-async function drop(page, name) {
-  const data = sceneBytes(name).toString("base64");
-  await page.evaluate(
-    ([text, file]) => {
-      const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-      const transfer = new DataTransfer();
-      transfer.items.add(new File([bytes], file));
-      for (const kind of ["dragenter", "dragover", "drop"])
-        document.body.dispatchEvent(new DragEvent(kind, { dataTransfer: transfer, bubbles: true, cancelable: true }));
-    },
-    [data, name],
-  );
-}

@@ -88,3 +88,18 @@ export function apart(a, b) {
 }
 
 export const near = (a, b, slack) => assert.ok(Math.abs(a - b) <= slack, `${a} is not ${b} to ${slack}`);
+
+/** Drops a file of the test scenes on the page. */
+export async function drop(page, name) {
+  const data = sceneBytes(name).toString("base64");
+  await page.evaluate(
+    ([text, file]) => {
+      const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+      const transfer = new DataTransfer();
+      transfer.items.add(new File([bytes], file));
+      for (const kind of ["dragenter", "dragover", "drop"])
+        document.body.dispatchEvent(new DragEvent(kind, { dataTransfer: transfer, bubbles: true, cancelable: true }));
+    },
+    [data, name],
+  );
+}

@@ -26,9 +26,10 @@ Examples:
   eigenfield export scene.glb -o textures --as obj
   eigenfield export scene.glb -o maps --as maps
   eigenfield export scene.glb -o quilt.png --as quilt --resolution 420x560
-  eigenfield export scene.glb -o capture --as colmap"""
+  eigenfield export scene.glb -o capture --as colmap
+  eigenfield export scene.glb other.glb -o open --as app"""
 )
-@click.argument("scene", type=PATH)
+@click.argument("scenes", type=PATH, nargs=-1, metavar="SCENE...")
 @click.option(
     "--output",
     "-o",
@@ -37,8 +38,8 @@ Examples:
     metavar="PATH",
     help="A file or a folder; a file's ending says what is made, if --as does not.",
 )
-@click.option("--as", "kind", metavar="html|mp4|png|glb|obj|maps|quilt|colmap", help="What is made.")
-@click.option("--title", metavar="TEXT", help="Of the page (html).  [default: the output's name]")
+@click.option("--as", "kind", metavar="html|mp4|png|glb|obj|maps|quilt|colmap|app", help="What is made.")
+@click.option("--title", metavar="TEXT", help="Of the page (html, app).  [default: the output's name; eigenfield]")
 @click.option("--metres-per-unit", type=float, metavar="M", help="Metres in one unit of the capture (html, glb).")
 @click.option(
     "--at",
@@ -73,7 +74,9 @@ Examples:
 @residual_option
 @click.option("--overwrite", is_flag=True, help="Replace existing files, and folders that an export wrote.")
 @common_options
-def command(scene: Path, output: Path, kind: str | None, overwrite: bool, quiet: bool, **options: Any) -> None:
+def command(
+    scenes: tuple[Path, ...], output: Path, kind: str | None, overwrite: bool, quiet: bool, **options: Any
+) -> None:
     """Write SCENE for other programs.
 
     \b
@@ -85,11 +88,12 @@ def command(scene: Path, output: Path, kind: str | None, overwrite: bool, quiet:
     maps    a texture map for each encoded camera, in a folder
     quilt   the views side by side for a Looking Glass display, a .png
     colmap  re-drawn photographs with a COLMAP model, in a folder
+    app     a folder for a web server: a page that opens files, with any number of SCENEs to choose from
     """
     from eigenfield.viewer.exports import export
 
     source = click.get_current_context().get_parameter_source
     given = {name: value for name, value in options.items() if source(name) is ParameterSource.COMMANDLINE}
     with progress_bars(quiet) as progress:
-        made, what = export(scene, output, kind, overwrite=overwrite, progress=progress, **given)
+        made, what = export(scenes, output, kind, overwrite=overwrite, progress=progress, **given)
     note(f"wrote {made}: {what}", quiet)

@@ -22,6 +22,7 @@ from eigenfield.runtime.files import refuse_existing, write_bytes
 STATIC_FOLDER = Path(__file__).parent / "static"  # what `npm run build` in web/ leaves here
 TITLE_ELEMENT = "<title>eigenfield</title>"
 CONFIG_ELEMENT = '<script type="application/json" id="eigenfield-config">{}</script>'
+ICON_ELEMENT = '<link rel="icon" href="data:,">'
 SCRIPT_ELEMENT = re.compile(r'<script type="module"[^>]*\bsrc="(?:\./)?viewer\.js"[^>]*></script>')
 STYLE_ELEMENT = re.compile(r'<link rel="stylesheet"[^>]*\bhref="(?:\./)?viewer\.css"[^>]*/?>')
 HEAD_ELEMENT = re.compile(r"<head>\s*(?:<meta charset=[^>]*>)?", re.IGNORECASE)
@@ -42,17 +43,19 @@ def static_file(name: str) -> bytes:
         raise _not_built(name, "is missing") from error
 
 
-def page_html(config: Mapping[str, Any]) -> bytes:
+def page_html(config: Mapping[str, Any], head: str = ICON_ELEMENT) -> bytes:
     """The page with its configuration, as a server gives it beside viewer.js and viewer.css.
 
     Args:
         config: JSON object, all keys optional: title, scene (URL), bytes, embedded, photographs (camera name to URL),
-            metresPerUnit, version, start (X, Y), ui.
+            metresPerUnit, version, start (X, Y), ui, samples (name, url, bytes each), worker (URL).
+        head: Elements in place of the page's icon, which is none.
 
     Raises:
         OutputError: `viewer-build`.
     """
-    return _encode(_configure(_text("index.html"), config))
+    page = _replace_once(_text("index.html"), re.compile(re.escape(ICON_ELEMENT)), lambda _: head)
+    return _encode(_configure(page, config))
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,12 @@ import { oneOf } from "./options";
 export const UIS = ["none", "plain", "full"] as const;
 export type Ui = (typeof UIS)[number];
 
+export interface Sample {
+  name: string;
+  url: string;
+  bytes: number | null;
+}
+
 export interface Config {
   title: string | null;
   scene: string | null; // URL, relative to the page
@@ -19,6 +25,8 @@ export interface Config {
   ui: Ui;
   poster: string | null; // URL of a picture that is shown until the scene is there
   ownView: boolean; // the address names no view: the page may show its first one as it likes
+  samples: readonly Sample[]; // which a page without a scene offers
+  worker: string | null; // URL of the service worker that keeps the page for times without a network
   memory: number | null; // GPU bytes the page may use; null: by the device
 }
 
@@ -35,6 +43,7 @@ export function readConfig(page: Document, address: URL): Config {
   const photographs = given["photographs"];
   const start: unknown[] = Array.isArray(given["start"]) ? given["start"] : [];
   const [x, y] = start.map((value) => (typeof value === "number" && Math.abs(value) <= 1 ? value : undefined));
+  const samples: unknown[] = Array.isArray(given["samples"]) ? given["samples"] : [];
   const asked = address.searchParams.get("ui");
   const megabytes = Number(address.searchParams.get("memory"));
   return {
@@ -53,6 +62,12 @@ export function readConfig(page: Document, address: URL): Config {
     ui: oneOf(UIS, asked === "0" ? "none" : asked) ?? oneOf(UIS, given["ui"]) ?? "full",
     poster: address.searchParams.get("poster"),
     ownView: address.hash.length < 2,
+    samples: samples.filter(isObject).flatMap(({ name, url, bytes }) =>
+      typeof name === "string" && typeof url === "string"
+        ? [{ name, url, bytes: typeof bytes === "number" ? bytes : null }]
+        : [],
+    ),
+    worker: text("worker"),
     memory: megabytes > 0 && Number.isFinite(megabytes) ? megabytes * 1e6 : null,
   };
 }

@@ -1,7 +1,14 @@
-// Files that people bring: dropped on the page, or chosen.
+// Files that people bring: dropped on the page, chosen, or opened with the page where it is installed.
 
 import { element } from "./dom";
 import { words } from "./language";
+
+/** Of the File Handling API, which Chromium has. */
+declare global {
+  interface Window {
+    launchQueue?: { setConsumer(take: (launched: { files?: FileSystemFileHandle[] }) => void): void };
+  }
+}
 
 export interface FileChooser {
   readonly root: HTMLInputElement;
@@ -37,5 +44,6 @@ export function takeFiles(take: (file: File) => void, hover: (over: boolean) => 
     const file = event.dataTransfer?.files[0];
     if (file) take(file);
   });
+  window.launchQueue?.setConsumer(({ files }) => void files?.[0]?.getFile().then(take));
   return { root: input, choose: () => input.click() };
 }

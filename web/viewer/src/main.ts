@@ -94,6 +94,7 @@ function start(): void {
   document.body.append(stageArea, panel.root, help.root, chooser.root);
 
   const update = (): void => {
+    document.body.dataset["status"] = viewer.status();
     panel.update();
     overlays.update();
     if (viewer.status() === "failed") poster?.remove();
@@ -135,6 +136,7 @@ function start(): void {
   update();
   const source = namedSource(config, document, address);
   if (source) void viewer.open(source);
+  if (config.worker !== null) void navigator.serviceWorker?.register(config.worker).catch(() => undefined); // no https
 }
 
 start();

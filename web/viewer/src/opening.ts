@@ -60,7 +60,7 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
     field.addEventListener("texture", changed);
     field.addEventListener("limited", changed);
     field.addEventListener("error", ({ error }) => {
-      session.message = described(error);
+      session.message = described(error, null);
       changed();
     });
     await field.complete.catch(() => undefined); // the `error` event has reported it
@@ -102,7 +102,7 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
       openings.splice(openings.indexOf(mine), 1);
       if (!last) return; // another one is on its way
       const field = session.scene?.field;
-      const said = described(error);
+      const said = described(error, source);
       const text = session.scene ? words("cannotOpen", { name: source.name, reason: said.text }) : said.text;
       session.message = { ...said, text };
       session.status = session.scene ? "ready" : "failed"; // an open scene stays
@@ -151,10 +151,20 @@ function plainSurroundings(gltf: GLTF): Surroundings {
   return { up: new Vector3(0, 1, 0), centre, radius, tangents, focus: null, framed: false, beyond: () => 0 };
 }
 
-function described(error: unknown): Message {
+/** `source`: what could not be opened, where nothing of it arrived. */
+function described(error: unknown, source: Source | null): Message {
   const message = error instanceof Error ? error.message : String(error);
   if (!(error instanceof SceneError)) return { text: message, code: null, detail: null };
   const { code } = error;
+  const asked = typeof source?.from === "string" ? source.from : "";
+  const site = error.cause && error.where === asked ? otherSite(asked) : null; // the fetch itself failed
+  if (site !== null) return { text: words("otherSite", { site }), code, detail: null };
   const text = pluginWords(code, message);
   return { text, code, detail: text === message ? null : message };
+}
+
+/** The host of a URL that is not this page's. A browser says not why a fetch from there failed. */
+function otherSite(url: string): string | null {
+  const { origin, host } = new URL(url, location.href);
+  return origin === location.origin ? null : host;
 }

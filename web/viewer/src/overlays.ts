@@ -1,5 +1,6 @@
 // What lies over the picture: progress, messages, the cue outside the captured views, the invitation to bring a file.
 
+import type { Sample } from "./config";
 import { button, element, ICONS } from "./dom";
 import { words } from "./language";
 import { bytes } from "./text";
@@ -33,6 +34,7 @@ export function createOverlays(viewer: Viewer, choose: () => void): Overlays {
     element("p", { class: "large" }, words("dropHere")),
     chooseFirst,
     element("p", { class: "quiet" }, words("staysHere")),
+    ...(viewer.config.samples.length > 0 ? [sampleLinks(viewer.config.samples)] : []),
   );
   const drop = element("div", { class: "drop", hidden: "" }, element("p", { class: "large" }, words("dropToOpen")));
 
@@ -100,4 +102,15 @@ export function createOverlays(viewer: Viewer, choose: () => void): Overlays {
     tick,
     hover: (over) => void (drop.hidden = !over),
   };
+}
+
+/** Links that name a scene by the page's own address, so that they can be kept and sent. */
+function sampleLinks(samples: readonly Sample[]): HTMLElement {
+  const links = samples.map(({ name, url, bytes: size }) => {
+    const query = new URLSearchParams(location.search);
+    query.set("load", url);
+    const amount = size === null ? [] : [element("span", { class: "quiet" }, bytes(size))];
+    return element("li", {}, element("a", { href: `?${query}` }, name, ...amount));
+  });
+  return element("section", {}, element("h2", {}, words("samples")), element("ul", {}, ...links));
 }

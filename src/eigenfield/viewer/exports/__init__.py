@@ -5,6 +5,7 @@ Each kind is a module. What is written is whole or absent; existing files stay u
 
 from __future__ import annotations
 
+from eigenfield.viewer.exports.app import write_app
 from eigenfield.viewer.exports.colmap import write_colmap
 from eigenfield.viewer.exports.export import OPTIONS, export
 from eigenfield.viewer.exports.folder import refuse_folder
@@ -24,6 +25,7 @@ __all__ = [
     "refuse_folder",
     "refuse_obj",
     "refuse_plain",
+    "write_app",
     "write_colmap",
     "write_glb",
     "write_maps",

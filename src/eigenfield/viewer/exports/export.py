@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -16,10 +18,11 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.notebook import notebook_progress
 from eigenfield.core.progress import Progress
 from eigenfield.core.scene import Scene, check_scale
-from eigenfield.gltf import load
+from eigenfield.gltf import encode_scene, load, outline, without_residual
 from eigenfield.rendering import FLIGHT_FRAMES, RenderJob, path_points
 from eigenfield.rendering.render_jobs import refuse_flight, write_flight
 from eigenfield.runtime.files import is_numbered, refuse_existing
+from eigenfield.viewer.exports.app import write_app
 from eigenfield.viewer.exports.colmap import write_colmap
 from eigenfield.viewer.exports.folder import refuse_folder
 from eigenfield.viewer.exports.glb import check_image, write_glb
@@ -39,6 +42,7 @@ OPTIONS = {  # of each kind, beside the options of all
     "maps": {"textures"},
     "quilt": PICTURE_OPTIONS | {"quilt", "spread"},
     "colmap": PICTURE_OPTIONS | {"path", "frames", "residual"},
+    "app": {"title"},
 }
 ENDINGS = {"html": (".html", ".htm"), "mp4": (".mp4",), "png": (".png",), "glb": (".glb",), "quilt": (".png",)}
 FILE_ENDINGS = (".html", ".htm", ".mp4", ".png", ".jpg", ".jpeg", ".glb", ".gltf", ".ply", ".zip")
@@ -48,7 +52,7 @@ FLIGHT_DEFAULT_PATH, FLIGHT_FPS = "circle", 30
 
 @checked
 def export(
-    scene: Scene | str | os.PathLike[str],
+    scene: Scene | str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
     output: str | os.PathLike[str],
     kind: str | None = None,
     *,
@@ -59,10 +63,10 @@ def export(
     """Write a scene for other programs, as `eigenfield export` does.
 
     Args:
-        scene: The scene, or its file.
+        scene: The scene, or its file; for "app" the files of as many scenes as it offers, or none.
         output: A file or a folder.
-        kind: "html", "mp4", "png" (single pictures), "glb", "obj", "maps", "quilt" or "colmap"; None: by the
-            output's name.
+        kind: "html", "mp4", "png" (single pictures), "glb", "obj", "maps", "quilt", "colmap" or "app"; None: by
+            the output's name.
         overwrite: Whether existing files, and folders that an export wrote, are replaced.
         progress: Reports each picture; by default a bar in a notebook.
         options: Of the kind (`OPTIONS`): fields of `RenderJob` for pictures; `path` and `frames` (`path_points`) and
@@ -74,13 +78,19 @@ def export(
         The file or folder that was written, and what it holds, for people.
 
     Raises:
-        OptionError: `output-kind`, `unused-option`; an option is impossible.
+        OptionError: `output-kind`, `unused-option`, `scenes`; an option is impossible.
         OutputError: Something exists already, or cannot be written.
         FormatError: The file is no scene.
     """
     output = Path(output)
     chosen = _chosen_kind(output, kind, is_numbered(output))
     _check(chosen, output, options)
+    scenes = [scene] if isinstance(scene, Scene | str | os.PathLike) else list(scene)
+    if chosen == "app":
+        return _write_app(scenes, output, overwrite, progress, **options)
+    if len(scenes) != 1:
+        raise OptionError("scenes", f"{len(scenes)} scenes for {chosen}", remedy="name one; --as app takes several")
+    (scene,) = scenes
     points = None
     if chosen in ("mp4", "png") or "path" in options:
         points = path_points(options.get("path", FLIGHT_DEFAULT_PATH), options.get("frames", FLIGHT_FRAMES))
@@ -92,6 +102,23 @@ def export(
     loaded = scene if isinstance(scene, Scene) else load(scene)
     job = RenderJob(loaded, **{name: value for name, value in options.items() if name in PICTURE_OPTIONS})
     return _write(chosen, job, points, output, options, overwrite, progress)
+
+
+def _write_app(
+    scenes: Sequence[Scene | str | os.PathLike[str]], output: Path, overwrite: bool, progress: Progress | None,
+    **options: Any,
+) -> tuple[Path, str]:  # fmt: skip
+    """Write the page that opens files, with its samples; where, and what was written."""
+    refuse_folder(output, overwrite)
+    samples = [
+        ("scene", encode_scene(replace(scene, residual=None)))
+        if isinstance(scene, Scene)
+        else (Path(scene).stem, without_residual(outline(scene)[1]))
+        for scene in scenes
+    ]
+    write_app(samples, output, overwrite=overwrite, progress=progress, **options)
+    offered = f", with {', '.join(name for name, _ in samples)} to choose from" if samples else ""
+    return output, f"a page that opens files{offered}; put it on a web server"
 
 
 def _refuse(kind: str, output: Path, points: NDArray[np.float64] | None, overwrite: bool) -> None:

@@ -1,0 +1,91 @@
+"""A folder for a web server: a page that opens files and sends nothing, installable, and there without a network.
+
+It is the page that `eigenfield view` serves. A service worker keeps what was fetched, for times without a network.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from eigenfield.core.progress import Progress, track
+from eigenfield.core.version import __version__
+from eigenfield.viewer.exports.folder import atomic_folder, write_file, write_listing
+from eigenfield.viewer.exports.names import file_names
+from eigenfield.viewer.page import page_html, static_file
+
+APP_FILES = ("viewer.js", "viewer.css", "worker.js", "icon.svg", "icon-192.png", "icon-512.png")
+APP_COLOUR = "#15171a"  # the page's ground
+APP_POLICY = (  # files and posters may come from anywhere that allows it
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src * blob: data:; connect-src * blob: data:; "
+    "manifest-src 'self'; worker-src 'self'; base-uri 'none'; form-action 'none'"
+)
+APP_HEAD = (
+    '<link rel="icon" href="icon.svg">\n<link rel="apple-touch-icon" href="icon-192.png">\n'
+    f'<link rel="manifest" href="manifest.webmanifest">\n<meta name="theme-color" content="{APP_COLOUR}">\n'
+    f'<meta http-equiv="Content-Security-Policy" content="{APP_POLICY}">'
+)
+
+
+def write_app(
+    samples: Sequence[tuple[str, bytes]],
+    folder: Path,
+    *,
+    title: str | None = None,
+    overwrite: bool = False,
+    progress: Progress | None = None,
+) -> None:
+    """Write index.html and what belongs to it, and each sample as samples/NAME.glb.
+
+    Args:
+        samples: Names and files of the scenes that the page offers.
+        folder: To write.
+        title: Of the page. Default: "eigenfield".
+        overwrite: Whether an existing export is replaced.
+        progress: Reports each sample.
+
+    Raises:
+        OutputError: `viewer-build`; the folder cannot be written.
+    """
+    names = [name for name, _ in samples]
+    files = [f"samples/{path.removesuffix('.png')}.glb" for path in file_names(names)]
+    offered = [
+        {"name": name, "url": quote(file), "bytes": len(data)}
+        for (name, data), file in zip(samples, files, strict=True)
+    ]
+    config: dict[str, Any] = {"samples": offered, "worker": "worker.js", "version": __version__}
+    if title is not None:
+        config["title"] = title
+    page = page_html(config, APP_HEAD)
+    with atomic_folder(folder, overwrite) as part:
+        for name in APP_FILES:
+            write_file(part / name, static_file(name))
+        write_file(part / "index.html", page)
+        write_file(part / "manifest.webmanifest", _manifest(title or "eigenfield"))
+        for file, (_, data) in zip(files, track(samples, "samples", len(samples), progress), strict=True):
+            write_file(part / file, data)
+        write_listing(part, "app", {"samples": dict(zip(names, files, strict=True))})
+
+
+def _manifest(name: str) -> bytes:
+    """What a browser needs to install the page, and to open .glb files with it."""
+    icons = [{"src": "icon.svg", "sizes": "any", "type": "image/svg+xml", "purpose": "any maskable"}]
+    for side in (192, 512):
+        icon = {"src": f"icon-{side}.png", "sizes": f"{side}x{side}", "type": "image/png", "purpose": "any maskable"}
+        icons.append(icon)
+    document = {
+        "name": name,
+        "short_name": name,
+        "id": "./",
+        "start_url": "./",
+        "scope": "./",
+        "display": "standalone",
+        "background_color": APP_COLOUR,
+        "theme_color": APP_COLOUR,
+        "icons": icons,
+        "file_handlers": [{"action": "./", "accept": {"model/gltf-binary": [".glb"]}}],
+    }
+    return json.dumps(document, indent=1, ensure_ascii=False).encode("utf-8", "replace")
