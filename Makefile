@@ -1,12 +1,13 @@
 # make demo   a capture is drawn, encoded, flown through and measured; open demo/scene.html
 # make test   the fast tests, two files at a time
+# make docs   the site, in build/docs/index.html
 # make web    build the web viewer again after a change in web/ (Node.js; users need none, the build is kept here)
-# The first two make .venv first. PYTHON names the interpreter (3.11 or newer).
+# The first three make .venv first. PYTHON names the interpreter (3.11 or newer).
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test web lint clean help
+.PHONY: demo docs test web lint clean help
 
 help:
 	@sed -n 's/^# //p' Makefile
@@ -22,11 +23,18 @@ $(VENV)/.installed-test: $(VENV)/.installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[test]'
 	touch $@
 
+$(VENV)/.installed-docs: $(VENV)/.installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[docs]'
+	touch $@
+
 demo: $(VENV)/.installed
 	$(BIN)/eigenfield demo
 
 test: $(VENV)/.installed-test
 	$(BIN)/python -m pytest -m 'not slow' -n 2 --dist loadfile $(PYTEST_ARGS)
+
+docs: $(VENV)/.installed-docs
+	$(BIN)/python -m sphinx -W --keep-going -q -d build/doctrees docs build/docs
 
 web:
 	cd web && npm ci --no-audit --no-fund && npm run build

@@ -1,0 +1,49 @@
+"""The site: `make docs` builds it into build/docs, with warnings as errors."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+sys.path.insert(0, str(Path(__file__).parent / "_ext"))
+
+from eigenfield.core.version import __version__
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
+
+project = "eigenfield"
+copyright = "the eigenfield authors"
+release = version = __version__
+
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "commands", "pages_elsewhere", "scene_page"]
+exclude_patterns = ["_ext"]
+
+myst_enable_extensions = ["attrs_inline", "deflist"]
+myst_heading_anchors = 3
+
+default_role = "literal"  # names between single backticks in docstrings
+autodoc_member_order = "bysource"
+autodoc_preserve_defaults = True
+autodoc_typehints_format = "short"
+maximum_signature_line_length = 90
+napoleon_numpy_docstring = False
+
+html_theme = "furo"
+html_title = "eigenfield"
+html_favicon = "_static/icon.svg"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_js_files = ["site.js"]
+pygments_style = "a11y-high-contrast-light"
+pygments_dark_style = "a11y-high-contrast-dark"
+
+
+def class_without_signature(app: Sphinx, what: str, *rest: Any) -> tuple[str, None] | None:
+    """Attributes are listed one a line below a class, and no reader makes a `Scene` by hand."""
+    return ("", None) if what == "class" else None
+
+
+def setup(app: Sphinx) -> None:
+    app.connect("autodoc-process-signature", class_without_signature)

@@ -1,0 +1,111 @@
+"""The site: its references are whole, its scene opens; built, its links lead somewhere and its first page is light."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import re
+import shutil
+import subprocess
+import sys
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import unquote, urldefrag, urlsplit
+
+import click
+import pytest
+
+import eigenfield as ef
+from eigenfield.cli import VERBS, group
+
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs"
+WEB = ROOT / "web"
+CHROMIUM = os.environ.get("EIGENFIELD_CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
+SPHINX = all(importlib.util.find_spec(name) for name in ("sphinx", "furo", "myst_parser"))
+BROWSER = shutil.which("node") and CHROMIUM and (WEB / "node_modules" / "axe-core").is_dir()
+
+
+class Links(HTMLParser):
+    """The anchors of a page, and the addresses that it fetches or leads to."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.ids: set[str] = set()
+        self.targets: list[str] = []
+        self.fetched: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        found = dict(attributes)
+        self.ids |= {found[key] for key in ("id", "name") if found.get(key)}
+        for key in ("href", "src"):
+            if found.get(key):
+                self.targets.append(found[key])
+                if tag != "a":
+                    self.fetched.append(found[key])
+
+
+def test_the_python_reference_has_every_public_name_once():
+    page = (DOCS / "reference/python.md").read_text("utf-8")
+    named = re.findall(r"^\.\. auto(?:function|class):: (\w+)$", page, re.MULTILINE)
+    assert sorted(named) == sorted(set(ef.__all__) - {"__version__"})
+
+
+def test_the_command_reference_has_every_option(monkeypatch):
+    monkeypatch.syspath_prepend(DOCS / "_ext")
+    from commands import help_page
+
+    sections = re.split(r"^## (\w+)$", help_page(), flags=re.MULTILINE)[1:]
+    texts = dict(zip(sections[::2], sections[1::2], strict=True))
+    assert list(texts) == list(VERBS)
+    for name, text in texts.items():
+        params = group.get_command(click.Context(group), name).params
+        options = [param for param in params if isinstance(param, click.Option) and not param.hidden]
+        named = set(re.findall(r"-[\w-]+", "\n".join(re.findall(r"^`(-.*)`$", text, re.MULTILINE))))
+        assert {word for option in options for word in option.opts} <= named, name
+
+
+def test_the_scene_of_the_first_page_opens():
+    assert (DOCS / "scene.glb").stat().st_size <= 200_000
+    scene = ef.load(DOCS / "scene.glb")
+    assert ef.validate(DOCS / "scene.glb") == [] and len(scene.rig.cameras) == 81
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    if not SPHINX:
+        pytest.skip("needs Sphinx, furo and MyST: pip install -e '.[docs]'")
+    out = tmp_path_factory.mktemp("site")
+    words = ["-W", "--keep-going", "-q", "-d", str(out / "trees"), str(DOCS), str(out / "html")]
+    done = subprocess.run([sys.executable, "-m", "sphinx", *words], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return out / "html"
+
+
+@pytest.mark.slow
+def test_links_of_the_built_site_lead_somewhere(site):
+    pages = {path.resolve(): Links(path.read_text("utf-8")) for path in site.rglob("*.html")}
+    assert len(pages) > 50
+    lost = []
+    for path, page in pages.items():
+        assert [to for to in page.fetched if urlsplit(to).netloc] == [], path  # no page asks another host
+        for target in page.targets:
+            if urlsplit(target).scheme:
+                continue
+            place, anchor = urldefrag(target)
+            to = (path.parent / unquote(urlsplit(place).path)).resolve() if place else path
+            if not to.exists() or (anchor and to in pages and unquote(anchor) not in pages[to].ids | {""}):
+                lost.append((path.relative_to(site).as_posix(), target))
+    assert lost == []
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not BROWSER, reason="needs Node.js, Chromium, and npm ci in web/")
+def test_the_site_in_chromium(site):
+    done = subprocess.run(
+        ["node", "--test", "--test-force-exit", "--test-reporter=spec", "tests/site.mjs"],
+        cwd=WEB, env=os.environ | {"EIGENFIELD_SITE": str(site), "EIGENFIELD_CHROMIUM": str(CHROMIUM)},
+        capture_output=True, text=True, timeout=600,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout[-8000:] + done.stderr[-2000:]

@@ -1,0 +1,109 @@
+// The built site in Chromium: tests/test_site.py names its folder in EIGENFIELD_SITE and runs this.
+
+import assert from "node:assert/strict";
+import { readdirSync, readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { after, before, test } from "node:test";
+import { launch, openPage, serve } from "./harness.mjs";
+
+const SITE = process.env.EIGENFIELD_SITE;
+const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const FIRST_PICTURE_MS = 1000;
+const FIRST_PAGE_BYTES = 1_500_000;
+const PAGES = readdirSync(SITE, { recursive: true }) // decisions and indices are pages as the others are
+  .filter((path) => path.endsWith(".html") && !/^(_|scene|genindex|search|py-modindex|open)|\/0\d\d-/.test(path));
+
+let browser;
+let site;
+before(async () => {
+  browser = await launch();
+  site = await serve({ folders: [SITE] });
+});
+after(async () => {
+  await browser.close();
+  await site.close();
+});
+
+const open = (path, options = {}) =>
+  openPage(browser, null, { width: 1280, height: 800, ...options, context: { reducedMotion: "reduce", ...options.context } }).then(
+    async (opened) => {
+      await opened.page.goto(`${site.url}/${path}`, { waitUntil: "domcontentloaded" });
+      return opened;
+    },
+  );
+
+test("the first page: a picture within a second, few bytes, nobody else asked, a scene that turns", async (context) => {
+  const times = [];
+  let bytes = 0;
+  for (let i = 0; i < 3; i++) {
+    const { page, close } = await open("index.html");
+    times.push(
+      await page.evaluate(
+        () =>
+          new Promise((resolve) => {
+            const look = (list) => {
+              const shown = list.getEntries().find((entry) => entry.url.endsWith("/scene.jpg"));
+              if (shown) resolve(shown.startTime);
+            };
+            new PerformanceObserver(look).observe({ type: "largest-contentful-paint", buffered: true });
+          }),
+      ),
+    );
+    await close();
+  }
+  context.diagnostic(`first picture after ${times.map((time) => time.toFixed(0)).join(", ")} ms`);
+  assert.ok(Math.min(...times) < FIRST_PICTURE_MS);
+
+  const { page, close } = await openPage(browser, null, { width: 1280, height: 800, context: { reducedMotion: "reduce" } });
+  const hosts = new Set();
+  page.on("request", (request) => hosts.add(new URL(request.url()).origin));
+  page.on("response", (response) => (bytes += Number(response.headers()["content-length"] ?? 0)));
+  await page.goto(`${site.url}/index.html`);
+  const frame = page.frames().find((one) => one.url().endsWith("/scene.html"));
+  await frame.waitForFunction(() => window.eigenfield?.state().status === "ready");
+  context.diagnostic(`${bytes} bytes`);
+  assert.ok(bytes > 1_000_000 && bytes < FIRST_PAGE_BYTES);
+  assert.deepEqual([...hosts].filter((host) => host !== site.url && host !== "null"), []);
+
+  const box = await page.evaluate(() => document.querySelector(".scene").getBoundingClientRect().toJSON());
+  assert.ok(box.y >= 0 && box.y + box.height <= 800, "the scene is above the fold");
+  const seen = () => frame.evaluate(() => window.eigenfield.state());
+  const before = await seen();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2 + 80, box.y + box.height / 2, { steps: 4 });
+  await page.mouse.up();
+  assert.notDeepEqual((await seen()).x, before.x);
+  await close();
+});
+
+test("pages can be read by everybody: contrast, names, headings, keys, in light and dark, on a desk and a phone", async () => {
+  assert.ok(PAGES.length > 15, `${PAGES.length} pages`);
+  const found = [];
+  for (const [width, colorScheme] of [[1280, "light"], [390, "dark"]]) {
+    const { page, close } = await open("genindex.html", { width, height: 844, context: { colorScheme } });
+    for (const path of PAGES) {
+      await page.goto(`${site.url}/${path}`, { waitUntil: "domcontentloaded" });
+      const wide = await page.evaluate(() => document.scrollingElement.scrollWidth - innerWidth);
+      if (wide > 0) found.push(`${path} at ${width}: ${wide} pixels too wide`);
+      await page.evaluate(AXE);
+      const { violations } = await page.evaluate(() => axe.run({ iframes: false, runOnly: ["wcag2a", "wcag2aa", "wcag21aa"], rules: { "heading-order": { enabled: true } } }));
+      for (const { id, nodes } of violations) {
+        found.push(`${path} ${colorScheme}: ${id}: ${nodes[0].target} ${nodes[0].failureSummary}`);
+      }
+    }
+    await close();
+  }
+  assert.deepEqual(found, []);
+});
+
+test("by keys alone: the first one skips to the content, the next ones reach the scene", async () => {
+  const { page, close } = await open("index.html");
+  await page.keyboard.press("Tab");
+  assert.match(await page.evaluate(() => document.activeElement.textContent), /skip to content/i);
+  await page.keyboard.press("Enter");
+  const reached = () => page.evaluate(() => document.activeElement.tagName === "IFRAME");
+  for (let i = 0; i < 8 && !(await reached()); i++) await page.keyboard.press("Tab");
+  assert.ok(await reached());
+  await close();
+});
