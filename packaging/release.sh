@@ -27,8 +27,8 @@ done
 (cd dist/again && sha256sum --check --quiet ../beside/SHA256SUMS)
 ls "dist/python/eigenfield-$version.tar.gz" "dist/python/eigenfield-$version-py3-none-any.whl"
 
-echo "== used elsewhere"
-"$python" packaging/try_wheel.py dist/python
+echo "== used elsewhere, with the bill of materials of all that comes along"
+"$python" packaging/try_wheel.py dist/python dist/beside/eigenfield.cdx.json
 
 echo "== viewer and plug-in, twice"
 (cd web && npm ci --no-audit --no-fund --silent)
@@ -39,8 +39,5 @@ done
 cmp dist/npm/*.tgz dist/again/*.tgz
 (cd dist/npm && sha256sum -- *) >> dist/beside/SHA256SUMS
 
-echo "== bill of materials of the wheel with what it needs"
-"$python" -m cyclonedx_py requirements packaging/requirements-run.txt --pyproject pyproject.toml --mc-type library \
-  --output-reproducible --spec-version 1.6 --output-file dist/beside/eigenfield.cdx.json
 rm -rf dist/again dist/*.log
 find dist -type f

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from eigenfield.runtime.signals import STOP_SIGNALS
+from support.printed import check_printed
 from support.program import Ran, call
 
 # Tests that run in the background, or under nohup, inherit signals that are ignored. The program leaves them so.
@@ -46,11 +47,13 @@ def data() -> Path:
 @pytest.fixture
 def run(capfd):
     """Call the program as the shell does, in this process: exit code, standard output and standard error, with what
-    goes past Python to either."""
+    goes past Python to either. JSON keeps to the verb's schema."""
 
     def ran(*words: object) -> Ran:
         capfd.readouterr()
-        return Ran(call(*words), *capfd.readouterr())
+        result = Ran(call(*words), *capfd.readouterr())
+        check_printed(words, result)
+        return result
 
     return ran
 
