@@ -3,10 +3,10 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 lock() {
-  uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
+  uv pip compile --quiet --universal --python-version 3.11.5 --generate-hashes --no-header --no-annotate \
     --constraint constraints.txt pyproject.toml "${@:2}" --output-file "packaging/requirements-$1.txt"
 }
 lock run
-lock test --extra test --extra benchmark --extra report
+lock test --extra test --extra benchmark --extra report --extra docs
 lock lint --extra lint
 lock release --extra release

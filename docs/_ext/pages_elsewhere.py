@@ -10,7 +10,11 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
-TEXTS = {"reference/changes": "CHANGELOG.md", "reference/three": "web/eigenfield-three/README.md"}
+TEXTS = {
+    "reference/changes": "CHANGELOG.md",
+    "reference/three": "web/eigenfield-three/README.md",
+    "reference/security": "SECURITY.md",
+}
 PAGES = {f"../{file}": f"/{page}.md" for page, file in TEXTS.items()} | {"../README.md": "/index.md"}
 LINK = re.compile(r"\]\((?!https?:|/|#)([^)#\s]+)")
 
