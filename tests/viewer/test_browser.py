@@ -1,4 +1,4 @@
-"""The web viewer in a real browser: each file of web/tests by Node's test runner, which drives Chromium."""
+"""The web viewer in browsers: each file of web/tests by Node's test runner, which drives Chromium and two others."""
 
 from __future__ import annotations
 
@@ -16,6 +16,10 @@ WEB = Path(__file__).parents[2] / "web"
 CHROMIUM = os.environ.get("EIGENFIELD_CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
 FILES = sorted((WEB / "tests").glob("*.test.mjs"))
 PLAIN = {"structure": None, "languages": None, "coding": "vite"}  # no browser, and what of web/node_modules they need
+OTHERS = {  # engines beside Chromium: any of these programs, and the remedy
+    "firefox": (["firefox-esr", "firefox"], "needs Firefox: apt-get install firefox-esr xvfb"),
+    "webkit": (["WebKitWebDriver"], "needs WebKitGTK: apt-get install webkit2gtk-driver xvfb"),
+}
 
 
 def missing(path: Path) -> str | None:
@@ -26,6 +30,9 @@ def missing(path: Path) -> str | None:
         return "needs Node.js"
     if name not in PLAIN and CHROMIUM is None:
         return "needs Chromium: apt-get install chromium, or name one in EIGENFIELD_CHROMIUM"
+    programs, remedy = OTHERS.get(name, ([], ""))
+    if programs and not (any(map(shutil.which, programs)) and (os.environ.get("DISPLAY") or shutil.which("Xvfb"))):
+        return remedy
     if package is not None and not (WEB / "node_modules" / package).is_dir():
         return f"needs {package}: npm ci in web/"
     return None
@@ -61,7 +68,7 @@ def run_node(path: Path, **surroundings: str) -> None:
 
 
 def test_there_are_browser_tests():
-    assert len(FILES) >= 19
+    assert len(FILES) >= 21
 
 
 @pytest.mark.parametrize("path", cases(plain=True))
@@ -71,5 +78,5 @@ def test_in_node(path):
 
 @pytest.mark.parametrize("path", cases(plain=False))
 @pytest.mark.slow
-def test_in_chromium(path, folder):
+def test_in_browser(path, folder):
     run_node(path, EIGENFIELD_SCENES=str(folder), EIGENFIELD_CHROMIUM=str(CHROMIUM))

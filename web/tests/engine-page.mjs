@@ -1,0 +1,64 @@
+// The viewer in another engine than Chromium's: the same tests for each.
+
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { difference, launch } from "./harness.mjs";
+import { openViewer, picture, state } from "./viewer-page.mjs";
+
+const GROUND = { background: [21, 23, 26] };
+
+const SIZE = { width: 480, height: 360 };
+const PLACE = "#x=0.5&y=-0.25";
+/** The page in a frame of the size that Chromium's window has. */
+const FRAME = {
+  body:
+    '<!doctype html><meta charset="utf-8"><title>frame</title>' +
+    `<iframe src="/${PLACE}" width="${SIZE.width}" height="${SIZE.height}" style="border: 0"></iframe>` +
+    '<script>Object.defineProperty(window, "eigenfield", { get: () => frames[0].eigenfield });</script>',
+  type: "text/html; charset=utf-8",
+};
+
+/** start: of engines.mjs. */
+export function testEngine(start) {
+  let browser;
+  let engine;
+  before(async () => {
+    browser = await launch();
+    engine = await start();
+  });
+  after(async () => {
+    await engine?.close();
+    await browser.close();
+  });
+
+  /** What the engine shows of a scene, and how far its picture is from Chromium's. */
+  async function drawn(scene) {
+    const options = { ...SIZE, hash: PLACE, routes: { "/frame": FRAME } };
+    const { page, server, close } = await openViewer(browser, scene, options);
+    const expected = await picture(page);
+    await engine.open(`${server.url}/frame`);
+    await engine.evaluate(async () => {
+      while (!window.eigenfield) await new Promise((resolve) => setTimeout(resolve, 50));
+    });
+    const found = { ...(await state(engine)), ...difference(await picture(engine), expected, GROUND) };
+    await close();
+    assert.ok(found.pixels > 50_000, `${found.pixels} pixels compared`);
+    return found;
+  }
+
+  test("a scene opens at the place that its address names, and is drawn as Chromium draws it", async () => {
+    const { status, loaded, message, x, y, mean, largest } = await drawn("scene.glb");
+    assert.deepEqual([status, loaded, message, x, y], ["ready", 6, null, 0.5, -0.25]);
+    assert.ok(mean <= 0.5 && largest <= 4, `mean ${mean}, largest ${largest}`); // Chromium's own: 2 from the software's
+  });
+
+  for (const name of ["coded.glb", "fitted.glb", "sheets-coded.glb"]) {
+    test(`${name}: AV1 of 10 bits, or 8 of them where the engine gives no more`, async () => {
+      const { status, message, mean, largest } = await drawn(name);
+      assert.deepEqual([status, message], ["ready", null]);
+      assert.ok(mean <= 0.5 && largest <= 4, `mean ${mean}, largest ${largest}`);
+      const decoder = await engine.evaluate(() => "ImageDecoder" in frames[0]);
+      assert.ok(decoder || mean >= 0.15, `mean ${mean}, as if all ten bits were there`);
+    });
+  }
+}
