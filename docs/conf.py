@@ -18,7 +18,8 @@ copyright = "the eigenfield authors"
 release = version = __version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "commands", "pages_elsewhere", "scene_page"]
-exclude_patterns = ["_ext"]
+exclude_patterns = ["_ext", "_templates"]
+templates_path = ["_templates"]
 
 myst_enable_extensions = ["attrs_inline", "deflist"]
 myst_heading_anchors = 3
@@ -32,6 +33,12 @@ napoleon_numpy_docstring = False
 
 html_theme = "furo"
 html_title = "eigenfield"
+html_sidebars = {  # the theme's own, and a way to the page that opens files
+    "**": [
+        *(f"sidebar/{part}.html" for part in ("brand", "search", "scroll-start", "open", "navigation", "scroll-end")),
+        "sidebar/variant-selector.html",
+    ]
+}
 html_favicon = "_static/icon.svg"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
