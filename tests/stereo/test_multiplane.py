@@ -18,14 +18,14 @@ from eigenfield.stereo.multiplane import (
     fit_multiplane,
     fit_sheets,
 )
-from eigenfield.stereo.multiplane.drawing import NO_LABELS, backpropagate, draw_layers, view_rays
+from eigenfield.stereo.multiplane.drawing import backpropagate, draw_layers, view_rays
 from eigenfield.stereo.multiplane.fit import plane_homographies
 from eigenfield.stereo.multiplane.kernels import (
     add_label_gradient,
     add_layer_gradient,
     add_priors,
     draw_layer,
-    layer_places,
+    plane_places,
     prolong,
     restrict,
 )
@@ -78,7 +78,7 @@ def test_a_homography_takes_a_view_to_the_plane_that_it_sees():
 def places_by(base):
     """Where a photograph's pixels read a plane, by an affine map of their coordinates."""
     places = np.empty((*SHAPE, 2), np.float32)
-    layer_places(NO_LABELS, *FRAME, base, np.zeros((2, 3)), np.float32(0), 0, places)
+    plane_places(*FRAME, base, np.zeros((2, 3)), np.float32(0), places)
     return places
 
 

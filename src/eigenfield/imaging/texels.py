@@ -86,3 +86,57 @@ def scatter_bilinear(typing_context, texels, first, line, right, below, values, 
         return context.get_dummy_value()
 
     return types.void(texels, first, line, right, below, values, at), generate
+
+
+@intrinsic
+def bilinear_slopes(typing_context, texels, first, line, right, below, values, at):
+    """The scalar products of values[at: at + 4] with the slopes of a bilinear read, across and down, as two float32.
+
+    Args:
+        texels, first, line, right, below: As of `gather_bilinear`.
+        values: Flat float32 array.
+        at: Address in it.
+    """
+    result = types.UniTuple(types.float32, 2)
+
+    def generate(context, builder, signature, arguments):
+        vector, index = ir.VectorType(ir.FloatType(), TEXEL_LANES), ir.IntType(32)
+        pointers, _ = _square_of_texels(context, builder, signature.args, arguments)
+        a, b, c, d = (builder.load(pointer, align=4) for pointer in pointers)
+        source = _texel_pointer(context, builder, signature.args[5], arguments[5], arguments[6])
+        value = builder.load(source, align=4)
+        above, under, left, beside = (builder.fsub(*pair) for pair in ((b, a), (d, c), (c, a), (d, b)))
+
+        def product(one, other, part):
+            between = builder.fmul(builder.fsub(other, one), splat(builder, part, vector))
+            terms = builder.fmul(value, builder.fadd(one, between))
+            lanes = [builder.extract_element(terms, ir.Constant(index, i)) for i in range(TEXEL_LANES)]
+            return builder.fadd(builder.fadd(lanes[0], lanes[1]), builder.fadd(lanes[2], lanes[3]))
+
+        across, down = product(above, under, arguments[4]), product(left, beside, arguments[3])
+        return context.make_tuple(builder, signature.return_type, [across, down])
+
+    return result(texels, first, line, right, below, values, at), generate
+
+
+@intrinsic
+def add_texel(typing_context, out, at, part, values, place):
+    """out[at: at + 4] += part * values[place: place + 4].
+
+    Args:
+        out: Flat float32 array.
+        at: Address in it.
+        part: Float32.
+        values: Flat float32 array.
+        place: Address in it.
+    """
+
+    def generate(context, builder, signature, arguments):
+        vector = ir.VectorType(ir.FloatType(), TEXEL_LANES)
+        goal = _texel_pointer(context, builder, signature.args[0], arguments[0], arguments[1])
+        source = _texel_pointer(context, builder, signature.args[3], arguments[3], arguments[4])
+        share = builder.fmul(splat(builder, arguments[2], vector), builder.load(source, align=4))
+        builder.store(builder.fadd(builder.load(goal, align=4), share), goal, align=4)
+        return context.get_dummy_value()
+
+    return types.void(out, at, part, values, place), generate

@@ -13,19 +13,20 @@ from eigenfield.stereo.multiplane.kernels import (
     composite,
     composite_gradient,
     draw_layer,
-    layer_places,
+    field_places,
+    plane_places,
 )
 
 BAND_ROWS = 32  # of a picture, composited at a time
 PLACE_ITERATIONS = 6
-NO_LABELS = np.zeros((0, 0), np.float32)
+PLACE_TOLERANCE_PIXELS = np.float32(1e-3)  # of a layer
 
 Rays = tuple[NDArray[np.float64], NDArray[np.float64]]  # `base` and `slope` of the kernels
 Labels = NDArray[np.float64] | NDArray[np.float32]  # (D,) of planes, or (D, h, w) of height fields
 
 
 def view_rays(matrix: NDArray[np.float64]) -> Rays:
-    """`base` (3, 3) and `slope` (2, 3) of `layer_places`, for a view.
+    """`base` (3, 3) and `slope` (2, 3) of `plane_places`, for a view.
 
     The plane of label d maps the reference view to a photograph by H + d m e3', with m a column of the view's matrix.
     Its inverse, by Sherman and Morrison, is H^-1 + d (c_3 I - c e3') H^-1 but for a scale, with c = H^-1 m.
@@ -55,8 +56,11 @@ def draw_layers(
 
     def one(index: int) -> None:
         own = labels[index]
-        field, iterations = (NO_LABELS, 0) if labels.ndim == 1 else (own, PLACE_ITERATIONS)
-        layer_places(field, *size, *rays, np.float32(own.mean()), iterations, places[index])
+        start = np.float32(own.mean())
+        if labels.ndim == 1:
+            plane_places(*size, *rays, start, places[index])
+        else:
+            field_places(own, *rays, start, PLACE_ITERATIONS, PLACE_TOLERANCE_PIXELS, places[index])
         draw_layer(layers[index], places[index], drawn[index])
 
     parallel_map(one, range(len(layers)))

@@ -6,48 +6,87 @@ from __future__ import annotations
 
 import numpy as np
 
-from eigenfield.imaging.texels import gather_bilinear, scatter_bilinear
+from eigenfield.imaging.texels import add_texel, bilinear_slopes, gather_bilinear, scatter_bilinear
 from eigenfield.runtime.jit import kernel
 
 
 @kernel()
-def layer_places(labels, height, width, base, slope, start, iterations, places):
+def plane_places(height, width, base, slope, label, places):
     """places (H, W, 2) = column and row in a layer of what a photograph's pixels see of it; -1, -1 beyond its border.
 
-    A pixel sees (u, v) + d (s, t) on the plane of label d. On a height field d is that of the place itself, which a
-    fixed point finds while d changes by less than one over the parallax (s, t) from texel to texel.
+    A pixel sees (u, v) + d (s, t) on the plane of label d.
 
     Args:
-        labels: (height, width) float32 of a height field; is not read where there are no iterations.
         height, width: Of the layer.
         base: (3, 3) float64, from the pixel (x, y, 1) to (u, v, 1), homogeneous.
         slope: (2, 3) float64, from the pixel to (s, t) times that scale.
-        start: float32 label to begin with.
-        iterations: Of the fixed point; 0 for the plane of label `start`.
+        label: float32 of the plane.
         places: Written.
     """
-    right, bottom = np.float32(width - 1.001), np.float32(height - 1.001)
     for row in range(places.shape[0]):
         for column in range(places.shape[1]):
-            x, y = np.float64(column), np.float64(row)
-            scale = base[2, 0] * x + base[2, 1] * y + base[2, 2]
-            over = 1 / scale
-            u0 = np.float32((base[0, 0] * x + base[0, 1] * y + base[0, 2]) * over)
-            v0 = np.float32((base[1, 0] * x + base[1, 1] * y + base[1, 2]) * over)
-            s = np.float32((slope[0, 0] * x + slope[0, 1] * y + slope[0, 2]) * over)
-            t = np.float32((slope[1, 0] * x + slope[1, 1] * y + slope[1, 2]) * over)
-            u, v = u0 + start * s, v0 + start * t
+            scale, u, v, s, t = pixel_ray(base, slope, column, row)
+            put_place(scale, u + label * s, v + label * t, height, width, places, row, column)
+
+
+@kernel()
+def field_places(labels, base, slope, start, iterations, tolerance, places):
+    """As `plane_places`, of a height field: d is that of the place itself.
+
+    A fixed point finds it while d changes by less than one over the parallax (s, t) from texel to texel. It begins with
+    the label that the pixel before has found.
+
+    Args:
+        labels: (height, width) float32.
+        base, slope: As of `plane_places`.
+        start: float32 label to begin each row with.
+        iterations: Of the fixed point, at most.
+        tolerance: float32, pixels of the layer by which the last one moves the place, at most.
+        places: Written.
+    """
+    height, width = labels.shape
+    right, bottom = np.float32(width - 1.001), np.float32(height - 1.001)
+    for row in range(places.shape[0]):
+        d = start
+        for column in range(places.shape[1]):
+            scale, u0, v0, s, t = pixel_ray(base, slope, column, row)
+            if not scale > 0:
+                d = start
+                places[row, column, 0], places[row, column, 1] = np.float32(-1), np.float32(-1)
+                continue
+            u, v, reach = u0 + d * s, v0 + d * t, max(abs(s), abs(t))
             for _ in range(iterations):
                 across, down = min(max(u, np.float32(0)), right), min(max(v, np.float32(0)), bottom)
                 left, top = np.int64(across), np.int64(down)
                 f, g = across - np.float32(left), down - np.float32(top)
                 above = labels[top, left] + f * (labels[top, left + 1] - labels[top, left])
                 below = labels[top + 1, left] + f * (labels[top + 1, left + 1] - labels[top + 1, left])
-                d = above + g * (below - above)
+                before, d = d, above + g * (below - above)
                 u, v = u0 + d * s, v0 + d * t
-            inside = scale > 0 and u >= 0 and v >= 0 and u < width - 1 and v < height - 1
-            places[row, column, 0] = u if inside else np.float32(-1)
-            places[row, column, 1] = v if inside else np.float32(-1)
+                if abs(d - before) * reach < tolerance:
+                    break
+            put_place(scale, u, v, height, width, places, row, column)
+
+
+@kernel(inline=True)
+def pixel_ray(base, slope, column, row):
+    """The homogeneous scale of a pixel, and its u, v, s and t, see `plane_places`."""
+    x, y = np.float64(column), np.float64(row)
+    scale = base[2, 0] * x + base[2, 1] * y + base[2, 2]
+    over = 1 / scale
+    u = np.float32((base[0, 0] * x + base[0, 1] * y + base[0, 2]) * over)
+    v = np.float32((base[1, 0] * x + base[1, 1] * y + base[1, 2]) * over)
+    s = np.float32((slope[0, 0] * x + slope[0, 1] * y + slope[0, 2]) * over)
+    t = np.float32((slope[1, 0] * x + slope[1, 1] * y + slope[1, 2]) * over)
+    return scale, u, v, s, t
+
+
+@kernel(inline=True)
+def put_place(scale, u, v, height, width, places, row, column):
+    """places[row, column] = (u, v), or -1, -1 behind the camera or beyond the border of height x width."""
+    inside = scale > 0 and u >= 0 and v >= 0 and u < width - 1 and v < height - 1
+    places[row, column, 0] = u if inside else np.float32(-1)
+    places[row, column, 1] = v if inside else np.float32(-1)
 
 
 @kernel()
@@ -86,39 +125,35 @@ def add_layer_gradient(gradient, places, layer_gradient):
 def add_label_gradient(gradient, places, layer, base, slope, label_gradient):
     """Add what a picture's gradient (H, W, 4) is for the labels (h, w) of a height field.
 
-    A label moves the place at which a pixel reads the layer along (s, t), see `layer_places`: its gradient is that of
+    A label moves the place at which a pixel reads the layer along (s, t), see `plane_places`: its gradient is that of
     the pixel times the layer's slope along (s, t).
 
     Args:
         gradient: (H, W, 4).
         places: (H, W, 2).
         layer: (h, w, 4).
-        base, slope: As of `layer_places`.
+        base, slope: As of `plane_places`.
         label_gradient: (h, w), added to.
     """
+    flat, drawn, line = layer.reshape(-1), gradient.reshape(-1), np.int64(4 * layer.shape[1])
+    at = np.int64(-4)
     for row in range(gradient.shape[0]):
         for column in range(gradient.shape[1]):
             u, v = places[row, column, 0], places[row, column, 1]
+            at += 4
             if u < 0:
                 continue
             left, top = np.int64(u), np.int64(v)
             f, g = u - np.float32(left), v - np.float32(top)
-            across, down = np.float32(0), np.float32(0)
-            for k in range(4):
-                a, b = layer[top, left, k], layer[top, left + 1, k]
-                c, d = layer[top + 1, left, k], layer[top + 1, left + 1, k]
-                twist = a - b - c + d
-                across += gradient[row, column, k] * (b - a + g * twist)
-                down += gradient[row, column, k] * (c - a + f * twist)
-            x, y = np.float64(column), np.float64(row)
-            over = 1 / (base[2, 0] * x + base[2, 1] * y + base[2, 2])
-            s = np.float32((slope[0, 0] * x + slope[0, 1] * y + slope[0, 2]) * over)
-            t = np.float32((slope[1, 0] * x + slope[1, 1] * y + slope[1, 2]) * over)
+            across, down = bilinear_slopes(flat, top * line + 4 * left, line, f, g, drawn, at)
+            _, _, _, s, t = pixel_ray(base, slope, column, row)
             moved = across * s + down * t
-            label_gradient[top, left] += (np.float32(1) - f) * (np.float32(1) - g) * moved
-            label_gradient[top, left + 1] += f * (np.float32(1) - g) * moved
-            label_gradient[top + 1, left] += (np.float32(1) - f) * g * moved
-            label_gradient[top + 1, left + 1] += f * g * moved
+            right = f * moved
+            rest = moved - right
+            label_gradient[top, left] += (np.float32(1) - g) * rest
+            label_gradient[top, left + 1] += (np.float32(1) - g) * right
+            label_gradient[top + 1, left] += g * rest
+            label_gradient[top + 1, left + 1] += g * right
 
 
 @kernel()
@@ -229,8 +264,9 @@ def restrict(fine, row_at, row_part, column_at, column_part, coarse):
     source = fine.reshape(height, channels * width)
     first, second = np.zeros(channels * width, np.float32), np.zeros(channels * width, np.float32)
     coarse[:] = 0
-    row = 0
+    out, row = coarse.reshape(-1), 0
     for into in range(coarse.shape[0]):
+        line_at = into * coarse.shape[1] * channels
         for i in range(channels * width):
             first[i], second[i] = second[i], np.float32(0)
         while row < height and row_at[row] == into:
@@ -243,28 +279,39 @@ def restrict(fine, row_at, row_part, column_at, column_part, coarse):
         for column in range(width):
             at, part = column_at[column], column_part[column]
             rest = np.float32(1) - part
-            for channel in range(channels):
-                value = first[channels * column + channel]
-                coarse[into, at, channel] += rest * value
-                coarse[into, at + 1, channel] += part * value
+            if channels == 4:
+                add_texel(out, line_at + 4 * at, rest, first, 4 * column)
+                add_texel(out, line_at + 4 * at + 4, part, first, 4 * column)
+            else:
+                for channel in range(channels):
+                    value = first[channels * column + channel]
+                    coarse[into, at, channel] += rest * value
+                    coarse[into, at + 1, channel] += part * value
 
 
 @kernel()
 def prolong(coarse, row_at, row_part, column_at, column_part, fine):
     """fine += the coarse grid, interpolated bilinearly. Arguments as of `restrict`."""
     height, width, channels = fine.shape
-    line = np.zeros((coarse.shape[1], channels), np.float32)
+    numbers = channels * coarse.shape[1]
+    line, source, out = np.zeros(numbers, np.float32), coarse.reshape(-1, numbers), fine.reshape(-1)
     for row in range(height):
-        at, part = row_at[row], row_part[row]
+        above, below = source[row_at[row]], source[row_at[row] + 1]
+        part = row_part[row]
         rest = np.float32(1) - part
-        for column in range(coarse.shape[1]):
-            for channel in range(channels):
-                line[column, channel] = rest * coarse[at, column, channel] + part * coarse[at + 1, column, channel]
+        for i in range(numbers):
+            line[i] = rest * above[i] + part * below[i]
+        into = row * width * channels
         for column in range(width):
-            at, right = column_at[column], column_part[column]
+            at, right = channels * column_at[column], column_part[column]
             left = np.float32(1) - right
-            for channel in range(channels):
-                fine[row, column, channel] += left * line[at, channel] + right * line[at + 1, channel]
+            if channels == 4:
+                add_texel(out, into, left, line, at)
+                add_texel(out, into, right, line, at + 4)
+            else:
+                for channel in range(channels):
+                    out[into + channel] += left * line[at + channel] + right * line[at + channels + channel]
+            into += channels
 
 
 @kernel()
