@@ -10,13 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.encoding.fitted.kernels import upsample
+from eigenfield.encoding.fitted.products import combine
 from eigenfield.rendering.software.drawing import Surface
 from eigenfield.rendering.software.kernels import TILE_TEXELS
 from eigenfield.rendering.software.resample import Taps, make_taps
 
 NO_START = np.zeros((0, 0, 0), np.float32)
-
-PRODUCT_CHUNK_TEXELS = 1 << 16  # multiplied by weights at a time: no second array as large as all textures
 
 Rectangle = tuple[int, int, int, int]  # [top, bottom) x [left, right), in texels of the components' grid
 
@@ -84,7 +83,7 @@ def sum_up(
     parts = [part for part in zip(model.blocks, textures, weights, strict=True) if part[0].count]
     if parts and parts[0][1].shape[2:] == model.grid:
         _, some, mine = parts.pop(0)
-        np.matmul(mine, some.reshape(len(some), -1), out=total.reshape(len(total), -1))
+        combine(mine, some.reshape(len(some), -1), total.reshape(len(total), -1))
     else:
         total[:] = 0
     for block, some, mine in parts:

@@ -18,8 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.encoding.fitted.kernels import adjoint, forward, robust_weights, squares_of, target
-from eigenfield.encoding.fitted.model import PRODUCT_CHUNK_TEXELS, AtlasComposer, PlaneModel, sum_up
+from eigenfield.encoding.fitted.model import AtlasComposer, PlaneModel, sum_up
 from eigenfield.encoding.fitted.observations import FitData
+from eigenfield.encoding.fitted.products import add_shares, one_blas_thread, scalar_products
 from eigenfield.runtime.parallel import parallel_map, pieces
 
 PASS_BATCH_OBSERVATIONS = 48  # whose sums are in memory at a time: each batch reads and writes all textures once
@@ -49,6 +50,7 @@ class NormalEquations:
     pixels: NDArray[np.float64]
 
 
+@one_blas_thread
 def render_and_backproject(
     data: FitData,
     model: PlaneModel,
@@ -87,7 +89,6 @@ def render_and_backproject(
     # All batches share their arrays: memory given back and asked for anew costs more than what is done with it
     batch = min(PASS_BATCH_OBSERVATIONS, len(data))
     room = np.empty((2, batch, model.channels, *model.grid), np.float32)  # pages not written to take no memory
-    product = np.empty((max((block.count for block in blocks), default=0), PRODUCT_CHUNK_TEXELS), np.float32)
     shares = np.zeros(
         (len(pieces(batch, PASS_TASK_OBSERVATIONS)), *(model.mean.shape if for_mean else (0, 0, 0))), np.float32
     )
@@ -136,12 +137,9 @@ def render_and_backproject(
         for number, block in enumerate(blocks if for_coarse else ()):
             inside = np.ascontiguousarray(back[:, :, *block.window]).reshape(last - first, -1)
             if for_textures and block.count:
-                into = found[number].reshape(block.count, -1)
-                for left, right in pieces(into.shape[1], PRODUCT_CHUNK_TEXELS):
-                    part = product[: block.count, : right - left]
-                    into[:, left:right] += np.matmul(block.weights[some].T, inside[:, left:right], out=part)
+                add_shares(block.weights[some], inside, found[number].reshape(block.count, -1))
             if for_weights and block.count:
-                asked[number][some] = inside @ block.textures.reshape(block.count, -1).T
+                asked[number][some] = scalar_products(inside, block.textures.reshape(block.count, -1))
     return NormalEquations(shares.sum(axis=0), found, asked, squares, pixels)
 
 

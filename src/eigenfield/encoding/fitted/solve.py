@@ -20,9 +20,10 @@ from numpy.typing import NDArray
 
 from eigenfield.encoding.fitted.footprints import Footprint
 from eigenfield.encoding.fitted.kernels import SHARE_ONE, add_laplacian, adjoint, next_direction, take_step
-from eigenfield.encoding.fitted.model import PRODUCT_CHUNK_TEXELS, AtlasComposer, PlaneModel
+from eigenfield.encoding.fitted.model import AtlasComposer, PlaneModel
 from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.encoding.fitted.passes import PASS_TASK_OBSERVATIONS, NormalEquations, Textures, render_and_backproject
+from eigenfield.encoding.fitted.products import combine, one_blas_thread, weighted_gram
 from eigenfield.runtime.parallel import parallel_map, pieces
 
 MEAN_SMOOTHNESS_RATIO = 0.004  # of the median diagonal entry of a seen texel
@@ -296,6 +297,7 @@ def fit_weights(data: FitData, model: PlaneModel, iterations: int) -> None:
         block.weights = rows
 
 
+@one_blas_thread
 def whiten(model: PlaneModel, scales: Scales) -> None:
     """Rotate each block's components so that their weights are uncorrelated, of mean square 1, and the textures
     orthogonal in the pictures, the strongest first; signs as eigen textures have them. What is drawn stays the same.
@@ -312,13 +314,11 @@ def whiten(model: PlaneModel, scales: Scales) -> None:
         q, r = np.linalg.qr(weights)
         flat = block.textures.reshape(block.count, -1)
         share = np.tile(np.sqrt(scales.coarse[block.window]).reshape(-1), model.channels)
-        gram = np.zeros((block.count, block.count))
-        for first, last in pieces(flat.shape[1], PRODUCT_CHUNK_TEXELS):
-            part = flat[:, first:last] * share[first:last]
-            gram += part @ part.T
+        gram = weighted_gram(flat, share)
         _, rotation = np.linalg.eigh(r @ gram @ r.T)
         rotation = rotation[:, ::-1]
-        textures = (rotation.T @ r / np.sqrt(rows)).astype(np.float32) @ flat
+        textures = np.empty_like(flat)
+        combine((rotation.T @ r / np.sqrt(rows)).astype(np.float32), flat, textures)
         low, high = textures.min(axis=1), textures.max(axis=1)
         signs = np.where(-low > high, -1.0, 1.0)  # of the largest
         textures *= signs[:, None].astype(np.float32)

@@ -16,12 +16,12 @@ from eigenfield.encoding.fitted.kernels import adjoint, forward, target
 from eigenfield.encoding.fitted.model import Block, PlaneModel, Rectangle
 from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.encoding.fitted.passes import MINUS, PASS_TASK_OBSERVATIONS
+from eigenfield.encoding.fitted.products import combine, one_blas_thread, weighted_gram
 from eigenfield.encoding.fitted.solve import Scales
 from eigenfield.runtime.files import scratch_array
 from eigenfield.runtime.parallel import parallel_map, pieces
 
 MAP_MIN_SHARE_RATIO = 0.2  # of a texel's median share in one picture: residuals are divided by no smaller one
-MAP_CHUNK_NUMBERS = 1 << 16  # of a map, summed at a time
 REGION_BLOCK_TEXELS = 8  # side of a block: rectangles are made of whole blocks
 REGION_EXCESS_RATIO = 2.0  # of the mean squared error over all pixels: only what lies above it speaks for a region
 REGION_MIN_ERROR_RATIO = 0.1  # of all squared error that a region must have in excess
@@ -29,6 +29,7 @@ REGION_MAX_COUNT = 3
 REGION_MAX_PIXEL_RATIO = 0.4  # of the pixels seen
 
 
+@one_blas_thread
 def principal_block(
     data: FitData, model: PlaneModel, scales: Scales, count: int, rectangle: Rectangle, work: Path | None = None
 ) -> Block:
@@ -59,18 +60,14 @@ def principal_block(
         parallel_map(put, range(len(data)))
         share = np.sqrt(scales.coarse[top:bottom, left:right]).reshape(-1)
         weight = np.tile(share, model.channels)
-        gram = np.zeros((len(data), len(data)))
-        for first, last in pieces(size, MAP_CHUNK_NUMBERS):
-            part = maps[:, first:last] * weight[first:last]
-            gram += part.astype(np.float64) @ part.T.astype(np.float64)
-        _, vectors = np.linalg.eigh(gram)
+        _, vectors = np.linalg.eigh(weighted_gram(maps, weight))
         weights = vectors[:, ::-1][:, :count] * np.sqrt(len(data))
         textures = np.zeros((weights.shape[1], size), np.float32)
-        for first, last in pieces(size, MAP_CHUNK_NUMBERS):
-            textures[:, first:last] = (weights.T / len(data)).astype(np.float32) @ maps[:, first:last]
+        combine((weights.T / len(data)).astype(np.float32), maps, textures)
     return Block(rectangle, textures.reshape(-1, *shape), weights.astype(np.float32))
 
 
+@one_blas_thread
 def residual_energy(data: FitData, model: PlaneModel) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """(h, w) of the grid: the squared error that a texel answers for, and the pixels, over all observations."""
 
