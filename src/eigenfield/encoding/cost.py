@@ -32,14 +32,14 @@ STEPS = {  # by the name with which a step begins
     "relief": StepCost("surface", 10),
     "surface": StepCost("surface", 30, 8),
     "proxy": StepCost("atlas", 10),
-    "trial": StepCost("trial of layers", 90),
-    "layers": StepCost("layers", 20, 40),
+    "trial": StepCost("trial of layers", 50),
+    "layers": StepCost("layers", 10, 22),
     "mesh": StepCost("mesh", 5, 1.8),
     "maps": StepCost("texture maps", 5, 1),
     "fit": StepCost("fit", 5, 4.5),
     "code": StepCost("coding", 10, 0.8),
 }
-DENSE_TRIAL = StepCost("trial of layers", 30)  # which ends with the fewest layers, as a rule
+DENSE_TRIAL = StepCost("trial of layers", 20)  # which ends with the fewest layers, as a rule
 LAYERED = {"layers": STEPS["layers"], "mesh": StepCost("mesh", 0, 45), "fit": StepCost("fit", 0, 38)}
 DENSE_LAYERS_RATIO = 1 / 3  # of the time of layers: dense arrays have fewer
 THREADS_POWER = 0.8  # of the number of threads, by which time falls
