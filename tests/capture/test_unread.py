@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 
 import numpy as np
 import pillow_heif
@@ -16,6 +17,7 @@ from eigenfield.core.errors import CaptureError
 from support.captures import write_capture
 from support.named import picture, refused, write, write_video
 
+DOCS = Path(__file__).parents[2] / "docs"
 HEIC_LINE = "4 files were not read: .heic (pip install 'eigenfield[photos]')"
 
 
@@ -84,6 +86,10 @@ def test_other_files_are_named_by_what_they_are(tmp_path):
     assert ".txt" not in lines and ".ply" not in lines
     for name, what in (("a.png", "one photograph"), ("mesh.ply", "--proxy"), ("old.bmp", "convert it")):
         assert what in str(refused("calibration-unknown", folder / name))
+
+
+def test_a_finished_scene_is_no_capture():
+    assert "eigenfield view" in str(refused("calibration-unknown", DOCS / "scene.glb"))
 
 
 # panoramas

@@ -28,6 +28,7 @@ from eigenfield.capture.readers.stanford import find_stanford, read_stanford
 from eigenfield.capture.readers.strecha import find_strecha, read_strecha
 from eigenfield.capture.readers.video import find_videos, read_videos
 from eigenfield.capture.readers.walk import find_walk, read_walk
+from eigenfield.coding.limits import EXTENSION
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.recognise import SPLAT, read_head, recognise
 
@@ -241,8 +242,11 @@ def _not_a_calibration(path: Path) -> CaptureError:
     if lower.endswith(ALL_EXTENSIONS):
         message, remedy = "is one photograph, and no calibration", "name the folder of all photographs"
     elif kind is not None:
-        what = recognise(read_head(path)) or kind.what
+        head = read_head(path)
+        what = recognise(head) or kind.what
         message, remedy = f"is {what}, and no calibration", kind.remedy
-        if what == SPLAT:
+        if EXTENSION.encode() in head:
+            message, remedy = "is a finished scene", "look at it with `eigenfield view`; in Python, `ef.load` opens it"
+        elif what == SPLAT:
             remedy = "name the folder of the photographs that it was trained on"
     return CaptureError("calibration-unknown", message, path=path, remedy=remedy)
