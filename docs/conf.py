@@ -17,7 +17,15 @@ project = "eigenfield"
 copyright = "the eigenfield authors"
 release = version = __version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "commands", "pages_elsewhere", "scene_page"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "commands",
+    "pages_elsewhere",
+    "scene_page",
+    "for_programs",
+]
 exclude_patterns = ["_ext", "_templates"]
 templates_path = ["_templates"]
 

@@ -101,6 +101,18 @@ def test_links_of_the_built_site_lead_somewhere(site):
 
 
 @pytest.mark.slow
+def test_programs_find_every_page_as_markdown(site):
+    listed = re.findall(r"^- \[[^]]+\]\(([^)]+)\)", (site / "llms.txt").read_text("utf-8"), re.MULTILINE)
+    assert len(listed) > 25 and all((site / page).is_file() for page in listed)
+    written = {path.relative_to(site).with_suffix("") for path in site.rglob("*.md")}
+    made_by_sphinx = {"genindex", "py-modindex", "search"}
+    shown = {path.relative_to(site).with_suffix("") for path in site.rglob("*.html") if path.stem not in made_by_sphinx}
+    assert shown - written == {Path("scene"), Path("open/index")}
+    reference = (site / "reference/python.md").read_text("utf-8")
+    assert all(f"### {name}\n" in reference for name in set(ef.__all__) - {"__version__"})
+
+
+@pytest.mark.slow
 @pytest.mark.skipif(not BROWSER, reason="needs Node.js, Chromium, and npm ci in web/")
 def test_the_site_in_chromium(site):
     done = subprocess.run(
