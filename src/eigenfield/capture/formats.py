@@ -246,7 +246,10 @@ def _not_a_calibration(path: Path) -> CaptureError:
         what = recognise(head) or kind.what
         message, remedy = f"is {what}, and no calibration", kind.remedy
         if EXTENSION.encode() in head:
-            message, remedy = "is a finished scene", "look at it with `eigenfield view SCENE`; in Python, `ef.load` opens it"
+            message, remedy = (
+                "is a finished scene",
+                "look at it with `eigenfield view SCENE`; in Python, `ef.load` opens it",
+            )
         elif what == SPLAT:
             remedy = "name the folder of the photographs that it was trained on"
     return CaptureError("calibration-unknown", message, path=path, remedy=remedy)
