@@ -120,7 +120,7 @@ def bilinear_slopes(typing_context, texels, first, line, right, below, values, a
 
 
 @intrinsic
-def add_texel(typing_context, out, at, part, values, place):
+def add_scaled_texel(typing_context, out, at, part, values, place):
     """out[at: at + 4] += part * values[place: place + 4].
 
     Args:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eigenfield.imaging.texels import add_texel, bilinear_slopes, gather_bilinear, scatter_bilinear
+from eigenfield.imaging.texels import add_scaled_texel, bilinear_slopes, gather_bilinear, scatter_bilinear
 from eigenfield.runtime.jit import kernel
 
 
@@ -280,8 +280,8 @@ def restrict(fine, row_at, row_part, column_at, column_part, coarse):
             at, part = column_at[column], column_part[column]
             rest = np.float32(1) - part
             if channels == 4:
-                add_texel(out, line_at + 4 * at, rest, first, 4 * column)
-                add_texel(out, line_at + 4 * at + 4, part, first, 4 * column)
+                add_scaled_texel(out, line_at + 4 * at, rest, first, 4 * column)
+                add_scaled_texel(out, line_at + 4 * at + 4, part, first, 4 * column)
             else:
                 for channel in range(channels):
                     value = first[channels * column + channel]
@@ -306,8 +306,8 @@ def prolong(coarse, row_at, row_part, column_at, column_part, fine):
             at, right = channels * column_at[column], column_part[column]
             left = np.float32(1) - right
             if channels == 4:
-                add_texel(out, into, left, line, at)
-                add_texel(out, into, right, line, at + 4)
+                add_scaled_texel(out, into, left, line, at)
+                add_scaled_texel(out, into, right, line, at + 4)
             else:
                 for channel in range(channels):
                     out[into + channel] += left * line[at + channel] + right * line[at + channels + channel]
