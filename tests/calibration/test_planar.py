@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from eigenfield.calibration import refine_planar, register_views, start_given, start_planar
 from eigenfield.calibration.planar.array import ARRAY_PARAMETERS, ArrayModel
+from eigenfield.calibration.planar.kernels import normal_equations
 from eigenfield.calibration.planar.start import nominal_positions
 from eigenfield.capture import GridLayout
 from eigenfield.core.errors import CaptureError
@@ -196,3 +198,43 @@ def test_a_shuffled_order_does_not_move_as_a_grid(even, names):
     with pytest.raises(CaptureError) as error:
         start_planar(pictures[order], layout(), names)
     assert error.value.code == "grid-motion"
+
+
+def test_the_sums_of_a_camera_are_those_of_its_derivatives():
+    random = np.random.default_rng(1)
+    y, x = np.mgrid[:40, :50]
+    waves = [np.sin(0.3 * x + c) + np.cos(0.2 * y - c) for c in range(4)]
+    picture = np.clip(128 + 40 * np.stack(waves, axis=-1), 0, 255).astype(np.uint8)
+    points = random.uniform((5, 5, -1), (40, 30, 1), (200, 3)).astype(np.float32)
+    colours = random.uniform(60, 200, (200, 3)).astype(np.float32)
+    matrix = np.array([[1, 0.02, 1.5, 1], [0.01, 1, -1, 2], [1e-4, 1e-4, 1e-2, 1]])
+    derivatives = random.normal(size=(5, 3, 4))
+    left, right = np.zeros((3, 3, 16)), np.zeros((3, 4))
+    total, seen = normal_equations(
+        picture, points, colours, matrix, np.full((40, 50), -9, np.float32), 0.5, 15.0, left, right
+    )
+
+    def sample(at):
+        column, row = at.astype(int).T
+        fx, fy = (at - at.astype(int)).T[:, :, None]
+        corner = [[picture[row + i, column + j, :3] for j in (0, 1)] for i in (0, 1)]
+        return (1 - fy) * ((1 - fx) * corner[0][0] + fx * corner[0][1]) + fy * (
+            (1 - fx) * corner[1][0] + fx * corner[1][1]
+        )
+
+    homogeneous = np.c_[points, np.ones(200)].astype(np.float64)
+    p = homogeneous @ matrix.T
+    moved = np.einsum("kij,nj->nki", derivatives, homogeneous)
+    at = p[:, :2] / p[:, 2:]
+    slopes = (moved[..., :2] - at[:, None] * moved[..., 2:]) / p[:, None, 2:]
+    gradient = [sample(at + step) - sample(at - step) for step in (np.array([0.5, 0]), np.array([0, 0.5]))]
+    rows = np.einsum("anc,nka->nck", np.array(gradient), slopes)
+    error = colours - sample(at)
+    weights = 1 / (1 + (error / 15) ** 2)
+    assert seen == 200
+    assert total == pytest.approx((error**2).sum(), rel=1e-4)
+    hessian = np.einsum("pik,ijkl,qjl->pq", derivatives, left.reshape(3, 3, 4, 4), derivatives)
+    assert_allclose(hessian, np.einsum("nc,nck,ncl->kl", weights, rows, rows), rtol=1e-3)
+    assert_allclose(
+        np.einsum("pik,ik->p", derivatives, right), np.einsum("nc,nc,nck->k", weights, error, rows), rtol=1e-3
+    )

@@ -13,6 +13,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
+from threadpoolctl import threadpool_limits
 
 from eigenfield.calibration.planar.tracks import find_features, mutual_matches
 from eigenfield.capture import Capture
@@ -97,7 +98,8 @@ def measure_neighbours(capture: Capture, sound: Sequence[int], progress: Progres
         a, b = pair
         return _measure(pair, looks[a], looks[b], capture.sizes[a], capture.sizes[b])
 
-    return [found for found in parallel_map(measure, chosen) if found is not None]
+    with threadpool_limits(1, "blas"):  # the threads are those of parallel_map
+        return [found for found in parallel_map(measure, chosen) if found is not None]
 
 
 def neighbours_of(capture: Capture, sound: Sequence[int]) -> list[tuple[int, int]]:

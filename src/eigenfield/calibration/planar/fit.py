@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibration.planar.array import ARRAY_PARAMETERS, ArrayModel
+from eigenfield.calibration.planar.array import ArrayModel
 from eigenfield.calibration.planar.kernels import normal_equations
 from eigenfield.runtime.parallel import parallel_map
 from eigenfield.stereo.reference_view import ReferenceView
@@ -90,15 +90,17 @@ def gauss_newton_step(
     prior = 1 / model.sigma[:count] ** 2
 
     def step(k: int) -> tuple[NDArray[np.float64], float]:
-        left, right = np.zeros((ARRAY_PARAMETERS, ARRAY_PARAMETERS)), np.zeros(ARRAY_PARAMETERS)
+        left, right = np.zeros((3, 3, 16)), np.zeros((3, 4))
         total, seen = normal_equations(
-            channels[k], target.points, target.colours, matrices[k], derivatives[k], target.buffers[k],
-            target.bias, tau, left, right,
-        )  # fmt: skip
+            channels[k], target.points, target.colours, matrices[k], target.buffers[k], target.bias, tau, left, right
+        )
+        chain = derivatives[k, :count]  # of the matrix by each parameter
+        hessian = np.einsum("pik,ijkl,qjl->pq", chain, left.reshape(3, 3, 4, 4), chain, optimize=True)
+        gradient = np.einsum("pik,ik->p", chain, right)
         moved = parameters[k].copy()
         moved[:count] += np.linalg.solve(
-            left[:count, :count] / FIT_CORRELATED_RESIDUALS + np.diag(prior),
-            right[:count] / FIT_CORRELATED_RESIDUALS - moved[:count] * prior,
+            hessian / FIT_CORRELATED_RESIDUALS + np.diag(prior),
+            gradient / FIT_CORRELATED_RESIDUALS - moved[:count] * prior,
         )
         return moved, (total / (3 * seen)) ** 0.5 if seen else np.nan
 

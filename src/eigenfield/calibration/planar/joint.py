@@ -136,21 +136,24 @@ class _JointRefinement:
         return self.model.matrices(self.reference, views, self.parameters[views])
 
     def update_texture(
-        self, views: NDArray[np.int64], pictures: NDArray[np.uint32]
+        self, views: NDArray[np.int64], pictures: NDArray[np.uint32], buffers: NDArray[np.float32] | None = None
     ) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
-        """Visibility and mean texture over `views`, from the present cameras and depth."""
+        """Visibility and mean texture over `views`, from the present cameras and depth; or with a given visibility."""
         matrices = self.matrices(views)
         height, width = pictures.shape[1:3]
         if self._buffers is None or len(self._buffers) != len(views):
             self._buffers = None
             self._buffers = np.zeros((len(views), height, width), np.float32)
-        buffers = depth_buffers(matrices, self.d, (height, width), out=self._buffers)
+        if buffers is None:
+            buffers = depth_buffers(matrices, self.d, (height, width), out=self._buffers)
         self.texture, self.count = mean_texture(pictures, matrices, self.d, buffers, self.bias)
         return matrices, buffers
 
-    def make_target(self, views: NDArray[np.int64], pictures: NDArray[np.uint32]) -> PhotometricTarget:
+    def make_target(
+        self, views: NDArray[np.int64], pictures: NDArray[np.uint32], buffers: NDArray[np.float32] | None = None
+    ) -> PhotometricTarget:
         """What the cameras of `views` are fitted to: the mean texture over them."""
-        _, buffers = self.update_texture(views, pictures)
+        _, buffers = self.update_texture(views, pictures, buffers)
         points = select_textured_points(self.d, self.texture, self.count, len(views))
         return PhotometricTarget(self.reference, pictures, buffers, *points, self.bias)
 
@@ -185,8 +188,10 @@ class _JointRefinement:
     ) -> None:
         """Gauss-Newton of the first `count` parameters of each camera against the mean texture."""
         shown = self.subset(views, self.pictures if pictures is None else pictures)
+        buffers: NDArray[np.float32] | None = None
         for _ in range(rounds):
-            target = self.make_target(views, shown)
+            target = self.make_target(views, shown, buffers)
+            buffers = target.buffers  # cameras move by less than visibility is exact
             moved, self.error[views] = gauss_newton_step(self.model, views, self.parameters[views], target, count, tau)
             keep = self.parameters[self.centre].copy()
             self.parameters[views] = moved

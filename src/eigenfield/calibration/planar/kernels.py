@@ -22,37 +22,38 @@ def _bilinear_rgb(picture, x, y):  # type: ignore[no-untyped-def]
 
 
 @kernel(fastmath=True)
-def normal_equations(picture, points, colours, matrix, derivatives, buffer, bias, tau, left, right):  # type: ignore[no-untyped-def]
-    """Gauss-Newton sums of one camera over points with known colours.
+def normal_equations(picture, points, colours, matrix, buffer, bias, tau, left, right):  # type: ignore[no-untyped-def]
+    """Gauss-Newton sums of one camera's matrix over points with known colours.
 
     With e = T - I(pi(p)) in each channel, J = grad I dpi/dtheta and Cauchy weights w = 1 / (1 + e^2 / tau^2):
-    left = sum w J J^T, right = sum w J e. A point counts unless the depth buffer is nearer by more than `bias`.
+    sum w J J^T and sum w J e. A point counts unless the depth buffer is nearer by more than `bias`.
+
+    Theta are the twelve entries of the matrix. By them J is the product of h = (gx, gy, -(gx u + gy v)) and
+    X = (x, y, d, 1) / z, so that J J^T is that of h h^T (summed over the channels) and X X^T. The sums by other
+    parameters follow from these by the chain rule.
 
     Args:
         picture: (H, W, 4) uint8.
         points: (k, 3) x, y, d.
         colours: (k, 3) T, grey levels.
         matrix: (3, 4) of the camera.
-        derivatives: (10, 3, 4) of the matrix by each parameter.
         buffer: (H, W) depth buffer.
         bias: Labels.
         tau: Grey levels.
-        left: (10, 10), added to.
-        right: (10,), added to.
+        left: (3, 3, 16), added to: entry (i, j, 4 k + l) belongs to matrix entries (i, k) and (j, l).
+        right: (3, 4), added to.
 
     Returns:
         The sum of e^2 over channels, and the number of points.
     """
     height, width = picture.shape[0], picture.shape[1]
-    count = derivatives.shape[0]
-    jx = np.zeros(count, np.float32)
-    jy = np.zeros(count, np.float32)
-    row = np.zeros(count, np.float32)
+    X, square = np.zeros(4), np.zeros(16)
+    hh, he = np.zeros(9), np.zeros(3)
     total = 0.0
     seen = 0
     half = np.float32(0.5)
-    for k in range(points.shape[0]):
-        x, y, d = points[k, 0], points[k, 1], points[k, 2]
+    for n in range(points.shape[0]):
+        x, y, d = points[n, 0], points[n, 1], points[n, 2]
         z = matrix[2, 0] * x + matrix[2, 1] * y + matrix[2, 2] * d + matrix[2, 3]
         u = (matrix[0, 0] * x + matrix[0, 1] * y + matrix[0, 2] * d + matrix[0, 3]) / z
         v = (matrix[1, 0] * x + matrix[1, 1] * y + matrix[1, 2] * d + matrix[1, 3]) / z
@@ -63,27 +64,36 @@ def normal_equations(picture, points, colours, matrix, derivatives, buffer, bias
         here = _bilinear_rgb(picture, u, v)
         east, west = _bilinear_rgb(picture, u + half, v), _bilinear_rgb(picture, u - half, v)
         south, north = _bilinear_rgb(picture, u, v + half), _bilinear_rgb(picture, u, v - half)
-        for p in range(count):
-            m = derivatives[p]
-            dz = m[2, 0] * x + m[2, 1] * y + m[2, 2] * d + m[2, 3]
-            jx[p] = (m[0, 0] * x + m[0, 1] * y + m[0, 2] * d + m[0, 3] - u * dz) / z
-            jy[p] = (m[1, 0] * x + m[1, 1] * y + m[1, 2] * d + m[1, 3] - v * dz) / z
         seen += 1
+        xx = xy = yy = xe = ye = 0.0
         for c in range(3):
-            e = colours[k, c] - here[c]
+            e = colours[n, c] - here[c]
             gx, gy = east[c] - west[c], south[c] - north[c]
             w = 1 / (1 + e * e / (tau * tau))
             total += e * e
-            for p in range(count):
-                row[p] = gx * jx[p] + gy * jy[p]
-            for p in range(count):
-                weighted = w * row[p]
-                right[p] += weighted * e
-                for q in range(p, count):
-                    left[p, q] += weighted * row[q]
-    for p in range(count):
-        for q in range(p):
-            left[p, q] = left[q, p]
+            xx += w * gx * gx
+            xy += w * gx * gy
+            yy += w * gy * gy
+            xe += w * gx * e
+            ye += w * gy * e
+        # the third entry of h is -(u gx + v gy)
+        xz, yz = -(u * xx + v * xy), -(u * xy + v * yy)
+        hh[0], hh[1], hh[2] = xx, xy, xz
+        hh[4], hh[5], hh[8] = yy, yz, -(u * xz + v * yz)
+        he[0], he[1], he[2] = xe, ye, -(u * xe + v * ye)
+        X[0], X[1], X[2], X[3] = x / z, y / z, d / z, 1 / z
+        for k in range(4):
+            for m in range(4):
+                square[4 * k + m] = X[k] * X[m]
+        for i in range(3):
+            for k in range(4):
+                right[i, k] += he[i] * X[k]
+            for j in range(i, 3):
+                for k in range(16):
+                    left[i, j, k] += hh[3 * i + j] * square[k]
+    for i in range(3):
+        for j in range(i):
+            left[i, j] = left[j, i]
     return total, seen
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from eigenfield.runtime.parallel import parallel_map
 
@@ -51,7 +52,8 @@ def find_tracks(pictures: Sequence[NDArray[np.uint8]], centre: int) -> Tracks:
                 here, there = mutual_matches(descriptors, theirs)
                 found[index, here] = others[there]
 
-        parallel_map(match, range(len(pictures)))
+        with threadpool_limits(1, "blas"):  # the threads are those of parallel_map
+            parallel_map(match, range(len(pictures)))
         found[centre] = points
     return Tracks(points, found)
 
@@ -83,10 +85,12 @@ def mutual_matches(a: NDArray[np.float32], b: NDArray[np.float32]) -> tuple[NDAr
         a: (n, 128) descriptors.
         b: (m, 128) of the other photograph, at least two.
     """
-    matcher = cv2.BFMatcher(cv2.NORM_L2)
-    forth = np.array([[m[0].trainIdx, m[0].distance, m[1].distance] for m in matcher.knnMatch(a, b, k=2)])
-    back = np.array([m[0].trainIdx for m in matcher.knnMatch(b, a, k=1)])
     here = np.arange(len(a))
-    there = forth[:, 0].astype(np.int64)
-    good = (back[there] == here) & (forth[:, 1] < TRACK_MAX_DISTANCE_RATIO * forth[:, 2])
+    likeness = a @ b.T  # of descriptors of norm 1, whose distance is sqrt(2 - 2 likeness)
+    there = likeness.argmax(axis=1)
+    back = likeness.argmax(axis=0)
+    best = likeness[here, there]
+    likeness[here, there] = -1
+    first, second = (np.sqrt(np.maximum(2 - 2 * each, 0)) for each in (best, likeness.max(axis=1)))
+    good = (back[there] == here) & (first < TRACK_MAX_DISTANCE_RATIO * second)
     return here[good], there[good]
