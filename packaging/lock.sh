@@ -10,3 +10,5 @@ lock run
 lock test --extra test --extra benchmark --extra report --extra docs
 lock lint --extra lint
 lock release --extra release
+echo "bpy==5.0.1" | uv pip compile --quiet --python-version 3.11 --generate-hashes --no-header --no-annotate - \
+  --output-file packaging/requirements-bpy.txt  # for the Blender add-on's tests

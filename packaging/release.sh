@@ -30,6 +30,9 @@ ls "dist/python/eigenfield-$version.tar.gz" "dist/python/eigenfield-$version-py3
 echo "== used elsewhere, with the bill of materials of all that comes along"
 "$python" packaging/try_wheel.py dist/python dist/beside/eigenfield.cdx.json
 
+echo "== Blender add-on"
+"$python" packaging/addon.py "dist/beside/eigenfield-blender-$version.zip" "$version"
+
 echo "== viewer and plug-in, twice"
 (cd web && npm ci --no-audit --no-fund --silent)
 for place in npm again; do
@@ -38,6 +41,7 @@ for place in npm again; do
 done
 cmp dist/npm/*.tgz dist/again/*.tgz
 (cd dist/npm && sha256sum -- *) >> dist/beside/SHA256SUMS
+(cd dist/beside && sha256sum -- *.zip >> SHA256SUMS)
 
 rm -rf dist/again dist/*.log
 find dist -type f

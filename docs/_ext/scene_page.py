@@ -1,10 +1,11 @@
-"""Two pages that eigenfield makes: the scene of the first one, and the page that opens files, in open/.
+"""What is made beside the pages: the scene of the first one, the page that opens files, in open/, the add-on's zip.
 
 `docs/scene.glb` is what `eigenfield demo` leaves in demo/scene.glb.
 """
 
 from __future__ import annotations
 
+import runpy
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,11 +16,12 @@ if TYPE_CHECKING:
 
 
 def write_pages(app: Sphinx, problem: Exception | None) -> None:
-    """Write scene.html with its poster scene.jpg, and open/ with the same scene to choose."""
+    """Write scene.html with its poster scene.jpg, open/ with the same scene to choose, and the add-on's zip."""
     if problem is None and app.builder.format == "html":
         scene, out = Path(app.srcdir) / "scene.glb", Path(app.outdir)
         ef.export(scene, out / "scene.html", plain=True, title="A light field", overwrite=True, progress=None)
         ef.export(scene, out / "open", kind="app", overwrite=True, progress=None)
+        runpy.run_path(str(Path(app.srcdir).parent / "packaging/addon.py"))["pack"](out / "eigenfield-blender.zip")
 
 
 def setup(app: Sphinx) -> dict[str, bool]:

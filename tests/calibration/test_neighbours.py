@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from eigenfield.calibration import measure_neighbours
-from eigenfield.calibration.neighbours import neighbours_of
+from eigenfield.calibration.neighbours import epipolar_matches, neighbours_of
 from eigenfield.capture import open_any
 from eigenfield.imaging.png import png_bytes
 from support.captures import write_capture
@@ -60,3 +60,8 @@ def test_what_shows_nothing_in_common_is_no_pair(tmp_path):
     for number in range(3):
         (tmp_path / f"{number}.png").write_bytes(png_bytes(np.full((64, 64, 3), 0.2 + 0.1 * number, np.float32)))
     assert measure_neighbours(open_any(tmp_path, strict=False), range(3)) == []
+
+
+def test_points_on_which_opencv_fails_are_matched_all_the_same():
+    matches = np.loadtxt(Path(__file__).parents[1] / "data/matches.csv", delimiter=",")
+    assert epipolar_matches(matches[:, :2], matches[:, 2:], 2.0).sum() > 0.9 * len(matches)

@@ -23,6 +23,7 @@ from eigenfield.gltf.axes import capture_to_gltf
 from eigenfield.gltf.container import parse_glb
 from eigenfield.proxy import read_mesh
 from eigenfield.rendering import RenderJob, draw_texture, renderer_of, view_weights
+from eigenfield.rendering.weights import encoded_places
 from eigenfield.viewer import exports
 from eigenfield.viewer.exports.maps import camera_maps, mean_map
 from eigenfield.viewer.exports.quilt import quilt_views
@@ -116,6 +117,14 @@ def test_eigen_textures_beside_the_obj_make_every_camera_s_map(scene, tmp_path):
             codes = np.round(pixels(tmp_path / "it" / entry["file"]) * 255)
             texture += weight * (codes - entry["zero"]) * entry["scale"]
         np.testing.assert_allclose(texture, camera_maps(scene)(row, None), atol=1e-5)
+    places = np.array(listing["places"])
+    np.testing.assert_allclose(places, encoded_places(scene))
+    assert listing["triangles"] == scene.rig.triangles.tolist() and listing["sheets"] == []
+    plane, turn = listing["viewPlane"], np.array(listing["toCapture"])
+    centres = np.array([scene.rig.cameras[i].centre for i in scene.rig.encoded]) @ turn
+    np.testing.assert_allclose((centres[:, :2] - plane["origin"][:2]) / plane["extent"], places, atol=1e-9)
+    reference = scene.rig.cameras[scene.rig.reference]
+    np.testing.assert_allclose(turn @ listing["camera"]["translation"], reference.centre, atol=1e-9)
     exports.write_obj_folder(scene, tmp_path / "two", textures=2)
     assert len(list((tmp_path / "two").glob("eigen_*.png"))) == 2
 

@@ -150,8 +150,7 @@ def _measure(
     if len(here) < tuning.min_matches:
         return None
     reach = tuning.epipolar_pixels * max(1.0, max(size) / tuning.max_side_pixels)
-    good = cv2.findFundamentalMat(a.points[here], b.points[there], cv2.USAC_MAGSAC, reach, 0.999)[1]
-    kept = np.zeros(len(here), np.bool_) if good is None else good.reshape(-1) > 0
+    kept = epipolar_matches(a.points[here], b.points[there], reach)
     here, there = here[kept], there[kept]
     if len(here) < tuning.min_matches:
         return None
@@ -167,6 +166,21 @@ def _measure(
         _overlap(similarity, size, other),
         float(np.median(np.log2(ratio))),
     )
+
+
+def epipolar_matches(source: NDArray[np.floating], target: NDArray[np.floating], reach: float) -> NDArray[np.bool_]:
+    """(n,) which pairs of points agree with one fundamental matrix.
+
+    Args:
+        source: (n, 2) pixels.
+        target: (n, 2) pixels.
+        reach: Pixels by which a point may be off its epipolar line.
+    """
+    try:
+        good = cv2.findFundamentalMat(source, target, cv2.USAC_MAGSAC, reach, 0.999)[1]
+    except cv2.error:  # OpenCV 5 fails an assertion of its own on a sample that gives no matrix
+        good = cv2.findFundamentalMat(source, target, cv2.FM_RANSAC, reach, 0.999)[1]
+    return np.zeros(len(source), np.bool_) if good is None else np.asarray(good).reshape(-1) > 0
 
 
 def _moved(points: NDArray[np.float64], similarity: NDArray[np.float64]) -> NDArray[np.float64]:

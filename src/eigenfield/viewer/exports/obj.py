@@ -18,8 +18,10 @@ from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
 from eigenfield.core.version import __version__
 from eigenfield.gltf.axes import capture_to_gltf
+from eigenfield.gltf.write_geometry import NODE_DIGITS, write_nodes
 from eigenfield.imaging.png import png_bytes
 from eigenfield.rendering.checks import check_textures
+from eigenfield.rendering.weights import encoded_places
 from eigenfield.runtime.files import atomic_files, refuse_existing
 from eigenfield.viewer.exports.folder import atomic_folder, write_listing
 from eigenfield.viewer.exports.maps import alpha_added, eigen_maps, mean_map
@@ -84,7 +86,8 @@ def write_obj_folder(
 ) -> None:
     """Write mesh.obj, mesh.mtl, mean.png and eigen_00.png, eigen_01.png, ...
 
-    `eigenfield.json` has the scale and zero that make values of their codes, and the weights of every encoded camera.
+    `eigenfield.json` has the scale and zero that make values of their codes, the weights of every encoded camera, and
+    where on the view plane these stand, with the triangles between them.
     Where planes have sizes and channels of their own, each eigen texture is what it adds to R, G and B at the atlas's
     size.
 
@@ -128,8 +131,28 @@ def write_obj_folder(
                     scene.rig.names[camera]: _numbers(np.array([of[row] for of in weights]))
                     for row, camera in zip(scene.rows().tolist(), scene.rig.encoded, strict=True)
                 },
+                **_places(scene),
             },
         )
+
+
+def _places(scene: Scene) -> dict[str, Any]:
+    """What a program needs to draw between the cameras, in the axes of the OBJ: the view plane, where the encoded
+    cameras stand on it, the triangles between them, the reference camera, and the triangles of each sheet."""
+    plane, sheets = scene.rig.view_plane, scene.proxy.sheets
+    perspective, (_, camera) = write_nodes(scene, NODE_DIGITS)
+    turn = capture_to_gltf(plane)
+    return {
+        "viewPlane": {"origin": (turn @ (plane.origin + scene.origin)).tolist(), "extent": plane.extent.tolist()},
+        "places": encoded_places(scene).tolist(),
+        "triangles": scene.rig.triangles.tolist(),
+        "camera": {
+            **perspective,
+            "translation": (turn @ (scene.rig.cameras[scene.rig.reference].centre + scene.origin)).tolist(),
+            "rotation": camera.get("rotation", [0, 0, 0, 1]),
+        },
+        "sheets": [] if sheets is None else list(sheets.faces),
+    }
 
 
 def _codes(scene: Scene, count: int) -> Iterator[CodedPicture]:

@@ -1,0 +1,122 @@
+"""The Blender add-on: its zip, and with bpy the whole way: pictures of an array, encoded, drawn again in Blender."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tomllib
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import eigenfield as ef
+from eigenfield.capture import open_any
+from eigenfield.proxy import read_mesh
+from eigenfield.rendering import viewpoint
+from eigenfield.viewer.exports.maps import view_map
+
+ROOT = Path(__file__).parents[1]
+BPY = Path(os.environ.get("EIGENFIELD_BPY") or ROOT / "build/bpy/bin/python")
+
+
+def pack(path: Path, *version: str) -> Path:
+    subprocess.run([sys.executable, ROOT / "packaging/addon.py", path, *version], check=True)
+    return path
+
+
+def test_the_zip_has_equal_bytes_and_the_version_of_a_release(tmp_path):
+    first = pack(tmp_path / "a.zip")
+    assert first.read_bytes() == pack(tmp_path / "b.zip").read_bytes()
+    names = {"LICENSE", "__init__.py", "array.py", "blender_manifest.toml", "imported.py"}
+    with zipfile.ZipFile(pack(tmp_path / "c.zip", "1.2.3")) as archive:
+        assert set(archive.namelist()) == names
+        manifest = tomllib.loads(archive.read("blender_manifest.toml").decode())
+    assert (manifest["id"], manifest["version"], manifest["license"]) == ("eigenfield", "1.2.3", ["SPDX:MIT"])
+
+
+def blender(script: str, folder: Path, *more: object) -> None:
+    """Run a script in Blender's Python, with the zip and settings of its own."""
+    addon = pack(folder / "addon.zip")
+    command = [BPY, ROOT / "tests/support" / script, addon, folder, *more]
+    environment = {**os.environ, "BLENDER_USER_RESOURCES": str(folder / "user")}
+    done = subprocess.run(
+        [str(part) for part in command], env=environment, capture_output=True, text=True, cwd=folder, timeout=300
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory) -> Path:
+    if not any(BPY.parents[1].glob("lib/python*/site-packages/bpy")):
+        pytest.skip("no bpy: `make bpy` installs it in build/bpy, or EIGENFIELD_BPY names a Python that has it")
+    folder = tmp_path_factory.mktemp("blender")
+    blender("blender_render.py", folder)
+    return folder
+
+
+@pytest.mark.slow
+def test_blender_itself_finds_the_manifest_valid(tmp_path, folder):
+    (checker,) = BPY.parents[1].glob("lib/python*/site-packages/bpy/*/scripts/addons_core/bl_pkg/cli/blender_ext.py")
+    subprocess.run([BPY, checker, "validate", pack(tmp_path / "a.zip")], check=True)
+
+
+@pytest.mark.slow
+def test_cameras_and_mesh_are_those_of_the_pictures(folder):
+    capture = open_any(folder)
+    field = capture.light_field
+    assert [Path(name).stem for name in field.names] == [
+        f"view_{row:02}_{column:02}" for row in (0, 1) for column in range(3)
+    ]
+    centres = np.array([camera.centre for camera in field.cameras])
+    steps = np.diff(centres.reshape(2, 3, 3), axis=1)
+    np.testing.assert_allclose(np.linalg.norm(steps, axis=2), 0.3, rtol=1e-5)
+    assert centres[0, 2] > centres[3, 2]  # the first row is the upper one
+    middle = np.array((0.2, -6, 1.4)) + 6 * np.mean([camera.R[2] for camera in field.cameras], axis=0)
+    for camera in field.cameras:  # the zero plane stays in the middle of all pictures, which are 72 x 96
+        assert (camera.width, camera.height) == (72, 96)
+        x, y, z = camera.K @ (camera.R @ (middle - camera.centre))
+        np.testing.assert_allclose((x / z, y / z), (36, 48), atol=0.01)
+    mesh = read_mesh(folder / "proxy.obj")
+    assert len(mesh.faces) == 320 * 3 * 2 + 12 + 2  # the ball as finely as in a render, and nothing that is hidden
+    assert "is no perspective camera" in (folder / "refused.txt").read_text()
+
+
+@pytest.mark.slow
+def test_each_frame_of_an_animation_is_a_capture(folder):
+    frames = [folder / "film" / f"frame_{number:04}" for number in (3, 4)]
+    assert [len(ef.open(frame)) for frame in frames] == [3, 3]
+    first, second = (read_mesh(frame / "proxy.obj").vertices for frame in frames)
+    moved = np.ptp(np.concatenate([first - second]), axis=0)
+    np.testing.assert_allclose(moved, (1, 0, 0), atol=1e-5)
+
+
+@pytest.mark.slow
+def test_what_is_encoded_is_drawn_in_blender_as_it_was_rendered(folder):
+    scene = ef.encode(folder, proxy=folder / "proxy.obj", textures=2)
+    ef.save(scene, folder / "scene.glb")
+    (folder / "broken.glb").write_bytes(b"glTF")
+    program = folder / "program"
+    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m eigenfield "$@"\n')
+    program.chmod(0o755)
+    blender("blender_import.py", folder, program)
+    scene = ef.load(folder / "scene.glb")
+    listing = json.loads((folder / "scene.textures/eigenfield.json").read_text())
+    for name, eye in (("texture", (0.1, 0.05)), ("corner", (0.3, -0.15)), ("reopened", (0.3, -0.15))):
+        at = np.array(eye) / listing["viewPlane"]["extent"]
+        wanted = view_map(scene, viewpoint(scene, at=(float(at[0]), float(at[1])))[1]).clip(0, 1)
+        off = np.abs(np.load(folder / f"{name}.npy") - wanted)
+        assert np.quantile(off, 0.999) < 4 / 255  # means and textures of 8 bits; a mean beyond 1 is cut
+    assert np.abs(np.load(folder / "texture.npy") - np.load(folder / "corner.npy")).max() > 12 / 255
+    reference = scene.rig.cameras[scene.rig.reference]
+    matrix = np.load(folder / "camera.npy")
+    np.testing.assert_allclose(matrix[:3, 3], reference.centre, atol=1e-4)
+    rendered, drawn = (
+        np.asarray(Image.open(folder / name).convert("RGB"), float) / 255 for name in ("between.png", "drawn.png")
+    )
+    assert -10 * np.log10(np.square(rendered - drawn).mean()) > 30
+    assert "broken.glb" in (folder / "refused.txt").read_text()
