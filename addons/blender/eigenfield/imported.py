@@ -19,6 +19,7 @@ from mathutils import Matrix, Quaternion
 from .array import RefusalError
 
 LISTING = "eigenfield.json"
+CHUNK = 1 << 14  # texels that stay in a processor's cache while textures are summed
 MARK = "eigenfield_folder"  # of an imported mesh: where its textures are
 UPRIGHT = Matrix.Rotation(np.pi / 2, 4, "X")  # from OBJ's axes, y up, to Blender's
 fields = {}  # by folder
@@ -50,11 +51,17 @@ class Field:
     def texture(self, place):
         """(H W, 4) float32, from 0 to 1."""
         among, parts = between(place, self.places, self.triangles)
+        steps, away = [], np.zeros(1, np.float32)
+        for weight, entry in zip(parts @ self.weights[among], self.listing["textures"], strict=True):
+            steps.append((weight * np.array(entry["scale"])).astype(np.float32))
+            away = away + steps[-1] * np.array(entry["zero"], np.float32)
         texture = self.mean.copy()
-        row = parts @ self.weights[among]
-        for codes, weight, entry in zip(self.codes, row, self.listing["textures"], strict=True):
-            step = (weight * np.array(entry["scale"])).astype(np.float32)
-            texture[:, :3] += codes * step - step * np.array(entry["zero"], np.float32)
+        for first in range(0, len(texture), CHUNK):
+            chunk = slice(first, first + CHUNK)
+            colours = texture[chunk, :3] - away
+            for codes, step in zip(self.codes, steps, strict=True):
+                colours += codes[chunk] * step
+            texture[chunk, :3] = colours
         return texture.clip(0, 1, out=texture)
 
 
@@ -215,6 +222,19 @@ def field_of(folder):
     return fields[folder]
 
 
+@persistent
+def follow_soon(scene, depsgraph):
+    """Where there is a window, a few times a second at most, so that the camera moves smoothly."""
+    if bpy.app.background:
+        follow(scene, depsgraph)
+    elif not bpy.app.timers.is_registered(settle):
+        bpy.app.timers.register(settle, first_interval=0.2)
+
+
+def settle():
+    follow(bpy.context.scene)
+
+
 def textured(objects):
     """The imported meshes among objects, each with its texture."""
     for mesh in objects:
@@ -290,7 +310,7 @@ HANDLERS = (
     ("load_post", after_load),
     ("undo_post", after_undo),
     ("save_pre", before_save),
-    ("depsgraph_update_post", follow),
+    ("depsgraph_update_post", follow_soon),
     ("frame_change_post", follow),
     ("render_pre", follow),
 )
@@ -305,6 +325,8 @@ def register():
 
 
 def unregister():
+    if bpy.app.timers.is_registered(settle):
+        bpy.app.timers.unregister(settle)
     for event, handler in HANDLERS:
         getattr(bpy.app.handlers, event).remove(handler)
     bpy.types.TOPBAR_MT_file_import.remove(add_to_menu)
