@@ -1,4 +1,4 @@
-"""Every block of the guide runs as it stands, page by page, or says why not; codes that it explains exist."""
+"""Every block of the documentation runs as it stands, page by page, or says why not; codes that it explains exist."""
 
 from __future__ import annotations
 
@@ -11,14 +11,22 @@ import sys
 from pathlib import Path
 from typing import NamedTuple
 
+import cv2
 import pytest
+import trimesh
+from markdown_it import MarkdownIt
 
+import eigenfield as ef
+from eigenfield.calibration.charts.board import charuco
+from support import charts
 from support.captures import write_array, write_capture
+from support.motion import K, photographed
 from test_readme import look
 
 ROOT = Path(__file__).parents[1]
-PAGES = [ROOT / "docs/index.md", *sorted((ROOT / "docs/guide").glob("*.md"))]
-SHOWN = {"{toctree}"}  # languages of blocks that nobody types in
+PAGES = [*sorted((ROOT / "docs").rglob("*.md")), ROOT / "web/eigenfield-three/README.md"]
+SHOWN = {"{toctree}", "{eval-rst}", "html", "text"}  # languages of blocks that nobody types in
+ELSEWHERE = {"usage"}  # run by test_readme.py
 
 
 class Block(NamedTuple):
@@ -51,22 +59,51 @@ def run_shell(text: str, place: Path) -> None:
 
 @pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
 def test_every_block_is_run_or_says_why_not(path):
-    assert path.read_text("utf-8").count("\n```") == 2 * len(blocks(path))  # none is written in another way
+    text = path.read_text("utf-8")
+    assert text.count("\n```") == 2 * len(blocks(path))  # none is written in another way
+    assert not [token.content for token in MarkdownIt().parse(text) if token.type == "code_block"]  # by four spaces
     assert {block.language for block in run_of(path)} <= {"sh", "python", "json"}
     for block in run_of(path):
         if block.language == "json":
             json.loads(block.text)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("path", [path for path in PAGES if run_of(path)], ids=lambda path: path.stem)
-def test_the_blocks_run(path, tmp_path):
-    write_capture(tmp_path / "capture")
-    write_array(tmp_path / "photos")
+def prepare(page: str, place: Path) -> None:
+    """What the commands of a page find there."""
+    if page == "calibration":
+        photographed(place / "photos")
+        cameras = charts.rig(2, spacing=150, distance=500)
+        charts.write_charts(
+            place / "charts", charts.CHECKER, cameras, charts.board_poses(charts.CHECKER, 8, seed=2, spread=50)
+        )
+        board = charuco(4, 5, 54, 40.5, "DICT_4X4_1000", "mm")
+        charts.write_videos(
+            place / "videos", board, cameras, charts.board_poses(board, 8, seed=4, spread=30), inverted=True
+        )
+        (place / "videos/charuco.toml").write_text(charts.TOML)
+        lens = cv2.FileStorage(str(place / "lens.yml"), cv2.FILE_STORAGE_WRITE)
+        lens.write("camera_matrix", K)
+        lens.release()
+        return
+    capture = write_capture(place / "capture")
+    trimesh.load(capture / "proxy.ply", process=False).export(capture / "proxy.obj")
+    write_array(place / "photos")
     for name in ("one", "two"):
-        write_capture(tmp_path / "captures" / name)
-    if "encode" not in path.read_text("utf-8"):  # a page about a scene that is there
-        shutil.copy(ROOT / "docs/scene.glb", tmp_path)
+        write_capture(place / "captures" / name)
+    if page == "viewer":
+        shutil.copytree(capture, place / "photographs")
+        ef.save(ef.encode(capture, proxy=capture / "proxy.ply", fit="none"), place / "scene.glb")
+    elif page in ("exports", "publish", "measure-and-compare"):
+        for name in ("scene", "tarot", "fern"):
+            shutil.copy(ROOT / "docs/scene.glb", place / f"{name}.glb")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "path", [path for path in PAGES if run_of(path) and path.stem not in ELSEWHERE], ids=lambda path: path.stem
+)
+def test_the_blocks_run(path, tmp_path):
+    prepare(path.stem, tmp_path)
     for block in run_of(path):
         if block.language == "sh":
             run_shell(block.text, tmp_path)

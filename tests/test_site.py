@@ -17,11 +17,11 @@ import pytest
 
 import eigenfield as ef
 from eigenfield.cli import VERBS, group
+from support.browsers import CHROMIUM, OTHERS, lacks
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 WEB = ROOT / "web"
-CHROMIUM = os.environ.get("EIGENFIELD_CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
 SPHINX = all(importlib.util.find_spec(name) for name in ("sphinx", "furo", "myst_parser"))
 BROWSER = shutil.which("node") and CHROMIUM and (WEB / "node_modules" / "axe-core").is_dir()
 
@@ -114,10 +114,15 @@ def test_programs_find_every_page_as_markdown(site):
 
 @pytest.mark.slow
 @pytest.mark.skipif(not BROWSER, reason="needs Node.js, Chromium, and npm ci in web/")
-def test_the_site_in_chromium(site):
+@pytest.mark.parametrize("engine", ["chromium", *OTHERS])
+def test_the_site_in_a_browser(site, engine):
+    if engine in OTHERS and (remedy := lacks(engine)):
+        pytest.skip(remedy)
+    file = "tests/site.mjs" if engine == "chromium" else "tests/site-engine.mjs"
+    more = {"EIGENFIELD_SITE": str(site), "EIGENFIELD_CHROMIUM": str(CHROMIUM), "EIGENFIELD_ENGINE": engine}
     done = subprocess.run(
-        ["node", "--test", "--test-force-exit", "--test-reporter=spec", "tests/site.mjs"],
-        cwd=WEB, env=os.environ | {"EIGENFIELD_SITE": str(site), "EIGENFIELD_CHROMIUM": str(CHROMIUM)},
+        ["node", "--test", "--test-force-exit", "--test-reporter=spec", file],
+        cwd=WEB, env=os.environ | more,
         capture_output=True, text=True, timeout=600,
     )  # fmt: skip
     assert done.returncode == 0, done.stdout[-8000:] + done.stderr[-2000:]

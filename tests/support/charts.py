@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import av
 import cv2
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -113,3 +114,17 @@ def write_charts(
             path = folder / name.format(camera=names[c], number=m + 1)
             path.parent.mkdir(parents=True, exist_ok=True)
             cv2.imwrite(str(path), photograph(board, camera, pose, seed=100 * c + m, **how)[0])
+
+
+def write_videos(folder, board, cameras, poses, names=("cam_0", "cam_1"), **how):
+    """A video a camera, of one pose a frame; the first camera's is a frame shorter."""
+    folder.mkdir(exist_ok=True)
+    for c, name in enumerate(names):
+        with av.open(str(folder / f"{name}.mkv"), "w") as container:
+            stream = container.add_stream("ffv1", rate=5)
+            stream.width, stream.height = SIZE
+            stream.pix_fmt = "gray"
+            for m, pose in enumerate(poses if c else poses[:-1]):
+                grey, _ = photograph(board, cameras[c], pose, seed=m, **how)
+                container.mux(stream.encode(av.VideoFrame.from_ndarray(grey, format="gray")))
+            container.mux(stream.encode())

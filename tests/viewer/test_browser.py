@@ -11,15 +11,11 @@ from pathlib import Path
 import pytest
 
 from support import coded_scenes, composed, sheet_scenes, viewer_scenes
+from support.browsers import CHROMIUM, OTHERS, lacks
 
 WEB = Path(__file__).parents[2] / "web"
-CHROMIUM = os.environ.get("EIGENFIELD_CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
 FILES = sorted((WEB / "tests").glob("*.test.mjs"))
 PLAIN = {"structure": None, "languages": None, "coding": "vite"}  # no browser, and what of web/node_modules they need
-OTHERS = {  # engines beside Chromium: any of these programs, and the remedy
-    "firefox": (["firefox-esr", "firefox"], "needs Firefox: apt-get install firefox-esr xvfb"),
-    "webkit": (["WebKitWebDriver"], "needs WebKitGTK: apt-get install webkit2gtk-driver xvfb"),
-}
 
 
 def missing(path: Path) -> str | None:
@@ -30,8 +26,7 @@ def missing(path: Path) -> str | None:
         return "needs Node.js"
     if name not in PLAIN and CHROMIUM is None:
         return "needs Chromium: apt-get install chromium, or name one in EIGENFIELD_CHROMIUM"
-    programs, remedy = OTHERS.get(name, ([], ""))
-    if programs and not (any(map(shutil.which, programs)) and (os.environ.get("DISPLAY") or shutil.which("Xvfb"))):
+    if name in OTHERS and (remedy := lacks(name)):
         return remedy
     if package is not None and not (WEB / "node_modules" / package).is_dir():
         return f"needs {package}: npm ci in web/"
@@ -42,9 +37,9 @@ def cases(plain: bool):
     """The files that need no browser, or those that do; each is skipped where it lacks something."""
     found = []
     for path in FILES:
-        name, lacks = path.name.removesuffix(".test.mjs"), missing(path)
+        name, reason = path.name.removesuffix(".test.mjs"), missing(path)
         if (name in PLAIN) == plain:
-            found.append(pytest.param(path, id=name, marks=pytest.mark.skipif(lacks is not None, reason=str(lacks))))
+            found.append(pytest.param(path, id=name, marks=pytest.mark.skipif(reason is not None, reason=str(reason))))
     return found
 
 

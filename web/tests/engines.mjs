@@ -17,7 +17,8 @@ const PATIENCE = 60_000; // milliseconds for a browser to start
 const LIBRARIES = "/usr/lib";
 
 /**
- * Each returns { open, evaluate, close }: `open` goes to a URL, `evaluate` is Playwright's, and works on the page.
+ * Each returns { open, evaluate, press, close }: `open` goes to a URL, `evaluate` is Playwright's, and works on the page,
+ * `press` holds a key down for a moment (a character, of WebDriver's table for keys that have none).
  */
 export async function firefox() {
   const profile = await mkdtemp(join(tmpdir(), "eigenfield-firefox-"));
@@ -50,6 +51,10 @@ export async function firefox() {
       const answer = await send("script.evaluate", { expression, target: { context }, awaitPromise: true });
       if (answer.type === "exception") throw new Error(answer.exceptionDetails.text);
       return answer.result.type === "string" ? JSON.parse(answer.result.value) : undefined;
+    },
+    press: (value) => {
+      const actions = ["keyDown", "pause", "keyUp"].map((type) => (type === "pause" ? { type, duration: 300 } : { type, value }));
+      return send("input.performActions", { context, actions: [{ type: "key", id: "keys", actions }] });
     },
     close: async () => {
       socket.terminate();
@@ -86,6 +91,10 @@ export async function webkit() {
       const { value, error } = JSON.parse(await send("POST", `${session}/execute/async`, { script, args: [] }));
       if (error !== undefined) throw new Error(error);
       return value;
+    },
+    press: (value) => {
+      const actions = ["keyDown", "pause", "keyUp"].map((type) => (type === "pause" ? { type, duration: 300 } : { type, value }));
+      return send("POST", `${session}/actions`, { actions: [{ type: "key", id: "keys", actions }] });
     },
     close: async () => {
       await send("DELETE", session).catch(() => undefined);

@@ -1,17 +1,12 @@
 // The built site in Chromium: tests/test_site.py names its folder in EIGENFIELD_SITE and runs this.
 
 import assert from "node:assert/strict";
-import { readdirSync, readFileSync } from "node:fs";
-import { createRequire } from "node:module";
 import { after, before, test } from "node:test";
 import { launch, openPage, serve } from "./harness.mjs";
+import { AXE, PAGES, SITE } from "./site-pages.mjs";
 
-const SITE = process.env.EIGENFIELD_SITE;
-const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const FIRST_PICTURE_MS = 1000;
 const FIRST_PAGE_BYTES = 1_500_000;
-const PAGES = readdirSync(SITE, { recursive: true }) // decisions and indices are pages as the others are
-  .filter((path) => path.endsWith(".html") && !/^(_|scene|genindex|search|py-modindex|open)|\/0\d\d-/.test(path));
 
 let browser;
 let site;
