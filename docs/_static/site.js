@@ -12,3 +12,10 @@ document.addEventListener("DOMContentLoaded", () => {
   reach();
 });
 addEventListener("resize", reach);
+
+// A scene begins to load when its poster is on the screen: starting WebGL would keep the whole page from being drawn.
+const scene = document.querySelector(".scene iframe");
+scene?.previousElementSibling
+  .decode()
+  .catch(() => undefined)
+  .then(() => requestAnimationFrame(() => setTimeout(() => (scene.src = scene.dataset.src))));

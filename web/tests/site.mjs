@@ -54,7 +54,8 @@ test("the first page: a picture within a second, few bytes, nobody else asked, a
   page.on("request", (request) => hosts.add(new URL(request.url()).origin));
   page.on("response", (response) => (bytes += Number(response.headers()["content-length"] ?? 0)));
   await page.goto(`${site.url}/index.html`);
-  const frame = page.frames().find((one) => one.url().endsWith("/scene.html"));
+  const isScene = (one) => one.url().endsWith("/scene.html");
+  const frame = page.frames().find(isScene) ?? (await page.waitForEvent("framenavigated", isScene));
   await frame.waitForFunction(() => window.eigenfield?.state().status === "ready");
   context.diagnostic(`${bytes} bytes`);
   assert.ok(bytes > 1_000_000 && bytes < FIRST_PAGE_BYTES);
