@@ -14,12 +14,14 @@ import eigenfield as ef
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
+TITLE = "A jar, an orange and two balls"
+
 
 def write_pages(app: Sphinx, problem: Exception | None) -> None:
     """Write scene.html with its poster scene.jpg, open/ with the same scene to choose, and the add-on's zip."""
     if problem is None and app.builder.format == "html":
         scene, out = Path(app.srcdir) / "scene.glb", Path(app.outdir)
-        ef.export(scene, out / "scene.html", plain=True, title="A light field", overwrite=True, progress=None)
+        ef.export(scene, out / "scene.html", plain=True, title=TITLE, overwrite=True, progress=None)
         ef.export(scene, out / "open", kind="app", overwrite=True, progress=None)
         runpy.run_path(str(Path(app.srcdir).parent / "packaging/addon.py"))["pack"](out / "eigenfield-blender.zip")
 

@@ -196,6 +196,17 @@ def test_too_large_a_file(tmp_path, good, monkeypatch):
     assert outcome(tmp_path / "a.glb", good["png"]) == "file-size"
 
 
+@pytest.mark.slow
+def test_a_file_beyond_4_gib_is_refused_unread(tmp_path, good):
+    path = tmp_path / "a.glb"
+    path.write_bytes(good["png"])
+    with path.open("r+b") as file:
+        file.truncate((4 << 30) + 1)  # sparse
+    with pytest.raises(FormatError) as caught:
+        scene_format.load(path)
+    assert caught.value.code == "file-size"
+
+
 @pytest.mark.parametrize(
     ("limit", "value", "code"),
     [

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import shutil
 import subprocess
 import sys
 
@@ -133,3 +134,14 @@ def test_streams_stay_close_to_their_consumer():
 def test_zero_threads_are_refused():
     with pytest.raises(OptionError):
         set_threads(0)
+
+
+@pytest.mark.slow
+def test_scratch_beyond_4_gib_keeps_what_is_written_at_its_end(tmp_path):
+    if shutil.disk_usage(tmp_path).free < 8 << 30:
+        pytest.skip("needs 8 GiB of free disk")
+    rows = (5 << 30) // 4096
+    with scratch_array((rows, 1024), np.float32, tmp_path) as array:
+        array[-1], array[0] = 2.0, 1.0
+        array.flush()
+        assert array[-1].sum() == 2048 and array[0].sum() == 1024 and not array[rows // 2].any()

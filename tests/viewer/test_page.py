@@ -9,6 +9,7 @@ import json
 import re
 import weakref
 from html.parser import HTMLParser
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from hypothesis import strategies as st
 from eigenfield.core.errors import OutputError
 from eigenfield.gltf import encode_scene, load, outline, save
 from eigenfield.viewer import notebook, page, page_html, scene_html, single_file
+from eigenfield.viewer.page import page_title
 from support.http_client import write_build
 from support.scenes import tiny_scene
 
@@ -243,3 +245,16 @@ def test_an_outline_is_the_scene_without_its_planes(tmp_path):
     assert part.appearance.planes == () and part.rig.names == whole.rig.names and part.settings == whole.settings
     assert np.array_equal(part.proxy.mesh.vertices, whole.proxy.mesh.vertices)
     assert data == path.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("path", "title"),
+    [
+        ("my_page.html", "my page"),
+        ("tarot/scene.html", "tarot"),
+        ("old_fern/index.html", "old fern"),
+        ("/scene.html", "scene"),
+    ],
+)
+def test_a_page_is_called_by_what_says_something(path, title):
+    assert page_title(Path(path)) == title

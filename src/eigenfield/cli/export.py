@@ -39,7 +39,11 @@ Examples:
     help="A file or a folder; a file's ending says what is made, if --as does not.",
 )
 @click.option("--as", "kind", metavar="html|mp4|png|glb|obj|maps|quilt|colmap|app", help="What is made.")
-@click.option("--title", metavar="TEXT", help="Of the page (html, app).  [default: the output's name; eigenfield]")
+@click.option(
+    "--title",
+    metavar="TEXT",
+    help="Of the page (html, app).  [default: the output's name, of scene.html its folder's; eigenfield]",
+)
 @click.option("--metres-per-unit", type=float, metavar="M", help="Metres in one unit of the capture (html, glb).")
 @click.option(
     "--at",

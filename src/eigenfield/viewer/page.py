@@ -21,6 +21,7 @@ from eigenfield.runtime.files import refuse_existing, write_bytes
 
 STATIC_FOLDER = Path(__file__).parent / "static"  # what `npm run build` in web/ leaves here
 TITLE_ELEMENT = "<title>eigenfield</title>"
+NAMES_FOR_ANYTHING = ("scene", "index")  # of a page, which say nothing of what it shows
 CONFIG_ELEMENT = '<script type="application/json" id="eigenfield-config">{}</script>'
 ICON_ELEMENT = '<link rel="icon" href="data:,">'
 SCRIPT_ELEMENT = re.compile(r'<script type="module"[^>]*\bsrc="(?:\./)?viewer\.js"[^>]*></script>')
@@ -135,7 +136,7 @@ def write_page(
     Args:
         scene: The scene.
         output: The .html.
-        title: Of the page. Default: the output's name.
+        title: Of the page. Default: `page_title`.
         metres_per_unit: Metres in one unit of the capture, for headsets.
         at: The first view, on the view plane. Default: the reference camera's.
         overwrite: Whether an existing file is replaced.
@@ -148,9 +149,21 @@ def write_page(
     if at is not None:
         viewpoint(scene, at=at)  # refuses what is outside
     glb = encode_scene(replace(scene, residual=None))
-    title = output.stem if title is None else title
+    title = page_title(output) if title is None else title
     data = single_file(glb, title=title, metres_per_unit=metres_per_unit, start=at)
     write_bytes(output, data, overwrite=overwrite)
+
+
+def page_title(output: Path) -> str:
+    """What a page is called where nobody says: its file's name, or that of its folder for scene.html and index.html.
+
+    Args:
+        output: The page.
+    """
+    name = output.stem
+    if name.lower() in NAMES_FOR_ANYTHING:
+        name = output.absolute().parent.name or name
+    return name.replace("_", " ")
 
 
 def _text(name: str) -> str:

@@ -14,7 +14,7 @@ from eigenfield.core.scene import Scene
 from eigenfield.gltf import encode_scene
 from eigenfield.rendering import RenderJob, at_resolution, viewpoint
 from eigenfield.runtime.files import atomic_files, refuse_existing
-from eigenfield.viewer.page import Plain, single_file
+from eigenfield.viewer.page import Plain, page_title, single_file
 
 POSTER_MAX_WIDTH_PX = 1200  # what those who show links recommend
 POSTER_QUALITY = 85
@@ -62,7 +62,7 @@ def write_plain_page(
     Args:
         scene: The scene.
         output: The .html.
-        title: Of the page. Default: the output's name.
+        title: Of the page. Default: `page_title`.
         metres_per_unit: Metres in one unit of the capture, for headsets.
         at: The first view, on the view plane. Default: the reference camera's.
         url: Where the page will be. Default: its name, which most crawlers do not follow.
@@ -75,7 +75,7 @@ def write_plain_page(
         OptionError: `not-a-picture`; `viewpoint`: `at` is outside the array.
         OutputError: `viewer-build`; a file cannot be written.
     """
-    title = output.stem if title is None else title
+    title = page_title(output) if title is None else title
     camera, weights = viewpoint(scene, at=at)
     width = min(camera.width, POSTER_MAX_WIDTH_PX)
     size = (width, max(1, round(width * camera.height / camera.width)))
