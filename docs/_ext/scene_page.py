@@ -6,7 +6,9 @@
 from __future__ import annotations
 
 import runpy
+import shutil
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import eigenfield as ef
@@ -22,7 +24,9 @@ def write_pages(app: Sphinx, problem: Exception | None) -> None:
     if problem is None and app.builder.format == "html":
         scene, out = Path(app.srcdir) / "scene.glb", Path(app.outdir)
         ef.export(scene, out / "scene.html", plain=True, title=TITLE, overwrite=True, progress=None)
-        ef.export(scene, out / "open", kind="app", overwrite=True, progress=None)
+        with TemporaryDirectory() as folder:  # the sample is called by its file
+            sample = Path(shutil.copy(scene, Path(folder) / "jar.glb"))
+            ef.export(sample, out / "open", kind="app", overwrite=True, progress=None)
         runpy.run_path(str(Path(app.srcdir).parent / "packaging/addon.py"))["pack"](out / "eigenfield-blender.zip")
 
 

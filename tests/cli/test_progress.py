@@ -63,6 +63,16 @@ def test_layers_change_what_is_to_come(monkeypatch: pytest.MonkeyPatch) -> None:
     assert told.headings == ["step 1 of 3: trial, about 3 min left", "step 2 of 3: layers, about 9 min left"]
 
 
+def test_steps_that_were_not_foreseen_take_the_places_of_those_that_were(monkeypatch: pytest.MonkeyPatch) -> None:
+    Clock(monkeypatch)
+    told = Told()
+    told.plan({"motion": 100, "array": 100, "relief": 100, "mesh": 100}, {"proxy": "atlas"})
+    for step in ("motion", "surface", "proxy", "mesh"):
+        told.begin(step)
+    steps = [heading.partition(",")[0] for heading in told.headings]
+    assert steps == ["step 1 of 4: motion", "step 2 of 4: surface", "step 3 of 4: atlas", "step 4 of 4: mesh"]
+
+
 def test_time_of_compilation_says_nothing_about_the_pace(monkeypatch: pytest.MonkeyPatch) -> None:
     clock, told = Clock(monkeypatch), Told()
     told.plan({"array": 100, "fit": 100}, {})

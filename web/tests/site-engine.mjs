@@ -61,7 +61,7 @@ test("the first page: the scene is above the fold, is drawn, and follows the key
 });
 
 test("the page that opens files draws its sample", async () => {
-  await show("open/index.html?load=samples/scene.glb", 1280, 800);
+  await show("open/index.html?load=samples/jar.glb", 1280, 800);
   const { status, message } = await engine.evaluate(async () => {
     while (frames[0].eigenfield?.state().status !== "ready") await new Promise((resolve) => setTimeout(resolve, 50));
     return frames[0].eigenfield.state();
