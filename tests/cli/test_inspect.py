@@ -199,6 +199,7 @@ def test_overlay(capture, tmp_path, inspect):
     mesh = bumpy_square()
     write_ply(Mesh(mesh.vertices * np.float32(0.5), mesh.faces, mesh.uv), proxy)  # inside every picture
     result = inspect(capture, "--proxy", proxy, "--overlay", target)
+    assert f"next       eigenfield encode '{capture}' --proxy {proxy} -o scene.glb" in result
     assert "triangles, with UVs" in result and "view_04.png" in result
     with Image.open(target) as sheet:
         pixels = np.asarray(sheet).astype(int)

@@ -109,7 +109,7 @@ def command(
     if is_zip(capture) or capture.suffix.lower() in VIDEO_EXTENSIONS:  # read from a temporary folder
         report["root"] = str(capture)
     report["refused"] = None if refusal is None else _error(refusal)
-    report["next"] = _next_commands(report, capture, place)
+    report["next"] = _next_commands(report, capture, {**place, "proxy": proxy})
     report["blurred"] = [opened.names[index] for index in blurred]
     report["neighbours"] = _neighbours(opened, pairs) if pairs else None
     if mesh is not None and opened.light_field is not None:
