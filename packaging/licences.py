@@ -18,12 +18,13 @@ from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "licences.md"
-EXTRAS = "gpu", "meshes", "photos", "raw", "renders"  # those of users
+EXTRAS = "cluster", "gpu", "meshes", "photos", "raw", "renders"  # those of users
 PERMITTED = {
-    "0BSD", "Apache-2.0", "Apache-2.0 WITH LLVM-exception", "BSD-2-Clause", "BSD-3-Clause", "CC0-1.0", "MIT", "MIT-CMU",
-    "PSF-2.0", "Zlib",
+    "0BSD", "Apache-2.0", "Apache-2.0 WITH LLVM-exception", "BSD-2-Clause", "BSD-3-Clause", "CC0-1.0", "MIT", "MIT-0",
+    "MIT-CMU", "PSF-2.0", "Zlib",
 }  # fmt: skip
 EXCEPTIONS = {
+    "asyncssh": "EPL-2.0 or GPL-2.0-or-later: it comes only by the extra `cluster`, and is loaded only for `ssh:HOST`",
     "pillow-jxl-plugin": "GPL-3.0-or-later: it comes only by the extra `photos`, and is loaded only to read JPEG XL",
 }
 # what metadata say in words, or not at all
@@ -34,7 +35,7 @@ WORDS = {
     "Python Software Foundation License": "PSF-2.0",
     "GNU Lesser General Public License v3 (LGPLv3)": "BSD-3-Clause",  # pi_heif means the libheif in its wheel
 }
-UNSAID = {"openexr": "BSD-3-Clause", "xatlas": "MIT"}
+UNSAID = {"dask-jobqueue": "BSD-3-Clause", "openexr": "BSD-3-Clause", "partd": "BSD-3-Clause", "xatlas": "MIT"}
 # libraries in wheels for Linux whose licence asks for more than a notice
 COPYLEFT = {
     "asound": "LGPL-2.1-or-later", "avcodec": "LGPL-2.1-or-later, with x264 GPL-2.0-or-later",

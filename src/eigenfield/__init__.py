@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from eigenfield.core.errors import OptionError as OptionError
     from eigenfield.core.errors import OutputError as OutputError
     from eigenfield.core.errors import ProxyError as ProxyError
+    from eigenfield.core.errors import WorkerError as WorkerError
     from eigenfield.core.mesh import Mesh as Mesh
     from eigenfield.core.progress import Progress as Progress
     from eigenfield.core.scene import EncodedScene as EncodedScene
@@ -66,6 +67,7 @@ _HOME = {  # a room, or a name in a room where that is another
     "Reconstruction": "reconstruction",
     "Scene": "core.scene",
     "Target": "encoding",
+    "WorkerError": "core.errors",
     "calibrate": "calibration",
     "encode": "encoding",
     "evaluate": "evaluation",

@@ -5,6 +5,7 @@
     ├── ProxyError     the mesh and its atlas
     ├── FormatError    a scene file that is damaged, newer or not ours
     ├── OutputError    output: exists already, disk full, not writable
+    ├── WorkerError    processes and machines that do the work
     └── OptionError    an impossible option or combination of options
 
 Each is one line: the file, what is wrong, the remedy. `code` is stable and meant for scripts. A bug is never one
@@ -34,6 +35,9 @@ class EigenfieldError(Exception):
         self.path = None if path is None else os.fspath(path)
         self.remedy = remedy
         super().__init__(code, message)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return _restored, (type(self), self.args, self.__dict__)  # subclasses may need more arguments
 
     def __str__(self) -> str:
         text = self.message if self.path is None else f"{self.path}: {self.message}"
@@ -72,5 +76,17 @@ class OutputError(EigenfieldError):
     """Something that cannot be written."""
 
 
+class WorkerError(EigenfieldError):
+    """A process or a machine that cannot do its part of the work."""
+
+
 class OptionError(EigenfieldError):
     """An impossible option or combination of options."""
+
+
+def _restored(cls: type[EigenfieldError], args: tuple[str, str], attributes: dict[str, object]) -> EigenfieldError:
+    """An error as it was in another process."""
+    error = cls.__new__(cls)
+    error.args = args
+    error.__dict__.update(attributes)
+    return error
