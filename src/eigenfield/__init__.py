@@ -18,6 +18,8 @@ from eigenfield.core import notebook as _notebook
 from eigenfield.core.version import __version__
 
 if TYPE_CHECKING:
+    from eigenfield.batches import BatchResult as BatchResult
+    from eigenfield.batches import batch as batch
     from eigenfield.calibration import calibrate as calibrate
     from eigenfield.capture import LightField as LightField
     from eigenfield.capture import PhotoSet as PhotoSet
@@ -51,6 +53,7 @@ if TYPE_CHECKING:
     open = _opening.open_any
 
 _HOME = {  # a room, or a name in a room where that is another
+    "BatchResult": "batches",
     "Camera": "core.camera",
     "CaptureError": "core.errors",
     "EigenfieldError": "core.errors",
@@ -68,6 +71,7 @@ _HOME = {  # a room, or a name in a room where that is another
     "Scene": "core.scene",
     "Target": "encoding",
     "WorkerError": "core.errors",
+    "batch": "batches",
     "calibrate": "calibration",
     "encode": "encoding",
     "evaluate": "evaluation",

@@ -31,6 +31,7 @@ VERBS = {
     "inspect": "Say what a capture holds, and what is wrong with it.",
     "proxy": "Make a proxy mesh from photographs, and their cameras.",
     "encode": "Turn photographs into one .glb; cameras and proxy are estimated where they are not given.",
+    "batch": "Encode and measure many captures, here or on many machines; the same command goes on.",
     "render": "Draw a viewpoint, a captured camera, or a fly-through.",
     "view": "Look around in a scene, in a browser.",
     "export": "Write a scene for other programs: a page, a video, OBJ, texture maps, a quilt, COLMAP.",

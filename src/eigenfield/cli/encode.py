@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from eigenfield.core.progress import Progress
 
 
-def _parse_atlas(context: click.Context, parameter: click.Parameter, value: str | None) -> int | tuple[int, int] | None:
+def parse_atlas(context: click.Context, parameter: click.Parameter, value: str | None) -> int | tuple[int, int] | None:
     if value is None:
         return None
     found = re.fullmatch(r"(-?\d+)(?:x(-?\d+))?", value.lower())
@@ -38,7 +38,7 @@ def _parse_atlas(context: click.Context, parameter: click.Parameter, value: str 
     return int(found[1]) if found[2] is None else (int(found[1]), int(found[2]))
 
 
-def _parse_size(context: click.Context, parameter: click.Parameter, value: str | None) -> int | None:
+def parse_size(context: click.Context, parameter: click.Parameter, value: str | None) -> int | None:
     if value is None:
         return None
     found = re.fullmatch(r"(\d+(?:\.\d+)?) *(k|m|g|)b?", value.strip().lower())
@@ -101,7 +101,7 @@ Examples:
 )
 @click.option("--output", "-o", required=True, type=PATH, metavar="FILE", help="The .glb to write.")
 @capture_options
-@field_options(EncodeOptions, atlas=_parse_atlas, target_size=_parse_size)
+@field_options(EncodeOptions, atlas=parse_atlas, target_size=parse_size)
 @click.option(
     "--work",
     type=PATH,

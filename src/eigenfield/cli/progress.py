@@ -48,6 +48,7 @@ class StepProgress:
         self._spent, self._expected = 0.0, 0.0  # seconds of finished steps, and what they were expected to take
         self._compiling_since: float | None = None
         self._compiled = 0.0  # seconds of this step, which tell nothing about the next
+        self._told: tuple[float, float] | None = None  # seconds that are left, and when that was said
 
     def plan(
         self, seconds: Mapping[str, float], words: Mapping[str, str], layered: Mapping[str, float] | None = None
@@ -79,6 +80,15 @@ class StepProgress:
         self._step, self._step_started, self._compiled = step, now, 0.0
         self.show_step(self.heading())
 
+    def remaining(self, seconds: float) -> None:
+        """About how long the rest will take, from whoever knows it better."""
+        self._told = seconds, time.monotonic()
+
+    @property
+    def knows_rest(self) -> bool:
+        """Whether `left` says something."""
+        return bool(self.planned) or self._told is not None
+
     def heading(self) -> str:
         """The step's number and name, and about how long the rest will take."""
         assert self._step is not None
@@ -90,6 +100,9 @@ class StepProgress:
 
     def left(self) -> str:
         """About how long the rest will take; empty if nothing is known."""
+        if self._told is not None:
+            seconds, since = self._told
+            return duration(max(seconds - (time.monotonic() - since), 0)) + " left"
         if self._step not in self.planned:
             return ""
         rest = list(self.planned.values())[list(self.planned).index(self._step) :]
@@ -135,7 +148,7 @@ class _Bars(StepProgress):
             """The rest of all steps, where that is known, else of the stage."""
 
             def render(self, task: Task) -> Text:
-                return Text(steps.left()) if steps.planned else super().render(task)
+                return Text(steps.left()) if steps.knows_rest else super().render(task)
 
         super().__init__()
         columns = (
@@ -181,7 +194,8 @@ class _Lines(StepProgress):
             self._stage, self._said = stage, now
         elif now - self._said >= LINE_SECONDS and done < total:
             self._said = now
-            click.echo(f"  {stage}: {done} of {total}", err=True)
+            rest = f", {self.left()}" if self._told is not None else ""
+            click.echo(f"  {stage}: {done} of {total}{rest}", err=True)
 
     def show_step(self, heading: str) -> None:
         click.echo(heading, err=True)

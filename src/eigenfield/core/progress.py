@@ -30,6 +30,18 @@ def begin_step(progress: Progress | None, step: str) -> None:
         begin(step)
 
 
+def tell_remaining(progress: Progress | None, seconds: float) -> None:
+    """Say about how long the rest will take.
+
+    Args:
+        progress: Told if it has a method `remaining`, which a plain function has not.
+        seconds: From now.
+    """
+    remaining = getattr(progress, "remaining", None)
+    if remaining is not None:
+        remaining(seconds)
+
+
 def track(items: Iterable[T], stage: str, total: int, progress: Progress | None) -> Iterator[T]:
     """Yield `items`, and report each one once the consumer is done with it.
 

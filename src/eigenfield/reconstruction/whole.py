@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import logging
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -132,7 +132,7 @@ def reconstruct(
     if surface == "layers":
         check_capture(capture)
     with Stages(work) as stages:
-        run = StageRunner(stages, settings, _identity(capture), progress, {})
+        run = StageRunner(stages, settings, capture_identity(capture), progress, {})
         points = calibration = array = None
         if capture.light_field is None and capture.layout is None:  # nothing is known about the cameras
             capture, points, calibration = _estimate_cameras(run, capture)
@@ -169,8 +169,13 @@ def _opaque_surface(run: StageRunner, source: SheetSource) -> tuple[Mesh, Surfac
     return _add_atlas(run, source.light_field, mesh), error
 
 
-def _identity(capture: Capture) -> list[Any]:
-    """Everything that a result depends on: every file's bytes, cameras, lenses, layout."""
+def capture_identity(capture: Capture, of_file: Callable[[Path], Any] = file_digest) -> list[Any]:
+    """Everything that a result depends on: every file, cameras, lenses, layout.
+
+    Args:
+        capture: Photographs, with or without cameras.
+        of_file: What stands for a file. Default: a digest of its bytes.
+    """
     if capture.light_field is None:
         layout = {} if capture.layout is None else vars(capture.layout)
         own: list[Any] = [v.tolist() if isinstance(v, np.ndarray) else v for _, v in sorted(layout.items())]
@@ -182,8 +187,8 @@ def _identity(capture: Capture) -> list[Any]:
         ] + ([capture.origin.tolist()] if capture.origin.any() else [])
 
     def digest(source: PhotographSource) -> list[Any]:
-        mask = None if source.mask is None else file_digest(source.mask)
-        return [source.name, file_digest(source.path), mask, source.upright, source.exposure]
+        mask = None if source.mask is None else of_file(source.mask)
+        return [source.name, of_file(source.path), mask, source.upright, source.exposure]
 
     return [parallel_map(digest, capture.sources), own]
 

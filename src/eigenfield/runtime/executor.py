@@ -269,6 +269,14 @@ def refuse_unshared(workers: Workers, folder: Path) -> None:
                 raise OutputError("folder-not-shared", f"{name} does not see it", path=folder, remedy=remedy)
 
 
+def refuse_unseen(workers: Workers, path: Path) -> None:
+    """Raise OutputError `folder-not-shared`, with the worker's name, if a worker does not see what is read."""
+    for name, seen in workers.everywhere(os.path.exists, path).items():
+        if not seen:
+            remedy = "put it where all machines see it under the same path"
+            raise OutputError("folder-not-shared", f"{name} does not see it", path=path, remedy=remedy)
+
+
 def _read_token(path: Path) -> str | None:
     until = time.monotonic() + SHARED_SECONDS
     while True:

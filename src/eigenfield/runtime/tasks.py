@@ -50,7 +50,7 @@ class Task:
         if _worker is None:
             return self.function(*args, **named)
         lines: list[str] = []
-        with _log_into(lines):
+        with log_into(lines):
             try:
                 return self.function(*args, **named)
             except Exception as error:
@@ -109,6 +109,11 @@ def machine_memory() -> float:
     return found
 
 
+def worker_name() -> str | None:
+    """What this process is called; None where it is no worker."""
+    return _worker
+
+
 def name_worker(name: str) -> None:
     """Say what this process is called, in messages about what fails on it."""
     global _worker
@@ -116,7 +121,7 @@ def name_worker(name: str) -> None:
 
 
 @contextlib.contextmanager
-def _log_into(lines: list[str]) -> Iterator[None]:
+def log_into(lines: list[str]) -> Iterator[None]:
     """Also keep what eigenfield logs."""
 
     class Keep(logging.Handler):

@@ -1,0 +1,175 @@
+"""One capture of a batch, as a worker does it: paths and small numbers come in and go out.
+
+A finished scene is a stage: the folder `NAME-KEY` with scene, page, poster and record appears by rename. Its key is of
+the options, the program, and the names, sizes and times of the photographs' files, which need not be read for it.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from eigenfield.batches.jobs import CaptureJob
+from eigenfield.capture import Capture, open_any
+from eigenfield.capture.writers.save import save_calibration
+from eigenfield.encoding import encode
+from eigenfield.encoding.cost import expected_cost
+from eigenfield.encoding.views import check_selection
+from eigenfield.evaluation import evaluate, stored_scores
+from eigenfield.gltf import load, save, store_scores
+from eigenfield.proxy import refuse_no_mesh
+from eigenfield.reconstruction import reconstruct
+from eigenfield.reconstruction.whole import capture_identity
+from eigenfield.runtime.parallel import threads
+from eigenfield.runtime.stages import Stages, stage_key
+from eigenfield.runtime.tasks import installed, log_into, worker_name
+from eigenfield.viewer.exports import write_plain_page
+
+SCENES_FOLDER, WORK_FOLDER, LOGS_FOLDER = "scenes", "work", "logs"
+RECORD_FILE = "record.json"
+CALIBRATION_FILE = "transforms.json"
+
+
+def look_at(job: CaptureJob, output: Path) -> dict[str, Any]:
+    """What a capture is expected to take, and its record if it is finished.
+
+    Args:
+        job: The capture.
+        output: Folder of the batch.
+
+    Returns:
+        `key`, `seconds` expected with this worker's threads, `memory` in bytes, and `record` or None.
+
+    Raises:
+        CaptureError, ProxyError, OptionError: The capture, or an option of it, cannot be used.
+    """
+    capture = _opened(job, output)
+    check_selection(capture, job.options)
+    if job.proxy is not None:
+        refuse_no_mesh(Path(job.proxy))
+    cost = expected_cost(capture, job.options, job.reconstruction, threads())
+    key = stage_key([_inputs(job, capture), installed()])
+    record = output / SCENES_FOLDER / f"{job.name}-{key}" / RECORD_FILE
+    return {
+        "key": key,
+        "seconds": cost.seconds,
+        "memory": cost.memory,
+        "record": json.loads(record.read_text(encoding="utf-8")) if record.exists() else None,
+    }
+
+
+def encode_capture(job: CaptureJob, output: Path, key: str) -> dict[str, Any]:
+    """Encode and measure a capture, unless it is finished.
+
+    Args:
+        job: The capture.
+        output: Folder of the batch.
+        key: Of `look_at`.
+
+    Returns:
+        The record: name, files relative to `output`, bytes, scores, seconds, warnings.
+
+    Raises:
+        EigenfieldError: Of any step.
+    """
+    work = output / WORK_FOLDER / job.name
+
+    def build(folder: Path) -> None:
+        record = _make(job, output, work, folder)
+        record["folder"] = f"{SCENES_FOLDER}/{job.name}-{key}"
+        (folder / RECORD_FILE).write_text(json.dumps(record, indent=1), encoding="utf-8", newline="\n")
+
+    place = Stages(output / SCENES_FOLDER).run(job.name, key, build)
+    found: dict[str, Any] = json.loads((place / RECORD_FILE).read_text(encoding="utf-8"))
+    return found
+
+
+def find_cameras(job: CaptureJob, output: Path) -> Path:
+    """The cameras of a capture, found or as they are given, as a calibration that others use too.
+
+    Args:
+        job: The capture.
+        output: Folder of the batch.
+
+    Raises:
+        EigenfieldError: Of any step.
+    """
+    capture = _opened(job, output)
+    settings = job.reconstruction
+    key = stage_key(["cameras", _inputs(job, capture), installed()])
+
+    def build(folder: Path) -> None:
+        light_field = capture.light_field
+        if settings is not None:
+            layers = settings["layers"] if settings["surface"] == "layers" else 1  # trials tell nothing about cameras
+            made = reconstruct(
+                capture, work=output / WORK_FOLDER / job.name, progress=None, **{**settings, "layers": layers}
+            )
+            light_field = made.light_field
+        assert light_field is not None
+        save_calibration(light_field, folder / "calibration")
+
+    return Stages(output).run("cameras", key, build) / "calibration" / CALIBRATION_FILE
+
+
+def _opened(job: CaptureJob, output: Path) -> Capture:
+    return open_any(job.path, work=output / WORK_FOLDER / job.name / "frames", **job.place)
+
+
+def _inputs(job: CaptureJob, capture: Capture) -> list[Any]:
+    """All that a capture's scene depends on, but the program."""
+
+    def of_file(path: Path) -> list[Any]:
+        found = path.stat()
+        return [path.name, found.st_size, found.st_mtime_ns]
+
+    proxy = None if job.proxy is None else of_file(Path(job.proxy))
+    options = asdict(job.options) | {"blind": job.blind, "surface": dict(job.surface)}
+    return [job.name, options, proxy, capture_identity(capture, of_file)]
+
+
+def _make(job: CaptureJob, output: Path, work: Path, folder: Path) -> dict[str, Any]:
+    """Scene, page and poster in a folder, and their record."""
+    started = time.monotonic()
+    warnings: list[str] = []
+    scene_file, page = folder / f"{job.name}.glb", folder / f"{job.name}.html"
+    with log_into(warnings):
+        capture = _opened(job, output)
+        work.mkdir(parents=True, exist_ok=True)
+        made = encode(
+            capture, job.proxy, job.options, work=work, progress=None,
+            **(dict(job.surface) | {"blind": job.blind} if job.proxy is None else {}),
+        )  # fmt: skip
+        save(made, scene_file, **job.options.for_save)
+        encoded = time.monotonic()
+        scene = load(scene_file)
+        figures = evaluate(scene, capture, path=scene_file, png_maps="none", progress=None)
+        store_scores(scene_file, {**scene.scores, **stored_scores(figures)})
+        write_plain_page(scene, page, title=job.name)
+    image: Mapping[str, Any] = figures["image"]
+    return {
+        "name": job.name,
+        "capture": job.path,
+        "scene": scene_file.name,
+        "page": page.name,
+        "poster": page.with_suffix(".jpg").name,
+        "bytes": scene_file.stat().st_size,
+        "photographs": len(capture.sizes),
+        "photographs_bytes": made.settings["photographs"]["bytes"],
+        "textures": scene.appearance.textures,
+        "psnr": _score(image["encoded"], "psnr"),
+        "ssim": _score(image["encoded"], "ssim"),
+        "held_out_psnr": _score(image["held_out"], "psnr"),
+        "seconds": round(time.monotonic() - started, 1),
+        "encode_seconds": round(encoded - started, 1),
+        "worker": worker_name(),
+        "warnings": [*capture.problems, *(line for line in warnings if line not in capture.problems)],
+    }
+
+
+def _score(part: Mapping[str, Any] | None, name: str) -> float | None:
+    return None if part is None or part.get(name) is None else float(part[name])

@@ -1,0 +1,199 @@
+"""What a batch is to do: captures with their options, from a TOML file, a folder, or a list."""
+
+from __future__ import annotations
+
+import difflib
+import os
+import re
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
+from pathlib import Path
+from typing import Any
+
+from eigenfield.core.errors import EigenfieldError, OptionError
+from eigenfield.encoding import EncodeOptions, Target
+from eigenfield.encoding.estimated import reconstruction_settings, refuse_unused
+from eigenfield.runtime.temporary import is_temporary
+from eigenfield.viewer.exports.names import file_name
+
+PLACE_KEYS = ("calibration", "masks", "format", "grid", "pattern", "frame", "frames", "also")  # arguments of `open_any`
+PATH_KEYS = ("calibration", "masks", "proxy")
+SURFACE_DEFAULTS: dict[str, Any] = {  # arguments of `encode` about cameras and mesh
+    "surface": "auto", "layers": None, "refine": None, "background": None, "primitives": (), "fit_spheres": (),
+}  # fmt: skip
+TARGET_KEYS = tuple(f"target_{one.name}" for one in fields(Target))
+OPTION_KEYS = tuple(one.name for one in fields(EncodeOptions) if one.name not in ("target", "keep_maps"))
+ALL_KEYS = (*PLACE_KEYS, "proxy", *SURFACE_DEFAULTS, "blind", *TARGET_KEYS, *OPTION_KEYS)
+VIDEO_AND_ZIP = (".zip", ".mp4", ".mov", ".mkv", ".avi")
+
+
+@dataclass(frozen=True)
+class CaptureJob:
+    """One capture of a batch, in plain values that travel to a worker.
+
+    Attributes:
+        name: Of its scene, and of its files.
+        path: Absolute.
+        place: Arguments of `open_any`.
+        proxy: An absolute path of a mesh, if it is given.
+        surface: Arguments of `encode` about cameras and mesh.
+        options: Of the scene.
+        blind: Whether held-out photographs take no part in cameras and mesh.
+    """
+
+    name: str
+    path: str
+    place: Mapping[str, Any] = field(default_factory=dict)
+    proxy: str | None = None
+    surface: Mapping[str, Any] = field(default_factory=lambda: dict(SURFACE_DEFAULTS))
+    options: EncodeOptions = field(default_factory=EncodeOptions)
+    blind: bool = False
+
+    @property
+    def reconstruction(self) -> dict[str, Any] | None:
+        """The arguments of `reconstruct`; None where the proxy is given. Raises OptionError."""
+        if self.proxy is not None:
+            refuse_unused(self.surface, self.blind)
+            return None
+        return reconstruction_settings(self.options, self.surface, self.blind)
+
+    def with_cameras(self, calibration: Path) -> CaptureJob:
+        """The same with cameras from a calibration, which stay as they are."""
+        place = {**self.place, "calibration": str(calibration)}
+        surface = self.surface if self.proxy is not None else {**self.surface, "refine": False}
+        return replace(self, place=place, surface=surface)
+
+
+def read_jobs(source: Path | Sequence[Path], shared: Mapping[str, Any]) -> list[CaptureJob]:
+    """The captures of a batch, whose names differ.
+
+    Args:
+        source: A TOML file, a folder of captures, or captures.
+        shared: Options of all captures by name; those in a file go before them, and a capture's own before both.
+
+    Raises:
+        OptionError: `batch-file`, `batch-empty`, `batch-names`, `batch-option`, or of a capture's options.
+    """
+    if not isinstance(source, Path):
+        rows, base, first = [{"path": str(path)} for path in source], Path.cwd(), None
+    elif source.suffix.lower() == ".toml":
+        rows, own = _read_toml(source)
+        base, first, shared = source.absolute().parent, source, {**shared, **own}
+    elif source.is_dir():
+        rows, base, first = [{"path": str(path)} for path in captures_in(source)], Path.cwd(), source
+    else:
+        message = "is no folder of captures and no .toml" if source.exists() else "does not exist"
+        raise OptionError(
+            "batch-file", message, path=source, remedy="name a folder that holds captures, or a list of them"
+        )
+    if not rows:
+        remedy = "name a folder of which each folder is a capture (eigenfield encode takes one capture)"
+        raise OptionError("batch-empty", "holds no captures", path=first, remedy=remedy)
+    jobs = list(_jobs(rows, base, shared, first))
+    _refuse_same_names(jobs, first)
+    return jobs
+
+
+def captures_in(folder: Path) -> list[Path]:
+    """What may be a capture in a folder: folders, zips and videos, by their names with numbers as numbers."""
+
+    def is_capture(entry: os.DirEntry[str]) -> bool:
+        hidden = entry.name.startswith(".") or is_temporary(Path(entry.name)) or entry.name.endswith("-scenes")
+        return not hidden and (entry.is_dir() or entry.name.lower().endswith(VIDEO_AND_ZIP))
+
+    with os.scandir(folder) as entries:
+        names = [entry.name for entry in entries if is_capture(entry)]
+    return [folder / name for name in sorted(names, key=_by_number)]
+
+
+def _by_number(name: str) -> list[Any]:
+    return [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", name)]
+
+
+def _read_toml(path: Path) -> tuple[list[dict[str, Any]], dict[str, Any]]:
+    try:
+        document = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        words = error.strerror if isinstance(error, OSError) else f"is no TOML: {error}"
+        raise OptionError(
+            "batch-file", str(words), path=path, remedy="name a TOML file with [[capture]] tables"
+        ) from None
+    rows, shared = document.pop("capture", []), document.pop("options", {})
+    if (
+        document
+        or not isinstance(shared, dict)
+        or not isinstance(rows, list)
+        or not all(isinstance(r, dict) for r in rows)
+    ):
+        message = f"has {next(iter(document), 'entries')} where only [options] and [[capture]] are known"
+        raise OptionError("batch-file", message, path=path, remedy="eigenfield help many-captures shows one")
+    for row in rows:
+        if not isinstance(row.get("path"), str) or not isinstance(row.get("name", ""), str):
+            raise OptionError(
+                "batch-file", "a [[capture]] has no path", path=path, remedy='say path = "FOLDER" in each'
+            )
+    return rows, shared
+
+
+def _jobs(
+    rows: Sequence[dict[str, Any]], base: Path, shared: Mapping[str, Any], source: Path | None
+) -> Iterator[CaptureJob]:
+    made: dict[str, CaptureJob] = {}  # by the options: checking them takes longer than all else
+    for row in rows:
+        own = {key.replace("-", "_"): value for key, value in {**shared, **row}.items()}
+        path, name = base / own.pop("path"), own.pop("name", None)
+        text = repr(own)
+        try:
+            if text not in made:
+                made[text] = _checked(own, base)
+        except EigenfieldError as error:
+            called = f"{name or path.name}: {error.message}" if set(row) - {"path", "name"} else error.message
+            raise OptionError(error.code, called, path=source, remedy=error.remedy) from error
+        called = path.name if path.is_dir() else path.stem
+        yield replace(made[text], name=file_name(name or called, "capture"), path=str(path.absolute()))
+
+
+def _checked(given: dict[str, Any], base: Path) -> CaptureJob:
+    """A job without a name that has these options."""
+    for key in given:
+        if key not in ALL_KEYS:
+            near = difflib.get_close_matches(key, ALL_KEYS, n=1)
+            remedy = (
+                f"did you mean {near[0]}?" if near else "options are named as those of encode: hold_out, preset, ..."
+            )
+            raise OptionError("batch-option", f"no option is called {key}", remedy=remedy)
+    for key in PATH_KEYS:
+        if given.get(key) is not None:
+            given[key] = str((base / given[key]).absolute())
+    if given.get("also") is not None:
+        given["also"] = [str((base / one).absolute()) for one in given["also"]]
+    if isinstance(given.get("grid"), list):
+        given["grid"] = tuple(given["grid"])
+    target = Target(**{key.removeprefix("target_"): given[key] for key in TARGET_KEYS if given.get(key) is not None})
+    options = {key: given[key] for key in OPTION_KEYS if given.get(key) is not None}
+    if isinstance(options.get("atlas"), list):
+        options["atlas"] = tuple(options["atlas"])
+    surface = {key: given.get(key, default) for key, default in SURFACE_DEFAULTS.items()}
+    job = CaptureJob(
+        "",
+        "",
+        {key: given[key] for key in PLACE_KEYS if given.get(key) is not None},
+        given.get("proxy"),
+        surface,
+        EncodeOptions(**options, target=None if target == Target() else target),
+        bool(given.get("blind", False)),
+    )
+    job.reconstruction  # noqa: B018  what it refuses is said before the work
+    return job
+
+
+def _refuse_same_names(jobs: Sequence[CaptureJob], source: Path | None) -> None:
+    found: dict[str, CaptureJob] = {}
+    for job in jobs:
+        other = found.setdefault(job.name.casefold(), job)
+        if other is not job:
+            message = f"two captures are called {job.name}: {other.path} and {job.path}"
+            raise OptionError(
+                "batch-names", message, path=source, remedy='give one of them another name = "..." in a TOML file'
+            )

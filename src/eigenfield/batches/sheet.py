@@ -1,0 +1,96 @@
+"""The page of a batch: a contact sheet of its scenes, or its instants with a slider.
+
+It needs no server and nothing else than what lies beside it: posters, and the pages of the scenes.
+"""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from eigenfield.viewer.page import json_for_html
+
+TEMPLATES = Path(__file__).parent / "templates"
+
+
+def sheet_html(title: str, records: Sequence[Mapping[str, Any]], instants: bool) -> str:
+    """The page.
+
+    Args:
+        title: Of the page.
+        records: Of the captures, in order.
+        instants: Whether it steps through them.
+    """
+    finished = [record for record in records if "error" not in record]
+    body = _player(finished) if instants and finished else f'<ul class="sheet">{"".join(map(_card, finished))}</ul>'
+    failed = [f"<li><b>{_text(one['name'])}</b> {_text(one['error'])}</li>" for one in records if "error" in one]
+    failures = f'<h2>Failed</h2><ul class="failed">{"".join(failed)}</ul>' if failed else ""
+    style = (TEMPLATES / "sheet.css").read_text(encoding="utf-8")
+    size = sum(record["bytes"] for record in finished)
+    return f"""<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{_text(title)}</title>
+<link rel="icon" href="data:,">
+<style>
+{style}</style>
+</head>
+<body>
+<header><h1>{_text(title)}</h1><p>{_counted(len(finished), "instant" if instants else "scene")}, {_size(size)}.
+All figures: <a href="table.csv">CSV</a>, <a href="table.json">JSON</a>, <a href="table.md">Markdown</a>.</p></header>
+<main>{body}{failures}</main>
+</body>
+</html>
+"""
+
+
+def _card(record: Mapping[str, Any]) -> str:
+    figures = [_size(record["bytes"])]
+    if record["psnr"] is not None:
+        figures.append(f"{record['psnr']:.1f} dB")
+    if record["held_out_psnr"] is not None:
+        figures.append(f"held out {record['held_out_psnr']:.1f} dB")
+    name = _text(record["name"])
+    warned = f'<span title="{_text(" ".join(record["warnings"]))}">warnings</span>' if record["warnings"] else ""
+    return (
+        f'<li><a href="{_address(record, "page")}"><img loading="lazy" src="{_address(record, "poster")}" alt="">'
+        f"<b>{name}</b></a><p>{', '.join(figures)} {warned}"
+        f'<a href="{_address(record, "scene")}" download aria-label="{name}.glb">.glb</a></p></li>'
+    )
+
+
+def _player(records: Sequence[Mapping[str, Any]]) -> str:
+    listed = [
+        {"name": record["name"], "page": _address(record, "page"), "poster": _address(record, "poster")}
+        for record in records
+    ]
+    script = (TEMPLATES / "player.js").read_text(encoding="utf-8")
+    return f"""<div class="player"><div class="stage"><img alt="" src="{listed[0]["poster"]}"></div>
+<div class="bar"><button type="button" aria-label="Play">▶</button>
+<input type="range" min="0" max="{len(listed) - 1}" value="0" aria-label="Instant">
+<output></output></div>
+<p>Arrow keys step, space plays. Where it stands still, the instant opens: drag to look around.</p></div>
+<script type="application/json" id="instants">{json_for_html(listed)}</script>
+<script>
+{script}</script>"""
+
+
+def _address(record: Mapping[str, Any], key: str) -> str:
+    return quote(f"{record['folder']}/{record[key]}")
+
+
+def _counted(count: int, word: str) -> str:
+    return f"{count} {word}{'' if count == 1 else 's'}"
+
+
+def _size(count: float) -> str:
+    return f"{count / 1e6:.1f} MB" if count >= 1e6 else f"{count / 1e3:.0f} kB"
+
+
+def _text(value: object) -> str:
+    return html.escape(str(value))

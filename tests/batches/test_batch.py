@@ -1,0 +1,202 @@
+"""Many captures: the same bytes wherever they are encoded, what is finished stays, what fails is a line."""
+
+from __future__ import annotations
+
+import csv
+import json
+import shutil
+import time
+from pathlib import Path
+
+import pytest
+
+import eigenfield as ef
+from eigenfield.batches.jobs import ALL_KEYS, captures_in, read_jobs
+from eigenfield.batches.sheet import sheet_html
+from eigenfield.demo import draw_demo_capture
+from eigenfield.runtime import executor
+
+FAST = 'fit = "none"\ntextures = 3\natlas = 64\nhold_out = "every:4"\n'
+
+
+@pytest.fixture(scope="module")
+def capture(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("demo") / "jar"
+    draw_demo_capture(folder, rows=3, columns=3, size=48)
+    return folder
+
+
+@pytest.fixture
+def listed(capture, tmp_path):
+    """A list of two captures that can be encoded in a moment, and one that cannot at all."""
+    shutil.copytree(capture, tmp_path / "second")
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "captures.toml").write_text(
+        f'[options]\n{FAST}\n[[capture]]\npath = "{capture}"\nproxy = "{capture}/proxy.ply"\n'
+        f'[[capture]]\npath = "second"\nproxy = "second/proxy.ply"\nname = "the <other>"\ntextures = 2\n'
+        '[[capture]]\npath = "empty"\n'
+    )
+    return tmp_path / "captures.toml"
+
+
+def scenes_of(result):
+    return {
+        record["name"]: (result.folder / record["folder"] / record["scene"]).read_bytes()
+        for record in result.records
+        if "error" not in record
+    }
+
+
+def test_a_batch_from_its_list_to_its_page(listed):
+    result = ef.batch(listed, progress=None)
+    assert result.folder == listed.with_name("captures-scenes") and result.taken_up == 0
+    first, other, failed = result.records
+    assert first["name"] == "jar" and other["name"] == "the _other_" and failed["name"] == "empty"
+    assert first["held_out_psnr"] > 10 and first["psnr"] > 10 and first["bytes"] > 1000
+    assert (first["textures"], other["textures"]) == (3, 2)
+    assert failed["code"] == "photographs-missing" and failed["error"].endswith("name a folder of photographs")
+    assert failed["error"] in (result.folder / failed["log"]).read_text()
+    assert result.failed == (failed,)
+    with (result.folder / "table.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["bytes"] for row in rows] == [str(first["bytes"]), str(other["bytes"]), ""]
+    assert json.loads((result.folder / "table.json").read_text())["captures"] == list(result.records)
+    assert (result.folder / "table.md").read_text().count("\n") == 5
+    page = result.page.read_text("utf-8")
+    for record in (first, other):
+        assert f'href="{record["folder"].replace(" ", "%20")}/' in page
+        assert ef.load(result.folder / record["folder"] / record["scene"]).scores["image"]["held_out"]
+        assert b"<iframe" not in (result.folder / record["folder"] / record["page"]).read_bytes()[:9]
+    assert failed["error"] in page
+
+
+def test_what_is_finished_is_taken_up_and_what_changed_is_made_again(listed, capture):
+    first = ef.batch(listed, progress=None)
+    places = {path: path.stat().st_mtime_ns for path in first.folder.glob("scenes/*/*.glb")}
+    seen = []
+    again = ef.batch(listed, progress=lambda stage, done, total: seen.append((stage, done, total)))
+    assert again.taken_up == 2 and again.records == first.records
+    assert {path: path.stat().st_mtime_ns for path in first.folder.glob("scenes/*/*.glb")} == places
+    assert seen[0] == ("captures looked at", 0, 3) and seen[-1] == ("captures", 3, 3)
+    time.sleep(0.01)
+    photograph = next((listed.parent / "second" / "images").iterdir())
+    photograph.write_bytes(photograph.read_bytes())
+    assert ef.batch(listed, progress=None).taken_up == 1
+
+
+@pytest.mark.parametrize("way", ["processes", pytest.param("cluster", marks=pytest.mark.slow)])
+def test_the_bytes_are_the_same_wherever_they_are_made(listed, tmp_path, way):
+    here = ef.batch(listed, tmp_path / "here", progress=None)
+    if way == "processes":
+        there = ef.batch(listed, tmp_path / "there", workers=2, progress=None)
+    else:
+        from distributed import LocalCluster
+
+        with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs=50) as cluster:
+            there = ef.batch(listed, tmp_path / "there", cluster=cluster.scheduler_address, progress=None)
+    assert len(scenes_of(here)) == 2 and scenes_of(there) == scenes_of(here)
+    assert there.failed[0]["error"] == here.failed[0]["error"] and there.failed[0]["worker"]
+
+
+def test_instants_share_the_cameras_of_the_first(capture, tmp_path):
+    clip = tmp_path / "clip"
+    for number in (1, 2, 10):
+        shutil.copytree(capture / "images", clip / f"t{number}")
+    shutil.copy(capture / "transforms.json", tmp_path)
+    options = {"fit": "none", "textures": 2, "atlas": 64, "proxy": str(capture / "proxy.ply")}
+    result = ef.batch(
+        clip, tmp_path / "out", instants=True, cameras=tmp_path / "transforms.json", progress=None, **options
+    )
+    assert [record["name"] for record in result.records] == ["t1", "t2", "t10"] and not result.failed
+    scenes = [ef.load(result.folder / one["folder"] / one["scene"]) for one in result.records]
+    known = {camera.t.tobytes() for camera in ef.open(capture).cameras}
+    assert all(len(scene.rig.cameras) == len(known) for scene in scenes)
+    assert 'type="range" min="0" max="2"' in result.page.read_text("utf-8")
+
+
+@pytest.mark.slow
+def test_instants_without_cameras_have_them_found_once(tmp_path):
+    draw_demo_capture(tmp_path / "jar", rows=5, columns=5, size=128)
+    for number in range(2):
+        shutil.copytree(tmp_path / "jar" / "images", tmp_path / "clip" / f"t{number}")
+    result = ef.batch(tmp_path / "clip", instants=True, workers=2, progress=None, preset="small", surface="relief")
+    assert not result.failed and len(list(result.folder.glob("cameras-*/calibration/transforms.json"))) == 1
+    first, second = (ef.load(result.folder / one["folder"] / one["scene"]) for one in result.records)
+    pairs = zip(first.rig.cameras, second.rig.cameras, strict=True)
+    assert all((a.R == b.R).all() and (a.t == b.t).all() for a, b in pairs)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('[[capture]]\npath = "a"\n[[capture]]\npath = "b/A"\n', "two captures are called A"),
+        ('[[capture]]\npath = "a"\npreste = "small"\n', "a: no option is called preste; did you mean preset?"),
+        ('[options]\npreset = "huge"\n[[capture]]\npath = "a"\n', "no preset is called huge"),
+        ('[[capture]]\nname = "a"\n', "a [[capture]] has no path"),
+        ("captures = 3\n", "has captures where only [options] and [[capture]] are known"),
+        ("[[capture\n", "is no TOML"),
+        ("", "holds no captures"),
+        ('[[capture]]\npath = "a"\nproxy = "m.ply"\nlayers = 3\n', "--layer is for making a proxy"),
+    ],
+)
+def test_what_a_list_cannot_say(tmp_path, text, words):
+    (tmp_path / "list.toml").write_text(text)
+    with pytest.raises(ef.OptionError) as caught:
+        ef.batch(tmp_path / "list.toml", progress=None)
+    assert words in str(caught.value) and "\n" not in str(caught.value)
+    assert list(tmp_path.iterdir()) == [tmp_path / "list.toml"]  # nothing is made
+
+
+def test_a_folder_of_captures(tmp_path):
+    for name in ("b10", "b9", ".hidden", "b-scenes"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "walk.mp4").touch()
+    (tmp_path / "notes.txt").touch()
+    assert [path.name for path in captures_in(tmp_path)] == ["b9", "b10", "walk.mp4"]
+    jobs = read_jobs(tmp_path, {"preset": "small", "grid": (3, 3)})
+    assert [job.name for job in jobs] == ["b9", "b10", "walk"]
+    assert jobs[0].options.preset == "small" and jobs[0].place == {"grid": (3, 3)}
+    assert {"hold_out", "surface", "calibration", "target_size"} <= set(ALL_KEYS)
+
+
+@pytest.mark.slow
+def test_a_hundred_thousand_captures_are_planned_in_seconds(tmp_path):
+    rows = "".join(f'[[capture]]\npath = "c{number}"\n' for number in range(100_000))
+    (tmp_path / "list.toml").write_text(rows)
+    began = time.monotonic()
+    assert len(read_jobs(tmp_path / "list.toml", {"preset": "small"})) == 100_000
+    assert time.monotonic() - began < 10
+
+
+def test_a_capture_too_large_for_every_worker_is_a_line(listed, tmp_path, monkeypatch):
+    monkeypatch.setattr(executor, "machine_memory", lambda: 0.5e9)
+    result = ef.batch(listed, tmp_path / "out", workers=1, progress=None)
+    assert [record.get("code") for record in result.records] == ["task-memory", "task-memory", "photographs-missing"]
+    assert "no worker has more than 0.5 GB" in result.records[0]["error"]
+
+
+def test_the_command_says_what_failed_and_goes_on(run, listed, monkeypatch):
+    from eigenfield.runtime import cluster
+
+    monkeypatch.setattr(cluster, "CONNECT_SECONDS", 0.5)
+    done = run("batch", listed)
+    assert done.code == 2 and done.out.count("\n") == 5 and "| jar |" in done.out
+    assert "eigenfield: empty: " in done.err and "2 scenes, " in done.err
+    again = run("batch", listed, "--quiet")
+    assert again.code == 2 and again.out == done.out and len(again.err.splitlines()) == 1
+    assert "2 of them finished before" in run("batch", listed).err
+    bad = run("batch", listed, "--cluster", "tcp://127.0.0.1:9")
+    assert bad.code == 2 and "cannot be reached" in bad.err and len(bad.err.splitlines()) == 1
+
+
+def test_what_a_page_shows_is_text():
+    record = {
+        "name": "<b>", "folder": "scenes/a b-1", "page": "x.html", "poster": "x.jpg", "scene": "x.glb", "bytes": 5000,
+        "psnr": 30.0, "held_out_psnr": None, "warnings": ['"'],
+    }  # fmt: skip
+    failed = {"name": "c", "error": "<script>"}
+    for instants in (False, True):
+        page = sheet_html("<i>", [record, failed], instants)
+        assert "<b></b>" not in page and "<i>" not in page and "&lt;script&gt;" in page
+        assert "scenes/a%20b-1/x.html" in page
+    assert (Path(executor.__file__).parents[1] / "batches/templates/player.js").exists()
