@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import csv
 import json
+import multiprocessing
+import os
 import shutil
+import signal
+import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -200,3 +205,49 @@ def test_what_a_page_shows_is_text():
         assert "<b></b>" not in page and "<i>" not in page and "&lt;script&gt;" in page
         assert "scenes/a%20b-1/x.html" in page
     assert (Path(executor.__file__).parents[1] / "batches/templates/player.js").exists()
+
+
+@pytest.mark.slow
+def test_forty_captures_and_a_killed_worker(capture, tmp_path):
+    """All scenes are there, and what was finished when the worker was killed is not made again."""
+    rows = "".join(
+        f'[[capture]]\npath = "{capture}"\nname = "c{number}"\ntextures = {2 + number % 4}\n' for number in range(40)
+    )
+    head = f'[options]\nproxy = "{capture}/proxy.ply"\nfit = "none"\natlas = 64\nhold_out = "every:4"\n'
+    (tmp_path / "list.toml").write_text(head + rows)
+    before: dict[Path, int] = {}
+    shown = []
+
+    def kill_one(stage, done, total):
+        shown.append((stage, done))
+        if (stage, done) == ("captures", 15):
+            before.update({path: path.stat().st_mtime_ns for path in tmp_path.glob("out/scenes/*/record.json")})
+            os.kill(multiprocessing.active_children()[0].pid, signal.SIGKILL)
+
+    result = ef.batch(tmp_path / "list.toml", tmp_path / "out", workers=2, progress=kill_one)
+    assert len(result.records) == 40 and not result.failed
+    assert len(before) >= 15 and all(path.stat().st_mtime_ns == time for path, time in before.items())
+    assert len(list((tmp_path / "out/scenes").iterdir())) == 40  # and nothing half written
+    assert [done for stage, done in shown if stage == "captures"] == list(range(41))
+    again = ef.batch(tmp_path / "list.toml", tmp_path / "out", workers=2, progress=None)
+    assert again.taken_up == 40 and again.records == result.records
+
+
+@pytest.mark.slow
+def test_an_interrupted_batch_goes_on(capture, tmp_path):
+    listed = tmp_path / "list.toml"
+    rows = "".join(f'[[capture]]\npath = "{capture}"\nname = "c{number}"\n' for number in range(12))
+    listed.write_text(f'[options]\nproxy = "{capture}/proxy.ply"\n{FAST}{rows}')
+    words = [sys.executable, "-m", "eigenfield", "batch", str(listed), "--workers", "2"]
+    running = subprocess.Popen(words, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    until = time.monotonic() + 120
+    while len(list(tmp_path.glob("list-scenes/scenes/*/record.json"))) < 3 and time.monotonic() < until:
+        time.sleep(0.05)
+    running.send_signal(signal.SIGINT)
+    _, said = running.communicate(timeout=20)
+    assert running.returncode == 130 and "Traceback" not in said
+    left = list(tmp_path.glob("list-scenes/scenes/*/record.json"))
+    assert 3 <= len(left) < 12
+    result = ef.batch(listed, workers=2, progress=None)
+    assert result.taken_up == len(left) and len(result.records) == 12 and not result.failed
+    assert len(list(tmp_path.glob("list-scenes/scenes/*"))) == 12

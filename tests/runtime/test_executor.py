@@ -222,3 +222,33 @@ def test_without_the_extra_it_is_said_what_to_install():
         "else:\n    raise SystemExit(1)\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+@pytest.mark.slow
+def test_a_memory_limit_ends_a_worker_and_not_the_work(tmp_path):
+    from distributed import LocalCluster
+
+    with (
+        LocalCluster(
+            n_workers=2, threads_per_worker=1, memory_limit="600MB", dashboard_address=":0", silence_logs=50
+        ) as small,
+        open_executor(None, small.scheduler_address) as workers,
+    ):
+        calls = [(tasks.hungry, tmp_path), *((tasks.squared, number) for number in range(10))]
+        assert list(spread(workers, calls)) == ["done", *(number * number for number in range(10))]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("way", ["processes", "cluster"])
+def test_thousands_of_short_tasks_leave_the_driver_small(request, way):
+    import psutil
+
+    cluster = request.getfixturevalue("scheduler") if way == "cluster" else None
+    with open_executor(2, cluster) as workers:
+        list(spread(workers, ((tasks.squared, 1) for _ in range(50))))
+        process, began = psutil.Process(), time.monotonic()
+        before = process.memory_info().rss
+        ended = sorted(number for number, _ in as_finished(workers, ((tasks.squared, n, 0.01) for n in range(2000))))
+        grown = process.memory_info().rss - before
+        print(f"{way}: {time.monotonic() - began:.1f} s, {grown / 1e6:.1f} MB")
+    assert ended == list(range(2000)) and grown < 100e6

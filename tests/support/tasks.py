@@ -53,3 +53,13 @@ def without_memory(folder: Path) -> str:
         (folder / "full").touch()
         raise MemoryError
     return "done"
+
+
+def hungry(folder: Path) -> str:
+    """Take more memory than a worker may have, the first time that it is called with a folder."""
+    if not (folder / "full").exists():
+        (folder / "full").touch()
+        held = bytearray(800_000_000)
+        held[::4096] = b"x" * len(held[::4096])
+        time.sleep(20)  # the nanny looks now and then
+    return "done"

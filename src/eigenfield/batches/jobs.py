@@ -70,7 +70,7 @@ def read_jobs(source: Path | Sequence[Path], shared: Mapping[str, Any]) -> list[
 
     Args:
         source: A TOML file, a folder of captures, or captures.
-        shared: Options of all captures by name; those in a file go before them, and a capture's own before both.
+        shared: Options of all captures by name; they go before those in a file, and a capture's own before both.
 
     Raises:
         OptionError: `batch-file`, `batch-empty`, `batch-names`, `batch-option`, or of a capture's options.
@@ -79,7 +79,7 @@ def read_jobs(source: Path | Sequence[Path], shared: Mapping[str, Any]) -> list[
         rows, base, first = [{"path": str(path)} for path in source], Path.cwd(), None
     elif source.suffix.lower() == ".toml":
         rows, own = _read_toml(source)
-        base, first, shared = source.absolute().parent, source, {**shared, **own}
+        base, first, shared = source.absolute().parent, source, {**own, **shared}
     elif source.is_dir():
         rows, base, first = [{"path": str(path)} for path in captures_in(source)], Path.cwd(), source
     else:
@@ -127,7 +127,7 @@ def _read_toml(path: Path) -> tuple[list[dict[str, Any]], dict[str, Any]]:
         or not all(isinstance(r, dict) for r in rows)
     ):
         message = f"has {next(iter(document), 'entries')} where only [options] and [[capture]] are known"
-        raise OptionError("batch-file", message, path=path, remedy="eigenfield help many-captures shows one")
+        raise OptionError("batch-file", message, path=path, remedy="leave it out, or put it into one of these")
     for row in rows:
         if not isinstance(row.get("path"), str) or not isinstance(row.get("name", ""), str):
             raise OptionError(

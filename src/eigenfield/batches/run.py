@@ -24,7 +24,6 @@ from eigenfield.runtime.tasks import Task, Workers
 
 PAGE_FILE = "index.html"
 FATAL_CODES = {"cluster-lost", "worker-start", "stopped"}  # what would fail for every other capture too
-LOOKED_SHARE = 0.02  # of a capture's time, for the estimate of an unopened one
 
 log = logging.getLogger("eigenfield.batch")
 

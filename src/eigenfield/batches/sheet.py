@@ -56,11 +56,12 @@ def _card(record: Mapping[str, Any]) -> str:
     if record["held_out_psnr"] is not None:
         figures.append(f"held out {record['held_out_psnr']:.1f} dB")
     name = _text(record["name"])
-    warned = f'<span title="{_text(" ".join(record["warnings"]))}">warnings</span>' if record["warnings"] else ""
+    lines = "<br>".join(map(_text, record["warnings"]))
+    warned = f"<details><summary>Warnings</summary>{lines}</details>" if lines else ""
     return (
         f'<li><a href="{_address(record, "page")}"><img loading="lazy" src="{_address(record, "poster")}" alt="">'
-        f"<b>{name}</b></a><p>{', '.join(figures)} {warned}"
-        f'<a href="{_address(record, "scene")}" download aria-label="{name}.glb">.glb</a></p></li>'
+        f"<b>{name}</b></a><p>{', '.join(figures)}"
+        f'<a href="{_address(record, "scene")}" download aria-label="{name}.glb">.glb</a></p>{warned}</li>'
     )
 
 

@@ -15,6 +15,7 @@ TOPICS = {
     "calibration": "how cameras are found, charts",
     "meshes": "what is read of a mesh",
     "exports": "what other programs get",
+    "cluster": "many captures on many machines",
     "viewer": "keys, controls and addresses of the viewer",
     "measures": "what every figure means",
     "format": "the file format, codes of findings",

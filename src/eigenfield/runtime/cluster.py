@@ -133,10 +133,10 @@ def _refuse_other_versions(reached: ClusterWorkers) -> None:
     own = installed()
     try:
         found = reached.everywhere(installed)
-    except (ImportError, AttributeError) as error:
+    except Exception as error:  # Dask sends what cannot be imported there as a plain Exception
         remedy = f"install eigenfield {own['eigenfield']} on all machines"
         raise WorkerError(
-            "cluster-version", f"a worker has no eigenfield, or another one: {error}", remedy=remedy
+            "cluster-version", f"a worker has no eigenfield, or another one: {error}".split("\n")[0], remedy=remedy
         ) from None
     for worker, its in found.items():
         for package, version in own.items():
