@@ -25,12 +25,14 @@ from eigenfield.runtime.parallel import set_threads, threads
 ROWS, SIZE = 5, 256
 
 
-def encoded(clip: Path, output: Path, **where: Any) -> dict[str, Any]:
+def encoded(clip: Path, output: Path, workers: int | None = None, cluster: str | None = None) -> dict[str, Any]:
     """A batch's figures, and its files by name."""
     began = time.perf_counter()
-    options = {"proxy": str(clip.parent / "demo" / "proxy.ply"), "preset": "small"}
+    options: dict[str, Any] = {"proxy": str(clip.parent / "demo" / "proxy.ply"), "preset": "small"}
     cameras = clip.parent / "demo" / "transforms.json"
-    result = ef.batch(clip, output, instants=True, cameras=cameras, progress=None, **where, **options)
+    result = ef.batch(
+        clip, output, instants=True, cameras=cameras, progress=None, workers=workers, cluster=cluster, **options
+    )
     seconds = time.perf_counter() - began
     if result.failed:
         raise SystemExit(f"{result.failed[0]['name']}: {result.failed[0]['error']}")
