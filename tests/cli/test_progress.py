@@ -12,9 +12,11 @@ from pathlib import Path
 
 import pytest
 
+from eigenfield.batches.run import _Bar
 from eigenfield.capture import open_any
 from eigenfield.cli import progress as progress_module
 from eigenfield.cli.progress import StepProgress, duration, progress_bars
+from eigenfield.core.progress import tell_remaining
 from eigenfield.encoding import EncodeOptions
 from eigenfield.encoding.cost import STEPS, expected_cost
 from eigenfield.encoding.estimated import reconstruction_settings
@@ -95,6 +97,38 @@ def test_work_without_a_plan_has_steps_without_numbers() -> None:
 @pytest.mark.parametrize(("seconds", "words"), [(1, "10 s"), (44, "40 s"), (100, "2 min"), (7200, "2.0 h")])
 def test_durations_are_said_as_people_say_them(seconds: float, words: str) -> None:
     assert duration(seconds) == f"about {words}"
+
+
+def test_whoever_knows_the_rest_says_it(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    clock, lines = Clock(monkeypatch), progress_module._Lines()
+    assert not lines.knows_rest and lines.left() == ""
+    lines("captures", 0, 40)
+    tell_remaining(lines, 600)
+    clock.now = 120
+    lines("captures", 8, 40)
+    assert lines.knows_rest and capsys.readouterr().err == "  captures: 8 of 40, about 8 min left\n"
+    tell_remaining(None, 600)
+
+
+def test_a_batch_counts_what_is_left_by_what_finished_captures_took() -> None:
+    told: list[float] = []
+
+    class Rest(StepProgress):
+        def __call__(self, stage: str, done: int, total: int) -> None:
+            shown.append((stage, done, total))
+
+        def remaining(self, seconds: float) -> None:
+            told.append(round(seconds, 3))
+
+    shown: list[tuple[str, int, int]] = []
+    bar = _Bar(10, Rest())  # of ten captures six are finished before
+    bar.begin(dict.fromkeys(range(6, 10), 100.0), 2)
+    bar.finished(6, 50.0, 2)
+    bar.finished(8, None, 2)  # it has failed
+    bar.finished(7, 50.0, 2)
+    bar.finished(9, 50.0, 2)
+    assert told == [200, 75, 50, 50, 0]
+    assert shown == [("captures", done, 10) for done in range(6, 11)]
 
 
 def test_lines_come_now_and_then_where_there_is_no_terminal(
