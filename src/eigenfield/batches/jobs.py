@@ -88,7 +88,7 @@ def read_jobs(source: Path | Sequence[Path], shared: Mapping[str, Any]) -> list[
             "batch-file", message, path=source, remedy="name a folder that holds captures, or a list of them"
         )
     if not rows:
-        remedy = "name a folder of which each folder is a capture (eigenfield encode takes one capture)"
+        remedy = "name a folder of which each folder is a capture"
         raise OptionError("batch-empty", "holds no captures", path=first, remedy=remedy)
     jobs = list(_jobs(rows, base, shared, first))
     _refuse_same_names(jobs, first)

@@ -126,7 +126,7 @@ def _wait_for_workers(client: Client, count: int, seconds: float | None) -> None
     except TimeoutError:
         there = len(client.nthreads())
         words = f"{there} of {count} workers are there" if there else "the scheduler has no workers"
-        raise WorkerError("cluster-empty", words, remedy="start some: dask worker ADDRESS --nthreads N") from None
+        raise WorkerError("cluster-empty", words, remedy="start some with `dask worker ADDRESS`") from None
 
 
 def _refuse_other_versions(reached: ClusterWorkers) -> None:
@@ -152,7 +152,7 @@ def _slurm(workers: int) -> Iterator[Any]:
     except ModuleNotFoundError:
         raise missing_extra("dask-jobqueue") from None
     if missing := [name for name in ("cores", "memory") if not dask.config.get(f"jobqueue.slurm.{name}")]:
-        remedy = "say them in ~/.config/dask/jobqueue.yaml (eigenfield help cluster)"
+        remedy = "say them in ~/.config/dask/jobqueue.yaml (`eigenfield help cluster`)"
         raise OptionError("slurm", f"nothing says the {' and the '.join(missing)} of a job of SLURM", remedy=remedy)
     with SLURMCluster() as cluster:
         cluster.scale(n=workers)
