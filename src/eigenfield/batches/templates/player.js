@@ -18,7 +18,7 @@ function open() {
   const next = document.createElement("iframe");
   next.title = instants[slider.value].name;
   next.allow = "fullscreen";
-  next.src = instants[slider.value].page + view;
+  next.src = `${instants[slider.value].page}?ui=none${view}`; // this page has name and buttons of its own
   frame = next;
   stage.append(next);
 }
