@@ -27,6 +27,7 @@ from eigenfield.capture.unread import describe_unread
 from eigenfield.core.arguments import checked
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.recognise import refuse_address
+from eigenfield.runtime.objects import local_copy
 
 C = TypeVar("C", LightField, PhotoSet, Capture)
 StrPath = str | os.PathLike[str]
@@ -128,7 +129,7 @@ def open_photographs(
     if source is None:
         raise _no_photographs(Path(path))
     arrangement = _read_arrangement(source)
-    made = make_photo_set(arrangement, source.root, masks=None if masks is None else Path(masks), strict=strict)
+    made = make_photo_set(arrangement, source.root, masks=None if masks is None else local_copy(masks), strict=strict)
     return _finish(made)
 
 
@@ -170,7 +171,7 @@ def _open_folders(
             "several folders are photographs alone: calibrations, formats and grids are of one",
             remedy="name one folder that holds them all, or leave out the other options",
         )
-    folders = [Path(path) for path in paths]
+    folders = [local_copy(path) for path in paths]
     try:
         root = Path(os.path.commonpath([folder.absolute() for folder in folders]))
     except ValueError as error:
@@ -178,7 +179,7 @@ def _open_folders(
             "folders-drives", "the folders are on several drives", remedy="copy them to one drive"
         ) from error
     arrangement = read_folders(folders)
-    return _finish(make_photo_set(arrangement, root, masks=None if masks is None else Path(masks), strict=strict))
+    return _finish(make_photo_set(arrangement, root, masks=None if masks is None else local_copy(masks), strict=strict))
 
 
 def _finish(opened: C) -> C:
@@ -223,7 +224,8 @@ class _Source:
 def _find_source(
     path: StrPath, calibration: StrPath | None, name: str | None, options: OpenOptions, formats: tuple[Format, ...]
 ) -> _Source | None:
-    root = unpack(Path(path), options.work) if is_zip(Path(path)) else Path(path)
+    root = local_copy(path)
+    root = unpack(root, options.work) if is_zip(root) else root
     if options.pattern is not None:
         compile_pattern(options.pattern)
         name = PATTERN_FORMAT if name is None else name
@@ -237,7 +239,7 @@ def _find_source(
             raise OptionError(
                 "format-cameras", f"--format {name} reads no calibration", remedy="leave out one of the two options"
             )
-        claim = _find_claim(Path(calibration), formats, options)
+        claim = _find_claim(local_copy(calibration), formats, options)
         if claim is None:
             raise _no_cameras(Path(calibration))
     else:
@@ -304,7 +306,7 @@ def _read_arrangement(source: _Source) -> Arrangement:
 
 
 def _open_source(source: _Source, masks: StrPath | None, strict: bool) -> Capture:
-    folder = None if masks is None else Path(masks)
+    folder = None if masks is None else local_copy(masks)
     row = source.claim.format
     if row.read_cameras is not None:
         root, lines = source.root, source.claim.problems

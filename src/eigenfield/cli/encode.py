@@ -106,7 +106,8 @@ Examples:
     "--work",
     type=PATH,
     metavar="DIR",
-    help="Folder that keeps finished stages of the reconstruction; the same command goes on from there. "
+    help="Folder, or s3://BUCKET/NAME, that keeps finished stages of the reconstruction; the same command goes on from "
+    "there. "
     "[default: OUTPUT with the ending .work; with --proxy its folder, for scratch files]",
 )
 @reconstruction_options
@@ -139,6 +140,7 @@ def command(
     from eigenfield.encoding.views import check_selection
     from eigenfield.gltf import parts, refuse_output, save
     from eigenfield.proxy import refuse_no_mesh
+    from eigenfield.runtime.objects import find_objects
 
     started = time.monotonic()
     refuse_output(output, overwrite)
@@ -151,7 +153,7 @@ def command(
         refuse_unused(settings, blind)
     with progress_bars(quiet) as progress:
         if proxy is not None:
-            scratch = output.absolute().parent if work is None else work
+            scratch = work or (None if find_objects(output) else output.absolute().parent)
             light_field = _open_capture(capture, place, scratch, quiet)
             announce(light_field, options, None, progress)
             scene = encode(light_field, proxy, options, work=scratch, progress=progress)
@@ -206,13 +208,15 @@ def announce(
     progress.plan(cost.steps, {name: step.words for name, step in STEPS.items()}, cost.layered)
 
 
-def _open_capture(capture: Path, place: Mapping[str, Any], scratch: Path, quiet: bool) -> LightField:
+def _open_capture(capture: Path, place: Mapping[str, Any], scratch: Path | None, quiet: bool) -> LightField:
     """A calibrated capture, and a folder for scratch files."""
     from eigenfield.capture import open_capture
     from eigenfield.runtime.files import output_errors
+    from eigenfield.runtime.objects import find_objects
 
     light_field = open_capture(capture, **place)
-    with output_errors(scratch):
-        scratch.mkdir(parents=True, exist_ok=True)
+    if scratch is not None and not find_objects(scratch):
+        with output_errors(scratch):
+            scratch.mkdir(parents=True, exist_ok=True)
     note_all(light_field.problems, quiet)
     return light_field

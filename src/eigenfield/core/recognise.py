@@ -46,6 +46,16 @@ def read_head(path: Path) -> bytes:
     return b""
 
 
+def split_address(path: str | os.PathLike[str]) -> tuple[str, str] | None:
+    """The scheme, in lower case, and the rest of an address such as `s3://bucket/name`; None for every other path.
+
+    Args:
+        path: As it was given; a `Path` of an address keeps one slash of two.
+    """
+    found = _ADDRESS.fullmatch(os.fspath(path))
+    return None if found is None else (found[1].lower(), found[2].replace("\\", "/"))
+
+
 def refuse_address(path: str | os.PathLike[str]) -> None:
     """Refuse a web address where a file is wanted.
 
@@ -55,8 +65,8 @@ def refuse_address(path: str | os.PathLike[str]) -> None:
     Raises:
         OptionError: `web-address`.
     """
-    found = _ADDRESS.fullmatch(os.fspath(path))
+    found = split_address(path)
     if found is not None:
-        where = f"{found[1]}://{found[2]}"  # a Path keeps one slash
+        where = "://".join(found)
         remedy = "download it first, and name the file or folder"
         raise OptionError("web-address", "is a web address, and nothing is fetched", path=where, remedy=remedy)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from eigenfield.core.notebook import notebook_progress
 from eigenfield.encoding.options import EncodeOptions, changed_options
 from eigenfield.encoding.target import Target
+from eigenfield.runtime.objects import find_objects, refuse_objects
 
 if TYPE_CHECKING:
     from eigenfield.capture import Capture
@@ -82,6 +83,8 @@ def encode(
     from eigenfield.gltf import encode_scene, read_scene
 
     asked = changed_options(EncodeOptions() if options is None else options, changes)
+    if asked.keep_maps is not None:
+        refuse_objects(asked.keep_maps)
     own: dict[str, Any] = {
         "surface": surface, "layers": layers, "refine": refine, "background": background,
         "primitives": primitives or (), "fit_spheres": fit_spheres or (),
@@ -100,7 +103,7 @@ def encode(
     if meant.residual is not None:
         check_residual(capture.cameras, meant.residual)
 
-    folder = None if work is None else Path(work)
+    folder = None if work is None or find_objects(work) else Path(work)  # scratch files stay on this machine
     plan = plan_encoding(capture, proxy, asked, folder, progress)
     scene = (encode_projected if projected else encode_fitted)(plan, folder, progress)
     scene = replace(scene, scores=measure_scene(scene, plan, folder, progress))

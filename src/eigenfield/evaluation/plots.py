@@ -23,6 +23,7 @@ from eigenfield.core.scene import Scene
 from eigenfield.evaluation.session import Session, start_session
 from eigenfield.imaging.metrics import PictureArray, to_codes
 from eigenfield.runtime.files import output_errors, write_bytes
+from eigenfield.runtime.objects import refuse_objects
 
 ContactSheetRow = tuple[str, PictureArray, PictureArray, PictureArray]  # title, photograph, drawn, error
 
@@ -50,8 +51,9 @@ def refuse_existing_plots(folder: Path, overwrite: bool) -> None:
         overwrite: Allow it.
 
     Raises:
-        OutputError: `output-exists`, or `not-a-folder`.
+        OutputError: `output-exists`, `not-a-folder` or `output-address`.
     """
+    refuse_objects(folder)
     if folder.exists() and not folder.is_dir():
         raise OutputError("not-a-folder", "is a file", path=folder, remedy="name a folder for --plots")
     for name in PLOT_FILES:

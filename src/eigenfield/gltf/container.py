@@ -14,6 +14,7 @@ from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError, OutputError
 from eigenfield.core.recognise import HEAD_BYTES, recognise, refuse_address
 from eigenfield.gltf import strict_json
+from eigenfield.runtime.objects import find_objects
 
 MAGIC = b"glTF"
 JSON_CHUNK = b"JSON"
@@ -51,8 +52,11 @@ def read_file(path: Path) -> bytes:
 
     Raises:
         FormatError: `file-missing`, `file-unreadable`, `not-a-file`, `file-size`.
-        OptionError: `web-address`.
+        OptionError: `web-address`; `object-missing`, `store`: an object store has no such file.
     """
+    objects = find_objects(path)
+    if objects is not None:
+        return objects.read()
     try:
         status = path.stat()
         if not stat.S_ISREG(status.st_mode):  # a pipe would wait, a device may never end

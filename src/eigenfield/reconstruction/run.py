@@ -120,7 +120,7 @@ class StageRunner:
         """
         started = time.monotonic()
         key = stage_key([name, self.identity, *inputs])
-        ready = self.stages.path(name, key).is_dir()
+        ready = self.stages.find(name, key) is not None
         if not ready:
             begin_step(self.progress, name)
         folder = self.stages.run(name, key, build)

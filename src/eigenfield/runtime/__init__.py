@@ -1,1 +1,1 @@
-"""What runs things: threads, compiled kernels, files, finished stages."""
+"""What runs things: threads, compiled kernels, files, finished stages, object stores."""

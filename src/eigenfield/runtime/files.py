@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from eigenfield.core.errors import OutputError
+from eigenfield.runtime.objects import find_objects, refuse_objects
 from eigenfield.runtime.signals import hold_signals
 from eigenfield.runtime.temporary import temporary_file, temporary_folder
 
@@ -48,6 +49,12 @@ def output_errors(path: str | os.PathLike[str]) -> Iterator[None]:
 
 def refuse_existing(path: Path, overwrite: bool) -> None:
     """Before any work: raise OutputError if `path` exists and may not be replaced, or its folder is missing."""
+    objects = find_objects(path)
+    if objects is not None:
+        if objects.exists() and not overwrite:
+            remedy = "use --overwrite or another name"
+            raise OutputError("output-exists", "exists already", path=objects.address, remedy=remedy)
+        return
     if path.is_dir():
         raise OutputError("output-is-folder", "is a folder", path=path, remedy="name a file")
     if path.exists() and not overwrite:
@@ -75,8 +82,16 @@ def numbered_files(path: Path, count: int) -> list[Path]:
 
 @contextlib.contextmanager
 def atomic_writer(path: Path, *, overwrite: bool = False) -> Iterator[IO[bytes]]:
-    """A binary file that appears as `path` by rename, after fsync, when the block succeeds; else nothing is left."""
+    """A binary file that appears as `path` by rename, after fsync, when the block succeeds; else nothing is left.
+
+    At an address of an object store it appears as an object.
+    """
     refuse_existing(path, overwrite)
+    objects = find_objects(path)
+    if objects is not None:
+        with output_errors(objects.address), objects.local_file() as place, place.open("wb") as file:
+            yield file
+        return
     with output_errors(path), temporary_file(path.name, path.absolute().parent) as part:
         with part.open("wb") as file:
             yield file
@@ -99,6 +114,7 @@ def atomic_files(targets: Sequence[Path], *, overwrite: bool = False) -> Iterato
     Yields the paths at which the block must write them.
     """
     for target in targets:
+        refuse_objects(target)
         refuse_existing(target, overwrite)
     with output_errors(targets[0]), temporary_folder(folder=targets[0].absolute().parent) as part:
         (part / "new").mkdir()

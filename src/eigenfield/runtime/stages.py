@@ -2,6 +2,7 @@
 
 The name of a stage's folder has a digest of everything that its result depends on: with another option, photograph or
 program, the stage is built again. It is built beside its place and renamed: a folder that exists is whole.
+In an object store, which has no rename, a stage is whole with its last object (`runtime.objects`).
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from typing import Any
 
 from eigenfield.core.errors import OutputError
 from eigenfield.runtime.files import flush_folder, output_errors, rename
+from eigenfield.runtime.objects import find_objects, local_folder
 from eigenfield.runtime.temporary import temporary_folder
 
 log = logging.getLogger("eigenfield.stages")
@@ -52,21 +54,31 @@ def stage_key(inputs: Iterable[Any]) -> str:
 
 
 class Stages:
-    """Finished stages in a folder."""
+    """Finished stages in a folder, or in an object store with copies in a folder of this machine."""
 
     def __init__(self, folder: Path | None) -> None:
         """Make the folder; None keeps nothing: every stage is built in a temporary folder."""
         opened = contextlib.ExitStack()
         self.close = weakref.finalize(self, opened.close)  # removes the folder if it is temporary
-        self.folder = opened.enter_context(temporary_folder()) if folder is None else Path(folder)
+        self.objects = None if folder is None else find_objects(folder)
+        if self.objects is not None:
+            self.objects.check_bucket()
+            self.folder = local_folder(self.objects)
+        else:
+            self.folder = opened.enter_context(temporary_folder()) if folder is None else Path(folder)
         if self.folder.exists() and not self.folder.is_dir():
             raise OutputError("work-is-file", "is a file", path=self.folder, remedy="name a folder as --work")
         with output_errors(self.folder):
             self.folder.mkdir(parents=True, exist_ok=True)
 
-    def path(self, name: str, key: str) -> Path:
-        """The folder of a finished stage, now or later."""
-        return self.folder / f"{name}-{key}"
+    def find(self, name: str, key: str) -> Path | None:
+        """The folder of a finished stage, copied from the object store if need be; None if it is not finished."""
+        place = self.folder / f"{name}-{key}"
+        if not place.is_dir() and self.objects is not None:
+            with output_errors(self.folder), temporary_folder(name, self.folder) as part:
+                if self.objects.fetch_stage(place.name, part):
+                    self._appear(part, place)
+        return place if place.is_dir() else None
 
     def run(self, name: str, key: str, build: Callable[[Path], None]) -> Path:
         """The folder of a stage: the finished one, otherwise a new one.
@@ -79,20 +91,27 @@ class Stages:
         Raises:
             OutputError: The folder cannot be written. Errors of `build` pass through; nothing of the stage is left.
         """
-        place = self.path(name, key)
-        if place.is_dir():
-            log.info("%s: taken up from %s", name, place)
-            return place
+        found = self.find(name, key)
+        if found is not None:
+            log.info("%s: taken up from %s", name, found)
+            return found
+        place = self.folder / f"{name}-{key}"
         with output_errors(self.folder), temporary_folder(name, self.folder) as part:
             build(part)
-            part.chmod(0o755)
-            flush_folder(part)
-            try:
-                rename(part, place)
-            except OSError:
-                if not place.is_dir():  # another run may have finished the same stage meanwhile
-                    raise
+            if self.objects is not None:
+                self.objects.put_stage(place.name, part)
+            self._appear(part, place)
         return place
+
+    @staticmethod
+    def _appear(part: Path, place: Path) -> None:
+        part.chmod(0o755)
+        flush_folder(part)
+        try:
+            rename(part, place)
+        except OSError:
+            if not place.is_dir():  # another run may have finished the same stage meanwhile
+                raise
 
     def __enter__(self) -> Stages:
         return self

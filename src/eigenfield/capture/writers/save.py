@@ -17,6 +17,7 @@ from eigenfield.capture.writers.colmap import colmap_model
 from eigenfield.capture.writers.transforms import transforms_document
 from eigenfield.core.errors import OutputError
 from eigenfield.runtime.files import current_umask, flush_folder, output_errors, rename
+from eigenfield.runtime.objects import refuse_objects
 from eigenfield.runtime.signals import hold_signals
 from eigenfield.runtime.temporary import temporary_folder
 
@@ -76,6 +77,7 @@ def save_calibration(
 
 def refuse_folder(folder: Path, overwrite: bool) -> None:
     """Before any work: raise OutputError where a calibration may not or cannot be written to `folder`."""
+    refuse_objects(folder)
     if folder.exists() and not folder.is_dir():
         raise OutputError("output-is-file", "is a file", path=folder, remedy="name a folder")
     with output_errors(folder):

@@ -27,6 +27,7 @@ from eigenfield.proxy.meshes.polygons import check_range
 from eigenfield.proxy.meshes.sound import make_sound
 from eigenfield.proxy.meshes.stl import STL
 from eigenfield.proxy.topology import remove_unused_vertices
+from eigenfield.runtime.objects import local_copy
 
 log = logging.getLogger("eigenfield.proxy")
 
@@ -53,7 +54,7 @@ def read_mesh(path: str | os.PathLike[str], origin: NDArray[np.float64] | None =
             `proxy-polygon`, `proxy-empty`, `proxy-no-faces`, `proxy-index-range`, `proxy-not-finite` or
             `proxy-degenerate`.
     """
-    file = Path(path)
+    file = local_copy(path)
     refuse_no_mesh(file)
     try:
         data = file.read_bytes()
@@ -78,6 +79,7 @@ def refuse_no_mesh(path: Path) -> None:
         ProxyError: `proxy-missing`, `proxy-format`.
         OptionError: `web-address`.
     """
+    path = local_copy(path)
     suffix, what = path.suffix.lower(), recognise(read_head(path))
     if what is not None:
         raise ProxyError("proxy-format", f"is {what}, and no mesh", path=path, remedy=_remedy("name a mesh"))

@@ -13,6 +13,7 @@ from typing import Any
 from eigenfield.core.errors import OutputError
 from eigenfield.core.version import __version__
 from eigenfield.runtime.files import flush_folder, output_errors, rename
+from eigenfield.runtime.objects import refuse_objects
 from eigenfield.runtime.signals import hold_signals
 from eigenfield.runtime.temporary import is_temporary, temporary_folder
 
@@ -28,8 +29,10 @@ def refuse_folder(folder: Path, overwrite: bool) -> None:
         overwrite: Whether an existing export may be replaced.
 
     Raises:
-        OutputError: `output-is-file`, `no-folder`, `not-writable`, `output-exists`, `not-an-export`.
+        OutputError: `output-is-file`, `no-folder`, `not-writable`, `output-exists`, `not-an-export`,
+            `output-address`.
     """
+    refuse_objects(folder)
     if folder.exists() and not folder.is_dir():
         raise OutputError("output-is-file", "is a file", path=folder, remedy="name a folder")
     parent = folder.absolute().parent

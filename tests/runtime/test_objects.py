@@ -1,0 +1,229 @@
+"""Object stores: photographs and meshes are read there, stages kept there, scenes written there."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+import eigenfield as ef
+from eigenfield.core.errors import OptionError, OutputError
+from eigenfield.runtime.files import write_bytes
+from eigenfield.runtime.objects import DONE, find_objects, local_copy, remove_copies
+from eigenfield.runtime.stages import Stages
+from support.captures import write_capture
+
+fsspec = pytest.importorskip("fsspec", reason="pip install 'eigenfield[s3]'")
+
+
+@pytest.fixture
+def store():
+    """A store in memory, emptied afterwards."""
+    fs = fsspec.filesystem("memory")
+    fs.mkdir("/lab")
+    yield fs
+    fs.store.clear()
+    fs.pseudo_dirs[:] = [""]
+    remove_copies()
+
+
+@pytest.fixture
+def s3(monkeypatch):
+    """The address of an empty bucket of an S3 in this process."""
+    boto3 = pytest.importorskip("boto3", reason="the tests of S3 need moto, s3fs, flask and flask-cors")
+    server_module = pytest.importorskip("moto.server", reason="the tests of S3 need moto, s3fs, flask and flask-cors")
+    pytest.importorskip("s3fs", reason="pip install 'eigenfield[s3]'")
+    server = server_module.ThreadedMotoServer(port=0)
+    server.start()
+    host, port = server.get_host_and_port()
+    for name, value in {
+        "AWS_ENDPOINT_URL": f"http://{host}:{port}", "AWS_ACCESS_KEY_ID": "me", "AWS_SECRET_ACCESS_KEY": "secret",
+        "AWS_DEFAULT_REGION": "us-east-1", "AWS_EC2_METADATA_DISABLED": "true",
+        "AWS_MAX_ATTEMPTS": "1",
+    }.items():  # fmt: skip
+        monkeypatch.setenv(name, value)
+    fsspec.filesystem("s3").clear_instance_cache()
+    boto3.client("s3").create_bucket(Bucket="lab")
+    yield "s3://lab"
+    server.stop()
+    remove_copies()
+    fsspec.filesystem("s3").clear_instance_cache()
+
+
+def put(folder: Path, address: str) -> None:
+    fs, root = fsspec.url_to_fs(address)
+    files = [path for path in sorted(folder.rglob("*")) if path.is_file()]
+    fs.put([str(path) for path in files], [f"{root}/{path.relative_to(folder).as_posix()}" for path in files])
+
+
+def test_a_path_is_no_address():
+    for path in ("photos", "/data/photos", "C:\\photos", Path("s3"), "https://example.com/a", "file:///a", "s3"):
+        assert find_objects(path) is None
+    assert find_objects(Path("memory://lab/photos")).address == "memory://lab/photos"
+
+
+def test_a_stage_is_its_objects_and_a_last_one_with_their_digests(store):
+    put_order, pipe = [], type(store).pipe_file
+
+    def watched(self, path, value, **options):
+        put_order.append(path)
+        pipe(self, path, value, **options)
+
+    def build(folder):
+        (folder / "inner").mkdir()
+        (folder / "inner" / "depth.npz").write_bytes(b"depth")
+        (folder / "mesh.ply").write_bytes(b"mesh")
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(type(store), "pipe_file", watched)
+        Stages(Path("memory://lab/work")).run("depth", "k", build)
+    assert put_order[-1] == f"/lab/work/depth-k/{DONE}"
+    assert sorted(json.loads(store.cat_file(put_order[-1]))) == ["inner/depth.npz", "mesh.ply"]
+
+    remove_copies()  # another machine
+    place = Stages(Path("memory://lab/work")).run("depth", "k", lambda folder: pytest.fail("built again"))
+    assert (place / "inner" / "depth.npz").read_bytes() == b"depth"
+
+
+@pytest.mark.parametrize("harm", ["without DONE", "an object is missing", "other bytes"])
+def test_what_is_not_whole_is_built_again(store, harm):
+    calls = []
+
+    def build(folder):
+        calls.append(folder)
+        (folder / "mesh.ply").write_bytes(b"mesh")
+
+    Stages(Path("memory://lab/work")).run("relief", "k", build)
+    remove_copies()
+    if harm == "without DONE":
+        store.rm(f"/lab/work/relief-k/{DONE}")
+    elif harm == "an object is missing":
+        store.rm("/lab/work/relief-k/mesh.ply")
+    else:
+        store.pipe_file("/lab/work/relief-k/mesh.ply", b"half")
+    place = Stages(Path("memory://lab/work")).run("relief", "k", build)
+    assert len(calls) == 2 and (place / "mesh.ply").read_bytes() == b"mesh"
+    assert store.cat_file("/lab/work/relief-k/mesh.ply") == b"mesh" and store.exists(f"/lab/work/relief-k/{DONE}")
+
+
+def test_a_failed_stage_is_not_put(store):
+    def build(folder):
+        (folder / "half").write_bytes(b"x")
+        raise ValueError("no")
+
+    with pytest.raises(ValueError, match="no"):
+        Stages(Path("memory://lab/work")).run("depth", "k", build)
+    assert store.find("/lab") == []
+
+
+def test_a_file_appears_when_it_is_whole(store):
+    write_bytes(Path("memory://lab/a.bin"), b"one")
+    with pytest.raises(OutputError, match=r"memory://lab/a\.bin: exists already"):
+        write_bytes(Path("memory://lab/a.bin"), b"two")
+    write_bytes(Path("memory://lab/a.bin"), b"two", overwrite=True)
+    assert store.cat_file("/lab/a.bin") == b"two"
+
+
+def test_names_that_leave_the_folder_are_refused(store):
+    store.store["/lab/photos/../../evil.png"] = fsspec.implementations.memory.MemoryFile(
+        store, "/lab/photos/../../evil.png", b"x"
+    )
+    with pytest.raises(OutputError, match=r"no name of a file"):
+        find_objects("memory://lab/photos").copy_to(Path("nowhere"))
+
+
+def encode_words(folder: object, output: object) -> list[object]:
+    proxy = Path(folder) / "proxy.ply" if isinstance(folder, Path) else f"{folder}/proxy.ply"
+    return ["encode", folder, "--proxy", proxy, "-n", "2", "-q", "-o", output]
+
+
+def test_encode_reads_and_writes_the_same_bytes_as_on_a_disk(store, run, tmp_path):
+    folder = write_capture(tmp_path / "nine")
+    put(folder, "memory://lab/nine")
+    assert run(*encode_words(folder, tmp_path / "here.glb")).code == 0
+    ran = run(*encode_words("memory://lab/nine", "memory://lab/there.glb"))
+    assert ran.code == 0 and ran.out.startswith("memory:"), ran.err
+    assert store.cat_file("/lab/there.glb") == (tmp_path / "here.glb").read_bytes()
+    assert ef.load("memory://lab/there.glb").rig.names == ef.load(tmp_path / "here.glb").rig.names
+    assert run("evaluate", "memory://lab/there.glb", "memory://lab/nine", "-q").code == 0
+    code, _, err = run(*encode_words("memory://lab/nine", "memory://lab/there.glb"))
+    assert code == 2 and "memory://lab/there.glb: exists already" in err
+
+
+@pytest.mark.parametrize("words", [
+    ["encode", "memory://lab/none", "-o", "memory://lab/a.glb"],
+    ["info", "memory://lab/none.glb"],
+    ["encode", "memory://lab/none", "--proxy", "memory://lab/none.ply", "-o", "memory://lab/a.glb"],
+    ["calibrate", "memory://lab/none", "-o", "memory://lab/cameras"],
+    ["encode", "nosuch://lab/none", "-o", "a.glb"],
+])  # fmt: skip
+def test_bad_addresses_are_one_line(store, run, words, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    code, out, err = run(*words)
+    assert code == 2 and out == "" and err.count("\n") == 1 and "://" in err, err
+    assert list(tmp_path.iterdir()) == [] and store.find("/lab") == []
+
+
+def test_without_the_extra_one_line_says_what_to_install(run, monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "fsspec", None)
+    code, _, err = run("info", "s3://lab/scene.glb")
+    assert code == 2 and err == (
+        "eigenfield: s3://lab/scene.glb: s3:// needs a package that is not installed; pip install 'eigenfield[s3]'\n"
+    )
+
+
+def test_s3_holds_photographs_stages_and_scene(s3, run, tmp_path):
+    folder = write_capture(tmp_path / "nine")
+    put(folder, f"{s3}/nine")
+    work, output = f"{s3}/work", f"{s3}/there.glb"
+    assert run(*encode_words(folder, tmp_path / "here.glb")).code == 0
+    ran = run(*encode_words(f"{s3}/nine", output), "--work", work)
+    assert ran.code == 0, ran.err
+    assert find_objects(output).read() == (tmp_path / "here.glb").read_bytes()
+    Stages(Path(work)).run("depth", "k", lambda folder: (folder / "a").write_bytes(b"a") and None)
+    remove_copies()
+    place = Stages(Path(work)).run("depth", "k", lambda folder: pytest.fail("built again"))
+    assert (place / "a").read_bytes() == b"a"
+
+
+def test_s3_answers_are_one_line(s3, run, tmp_path, monkeypatch):
+    code, _, err = run("info", "s3://nobucket/scene.glb")
+    assert code == 2 and "s3://nobucket/scene.glb: there is no such bucket or object; check the address" in err
+    for words in (["-o", "s3://nobucket/a.glb"], ["-o", f"{s3}/a.glb", "--work", "s3://nobucket/work"]):
+        code, _, err = run("encode", write_capture(tmp_path / words[-1][-1]), "-q", *words)
+        assert code == 2 and err.count("\n") == 1 and "there is no such bucket" in err, err
+    for name in ("AWS_ACCESS_KEY_ID", "AWS_SECRET_ACCESS_KEY"):
+        monkeypatch.delenv(name)
+    monkeypatch.setenv("AWS_SHARED_CREDENTIALS_FILE", "/nonexistent")
+    fsspec.filesystem("s3").clear_instance_cache()
+    code, _, err = run("info", f"{s3}/scene.glb")
+    assert code == 2 and "no credentials" in err and err.count("\n") == 1, err
+    monkeypatch.setenv("AWS_ENDPOINT_URL", "http://127.0.0.1:9")
+    monkeypatch.setenv("AWS_ACCESS_KEY_ID", "me")
+    monkeypatch.setenv("AWS_SECRET_ACCESS_KEY", "secret")
+    fsspec.filesystem("s3").clear_instance_cache()
+    code, _, err = run("info", f"{s3}/scene.glb")
+    assert code == 2 and "the store cannot be used" in err and err.count("\n") == 1, err
+
+
+@pytest.mark.slow
+def test_a_reconstruction_goes_on_from_a_store(s3, run, data, tmp_path):
+    folder = tmp_path / "temple"
+    shutil.copytree(data / "temple_ring16", folder)
+    put(folder, f"{s3}/temple")
+    words = ["--preset", "small", "-q", "--work", f"{s3}/work"]
+    first = run("encode", f"{s3}/temple", "-o", f"{s3}/a.glb", *words)
+    assert first.code == 0, first.err
+    remove_copies()
+    again = run("encode", f"{s3}/temple", "-o", f"{s3}/b.glb", *words)
+    assert again.code == 0 and find_objects(f"{s3}/a.glb").read() == find_objects(f"{s3}/b.glb").read()
+
+
+def test_errors_of_this_machine_are_not_about_the_store(store):
+    store.pipe_file("/lab/a.png", b"x")
+    with pytest.raises(NotADirectoryError):
+        find_objects("memory://lab").copy_to(Path("/dev/null/a"))
+    with pytest.raises(OptionError, match="no such bucket or object"):
+        local_copy("memory://lab/b.png")
