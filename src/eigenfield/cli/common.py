@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import json
 import logging
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -18,6 +19,7 @@ from eigenfield.core.progress import Progress
 if TYPE_CHECKING:
     from eigenfield.capture import Capture
     from eigenfield.reconstruction import Reconstruction
+    from eigenfield.runtime.tasks import Workers
 
 F = TypeVar("F", bound=Callable[..., Any])
 Decorator = Callable[[Any], Any]
@@ -92,6 +94,12 @@ common_options = together(
     click.option("--traceback", is_flag=True, expose_value=False, callback=_set_traceback, is_eager=True,
                  help="Show where an error came from."),
 )  # fmt: skip
+worker_options = together(
+    click.option("--workers", type=int, metavar="N",
+                 help="Do what can be spread in N processes of this machine; with --cluster, wait for N workers."),
+    click.option("--cluster", metavar="ADDRESS",
+                 help="Do it on a cluster: tcp://HOST:8786 (a Dask scheduler), slurm, or ssh:HOST,HOST."),
+)  # fmt: skip
 masks_option = click.option("--masks", type=PATH, metavar="FOLDER",
                             help="Masks named as the photographs; white counts.")  # fmt: skip
 grid_options = together(
@@ -159,6 +167,18 @@ def capture_options(function: Callable[..., Any]) -> Any:
         return function(capture=capture, place={**place, "also": also or None}, **given)
 
     return _place_options(collect)
+
+
+@contextlib.contextmanager
+def chosen_workers(workers: int | None, cluster: str | None) -> Iterator[Workers | None]:
+    """The workers that `worker_options` name; None: work stays in this process."""
+    if workers is None and cluster is None:
+        yield None
+        return
+    from eigenfield.runtime.executor import open_executor
+
+    with open_executor(workers, cluster) as opened:
+        yield opened
 
 
 def note(message: str, quiet: bool = False) -> None:

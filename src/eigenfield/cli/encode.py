@@ -14,11 +14,13 @@ from eigenfield.cli.common import (
     PATH,
     capture_argument,
     capture_options,
+    chosen_workers,
     common_options,
     note,
     note_all,
     reconstruct_capture,
     reconstruction_options,
+    worker_options,
 )
 from eigenfield.cli.field_options import field_options, from_fields
 from eigenfield.cli.progress import StepProgress, duration, progress_bars
@@ -50,6 +52,7 @@ def parse_size(context: click.Context, parameter: click.Parameter, value: str | 
 GROUPS = {  # of options in the help, the common ones first; what is named in none is of the last
     "Common options": (
         "output", "proxy", "preset", "target_size", "hold_out", "work", "overwrite", "quiet", "threads",
+        "workers", "cluster",
     ),
     "What the capture is": (
         "calibration", "masks", "format", "grid", "pattern", "frame", "frames", "reference", "metres_per_unit",
@@ -110,6 +113,7 @@ Examples:
     "there. "
     "[default: OUTPUT with the ending .work; with --proxy its folder, for scratch files]",
 )
+@worker_options
 @reconstruction_options
 @click.option(
     "--blind",
@@ -127,6 +131,8 @@ def command(
     overwrite: bool,
     quiet: bool,
     blind: bool,
+    workers: int | None,
+    cluster: str | None,
     **settings: Any,
 ) -> None:
     """Turn the photographs in CAPTURE into one .glb.
@@ -150,8 +156,8 @@ def command(
     if proxy is None:
         settings = reconstruction_settings(options, settings, blind)
     else:
-        refuse_unused(settings, blind)
-    with progress_bars(quiet) as progress:
+        refuse_unused({**settings, "workers": workers, "cluster": cluster}, blind)
+    with chosen_workers(workers, cluster) as reached, progress_bars(quiet) as progress:
         if proxy is not None:
             scratch = work or (None if find_objects(output) else output.absolute().parent)
             light_field = _open_capture(capture, place, scratch, quiet)
@@ -164,7 +170,7 @@ def command(
                 check_selection(opened, options)
                 announce(opened, options, settings, progress)
 
-            made = reconstruct_capture(capture, place, scratch, progress, quiet, check, **settings)
+            made = reconstruct_capture(capture, place, scratch, progress, quiet, check, workers=reached, **settings)
             scene = encode(made.light_field, made.proxy, options, triangles=None, work=scratch, progress=progress)
         save(scene, output, **options.for_save, overwrite=overwrite, progress=progress)
     sizes = parts(output)

@@ -12,10 +12,12 @@ from eigenfield.cli.common import (
     PATH,
     capture_argument,
     capture_options,
+    chosen_workers,
     common_options,
     echo_json,
     first_names,
     note,
+    worker_options,
 )
 from eigenfield.cli.progress import progress_bars
 
@@ -93,6 +95,7 @@ Examples:
     help="Pack every texture map as PNG for the ratio to them, or 16 and scale up, or none.",
 )
 @click.option("--flip", is_flag=True, help="Measure FLIP too: what an eye sees of the difference (0 is best).")
+@worker_options
 @common_options
 def command(
     scene: Path,
@@ -104,6 +107,8 @@ def command(
     store: bool,
     exclude_circles: Path | None,
     quiet: bool,
+    workers: int | None,
+    cluster: str | None,
     **settings: Any,
 ) -> None:
     """Measure the file SCENE against the photographs of CAPTURE, matched by name.
@@ -125,8 +130,10 @@ def command(
         refuse_existing(scene, overwrite=True)  # fails now, not after the work, where the folder cannot be written to
     light_field = with_scene_cameras(loaded, open_any(capture, **place))
     circles = None if exclude_circles is None else read_circles(exclude_circles, loaded.rig.names)
-    with progress_bars(quiet) as progress:
-        figures = evaluate(loaded, light_field, path=scene, circles=circles, progress=progress, **settings)
+    with chosen_workers(workers, cluster) as reached, progress_bars(quiet) as progress:
+        figures = evaluate(
+            loaded, light_field, path=scene, circles=circles, workers=reached, progress=progress, **settings
+        )
     if plots is not None:
         from eigenfield.evaluation.plots import write_plots
 

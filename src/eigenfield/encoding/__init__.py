@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from eigenfield.core.progress import Progress
     from eigenfield.core.proxy import Proxy
     from eigenfield.core.scene import EncodedScene
+    from eigenfield.runtime.tasks import Workers
 
 __all__ = ["EncodeOptions", "Target", "encode"]
 
@@ -40,6 +41,7 @@ def encode(
     fit_spheres: Sequence[str] = (),
     blind: bool = False,
     work: str | os.PathLike[str] | None = None,
+    workers: Workers | None = None,
     progress: Progress | None = notebook_progress,
     **changes: Any,
 ) -> EncodedScene:
@@ -62,6 +64,7 @@ def encode(
         blind: Estimate proxy and cameras without the held-out photographs too.
         work: Folder that keeps finished stages of the reconstruction, and scratch files: up to 17 bytes a pixel, and
             10 for each sheet that it shows; or 4 bytes x channels x cameras x texels. None: a temporary one.
+        workers: Of `reconstruct`; without a proxy alone.
         progress: Reports each stage; by default bars in a notebook. None: nothing is reported.
         changes: Fields of `EncodeOptions` by name, in place of those of `options`.
 
@@ -90,10 +93,10 @@ def encode(
         "primitives": primitives or (), "fit_spheres": fit_spheres or (),
     }  # fmt: skip
     if proxy is None:
-        capture, proxy = estimate(capture, asked, reconstruction_settings(asked, own, blind), work, progress)
+        capture, proxy = estimate(capture, asked, reconstruction_settings(asked, own, blind), work, workers, progress)
         asked = replace(asked, triangles=None)  # the mesh has no more than were asked for
     else:
-        refuse_unused(own, blind)
+        refuse_unused({**own, "workers": workers}, blind)
         capture = calibrated(capture, proxy)
     meant = asked.resolved()
     projected = meant.fit == "none"

@@ -18,6 +18,7 @@ from eigenfield.encoding.options import EncodeOptions
 from eigenfield.encoding.views import check_selection
 from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES, refuse_no_mesh
 from eigenfield.reconstruction import reconstruct
+from eigenfield.runtime.tasks import Workers
 
 log = logging.getLogger("eigenfield.encode")
 
@@ -63,16 +64,17 @@ def refuse_unused(own: Mapping[str, Any], blind: bool) -> None:
     """
     asked = [name for name, value in own.items() if value not in (None, "auto", ())] + ["blind"] * blind
     if asked:
+        option = {"primitives": "primitive", "fit_spheres": "fit-sphere"}.get(asked[0], asked[0])
         raise OptionError(
             "proxy-given",
-            f"--{asked[0].replace('_', '-').removesuffix('s')} is for making a proxy, but --proxy gives one",
+            f"--{option} is for making a proxy, but --proxy gives one",
             remedy="leave out one of the two",
         )
 
 
 def estimate(
     given: Given, options: EncodeOptions, settings: Mapping[str, Any], work: str | os.PathLike[str] | None,
-    progress: Progress | None,
+    workers: Workers | None, progress: Progress | None,
 ) -> tuple[LightField, Proxy]:  # fmt: skip
     """Cameras and proxy of a capture.
 
@@ -81,6 +83,7 @@ def estimate(
         options: Of the scene.
         settings: Of `reconstruction_settings`.
         work: Folder that keeps finished stages; None: nothing is kept.
+        workers: Of `reconstruct`.
         progress: Reports each stage.
 
     Raises:
@@ -95,7 +98,7 @@ def estimate(
     else:
         raise OptionError("capture", f"a {type(given).__name__} makes no proxy", remedy="give the proxy, or a folder")
     check_selection(opened, options)
-    made = reconstruct(opened, work=folder, progress=progress, **settings)
+    made = reconstruct(opened, work=folder, workers=workers, progress=progress, **settings)
     _warn(made.light_field.problems[len(opened.problems) :])
     return made.light_field, made.proxy
 

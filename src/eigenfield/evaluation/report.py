@@ -11,6 +11,7 @@ from typing import Any
 
 from eigenfield.capture import Capture, open_any
 from eigenfield.core.arguments import checked
+from eigenfield.core.errors import OptionError
 from eigenfield.core.notebook import notebook_progress
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
@@ -18,8 +19,10 @@ from eigenfield.encoding.residual.views import with_differences
 from eigenfield.evaluation.exclusion import ExcludedCircle
 from eigenfield.evaluation.image import summarise_scores
 from eigenfield.evaluation.session import CameraScores, PictureScores, Session, start_session, with_scene_cameras
+from eigenfield.evaluation.spread import MeasureJob, measure_on
 from eigenfield.gltf import parts
 from eigenfield.runtime.parallel import parallel_stream
+from eigenfield.runtime.tasks import Workers
 
 EVALUATION_SCHEMA = "eigenfield.evaluate/1"
 
@@ -37,6 +40,7 @@ def evaluate(
     circles: Mapping[str, ExcludedCircle] | None = None,
     png_maps: str = "all",
     flip: bool = False,
+    workers: Workers | None = None,
     progress: Progress | None = notebook_progress,
 ) -> dict[str, Any]:
     """Measure a scene against its photographs; docs/measures.md defines every score. The result is JSON-able.
@@ -52,24 +56,32 @@ def evaluate(
         circles: By camera, excluded from the scores under `outside` (see `read_circles`).
         png_maps: Pack "all" texture maps as PNG, a "sample" of 16 (scaled up), or "none".
         flip: Measure FLIP too, which takes longer.
+        workers: Of `open_executor`: cameras are measured there, with the same scores. They read the scene from `path`.
         progress: Called for each camera; by default a bar in a notebook.
 
     Raises:
         CaptureError: `no-photographs`: no photograph has the name of a camera. `photograph-size`. As for reading
             photographs.
-        OptionError: `png-maps`, `curve`, `textures`, `not-photographs` or `settings-unknown`.
+        OptionError: `png-maps`, `curve`, `textures`, `not-photographs`, `settings-unknown` or `workers-path`.
+        OutputError: As `measure_on`.
     """
     started = time.monotonic()
     opened = open_any(capture) if isinstance(capture, str | os.PathLike) else capture
     photographs = with_scene_cameras(scene, opened)
-    session = start_session(
-        scene, photographs, curve=curve, textures=textures, filter=filter, weights=weights, circles=circles,
-        png_maps=png_maps, flip=flip,
-    )  # fmt: skip
+    settings: dict[str, Any] = {
+        "curve": curve, "textures": textures, "filter": filter, "weights": weights, "circles": circles,
+        "png_maps": png_maps, "flip": flip,
+    }  # fmt: skip
+    if workers is not None and path is None:
+        raise OptionError("workers-path", "workers read the scene from its file", remedy="name it as path")
+    session = start_session(scene, photographs, **settings)
     indices = list(session.photographs)
-    views = with_differences(scene, indices, session.measures_residual)
-    measured = parallel_stream(lambda view: (view[0], session.measure(*view)), views)
-    found = dict(track(measured, "measuring", len(indices), progress))
+    if workers is not None and path is not None:
+        found = measure_on(workers, MeasureJob(Path(path), photographs, settings), indices, progress)
+    else:
+        views = with_differences(scene, indices, session.measures_residual)
+        measured = parallel_stream(lambda view: (view[0], session.measure(*view)), views)
+        found = dict(track(measured, "measuring", len(indices), progress))
     results = {index: found[index] for index in indices}
     held_out, maps = scene.rig.held_out, _png_maps(session, results, png_maps)
     scores: dict[str, Any] = {

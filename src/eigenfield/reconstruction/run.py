@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import logging
+import shutil
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,7 +16,11 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, begin_step
 from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES, parse_primitive, parse_region
 from eigenfield.proxy.atlas.unwrap import UNWRAP_MIN_TRIANGLES
+from eigenfield.runtime.executor import refuse_unshared
+from eigenfield.runtime.files import output_errors
+from eigenfield.runtime.parts import Parts
 from eigenfield.runtime.stages import Stages, stage_key
+from eigenfield.runtime.tasks import Workers
 
 log = logging.getLogger("eigenfield.reconstruction")
 
@@ -102,6 +108,7 @@ class StageRunner:
         identity: What every stage depends on.
         progress: Called within stages.
         seconds: Time that each stage took.
+        workers: That make parts of stages; None: there are none.
     """
 
     stages: Stages
@@ -109,6 +116,20 @@ class StageRunner:
     identity: Sequence[Any]
     progress: Progress | None
     seconds: dict[str, float]
+    workers: Workers | None = None
+
+    @contextmanager
+    def parts(self) -> Iterator[Parts | None]:
+        """Where a stage has its independent parts made; they go when the block succeeds. None: in this process."""
+        if self.workers is None:
+            yield None
+            return
+        folder = self.stages.folder / "parts"
+        with output_errors(folder):
+            folder.mkdir(exist_ok=True)
+        refuse_unshared(self.workers, folder)
+        yield Parts(self.workers, folder, stage_key([self.identity, repr(self.settings)]))
+        shutil.rmtree(folder, ignore_errors=True)
 
     def stage(self, name: str, inputs: Sequence[Any], build: Callable[[Path], None]) -> Path:
         """The folder of a stage, built if it is not finished.

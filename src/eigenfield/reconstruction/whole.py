@@ -57,6 +57,7 @@ from eigenfield.reconstruction.stage_files import (
 )
 from eigenfield.runtime.parallel import parallel_map
 from eigenfield.runtime.stages import Stages, file_digest
+from eigenfield.runtime.tasks import Workers
 
 log = logging.getLogger("eigenfield.reconstruction")
 
@@ -94,6 +95,7 @@ def reconstruct(
     blind: str | None = None,
     hold_out: str | None = None,
     work: Path | None = None,
+    workers: Workers | None = None,
     progress: Progress | None = notebook_progress,
 ) -> Reconstruction:
     """Estimate what a capture lacks: cameras if it has none, and a proxy.
@@ -115,6 +117,7 @@ def reconstruct(
         hold_out: A rule of `hold_out`: layers, whose opacity is appearance, are not made from these views. Default:
             those of `blind`.
         work: The folder of finished stages; None: nothing is stored.
+        workers: Of `open_executor`: they make the depth maps of cameras all around. They see `work`.
         progress: Called within stages; by default bars in a notebook.
 
     Raises:
@@ -132,11 +135,13 @@ def reconstruct(
     if surface == "layers":
         check_capture(capture)
     with Stages(work) as stages:
-        run = StageRunner(stages, settings, capture_identity(capture), progress, {})
+        run = StageRunner(stages, settings, capture_identity(capture), progress, {}, workers)
         points = calibration = array = None
         if capture.light_field is None and capture.layout is None:  # nothing is known about the cameras
             capture, points, calibration = _estimate_cameras(run, capture)
         if _is_array(capture, settings):
+            if workers is not None:
+                log.warning("an array has one depth map of all views: workers have no part in its reconstruction")
             array = align_array(run, capture, points)
             light_field, calibration = array.light_field, array.folder / "calibration"
         else:
@@ -232,10 +237,11 @@ def _poisson(
 
     def build(folder: Path) -> None:
         known = triangulate_points(light_field, progress=run.progress) if points is None else points
-        surface = surface_from_views(
-            light_field, known, triangles=settings.triangles, background=settings.background,
-            primitives=_requested_primitives(run, light_field), progress=run.progress,
-        )  # fmt: skip
+        with run.parts() as parts:
+            surface = surface_from_views(
+                light_field, known, triangles=settings.triangles, background=settings.background,
+                primitives=_requested_primitives(run, light_field), parts=parts, progress=run.progress,
+            )  # fmt: skip
         log.info("surface: %d points from %d depth maps, error %s", surface.points, surface.views, surface.error)
         write_ply(surface.mesh, folder / STAGE_MESH_FILE)
         (folder / STAGE_ERROR_FILE).write_text(json.dumps(asdict(surface.error)), encoding="utf-8")

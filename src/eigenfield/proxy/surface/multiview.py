@@ -7,8 +7,10 @@ motion are given. In the fine one each view covers the range of the points that 
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+import pickle
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import cv2
 import numpy as np
@@ -28,6 +30,7 @@ from eigenfield.proxy.surface.neighbours import choose_neighbours, frustum_point
 from eigenfield.proxy.surface.poisson import poisson_surface
 from eigenfield.proxy.surface.trim import SurfaceError, simplify_with_error, trim_by_masks, trim_surface
 from eigenfield.runtime.parallel import tracked_map
+from eigenfield.runtime.parts import Parts
 from eigenfield.stereo import ReferenceView, estimate_depth, view_matrices
 
 log = logging.getLogger("eigenfield.proxy")
@@ -83,6 +86,7 @@ class MultiviewTuning:
 
 
 MULTIVIEW_TUNING = MultiviewTuning()
+DEPTH_MAP_FILE = "depth.npz"
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,6 +130,7 @@ def surface_from_views(
     triangles: int = PROXY_DEFAULT_TRIANGLES,
     background: bool | None = None,
     primitives: Sequence[Primitive] = (),
+    parts: Parts | None = None,
     progress: Progress | None = None,
 ) -> ReconstructedSurface:
     """The surface that the photographs show, by multi-view stereo and Poisson reconstruction.
@@ -137,6 +142,7 @@ def surface_from_views(
         triangles: Most triangles, approximately.
         background: Add a far surface (`fill_background`). None: unless there are masks.
         primitives: Shapes that replace the result of stereo.
+        parts: Workers that make the depth maps; None: this process does.
         progress: Called for each view and step.
 
     Raises:
@@ -148,14 +154,14 @@ def surface_from_views(
     if points is None or len(points) < MULTIVIEW_TUNING.min_points:
         chosen = spread_views(cameras, MULTIVIEW_TUNING.coarse_views)
         pictures = _pictures(light_field, chosen, MULTIVIEW_TUNING.coarse_pixels, progress)
-        views, tolerance = _depth_views(pictures, None, progress)
+        views, tolerance = _depth_views(pictures, None, None, progress)  # too little work to pay for workers
         limit = MULTIVIEW_TUNING.min_fused_points
         points = fuse_depth_maps(views, tolerance=tolerance, limit=limit, progress=progress).positions
         log.info("coarse pass: %d points", len(points))
     chosen = spread_views(cameras, MULTIVIEW_TUNING.max_views)
     most = min(MULTIVIEW_TUNING.max_pixels, MULTIVIEW_TUNING.max_total_pixels // len(chosen))
     pictures = _pictures(light_field, chosen, most, progress)
-    views, tolerance = _depth_views(pictures, points, progress)
+    views, tolerance = _depth_views(pictures, points, parts, progress)
     limit = max(MULTIVIEW_TUNING.points_per_triangle * triangles, MULTIVIEW_TUNING.min_fused_points)
     fused = fuse_depth_maps(views, tolerance=tolerance, limit=limit, progress=progress)
     masked = any(picture.mask is not None for picture in pictures)
@@ -223,7 +229,7 @@ def _resample(pixels: NDArray[np.float32], camera: Camera, small: Camera) -> NDA
 
 
 def _depth_views(
-    pictures: Sequence[_Picture], points: NDArray[np.float64] | None, progress: Progress | None
+    pictures: Sequence[_Picture], points: NDArray[np.float64] | None, parts: Parts | None, progress: Progress | None
 ) -> tuple[list[DepthView], float]:
     """The views that share enough with others, and the relative difference of depth up to which two of them agree."""
     cameras = [picture.camera for picture in pictures]
@@ -232,18 +238,20 @@ def _depth_views(
             "surface-masked", "the masks hide every pixel", remedy="white counts, black is left out: invert the masks?"
         )
     stage = "coarse depth" if points is None else "depth"
-    views, tolerances = [], []
-    for index in track(range(len(pictures)), stage, len(pictures), progress):
-        span = _inverse_range(cameras[index], cameras, points)
-        seen = frustum_points(cameras[index], *span) if points is None else points[inside_frame(cameras[index], points)]
+    jobs = []
+    for index, camera in enumerate(cameras):
+        span = _inverse_range(camera, cameras, points)
+        seen = frustum_points(camera, *span) if points is None else points[inside_frame(camera, points)]
         others = choose_neighbours(index, cameras, seen, MULTIVIEW_TUNING.neighbours)
         if len(others) < MULTIVIEW_TUNING.min_neighbours:
             log.warning("a view shares too little with the others: it gets no depth map")
-            continue
-        inverse_depth, tolerance = _depth_map(index, others, pictures, span)
+        else:
+            jobs.append(_DepthJob(index, tuple(others), span))
+    made = (_depth_map(job, pictures) for job in jobs) if parts is None else _depth_maps_on(parts, jobs, pictures)
+    views, tolerances = [], []
+    for job, (inverse_depth, tolerance) in zip(jobs, track(made, stage, len(jobs), progress), strict=True):
         tolerances.append(tolerance)
-        picture = pictures[index]
-        views.append(DepthView(picture.camera, inverse_depth, picture.mask))
+        views.append(DepthView(cameras[job.index], inverse_depth, pictures[job.index].mask))
     if len(views) < MULTIVIEW_TUNING.min_neighbours + 1:
         raise ProxyError(
             "surface-overlap",
@@ -275,22 +283,60 @@ def _inverse_range(
     return MULTIVIEW_TUNING.min_parallax_pixels / parallax, most / parallax
 
 
+@dataclass(frozen=True)
+class _DepthJob:
+    """A depth map that is to be made.
+
+    Attributes:
+        index: Of the view.
+        others: Indices of those that it is compared with.
+        span: Its range of inverse depths.
+    """
+
+    index: int
+    others: tuple[int, ...]
+    span: tuple[float, float]
+
+
+def _depth_maps_on(
+    parts: Parts, jobs: Sequence[_DepthJob], pictures: Sequence[_Picture]
+) -> Iterator[tuple[NDArray[np.float32], float]]:
+    """The depth maps of `_depth_map`, made by workers, which read the pictures from files."""
+    with parts.shared([pickle.dumps(picture) for picture in pictures]) as files:
+        for folder in parts.make("depth", build_depth_map, [(job, files) for job in jobs]):
+            with np.load(folder / DEPTH_MAP_FILE) as data:
+                yield data["inverse_depth"], float(data["tolerance"])
+
+
+def build_depth_map(folder: Path, job: _DepthJob, files: Sequence[Path]) -> None:
+    """Write one depth map into a folder, on a worker.
+
+    Args:
+        folder: Exists.
+        job: The depth map.
+        files: Of all pictures.
+    """
+    pictures = {index: pickle.loads(files[index].read_bytes()) for index in (job.index, *job.others)}
+    inverse_depth, tolerance = _depth_map(job, pictures)
+    np.savez(folder / DEPTH_MAP_FILE, inverse_depth=inverse_depth, tolerance=tolerance)
+
+
 def _depth_map(
-    index: int, others: Sequence[int], pictures: Sequence[_Picture], span: tuple[float, float]
+    job: _DepthJob, pictures: Mapping[int, _Picture] | Sequence[_Picture]
 ) -> tuple[NDArray[np.float32], float]:
     """Inverse depth (H, W) of one view, 0 outside its mask, and the relative depth of a pixel of parallax."""
-    own = pictures[index]
-    cameras = [pictures[i].camera for i in others]
+    own, span = pictures[job.index], job.span
+    used = [own, *(pictures[i] for i in job.others)]
+    cameras = [picture.camera for picture in used[1:]]
     axis = own.camera.R[2]
     apart = [camera.centre - own.camera.centre for camera in cameras]
     across = [np.linalg.norm(step - (step @ axis) * axis) for step in apart]
     unit = 1 / (own.camera.K[0, 0] * max(float(np.median(across)), 1e-12))
     reference = ReferenceView.with_margin(own.camera, 0, span[0], unit)
     reach = (span[1] - span[0]) / unit
-    height, width = max(p.pixels.shape[0] for p in pictures), max(p.pixels.shape[1] for p in pictures)
-    stack = np.zeros((len(others) + 1, height, width, 3), np.uint8)
-    for slot, i in zip(stack, [index, *others], strict=True):
-        part = pictures[i].pixels
+    height, width = max(p.pixels.shape[0] for p in used), max(p.pixels.shape[1] for p in used)
+    stack = np.zeros((len(used), height, width, 3), np.uint8)
+    for slot, part in zip(stack, (picture.pixels for picture in used), strict=True):
         slot[: part.shape[0], : part.shape[1]] = part
     matrices = view_matrices(reference, [own.camera, *cameras])
     d = estimate_depth(stack, matrices, reference.shape, (0.0, reach), rounds=MULTIVIEW_TUNING.refinement_rounds)

@@ -1,0 +1,86 @@
+"""Measuring cameras on workers: each reads scene and photographs from their files, and returns scores."""
+
+from __future__ import annotations
+
+import math
+import pickle
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from eigenfield.capture import LightField
+from eigenfield.core.progress import Progress, track
+from eigenfield.encoding.residual.views import with_differences
+from eigenfield.evaluation.session import CameraScores, Session, start_session
+from eigenfield.gltf import load
+from eigenfield.runtime.executor import refuse_unshared, spread
+from eigenfield.runtime.parallel import parallel_stream, pieces
+from eigenfield.runtime.tasks import Workers
+from eigenfield.runtime.temporary import temporary_folder
+
+TASKS_PER_WORKER = 4  # so that the last ones end at about the same time
+JOB_FILE = "job.pickle"
+
+
+@dataclass(frozen=True, eq=False)
+class MeasureJob:
+    """What a worker needs to measure cameras.
+
+    Attributes:
+        scene: Its file.
+        capture: Photographs with cameras: their paths, no pixels.
+        settings: Of `start_session`.
+    """
+
+    scene: Path
+    capture: LightField
+    settings: Mapping[str, Any]
+
+
+def measure_on(
+    workers: Workers, job: MeasureJob, indices: Sequence[int], progress: Progress | None
+) -> dict[int, CameraScores]:
+    """The scores of cameras, which are those that one process finds.
+
+    Args:
+        workers: Of `open_executor`. They see the folder of the scene, and the photographs.
+        job: What they need.
+        indices: Of the scene's cameras.
+        progress: Called for each group of cameras.
+
+    Raises:
+        OutputError: `folder-not-shared`; the scene's folder cannot be written.
+        CaptureError, OptionError, FormatError: As `evaluate`.
+    """
+    folder = job.scene.absolute().parent
+    refuse_unshared(workers, folder)
+    size = math.ceil(len(indices) / (TASKS_PER_WORKER * workers.width))
+    groups = [list(indices[start:stop]) for start, stop in pieces(len(indices), size)]
+    with temporary_folder("eigenfield-measure", folder) as place:
+        place.chmod(0o755)  # workers may run as another user
+        (place / JOB_FILE).write_bytes(pickle.dumps(job))
+        found: dict[int, CameraScores] = {}
+        results = spread(workers, ((measure_group, place / JOB_FILE, group) for group in groups))
+        for part in track(results, "measuring", len(groups), progress):
+            found |= part
+    return found
+
+
+def measure_group(job: Path, indices: Sequence[int]) -> dict[int, CameraScores]:
+    """The scores of a few cameras, on a worker.
+
+    Args:
+        job: File of a `MeasureJob`.
+        indices: Of the scene's cameras.
+    """
+    session = _session(job)
+    views = with_differences(session.scene, indices, session.measures_residual)
+    return dict(parallel_stream(lambda view: (view[0], session.measure(*view)), views))
+
+
+@lru_cache(maxsize=1)
+def _session(path: Path) -> Session:
+    job: MeasureJob = pickle.loads(path.read_bytes())
+    return start_session(load(job.scene), job.capture, **job.settings)

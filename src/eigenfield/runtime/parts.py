@@ -1,0 +1,73 @@
+"""Parts of one stage that do not need each other, made by workers as finished stages of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from eigenfield.runtime.executor import spread
+from eigenfield.runtime.stages import Stages, stage_key
+from eigenfield.runtime.tasks import Workers
+from eigenfield.runtime.temporary import temporary_folder
+
+
+@dataclass(frozen=True)
+class Parts:
+    """Where the parts of stages are made.
+
+    Attributes:
+        workers: Of `open_executor`.
+        folder: That all of them share; it keeps parts that are finished.
+        identity: What every part depends on, besides its own arguments.
+    """
+
+    workers: Workers
+    folder: Path
+    identity: str
+
+    def make(self, name: str, build: Callable[..., None], calls: Sequence[tuple[Any, ...]]) -> Iterator[Path]:
+        """The folders of all parts, in order. Those that an earlier run has finished are not made again.
+
+        Args:
+            name: Of the parts.
+            build: Importable by name; writes the files of a part into the folder that is its first argument.
+            calls: Its other arguments for each part: paths and small numbers. A part is known by its place among them,
+                so they must follow from `identity`.
+        """
+        keys = [stage_key([self.identity, name, number, len(calls)]) for number in range(len(calls))]
+        each = ((make_part, self.folder, name, key, build, call) for key, call in zip(keys, calls, strict=True))
+        return spread(self.workers, each)
+
+    @contextmanager
+    def shared(self, contents: Sequence[bytes]) -> Iterator[list[Path]]:
+        """Files that workers can read, removed after the block.
+
+        Args:
+            contents: Of each file.
+        """
+        with temporary_folder("shared", self.folder) as place:
+            place.chmod(0o755)  # workers may run as another user
+            files = [place / str(number) for number in range(len(contents))]
+            for file, data in zip(files, contents, strict=True):
+                file.write_bytes(data)
+            yield files
+
+
+def make_part(folder: Path, name: str, key: str, build: Callable[..., None], args: tuple[Any, ...]) -> Path:
+    """The folder of a part, made if it is not finished; runs on a worker.
+
+    Args:
+        folder: That keeps the parts.
+        name: Of the parts.
+        key: Of this one.
+        build: Writes its files into the folder that is its first argument.
+        args: Its other arguments.
+    """
+
+    def write(place: Path) -> None:
+        build(place, *args)
+
+    return Stages(folder).run(name, key, write)
