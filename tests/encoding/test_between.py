@@ -77,6 +77,7 @@ def test_cameras_left_out_are_inside_and_no_neighbours():
         return spread_inside(make_rig([str(i) for i in range(len(cameras))], cameras, np.zeros(len(cameras), bool), 0))
 
     assert chosen([(x, y) for y in range(3) for x in range(3)]) == [4]
+    assert chosen([*((x, y) for y in range(3) for x in range(3)), (1, 1)]) in ([4], [9])  # two in one place
     inner = chosen([(x, y) for y in range(5) for x in range(5)])
     assert 2 <= len(inner) <= 6 and all(i % 5 not in (0, 4) and i // 5 not in (0, 4) for i in inner)
     assert chosen([(x, 0) for x in (0, 1, 2, 4, 7)]) == [3]

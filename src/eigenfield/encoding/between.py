@@ -118,7 +118,8 @@ def spread_inside(rig: Rig) -> list[int]:
     """
     near = _neighbours(rig)
     rim = set(hull(rig.triangles).ravel().tolist()) or {index for index, ones in enumerate(near) if len(ones) < 2}
-    inner = [index for index in range(len(near)) if index not in rim] or list(range(len(near)))
+    joined = [index for index, ones in enumerate(near) if ones]  # another camera may stand in the same place
+    inner = [index for index in joined if index not in rim] or joined
     gaps = _gaps(rig)
     chosen: list[int] = []
     for index in sorted(inner, key=lambda i: -max(gaps[i, j] for j in near[i])):
