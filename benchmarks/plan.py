@@ -12,9 +12,8 @@ import json
 import re
 from dataclasses import dataclass
 
-from measure import RESULTS
-
 from eigenfield.encoding.cost import MEMORY_FIXED_BYTES, THREADS_POWER
+from measure import RESULTS
 
 PIXELS = {"fox": 540 * 960, "tarot-all": 512 * 512, "shop": 960 * 640}  # of a photograph of the measured captures
 PHOTOGRAPHS = re.compile(r"for (\d+) photographs \(([\d.]+) MB\)")
@@ -100,15 +99,15 @@ def table(instants: int, cameras: int, width: int, height: int, machines: int, c
     lines = [
         f"{instants} instants of {cameras} cameras of {width}x{height}, {machines} machines of {cores} cores:",
         "",
-        "| reckoned from | an instant is larger | tasks | seconds a task | memory a task | read | written | the reads need "
-        "| hours |",
+        "| reckoned from | an instant is larger | tasks | seconds a task | memory a task | read | written "
+        "| storage gives | hours |",
         "|---|---|---|---|---|---|---|---|---|",
     ]
     for name in PIXELS:
         one = plan(measured(name), instants, pixels, machines, cores)
         lines.append(
-            f"| {name} | {one.times_larger:.0f} times | {one.tasks} | {one.task_seconds:.0f} | {one.memory / 1e9:.0f} GB "
-            f"| {one.read / 1e12:.1f} TB | {one.written / 1e12:.2f} TB | {one.read / one.hours / 3.6e9:.0f} MB/s "
+            f"| {name} | {one.times_larger:.0f} times | {one.tasks} | {one.task_seconds:.0f} "
+            f"| {one.memory / 1e9:.0f} GB | {one.read / 1e12:.1f} TB | {one.written / 1e12:.2f} TB | {one.read / one.hours / 3.6e9:.0f} MB/s "
             f"| {one.hours:.0f} |"
         )
     return "\n".join(lines)

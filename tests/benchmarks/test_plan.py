@@ -1,11 +1,12 @@
-"""The plan for many instants: reckoned from the measured encodes, by simple proportions; docs/cluster.md has its table."""
+"""The plan for many instants, reckoned from the measured encodes by proportions; docs/cluster.md has its table."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-import plan
 import pytest
+
+import plan
 
 DOCS = Path(__file__).parents[2] / "docs"
 
