@@ -105,11 +105,12 @@ def table(instants: int, cameras: int, width: int, height: int, machines: int, c
     ]
     for name in PIXELS:
         one = plan(measured(name), instants, pixels, machines, cores)
-        lines.append(
-            f"| {name} | {one.times_larger:.0f} times | {one.tasks} | {one.task_seconds:.0f} "
-            f"| {one.memory / 1e9:.0f} GB | {one.read / 1e12:.1f} TB | {one.written / 1e12:.2f} TB | {one.read / one.hours / 3.6e9:.0f} MB/s "
-            f"| {one.hours:.0f} |"
-        )
+        cells = [
+            name, f"{one.times_larger:.0f} times", one.tasks, f"{one.task_seconds:.0f}", f"{one.memory / 1e9:.0f} GB",
+            f"{one.read / 1e12:.1f} TB", f"{one.written / 1e12:.2f} TB", f"{one.read / one.hours / 3.6e9:.0f} MB/s",
+            f"{one.hours:.0f}",
+        ]  # fmt: skip
+        lines.append(f"| {' | '.join(map(str, cells))} |")
     return "\n".join(lines)
 
 
