@@ -141,7 +141,7 @@ def test_instants_without_cameras_have_them_found_once(tmp_path):
         ("captures = 3\n", "has captures where only [options] and [[capture]] are known"),
         ("[[capture\n", "is no TOML"),
         ("", "holds no captures"),
-        ('[[capture]]\npath = "a"\nproxy = "m.ply"\nlayers = 3\n', "--layer is for making a proxy"),
+        ('[[capture]]\npath = "a"\nproxy = "m.ply"\nlayers = 3\n', "--layers is for making a proxy"),
     ],
 )
 def test_what_a_list_cannot_say(tmp_path, text, words):
