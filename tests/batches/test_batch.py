@@ -89,7 +89,8 @@ def test_what_is_finished_is_taken_up_and_what_changed_is_made_again(listed, cap
     assert ef.batch(listed, progress=None).taken_up == 1
 
 
-@pytest.mark.parametrize("way", ["processes", pytest.param("cluster", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("way", ["processes", "cluster"])
 def test_the_bytes_are_the_same_wherever_they_are_made(listed, tmp_path, way):
     here = ef.batch(listed, tmp_path / "here", progress=None)
     if way == "processes":
@@ -173,6 +174,7 @@ def test_a_hundred_thousand_captures_are_planned_in_seconds(tmp_path):
     assert time.monotonic() - began < 10
 
 
+@pytest.mark.slow
 def test_a_capture_too_large_for_every_worker_is_a_line(listed, tmp_path, monkeypatch):
     monkeypatch.setattr(executor, "machine_memory", lambda: 0.5e9)
     result = ef.batch(listed, tmp_path / "out", workers=1, progress=None)

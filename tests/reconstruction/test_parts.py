@@ -60,6 +60,7 @@ def test_workers_make_the_same_depth_maps(tmp_path):
         assert a.inverse_depth.any() and a.inverse_depth.tobytes() == b.inverse_depth.tobytes()
 
 
+@pytest.mark.slow
 def test_workers_measure_the_same(run, fitted):
     folder, scene = fitted
     here, there = (run("evaluate", scene, folder, "-q", "--json", *words) for words in ([], ["--workers", 2]))

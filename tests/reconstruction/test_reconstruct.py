@@ -78,6 +78,7 @@ def test_blind_views_only_register_their_own_camera(photos, made, tmp_path):
     assert np.array_equal(without.proxy.mesh.vertices, blind.proxy.mesh.vertices)
 
 
+@pytest.mark.slow
 def test_a_photograph_of_another_scene_is_named_and_left_out(photos, tmp_path):
     mixed = tmp_path / "mixed"
     shutil.copytree(photos, mixed)
@@ -156,6 +157,7 @@ def test_bare_photographs_are_measured_by_the_scenes_own_cameras(photos, made, t
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
+@pytest.mark.slow
 def test_a_killed_run_goes_on(photos, tmp_path, run):
     command = [sys.executable, "-m", "eigenfield", "encode", str(photos), "-o", str(tmp_path / "scene.glb")]
     process = subprocess.Popen(command, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)

@@ -25,7 +25,7 @@ def scheduler():
         yield cluster.scheduler_address
 
 
-@pytest.fixture(scope="module", params=["here", "processes", "cluster"])
+@pytest.fixture(scope="module", params=["here", "processes", pytest.param("cluster", marks=pytest.mark.slow)])
 def workers(request):
     """Each of the three ways."""
     given = {"here": (None, None), "processes": (2, None), "cluster": (2, "")}[request.param]
@@ -141,6 +141,7 @@ def test_a_script_without_a_guard_is_told_so(tmp_path):
     assert 'below `if __name__ == "__main__":`' in done.stderr
 
 
+@pytest.mark.slow
 def test_a_cluster_s_workers_are_told_apart_and_may_die(scheduler, tmp_path):
     (tmp_path / "a").mkdir()
     with open_executor(2, scheduler) as workers:
@@ -198,6 +199,7 @@ def test_a_scheduler_without_workers(monkeypatch):
         open_executor(None, empty.scheduler_address).__enter__()
 
 
+@pytest.mark.slow
 def test_a_lost_scheduler_is_one_line():
     from distributed import LocalCluster
 
