@@ -94,7 +94,7 @@ def prepare(page: str, place: Path) -> None:
         shutil.copytree(capture, place / "photographs")
         ef.save(ef.encode(capture, proxy=capture / "proxy.ply", fit="none"), place / "scene.glb")
     elif page in ("exports", "publish", "measure-and-compare"):
-        for name in ("scene", "tarot", "fern"):
+        for name in ("tarot", "fern", *([] if page == "measure-and-compare" else ["scene"])):
             shutil.copy(ROOT / "docs/scene.glb", place / f"{name}.glb")
 
 

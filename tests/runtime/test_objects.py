@@ -213,7 +213,7 @@ def test_a_reconstruction_goes_on_from_a_store(s3, run, data, tmp_path):
     folder = tmp_path / "temple"
     shutil.copytree(data / "temple_ring16", folder)
     put(folder, f"{s3}/temple")
-    words = ["--preset", "small", "-q", "--work", f"{s3}/work"]
+    words = ["--fit", "none", "--atlas", 256, "-q", "--work", f"{s3}/work"]
     first = run("encode", f"{s3}/temple", "-o", f"{s3}/a.glb", *words)
     assert first.code == 0, first.err
     remove_copies()
