@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 from pathlib import Path
 
 import pytest
@@ -13,7 +12,7 @@ from eigenfield.core.errors import OptionError, OutputError
 from eigenfield.runtime.files import write_bytes
 from eigenfield.runtime.objects import DONE, find_objects, local_copy, remove_copies
 from eigenfield.runtime.stages import Stages
-from support.captures import write_capture
+from support.captures import write_array, write_capture
 
 fsspec = pytest.importorskip("fsspec", reason="pip install 'eigenfield[s3]'")
 
@@ -209,15 +208,14 @@ def test_s3_answers_are_one_line(s3, run, tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-def test_a_reconstruction_goes_on_from_a_store(s3, run, data, tmp_path):
-    folder = tmp_path / "temple"
-    shutil.copytree(data / "temple_ring16", folder)
-    put(folder, f"{s3}/temple")
-    words = ["--fit", "none", "--atlas", 256, "-q", "--work", f"{s3}/work"]
-    first = run("encode", f"{s3}/temple", "-o", f"{s3}/a.glb", *words)
+def test_a_reconstruction_goes_on_from_a_store(s3, run, tmp_path):
+    write_array(tmp_path / "photos")
+    put(tmp_path / "photos", f"{s3}/photos")
+    words = ["--preset", "small", "--layers", 1, "-q", "--work", f"{s3}/work"]
+    first = run("encode", f"{s3}/photos", "-o", f"{s3}/a.glb", *words)
     assert first.code == 0, first.err
     remove_copies()
-    again = run("encode", f"{s3}/temple", "-o", f"{s3}/b.glb", *words)
+    again = run("encode", f"{s3}/photos", "-o", f"{s3}/b.glb", *words)
     assert again.code == 0 and find_objects(f"{s3}/a.glb").read() == find_objects(f"{s3}/b.glb").read()
 
 
