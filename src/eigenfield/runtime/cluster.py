@@ -67,9 +67,7 @@ class ClusterWorkers(Workers):
             outer.set_exception(too_big(task.memory, most))
             return outer
         needs = {"task": 1.0, "memory": task.memory} if task.memory else {"task": 1.0}
-        call = functools.partial(
-            task, *args, **named
-        )  # Dask neither looks into the arguments nor takes any for its own
+        call = functools.partial(task, *args, **named)  # whose arguments Dask neither looks into nor takes for its own
         try:
             inner = self._client.get_executor(pure=False, resources=needs).submit(call)
         except (OSError, RuntimeError) as error:
@@ -187,9 +185,8 @@ def _pass_on(outer: Future[Any], inner: Future[Any]) -> None:
         return
     error = inner.exception()
     if isinstance(error, KilledWorker):
-        message = (
-            f"{dask.config.get('distributed.scheduler.allowed-failures') + 1} workers were killed while they ran it"
-        )
+        killed = dask.config.get("distributed.scheduler.allowed-failures") + 1
+        message = f"{killed} workers were killed while they ran it"
         remedy = "give them more memory, or look into their logs"
         outer.set_exception(WorkerError("worker-killed", message, remedy=remedy))
     elif isinstance(error, MemoryError):

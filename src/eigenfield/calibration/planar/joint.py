@@ -140,12 +140,12 @@ class _JointRefinement:
     ) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
         """Visibility and mean texture over `views`, from the present cameras and depth; or with a given visibility."""
         matrices = self.matrices(views)
-        height, width = pictures.shape[1:3]
-        if self._buffers is None or len(self._buffers) != len(views):
-            self._buffers = None
-            self._buffers = np.zeros((len(views), height, width), np.float32)
         if buffers is None:
-            buffers = depth_buffers(matrices, self.d, (height, width), out=self._buffers)
+            shape = pictures.shape[1:3]
+            if self._buffers is None or len(self._buffers) != len(views):
+                self._buffers = None  # the old ones go before there are new ones
+                self._buffers = np.zeros((len(views), *shape), np.float32)
+            buffers = depth_buffers(matrices, self.d, shape, out=self._buffers)
         self.texture, self.count = mean_texture(pictures, matrices, self.d, buffers, self.bias)
         return matrices, buffers
 
@@ -191,7 +191,7 @@ class _JointRefinement:
         buffers: NDArray[np.float32] | None = None
         for _ in range(rounds):
             target = self.make_target(views, shown, buffers)
-            buffers = target.buffers  # cameras move by less than visibility is exact
+            buffers = target.buffers  # drawn once: the steps of a round hardly change what is visible
             moved, self.error[views] = gauss_newton_step(self.model, views, self.parameters[views], target, count, tau)
             keep = self.parameters[self.centre].copy()
             self.parameters[views] = moved
