@@ -40,6 +40,7 @@ class LatticeTuning:
         min_columns: Columns of a chart, at least.
         max_columns: Columns of a chart, at most.
         min_peak_fraction: Height of the coarsest peak, relative to the highest.
+        same_peak_fraction: Two peaks are equally high if the lower has this fraction of the other.
         min_peak_noise_ratio: Height of a peak, relative to that of random phases.
     """
 
@@ -55,6 +56,7 @@ class LatticeTuning:
     min_columns: int = 16
     max_columns: int = 8192
     min_peak_fraction: float = 0.75
+    same_peak_fraction: float = 0.95
     min_peak_noise_ratio: float = 6.0
 
 
@@ -203,10 +205,15 @@ def _column_spacing(values: NDArray[np.float64]) -> float:
     counts = np.bincount(((values - low) / (high - low) * (bins - 1)).round().astype(np.int64), minlength=bins)
     length = np.abs(np.fft.rfft(counts, finer * bins))[: finer * LATTICE_TUNING.max_columns] / len(values)
     length[: finer * LATTICE_TUNING.min_columns] = 0
-    first = int(np.argmax(length > LATTICE_TUNING.min_peak_fraction * length.max()))
-    if not length[first] > LATTICE_TUNING.min_peak_noise_ratio / np.sqrt(len(values)):
+
+    def coarsest_peak(height: float) -> int:
+        first = int(np.argmax(length > height))
+        return first + int(np.argmax(length[first : first + finer]))
+
+    near = coarsest_peak(LATTICE_TUNING.min_peak_fraction * length.max())
+    near = coarsest_peak(LATTICE_TUNING.same_peak_fraction * length[near])  # a coarser one may just miss the limit
+    if not length[near] > LATTICE_TUNING.min_peak_noise_ratio / np.sqrt(len(values)):
         return 0.0
-    near = first + int(np.argmax(length[first : first + finer]))
     columns = near * (bins - 1) / (finer * bins) / (high - low)
     for step in (0.1, 0.01, 0.001):  # of a column, over the whole extent
         tried = columns + np.arange(-10, 11) * step / (high - low)
