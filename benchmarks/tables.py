@@ -235,6 +235,24 @@ def driver(name: str) -> str:
     return found[0] if found else name
 
 
+def batches() -> str:
+    figures = latest("batch")
+    names = {"one_process": "one process", "processes": "a process a processor", "cluster": "a Dask cluster"}
+    rows = [
+        [words, f"{way['seconds']:.0f}", f"{way['ratio']:.2f}", f"{100 * way['overhead']:.1f} %"]
+        for name, words in names.items()
+        if (way := figures.get(name))
+    ]
+    return (
+        f"### Many captures\n\n{figures['instants']} instants of the demo's array, 25 views of 256² each, by `eigenfield"
+        f" batch --preset small` with the mesh given. {figures['workers']} workers of one thread stand against one"
+        f" process of {figures['workers']} threads. The overhead is the time in which workers had no capture, as a share"
+        " of that in which they had one. The scenes are equal to the byte.\n\n"
+        + table(["where", "seconds", "of one process", "overhead"], rows)
+        + "\n" + origin(figures, "batch") + "\n"
+    )  # fmt: skip
+
+
 def single() -> str:
     """Tables of figures that were measured once, by hand: each run of single.json is one table."""
     parts = [
@@ -268,6 +286,7 @@ def main() -> None:
         + "\n## Time\n\n"
         + encoding()
         + drawing()
+        + batches()
         + single(),
     }
     for path, figures in made.items():
