@@ -142,7 +142,7 @@ def test_derivatives_are_those_of_the_projection():
     reference = model.reference_view(8)
     rng = np.random.default_rng(1)
     parameters = rng.uniform(-1, 1, (1, ARRAY_PARAMETERS)) * [2, 2, 3, 3, 0.01, 0.01, 0.01, 0.01, 0.02, 0.01]
-    derivatives = model.derivatives(reference, np.array([0]), parameters)[0]
+    derivatives = model.derivatives(reference, np.array([0]), parameters, ARRAY_PARAMETERS)[0]
     for index in range(ARRAY_PARAMETERS):
         moved = parameters.copy()
         moved[0, index] += 1e-6

@@ -49,14 +49,16 @@ def splat_labels(matrix, d, valid, buffer):
             z = a2 * f(x) + d2 * label + c2
             if not z > f(1e-6):
                 continue
-            px = (a0 * f(x) + d0 * label + c0) / z
-            py = (a1 * f(x) + d1 * label + c1) / z
+            inverse = f(1) / z
+            px, py = (a0 * f(x) + d0 * label + c0) * inverse, (a1 * f(x) + d1 * label + c1) * inverse
             if not (px > f(-1) and py > f(-1) and px < f(width) and py < f(height)):
                 continue
-            column, row = int(np.floor(px)), int(np.floor(py))
-            for r in range(max(row, 0), min(row + 2, height)):
-                for c in range(max(column, 0), min(column + 2, width)):
-                    buffer[r, c] = max(buffer[r, c], label)
+            left, top = max(np.int32(np.floor(px)), 0), max(np.int32(np.floor(py)), 0)
+            right, bottom = min(np.int32(np.floor(px)) + 1, width - 1), min(np.int32(np.floor(py)) + 1, height - 1)
+            buffer[top, left] = max(buffer[top, left], label)
+            buffer[top, right] = max(buffer[top, right], label)
+            buffer[bottom, left] = max(buffer[bottom, left], label)
+            buffer[bottom, right] = max(buffer[bottom, right], label)
 
 
 @kernel(fastmath=FASTMATH_ORDERED)

@@ -130,17 +130,18 @@ class ArrayModel:
         return view_matrices(reference, self.cameras(views, parameters))
 
     def derivatives(
-        self, reference: ReferenceView, views: NDArray[np.int64], parameters: NDArray[np.float64]
+        self, reference: ReferenceView, views: NDArray[np.int64], parameters: NDArray[np.float64], count: int
     ) -> NDArray[np.float64]:
-        """(v, 10, 3, 4) derivatives of the matrices by each parameter, by central differences.
+        """(v, count, 3, 4) derivatives of the matrices by the first parameters, by central differences.
 
         Args:
             reference: Whose points are projected.
             views: (v,) indices.
             parameters: (v, 10).
+            count: Number of the parameters.
         """
-        result = np.zeros((len(views), ARRAY_PARAMETERS, 3, 4))
-        for index, step in enumerate(ARRAY_DERIVATIVE_STEPS):
+        result = np.zeros((len(views), count, 3, 4))
+        for index, step in enumerate(ARRAY_DERIVATIVE_STEPS[:count]):
             moved = np.zeros(ARRAY_PARAMETERS)
             moved[index] = step
             plus, minus = (self.matrices(reference, views, parameters + sign * moved) for sign in (1, -1))

@@ -15,7 +15,7 @@ from eigenfield.stereo.reference_view import ReferenceView
 
 FIT_MIN_VIEW_FRACTION = 0.15  # of the views, which must see a point that cameras are fitted to
 FIT_MIN_GRADIENT_LEVELS = 2.0  # a pixel: weaker gradients do not constrain a camera
-FIT_MAX_POINTS = 60_000  # of a fit
+FIT_POINTS_PER_PARAMETER = 6_000  # of a camera, at most
 FIT_CORRELATED_RESIDUALS = 100  # count as one: neighbouring pixels and channels are not independent
 
 
@@ -41,15 +41,16 @@ class PhotometricTarget:
 
 
 def select_textured_points(
-    d: NDArray[np.float32], texture: NDArray[np.float32], count: NDArray[np.int32], views: int
+    d: NDArray[np.float32], texture: NDArray[np.float32], count: NDArray[np.int32], views: int, parameters: int
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Points with texture that enough views see, evenly subsampled to FIT_MAX_POINTS.
+    """Points with texture that enough views see, evenly subsampled to FIT_POINTS_PER_PARAMETER each.
 
     Args:
         d: (h, w) labels.
         texture: (h, w, 3) mean texture, grey levels.
         count: (h, w) number of views that see each point.
         views: Number of views.
+        parameters: Number of parameters that are fitted to them.
 
     Returns:
         (k, 3) x, y, d, and (k, 3) colours.
@@ -57,7 +58,7 @@ def select_textured_points(
     grey = texture.mean(axis=-1)
     slope = np.hypot(cv2.Sobel(grey, cv2.CV_32F, 1, 0), cv2.Sobel(grey, cv2.CV_32F, 0, 1)) / 8
     good = np.flatnonzero((slope > FIT_MIN_GRADIENT_LEVELS) & (count > max(2, FIT_MIN_VIEW_FRACTION * views)))
-    good = good[:: max(1, len(good) // FIT_MAX_POINTS)]
+    good = good[:: max(1, len(good) // (FIT_POINTS_PER_PARAMETER * parameters))]
     y, x = np.divmod(good, d.shape[1])
     points = np.stack([x, y, d.ravel()[good]], axis=1).astype(np.float32)
     return points, np.ascontiguousarray(texture.reshape(-1, 3)[good])
@@ -86,7 +87,7 @@ def gauss_newton_step(
     """
     channels = target.pictures.view(np.uint8).reshape(*target.pictures.shape, 4)
     matrices = model.matrices(target.reference, views, parameters)
-    derivatives = model.derivatives(target.reference, views, parameters)
+    derivatives = model.derivatives(target.reference, views, parameters, count)
     prior = 1 / model.sigma[:count] ** 2
 
     def step(k: int) -> tuple[NDArray[np.float64], float]:
@@ -94,7 +95,7 @@ def gauss_newton_step(
         total, seen = normal_equations(
             channels[k], target.points, target.colours, matrices[k], target.buffers[k], target.bias, tau, left, right
         )
-        chain = derivatives[k, :count]  # of the matrix by each parameter
+        chain = derivatives[k]  # of the matrix by each parameter
         hessian = np.einsum("pik,ijkl,qjl->pq", chain, left.reshape(3, 3, 4, 4), chain, optimize=True)
         gradient = np.einsum("pik,ik->p", chain, right)
         moved = parameters[k].copy()

@@ -53,6 +53,8 @@ class PlanarTuning:
         regular_pixels: Cameras this close to a regular grid, or to their calibration, are not corrected.
         min_depth_view_fraction: Fraction of the views that must see a point for its depth to be its own.
         sweep_max_views: Views of a plane sweep.
+        sweep_reach_labels: Labels that a sweep of an outer ring tries beyond the local range of the depth so far.
+        sweep_window_pixels: Window of that local range, at half resolution.
         vote_max_views: Views of a ring that vote on which side is near.
         vote_gap_pixels: Distance between two surfaces in the outermost voter.
         vote_contrast_levels: Difference of their colours, grey levels.
@@ -70,6 +72,8 @@ class PlanarTuning:
     regular_pixels: float = 0.1
     min_depth_view_fraction: float = 0.02
     sweep_max_views: int = 90
+    sweep_reach_labels: float = 4.0
+    sweep_window_pixels: int = 15
     vote_max_views: int = 12
     vote_gap_pixels: float = 4.0
     vote_contrast_levels: float = 8.0
@@ -150,23 +154,40 @@ class _JointRefinement:
         return matrices, buffers
 
     def make_target(
-        self, views: NDArray[np.int64], pictures: NDArray[np.uint32], buffers: NDArray[np.float32] | None = None
+        self,
+        views: NDArray[np.int64],
+        pictures: NDArray[np.uint32],
+        parameters: int,
+        buffers: NDArray[np.float32] | None = None,
     ) -> PhotometricTarget:
-        """What the cameras of `views` are fitted to: the mean texture over them."""
+        """What so many parameters of the cameras of `views` are fitted to: the mean texture over them."""
         _, buffers = self.update_texture(views, pictures, buffers)
-        points = select_textured_points(self.d, self.texture, self.count, len(views))
+        points = select_textured_points(self.d, self.texture, self.count, len(views), parameters)
         return PhotometricTarget(self.reference, pictures, buffers, *points, self.bias)
 
-    def sweep_depth(self, views: NDArray[np.int64], coarser: float = 1.0) -> None:
-        """Plane sweep at half resolution and semi-global matching."""
+    def sweep_depth(self, views: NDArray[np.int64], coarser: float = 1.0, *, near: bool = False) -> None:
+        """Plane sweep at half resolution and semi-global matching.
+
+        Args:
+            views: That are compared.
+            coarser: Factor of the distance of labels.
+            near: Whether only labels near those of the present depth map are tried.
+        """
         small = self.reference.at_half_resolution()
         matrices = HALF_FROM_FULL_INDEX @ self.model.matrices(small, views, self.parameters[views])
         step = min(coarser * PLANAR_TUNING.sweep_step_pixels / self.extent_of(views), (self.high - self.low) / 64)
         labels = np.arange(self.low, self.high + step, step, dtype=np.float32)
+        floor = ceiling = None
+        if near:
+            d = cv2.resize(self.d, small.shape[::-1], interpolation=cv2.INTER_NEAREST)
+            window = np.ones((PLANAR_TUNING.sweep_window_pixels,) * 2, np.uint8)
+            reach = PLANAR_TUNING.sweep_reach_labels * step
+            floor = np.asarray(cv2.erode(d, window) - reach, np.float32)
+            ceiling = np.asarray(cv2.dilate(d, window) + reach, np.float32)
         reference, known = _pad_to_reference(unpack_pictures(self.half_size[self.centre]), small.shape)
         cost = plane_sweep(
             self.half_size[views], matrices, small.shape, labels, reference=reference, known=known,
-            unseen_cost=SWEEP_MAX_DIFFERENCE_LEVELS,
+            unseen_cost=SWEEP_MAX_DIFFERENCE_LEVELS, floor=floor, ceiling=ceiling,
         )  # fmt: skip
         guide = cv2.cvtColor(reference, cv2.COLOR_RGB2GRAY).astype(np.float32)
         d, _ = semi_global_matching(cost, guide, labels)
@@ -185,13 +206,16 @@ class _JointRefinement:
         pictures: NDArray[np.uint32] | None = None,
         tau: float = PLANAR_TUNING.tau_levels,
         fixed: bool = True,
+        buffers: NDArray[np.float32] | None = None,
     ) -> None:
-        """Gauss-Newton of the first `count` parameters of each camera against the mean texture."""
+        """Gauss-Newton of the first `count` parameters of each camera against the mean texture.
+
+        Visibility is drawn once, or is that of `buffers`: the steps of a round hardly change it.
+        """
         shown = self.subset(views, self.pictures if pictures is None else pictures)
-        buffers: NDArray[np.float32] | None = None
         for _ in range(rounds):
-            target = self.make_target(views, shown, buffers)
-            buffers = target.buffers  # drawn once: the steps of a round hardly change what is visible
+            target = self.make_target(views, shown, count, buffers)
+            buffers = target.buffers
             moved, self.error[views] = gauss_newton_step(self.model, views, self.parameters[views], target, count, tau)
             keep = self.parameters[self.centre].copy()
             self.parameters[views] = moved
@@ -203,7 +227,7 @@ class _JointRefinement:
 
     def measure_errors(self, views: NDArray[np.int64]) -> None:
         """The error of each photograph against the mean texture, with unchanged cameras."""
-        target = self.make_target(views, self.subset(views, self.pictures))
+        target = self.make_target(views, self.subset(views, self.pictures), ARRAY_PARAMETERS)
         fixed = self.parameters[views]
         _, self.error[views] = gauss_newton_step(self.model, views, fixed, target, 2, PLANAR_TUNING.tau_levels)
 
@@ -220,7 +244,10 @@ class _JointRefinement:
         self.d = ((self.d - offset) * scale).astype(np.float32)
         self.low, self.high = (self.low - offset) * scale, (self.high - offset) * scale
 
-    def refine_depth(self, views: NDArray[np.int64], step: float, smooth: float = PLANAR_TUNING.smooth_pixels) -> None:
+    def refine_depth(
+        self, views: NDArray[np.int64], step: float, smooth: float = PLANAR_TUNING.smooth_pixels
+    ) -> NDArray[np.float32]:
+        """Depth refined over `views`; returns the depth buffers that it had before."""
         pictures = self.subset(views, self.pictures)
         matrices, buffers = self.update_texture(views, pictures)
         apart = smooth / self.extent
@@ -231,6 +258,7 @@ class _JointRefinement:
         half = PLANAR_TUNING.half_confidence * self.extent**2
         self.d = smooth_depth(d, confidence, self.texture, half_confidence=half, depth_scale=apart)
         self.extend(len(views))
+        return buffers
 
     def extend(self, views: int) -> None:
         """Extrapolate depth outside the photographs' common part, where too few views look."""
@@ -289,7 +317,7 @@ def _correct_cameras(joint: _JointRefinement, rings: Sequence[NDArray[np.int64]]
             _extrapolate(joint, old, np.setdiff1d(views, old))
         joint.refine_cameras(views, 4, 3, pictures=blurred, tau=2 * PLANAR_TUNING.tau_levels)
         joint.refine_cameras(views, 4, 2)
-        joint.sweep_depth(_subsample(views), 2.0 if number == 0 else 1.0)
+        joint.sweep_depth(_subsample(views), 2.0 if number == 0 else 1.0, near=number > 0)
         joint.refine_cameras(views, 4, 2)
         if number == min(1, len(rings) - 1) and _is_regular(joint, views):
             return False
@@ -299,8 +327,9 @@ def _correct_cameras(joint: _JointRefinement, rings: Sequence[NDArray[np.int64]]
         report("cameras and depth", number + 1, total)
     everything = np.arange(len(pictures))
     for number, step in enumerate(PLANAR_TUNING.depth_step_pixels):
-        joint.refine_depth(everything, step)
-        joint.refine_cameras(everything, 6 if number == 0 else ARRAY_PARAMETERS, 2, fixed=number == 0)
+        visible = joint.refine_depth(everything, step)
+        count = 6 if number == 0 else ARRAY_PARAMETERS
+        joint.refine_cameras(everything, count, 2, fixed=number == 0, buffers=visible)
         report("cameras and depth", len(rings) + number + 1, total)
     for step in PLANAR_TUNING.last_depth_step_pixels:
         joint.refine_depth(everything, step, PLANAR_TUNING.last_smooth_pixels)
@@ -348,7 +377,7 @@ def register_views(
     soft = np.stack(parallel_map(_blur, sharp))
     extent = max(1.0, float(np.linalg.norm(planar.parameters[:, ARRAY_POSITION], axis=1).max()))
     bias = PLANAR_TUNING.visibility_bias_pixels / extent
-    points = select_textured_points(planar.d, planar.texture, planar.count, len(known))
+    points = select_textured_points(planar.d, planar.texture, planar.count, len(known), ARRAY_PARAMETERS)
     for pictures, count, tau, rounds in (
         (soft, 4, 2 * PLANAR_TUNING.tau_levels, 3),
         (sharp, 4, PLANAR_TUNING.tau_levels, 2),
@@ -437,7 +466,7 @@ def _inner_error(pictures: NDArray[np.uint32], start: PlanarStart, rings: Sequen
         joint.refine_cameras(before, 4, 2)
         _extrapolate(joint, before, np.setdiff1d(views, before))
         joint.refine_cameras(views, 4, 2)
-        joint.sweep_depth(views)
+        joint.sweep_depth(views, near=True)
     joint.refine_cameras(rings[-1], 4, 2)
     joint.measure_errors(rings[-1])
     return float(np.nanmean(joint.error[rings[-1]]))
