@@ -23,25 +23,29 @@ from eigenfield.core.payloads import Coded, Payload
 from eigenfield.core.progress import Progress
 from eigenfield.encoding.fitted.code_planes import CodedBasis, coded_plane, with_weights
 from eigenfield.encoding.fitted.coverage import fill_unseen
+from eigenfield.encoding.fitted.kernels import forward, squares_of, target
 from eigenfield.encoding.fitted.model import AtlasComposer, Block, PlaneModel, make_composer
 from eigenfield.encoding.fitted.observations import FitData
-from eigenfield.encoding.fitted.passes import psnr_of
+from eigenfield.encoding.fitted.passes import MINUS, psnr_of
+from eigenfield.encoding.fitted.products import one_blas_thread
 from eigenfield.encoding.fitted.rate import Rate, code_block_rd, plane_lambda
 from eigenfield.encoding.fitted.solve import Scales, fit_textures, fit_weights, measure_scales, residual, whiten
 from eigenfield.encoding.fitted.start import find_regions, principal_block, residual_energy
 from eigenfield.encoding.views import nothing_seen_error
+from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger("eigenfield.fit")
 
 FIT_STOP_DB = 0.05  # by which a round must change the pictures for another to follow
 FIT_SIGMA_RATIO = 4.0  # sigma of the robust weights, in root mean squares of the residual of the round before
-FIT_MEAN_ITERATIONS = 8  # of conjugate gradients: the mean alone, at first
-FIT_TEXTURE_ITERATIONS = 5
+FIT_MEAN_ITERATIONS = 8  # of conjugate gradients: the mean alone, from one colour
+FIT_TEXTURE_ITERATIONS = 4
 FIT_WEIGHT_ITERATIONS = 4
 FIT_CLOSING_ITERATIONS = 3  # for the mean, after coding
 WEIGHT_QUANTISER_STEP = 0.0008  # of a weight times what its component draws, in the photographs' range: 0.2 grey levels
 WEIGHT_MAX_QUANTISER_STEP = 1.5  # of weights of variance 1
 WEIGHTS_CODEC = "weights-1"
+PSNR_MAX_OBSERVATIONS = 25  # by which a plane's PSNR is measured
 MEAN_WANTED, NOTHING_WANTED = (True, False, False), (False, False, False)  # of mean, textures and weights
 
 
@@ -107,7 +111,7 @@ class OpenFit:
         scales: of `pixels.fitted`.
         composer: by which renderers draw it.
         mean_alone: what the mean left before there were textures.
-        uncoded: dB of its channels, mean over observations, what is drawn not rounded.
+        uncoded: dB of its channels, mean over PSNR_MAX_OBSERVATIONS, what is drawn not rounded.
     """
 
     name: str
@@ -245,19 +249,39 @@ def coded_psnr(fit: OpenFit, plane: Plane) -> float:
     return _drawn_psnr(fit.pixels.every, replace(fit.model, mean=mean, blocks=blocks), fit.composer)
 
 
+@one_blas_thread
 def _drawn_psnr(data: FitData, model: PlaneModel, composer: AtlasComposer) -> float:
-    """dB of the photographs as the renderers draw the model."""
-    found = residual(data, model, NOTHING_WANTED, composer)
-    return psnr_of(found.squares, found.pixels, model.channels)
+    """dB of PSNR_MAX_OBSERVATIONS photographs, evenly spread, as the renderers draw the model."""
+    mean, matrix = composer.fine_mean(model.mean), (model.matrix / np.float32(255)).astype(np.float32)
+
+    def measure(index: int) -> tuple[float, float]:
+        footprint, image, texture = data.footprint(index), data.blank(index, model.channels), mean
+        if any(block.count for block in model.blocks):
+            texture = np.zeros_like(mean)
+            composer.grid.up(model.sums(slice(index, index + 1))[0], texture, mean)
+        target(*footprint, data.observations.codes_of(index), matrix, image)
+        forward(*footprint, data.size, texture, MINUS, image)
+        return squares_of(footprint[0], image, data.observations.mask(index))
+
+    some = np.unique(np.linspace(0, len(data) - 1, min(len(data), PSNR_MAX_OBSERVATIONS)).round().astype(int))
+    squares, pixels = np.array(parallel_map(measure, some.tolist())).T
+    return psnr_of(squares, pixels, model.channels)
 
 
-def fit_mean(data: FitData, model: PlaneModel, scales: Scales) -> MeanAlone:
-    """Fit the mean of a model without components, from one colour."""
+def fit_mean(data: FitData, model: PlaneModel, scales: Scales, iterations: int = FIT_MEAN_ITERATIONS) -> MeanAlone:
+    """Fit the mean of a model without components, from what it is.
+
+    Args:
+        data: To be drawn.
+        model: Is changed in place.
+        scales: Of these data.
+        iterations: Of conjugate gradients.
+    """
     left = residual(data, model, MEAN_WANTED)
     # the filter's weights sum to 1, so that G^T leaves the sum of what it brings back as it is
     sums = left.mean.sum(axis=(1, 2), dtype=np.float64)
     total = float(left.squares.sum() - np.square(sums).sum() / max(float(left.pixels.sum()), 1.0))
-    fit_textures(data, model, scales, left, FIT_MEAN_ITERATIONS, mean_only=True)
+    fit_textures(data, model, scales, left, iterations, mean_only=True)
     found = residual(data, model, NOTHING_WANTED)
     return MeanAlone(found.squares, found.pixels, model.channels, total)
 

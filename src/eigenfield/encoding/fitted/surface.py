@@ -36,7 +36,7 @@ from eigenfield.core.observations import Observations, cameras_of, select_camera
 from eigenfield.core.progress import Progress
 from eigenfield.core.proxy import Proxy
 from eigenfield.encoding.fitted.colour import split_matrix
-from eigenfield.encoding.fitted.fit import fit_mean
+from eigenfield.encoding.fitted.fit import FIT_MEAN_ITERATIONS, fit_mean
 from eigenfield.encoding.fitted.kernels import adjoint, forward, target
 from eigenfield.encoding.fitted.model import PlaneModel
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_on_proxy, open_subsampled
@@ -56,6 +56,7 @@ class SurfaceTuning:
 
     Attributes:
         rounds: Rounds of Gauss-Newton steps, at most.
+        mean_iterations: Of conjugate gradients, by which the mean follows the mesh after a round.
         max_cameras: Cameras, spread over the array, whose photographs are decoded.
         subsample_observations: Observations of these from which every second pixel each way is enough.
         subsample_pixels: Pixels of all of them together from which it is.
@@ -71,6 +72,7 @@ class SurfaceTuning:
     """
 
     rounds: int = 4
+    mean_iterations: int = 3
     max_cameras: int = 49
     subsample_observations: int = 25
     subsample_pixels: int = 1 << 25
@@ -152,14 +154,15 @@ def fit_surface(
     mesh = proxy.mesh
     movable = _movable_mesh(mesh, proxy.lattice, used, shape)
     best, reached, off = mesh, -np.inf, np.zeros(len(movable.lines))
+    model = PlaneModel(split_matrix()[0], np.full((1, *shape), 0.5, np.float32), (1, 1), [])
     with open_fit_data(used, some, proxy, shape, work) as every:
         for number in range(SURFACE_TUNING.rounds + 1):
             if progress is not None:
                 progress("fit surface", number, SURFACE_TUNING.rounds + 1)
             moved = open_on_proxy(every, used, replace(proxy, mesh=mesh), work) if number else nullcontext(every)
             with moved as whole, open_subsampled(whole, step, work) as data:
-                model = PlaneModel(split_matrix()[0], np.full((1, *shape), 0.5, np.float32), (1, 1), [])
-                left = fit_mean(data, model, measure_scales(data, model))
+                iterations = SURFACE_TUNING.mean_iterations if number else FIT_MEAN_ITERATIONS
+                left = fit_mean(data, model, measure_scales(data, model), iterations)
                 if not left.pixels.any():
                     break
                 now = psnr_of(left.squares, left.pixels)

@@ -132,12 +132,41 @@ def _may_collapse(state, u, v, ring, count, marks, stamps, beside):
 
 
 @kernel()
-def _cost_change(cost_map, state, u, v):
-    """By how much the cost grows if u collapses onto v."""
-    border = state.where[u] != INSIDE  # else the same texels stay covered
-    add = 1 if border else 0
+def _own_cost(cost_map, state, u):
+    """Less the cost of the faces at u, as they are."""
     total = 0.0
-    for turn in range(4 if border else 2):  # faces out, in as they will be; and back again
+    corner = state.head[u]
+    while corner >= 0:
+        f = corner // 3
+        if state.faces[f, 0] >= 0:
+            a, b, c = state.faces[f, 0], state.faces[f, 1], state.faces[f, 2]
+            total -= face_cost(cost_map, state.places, state.depth, a, b, c, 0, False)
+        corner = state.after[corner]
+    return total
+
+
+@kernel()
+def _inside_change(cost_map, state, u, v, own, most):
+    """By how much the cost grows if u, which is no border, collapses onto v: the same texels stay covered.
+
+    own: of `_own_cost`. most: what is no less need not be known further.
+    """
+    total = own
+    corner = state.head[u]
+    while corner >= 0 and total < most:
+        f = corner // 3
+        if state.faces[f, 0] >= 0 and not _has(state.faces, f, v):
+            a, b, c = _corners_after(state.faces, f, u, v)
+            total += face_cost(cost_map, state.places, state.depth, a, b, c, 0, False)
+        corner = state.after[corner]
+    return total
+
+
+@kernel()
+def _border_change(cost_map, state, u, v):
+    """By how much the cost grows if u, at a border, collapses onto v."""
+    total = 0.0
+    for turn in range(4):  # faces out, in as they will be; and back again
         corner = state.head[u]
         while corner >= 0:
             f = corner // 3
@@ -145,32 +174,37 @@ def _cost_change(cost_map, state, u, v):
                 if turn == 0 or turn == 3:
                     a, b, c = state.faces[f, 0], state.faces[f, 1], state.faces[f, 2]
                     cost = face_cost(
-                        cost_map, state.places, state.depth, a, b, c, add if turn == 3 else -add, border and turn == 0
-                    )
+                        cost_map, state.places, state.depth, a, b, c, 1 if turn == 3 else -1, turn == 0
+                    )  # fmt: skip
                     total -= cost if turn == 0 else 0.0
                 elif not _has(state.faces, f, v):
                     a, b, c = _corners_after(state.faces, f, u, v)
                     cost = face_cost(
-                        cost_map, state.places, state.depth, a, b, c, add if turn == 1 else -add, border and turn == 1
-                    )
+                        cost_map, state.places, state.depth, a, b, c, 1 if turn == 1 else -1, turn == 1
+                    )  # fmt: skip
                     total += cost if turn == 1 else 0.0
             corner = state.after[corner]
     return total
 
 
 @kernel()
-def _best_target(cost_map, state, u, ring, beside, marks, stamps):
-    """The cheapest collapse of u: its cost, and onto which vertex, -1 for none."""
-    least, target = np.inf, np.int64(-1)
+def _best_target(cost_map, state, u, limit, ring, beside, marks, stamps):
+    """The cheapest collapse of u that costs less than `limit`: its cost, and onto which vertex, -1 for none."""
+    least, target = limit, np.int64(-1)
     if state.where[u] == FIXED or state.head[u] < 0:
         return least, target
     stamps[0] += 1
     count, crowd = _ring(state, u, ring, marks, stamps[0])
     if crowd > COLLAPSE_MAX_FACES:
         return least, target
+    inside = state.where[u] == INSIDE
+    own = _own_cost(cost_map, state, u) if inside else 0.0
     for i in range(count):
         if _may_collapse(state, u, ring[i], ring, count, marks, stamps, beside):
-            cost = _cost_change(cost_map, state, u, ring[i])
+            if inside:
+                cost = _inside_change(cost_map, state, u, ring[i], own, least)
+            else:
+                cost = _border_change(cost_map, state, u, ring[i])
             if cost < least:
                 least, target = cost, np.int64(ring[i])
     return least, target
@@ -216,8 +250,8 @@ def collapse(cost_map, state, limit):
     heap = [(0.0, np.int64(0), np.int64(0), np.int64(0))]
     heap.clear()
     for vertex in range(n):
-        cost, target = _best_target(cost_map, state, vertex, ring, beside, marks, stamps)
-        if cost < limit:
+        cost, target = _best_target(cost_map, state, vertex, limit, ring, beside, marks, stamps)
+        if target >= 0:
             heapq.heappush(heap, (cost, np.int64(vertex), target, np.int64(0)))
     gone = 0
     while len(heap) > 0:
@@ -233,8 +267,8 @@ def collapse(cost_map, state, limit):
         again = np.append(beside[:count], v)
         for w in again:
             version[w] += 1
-            cost, target = _best_target(cost_map, state, w, ring, beside, marks, stamps)
-            if cost < limit:
+            cost, target = _best_target(cost_map, state, w, limit, ring, beside, marks, stamps)
+            if target >= 0:
                 heapq.heappush(heap, (cost, np.int64(w), target, version[w]))
     return collapses[:gone], costs[:gone]
 
