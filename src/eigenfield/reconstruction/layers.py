@@ -238,7 +238,7 @@ def draw_means(
             count += seen
         return np.rint(total / np.maximum(count, 1)[..., None]).astype(np.uint8), count > 0
 
-    return [draw(view) for view in views]
+    return parallel_map(draw, views)
 
 
 def _read(picture: NDArray[Any], at: NDArray[np.float32], how: int) -> NDArray[Any]:

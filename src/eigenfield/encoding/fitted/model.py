@@ -16,6 +16,7 @@ from eigenfield.rendering.software.kernels import TILE_TEXELS
 from eigenfield.rendering.software.resample import Taps, make_taps
 
 NO_START = np.zeros((0, 0, 0), np.float32)
+MEAN_ALONE_GRID = (1, 1)  # of a model that has no components, nor gets any
 
 Rectangle = tuple[int, int, int, int]  # [top, bottom) x [left, right), in texels of the components' grid
 
@@ -60,6 +61,11 @@ class PlaneModel:
     mean: NDArray[np.float32]
     grid: tuple[int, int]
     blocks: list[Block]
+
+    @classmethod
+    def grey(cls, matrix: NDArray[np.float32], size: tuple[int, int]) -> PlaneModel:
+        """A mean of one grey without components: one channel of `matrix` (1, 3), of `size` (rows, columns)."""
+        return cls(matrix, np.full((1, *size), 0.5, np.float32), MEAN_ALONE_GRID, [])
 
     @property
     def channels(self) -> int:

@@ -93,7 +93,7 @@ def fit_opacity(
     assert proxy.sheets is not None
     given, opacity = proxy.sheets.opacity, proxy.sheets.opacity
     size = given.shape[0], given.shape[1]
-    model = PlaneModel(split_matrix()[0], np.full((1, *size), 0.5, np.float32), (1, 1), [])
+    model = PlaneModel.grey(split_matrix()[0], size)
     with open_fit_data(used, some, proxy, size, work) as every:
         for number in range(OPACITY_TUNING.rounds):
             if progress is not None:

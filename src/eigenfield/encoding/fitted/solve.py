@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from eigenfield.encoding.fitted.footprints import Footprint
 from eigenfield.encoding.fitted.kernels import SHARE_ONE, add_laplacian, adjoint, next_direction, take_step
-from eigenfield.encoding.fitted.model import AtlasComposer, PlaneModel
+from eigenfield.encoding.fitted.model import MEAN_ALONE_GRID, AtlasComposer, PlaneModel
 from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.encoding.fitted.passes import PASS_TASK_OBSERVATIONS, NormalEquations, Textures, render_and_backproject
 from eigenfield.encoding.fitted.products import combine, one_blas_thread, weighted_gram
@@ -70,13 +70,13 @@ def measure_scales(data: FitData, model: PlaneModel) -> Scales:
 
     Args:
         data: The observations.
-        model: A model of the same grids.
+        model: A model of the same grids; of a mean alone, nothing is measured for components and their rate.
     """
     fine, coarse = _texel_sums(data, model, squared=False)
     soft = len(data.footprints.shares) > 0
     ratio = SHEET_SMOOTHNESS_RATIO if soft else MEAN_SMOOTHNESS_RATIO
     smooth = ratio * _median(fine), TEXTURE_SMOOTHNESS_RATIO * _median(coarse)
-    if not soft:
+    if not soft or model.grid == MEAN_ALONE_GRID:
         return Scales.opaque(fine, coarse, smooth)
     density = data.footprints.detail * np.sqrt(fine.size / np.prod(data.size))
     return Scales(fine, coarse, smooth, *_texel_sums(data, model, squared=True), len(data) / float(density) ** 2)
@@ -94,7 +94,8 @@ def _texel_sums(data: FitData, model: PlaneModel, squared: bool) -> tuple[NDArra
                 footprint = squared_shares(footprint)
             weight, ones = data.observations.weights(index), np.ones((1, *footprint[0].shape), np.float32)
             adjoint(*footprint, data.size, ones, weight, mean)
-            adjoint(*footprint, data.size, ones, weight, grid)
+            if model.grid != MEAN_ALONE_GRID:
+                adjoint(*footprint, data.size, ones, weight, grid)
         return mean, grid
 
     for mean, grid in parallel_map(piece, pieces(len(data), PASS_TASK_OBSERVATIONS)):

@@ -154,7 +154,7 @@ def fit_surface(
     mesh = proxy.mesh
     movable = _movable_mesh(mesh, proxy.lattice, used, shape)
     best, reached, off = mesh, -np.inf, np.zeros(len(movable.lines))
-    model = PlaneModel(split_matrix()[0], np.full((1, *shape), 0.5, np.float32), (1, 1), [])
+    model = PlaneModel.grey(split_matrix()[0], shape)
     with open_fit_data(used, some, proxy, shape, work) as every:
         for number in range(SURFACE_TUNING.rounds + 1):
             if progress is not None:

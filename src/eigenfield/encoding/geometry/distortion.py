@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import cv2
 import numpy as np
@@ -24,15 +25,17 @@ from eigenfield.core.lattice import Lattice
 from eigenfield.core.mesh import Mesh, barycentric_coordinates, signed_areas
 from eigenfield.core.observations import Observations, select_cameras
 from eigenfield.core.proxy import Sheets
+from eigenfield.encoding.geometry.distortion_kernels import add_camera
 from eigenfield.encoding.geometry.raster_kernels import HALF_TEXEL_STEPS, TEXEL_STEPS, CostMap, draw_owners
 from eigenfield.imaging.colour import LUMA_BT709
 from eigenfield.imaging.raster import rasterise, rasterise_view
 from eigenfield.imaging.sampling import distances_to, farthest_points
-from eigenfield.runtime.parallel import parallel_stream
+from eigenfield.runtime.parallel import parallel_map, parallel_stream, pieces
 
 DISTORTION_MAX_CAMERAS = 25  # spread over the array, whose photographs are decoded
 HOLE_MAX_CAMERAS = 9  # likewise, for holes
 DISTORTION_MAX_SIDE_TEXELS = 1536
+DISTORTION_TASK_TEXELS = 1 << 16  # of one thread's task
 DISTORTION_WINDOW_TEXELS = 3  # over which errors are averaged
 VARIANCE_WINDOW_PX = 9  # over which the variance of photographs is taken
 VISIBLE_MAX_DEPTH_RATIO = 0.004  # of inverse depth, by which a visible point may lie behind what is drawn
@@ -99,17 +102,17 @@ def depth_distortion(
     chosen = spread_cameras(cameras, DISTORTION_MAX_CAMERAS)
     some = select_cameras(observations, chosen)
 
-    def of_observation(index: int) -> NDArray[np.float64]:
-        camera, photograph = cameras[chosen[some.camera_of(index)]], luma_of(some, index)
-        return _camera_distortion(mesh, layers, camera, photograph, world, deeper)
+    def look(index: int) -> _Look:
+        return _Look.of(mesh, layers, cameras[chosen[some.camera_of(index)]], luma_of(some, index), world)
 
-    sums = np.zeros((7, len(points)))
-    for found in parallel_stream(of_observation, range(len(some))):  # in order: the same at any number of threads
-        sums += found
-    shares, seen, first, second, most, black, pixels = sums
+    sums, drawn = np.zeros((6, len(points))), 0
+    for found in parallel_stream(look, range(len(some))):
+        drawn += found.pixels
+        parallel_map(partial(found.add, world, deeper, sums), pieces(len(points), DISTORTION_TASK_TEXELS))
+    shares, seen, first, second, most, black = sums
     if not seen.any():
         return DistortionMap(_cost_map(depth, given, np.zeros((3, len(points)))), (side, start), 0.0)
-    of_texel = len(observations) / len(some) * float(pixels[0] / shares.sum())
+    of_texel = len(observations) / len(some) * drawn / float(shares.sum())
     if layers is None:
         curve, usual = second - np.square(first) / np.maximum(seen, 1), float(np.median(seen[seen > 0]))
         for values in (curve, most):  # what nobody here sees another camera may: as the usual, by one of them
@@ -156,7 +159,7 @@ class _Layers:
 
     def shares(
         self, camera: Camera, inside: NDArray[np.bool_], row: NDArray[np.int64], column: NDArray[np.int64]
-    ) -> NDArray[np.float64]:
+    ) -> NDArray[np.float32]:
         """(t,) the share that each covered texel has in its pixel.
 
         Args:
@@ -168,7 +171,7 @@ class _Layers:
         assert self.mesh.uv is not None
         corners, uv = camera.homogeneous(self.mesh.vertices), self.mesh.uv
         through = np.ones((camera.height, camera.width), np.float32)
-        shares, ends = np.zeros(len(inside)), np.cumsum((0, *self.sheets.faces))
+        shares, ends = np.zeros(len(inside), np.float32), np.cumsum((0, *self.sheets.faces))
         for number in reversed(range(len(self.sheets.faces))):
             here = inside & (self.of_texel == number)
             shares[here] = self.opacity[here] * through[row[here], column[here]]
@@ -210,28 +213,54 @@ def texel_weights(
     return corners, barycentric_coordinates(places[corners], centres)
 
 
-def _camera_distortion(
-    mesh: Mesh,
-    layers: _Layers | None,
-    camera: Camera,
-    photograph: NDArray[np.float32],
-    world: NDArray[np.float64],
-    deeper: NDArray[np.float64],
-) -> NDArray[np.float64]:
-    """(7, t): the share that each texel has in the camera's picture, 0 or 1 on an opaque mesh, and its square; times
-    this the error for a step of depth and its square, the variance around and the photograph's square; and how many
-    pixels see the mesh."""
-    drawn = rasterise_view(mesh, camera)
-    nearest = drawn.inverse_depth if layers is None else np.zeros_like(drawn.inverse_depth)
-    inside, row, column, at = visible_points(camera, world, nearest)
-    share = inside if layers is None else layers.shares(camera, inside, row, column)
-    seen = np.square(share, dtype=np.float64)
-    down, right = map(np.asarray, np.gradient(photograph))
-    shift = np.nan_to_num(camera.project(deeper)[0] - at)
-    error = np.where(inside, right[row, column] * shift[:, 0] + down[row, column] * shift[:, 1], 0)
-    pixels = np.full(len(world), float((drawn.face >= 0).sum()))
-    pictures = error, np.square(error), *(one[row, column] for one in (local_variance(photograph), photograph**2))
-    return np.stack([share, seen, *(np.where(inside, picture, 0) * seen for picture in pictures), pixels])
+@dataclass(frozen=True, eq=False)
+class _Look:
+    """What a camera sees of a mesh, for a distortion map.
+
+    Attributes:
+        matrix: (3, 4) of the camera.
+        nearest: (h, w) inverse depth of what it draws; (0, 0): of sheets, which hide nothing.
+        shares: (t,) of covered texels in their pixels; (0,): 1 of what is visible.
+        pictures: (h, w) each: the slopes of its photograph's luma to the right and down, its variance, and luma itself.
+        pixels: Number of those that show the mesh.
+    """
+
+    matrix: NDArray[np.float64]
+    nearest: NDArray[np.float32]
+    shares: NDArray[np.float32]
+    pictures: tuple[NDArray[np.float32], ...]
+    pixels: int
+
+    @classmethod
+    def of(
+        cls,
+        mesh: Mesh,
+        layers: _Layers | None,
+        camera: Camera,
+        picture: NDArray[np.float32],
+        world: NDArray[np.float64],
+    ) -> _Look:
+        """world: (t, 3) points of covered texels."""
+        drawn = rasterise_view(mesh, camera)
+        nearest, shares = drawn.inverse_depth, np.zeros(0, np.float32)
+        if layers is not None:
+            nearest = np.zeros((0, 0), np.float32)
+            inside, row, column, _ = visible_points(camera, world, np.zeros_like(drawn.inverse_depth))
+            shares = layers.shares(camera, inside, row, column)
+        down, right = map(np.asarray, np.gradient(picture))
+        pictures = right, down, local_variance(picture), picture
+        return cls(camera.matrix, nearest, shares, pictures, int((drawn.face >= 0).sum()))
+
+    def add(
+        self,
+        world: NDArray[np.float64],
+        deeper: NDArray[np.float64],
+        sums: NDArray[np.float64],
+        texels: tuple[int, int],
+    ) -> None:
+        """Add what it sees of a range of texels to `sums`; deeper: (t, 3) their points a step of depth away."""
+        ratio = 1 - VISIBLE_MAX_DEPTH_RATIO
+        add_camera(*texels, self.matrix, world, deeper, self.nearest, ratio, self.shares, *self.pictures, sums)
 
 
 def visible_points(

@@ -8,6 +8,7 @@ import numpy as np
 
 from eigenfield.imaging.texels import add_scaled_texel, bilinear_slopes, gather_bilinear, scatter_bilinear
 from eigenfield.runtime.jit import kernel
+from eigenfield.stereo.taps import FASTMATH_ORDERED
 
 
 @kernel()
@@ -34,24 +35,25 @@ def field_places(labels, base, slope, start, iterations, tolerance, places):
     """As `plane_places`, of a height field: d is that of the place itself.
 
     A fixed point finds it while d changes by less than one over the parallax (s, t) from texel to texel. It begins with
-    the label that the pixel before has found.
+    the label that the pixel above has found: the one beside would have the processor wait for it.
 
     Args:
         labels: (height, width) float32.
         base, slope: As of `plane_places`.
-        start: float32 label to begin each row with.
+        start: float32 label to begin with.
         iterations: Of the fixed point, at most.
         tolerance: float32, pixels of the layer by which the last one moves the place, at most.
         places: Written.
     """
     height, width = labels.shape
     right, bottom = np.float32(width - 1.001), np.float32(height - 1.001)
+    found = np.full(places.shape[1], start, np.float32)
     for row in range(places.shape[0]):
-        d = start
         for column in range(places.shape[1]):
+            d = found[column]
             scale, u0, v0, s, t = pixel_ray(base, slope, column, row)
             if not scale > 0:
-                d = start
+                found[column] = start
                 places[row, column, 0], places[row, column, 1] = np.float32(-1), np.float32(-1)
                 continue
             u, v, reach = u0 + d * s, v0 + d * t, max(abs(s), abs(t))
@@ -65,6 +67,7 @@ def field_places(labels, base, slope, start, iterations, tolerance, places):
                 u, v = u0 + d * s, v0 + d * t
                 if abs(d - before) * reach < tolerance:
                     break
+            found[column] = d
             put_place(scale, u, v, height, width, places, row, column)
 
 
@@ -216,13 +219,13 @@ def composite_gradient(layers, codes, top, bottom, behind):
     return total
 
 
-@kernel(inline=True)
+@kernel(fastmath=FASTMATH_ORDERED, inline=True)
 def slope(difference, inverse_width):
     """Derivative of the Huber function, which is quadratic up to 1 / inverse_width and then of slope 1."""
     return min(max(difference * inverse_width, np.float32(-1)), np.float32(1))
 
 
-@kernel()
+@kernel(fastmath=FASTMATH_ORDERED)
 def add_priors(layer, channels, scale, variation, price, doubt, inverse_width, gradient):
     """gradient = scale gradient + that of the total variation and of two prices for each number.
 
@@ -237,17 +240,21 @@ def add_priors(layer, channels, scale, variation, price, doubt, inverse_width, g
         gradient: (h, w C) float32, changed.
     """
     rows, columns = layer.shape
+    inner = columns - channels
+    left_variation, right_variation = variation[:inner], variation[channels:]
     for row in range(rows):
         here, out = layer[row], gradient[row]
         above, below = layer[max(row - 1, 0)], layer[min(row + 1, rows - 1)]
+        # parts of rows, since an index that may be negative keeps a loop from being vectorised
+        left, right, left_out, right_out = here[:inner], here[channels:], out[:inner], out[channels:]
         for i in range(columns):
             vertical = slope(here[i] - above[i], inverse_width) + slope(here[i] - below[i], inverse_width)
             own = price[i] + doubt[i] * (np.float32(1) - np.float32(2) * here[i])
             out[i] = scale * out[i] + variation[i] * vertical + own
-        for i in range(channels, columns):
-            out[i] += variation[i] * slope(here[i] - here[i - channels], inverse_width)
-        for i in range(columns - channels):
-            out[i] += variation[i] * slope(here[i] - here[i + channels], inverse_width)
+        for i in range(inner):
+            right_out[i] += right_variation[i] * slope(right[i] - left[i], inverse_width)
+        for i in range(inner):
+            left_out[i] += left_variation[i] * slope(left[i] - right[i], inverse_width)
 
 
 @kernel()
