@@ -38,8 +38,7 @@ import numpy as np
 
 import eigenfield as ef
 import measure
-from eigenfield.capture import open_any
-from eigenfield.evaluation import with_scene_cameras
+from eigenfield.capture import open_any, with_scene_cameras
 from eigenfield.gltf import parts
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.rendering import Renderer

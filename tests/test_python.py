@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import shutil
 import sys
 import types
 import urllib.request
@@ -10,10 +12,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import eigenfield as ef
 from eigenfield.core import notebook
 from eigenfield.core.arguments import checked
+from support import charts
 from support.captures import write_array, write_capture
 from support.motion import photographed
 from support.program import call
@@ -64,8 +68,6 @@ def test_a_scene_and_a_picture_show_themselves_briefly():
 
 
 def test_a_picture_is_shown_in_a_notebook_and_saved(tmp_path):
-    from PIL import Image
-
     picture = ef.render(tiny_scene())
     picture.save(tmp_path / "a.png")
     assert (tmp_path / "a.png").read_bytes() == picture._repr_png_()
@@ -95,6 +97,25 @@ def test_a_scene_is_exported_and_viewed(tmp_path):
         ef.view(tmp_path / "nothing.glb", browser=False)
 
 
+def test_a_scene_is_viewed_beside_its_photographs(nine, tmp_path, caplog):
+    scene = ef.encode(nine, nine / "proxy.ply", fit="none", textures=2, atlas=64)
+    bare = shutil.copytree(nine / "images", tmp_path / "bare")  # photographs alone: the cameras are the scene's
+    for capture, place in ((nine, {}), (ef.open(nine), {}), (bare, {"format": "folder"})):
+        with (
+            ef.view(scene, capture, browser=False, **place) as server,
+            urllib.request.urlopen(f"{server.address}photographs/4", timeout=20) as answer,
+        ):
+            shown = np.asarray(Image.open(io.BytesIO(answer.read())))
+        np.testing.assert_array_equal(shown, np.asarray(Image.open(bare / "view_04.png").convert("RGB")))
+    assert not caplog.records
+    (bare / "view_00.png").unlink()
+    ef.view(scene, bare, browser=False).close()
+    assert f"1 of 9 cameras have no photograph in {bare}" in caplog.text
+    with pytest.raises(ef.CaptureError, match="no photograph has the name"):
+        write_array(tmp_path / "others", side=3)
+        ef.view(scene, tmp_path / "others", browser=False)
+
+
 def test_cameras_are_found_as_the_command_line_finds_them(tmp_path, monkeypatch):
     monkeypatch.setattr("eigenfield.calibration.motion.features.FEATURE_MIN_MEDIAN_COUNT", 0)  # of small photographs
     photographed(tmp_path / "photos")
@@ -105,6 +126,23 @@ def test_cameras_are_found_as_the_command_line_finds_them(tmp_path, monkeypatch)
         assert (tmp_path / "ours" / name).read_bytes() == (tmp_path / "theirs" / name).read_bytes()
     with pytest.raises(ef.OutputError):
         ef.calibrate(tmp_path / "photos", tmp_path / "ours")
+
+
+def test_a_rig_is_calibrated_by_a_chart_as_on_the_command_line(tmp_path):
+    charts.write_charts(
+        tmp_path / "charts",
+        charts.CHECKER,
+        charts.rig(3, spacing=100, distance=500),
+        charts.board_poses(charts.CHECKER, 5, seed=2, spread=50),
+    )
+    found = ef.calibrate(tmp_path / "charts", tmp_path / "ours", chart="checkerboard", board="9x6", square="25mm")
+    assert [report.reason for report in found.reports] == [None] * 2 and found.unit == "mm"
+    words = ["--chart", "checkerboard", "--board", "9x6", "--square", "25mm"]
+    assert call("calibrate", tmp_path / "charts", "-q", "-o", tmp_path / "theirs", *words) == 0
+    for name in ("transforms.json", "report.json"):
+        assert (tmp_path / "ours" / name).read_bytes() == (tmp_path / "theirs" / name).read_bytes()
+    with pytest.raises(ef.OutputError):
+        ef.calibrate(tmp_path / "charts", tmp_path / "ours", chart="checkerboard", board="9x6", square="25mm")
 
 
 class Kernel:
@@ -156,11 +194,20 @@ def test_a_notebook_shows_progress_unless_told_otherwise(nine, monkeypatch):
         ("set_threads", ["all"], {}, "count of set_threads is 'all'"),
         ("validate", [None], {}, "path of validate"),
         ("calibrate", [3], {}, "photographs of calibrate is 3"),
+        ("calibrate", ["a"], {"board": "9x6"}, "--board describes a chart"),
+        ("calibrate", ["a"], {"chart": "paper"}, "no chart is called paper; use checkerboard or charuco"),
+        ("calibrate", ["a"], {"chart": "charuco", "masks": "b"}, "--masks means nothing to charts"),
+        ("calibrate", ["a"], {"griid": (3, 3)}, "unexpected keyword argument 'griid'"),
         ("view", [3], {}, "scene of view is 3"),
+        ("view", [tiny_scene()], {"grid": (3, 3)}, "--grid is for a capture"),
         ("export", [3, "a.html"], {}, "scene of export is 3"),
         ("encode", [3], {}, "makes no proxy"),
         ("encode", ["a", 3], {}, "is no proxy"),
+        ("encode", [], {}, "missing a required argument: 'capture'"),
         ("encode", ["a"], {"preste": "small"}, "did you mean preset?"),
+        ("encode", ["a"], {"fit_spheres": 3}, "fit_spheres of encode is 3; give a sequence, each a text"),
+        ("encode", ["a"], {"work": 3}, "work of encode is 3"),
+        ("encode", ["a", "b.ply", 3], {}, "options of encode is 3; give a EncodeOptions or None"),
         ("encode", ["a"], {"textures": "many"}, "textures is a str; give a whole number"),
         ("encode", ["a"], {"quality": 101}, "quality"),
         ("encode", ["a"], {"target": 300_000}, "target is a int; give a Target"),

@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from eigenfield.capture import LightField
+from eigenfield.capture import LightField, match_photographs
 from eigenfield.capture.overlay import proxy_lines
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.scene import Scene
-from eigenfield.evaluation import ExcludedCircle, match_photographs
+from eigenfield.evaluation import ExcludedCircle
 from eigenfield.evaluation.image import ImageScores, measure_picture, summarise_scores
 from eigenfield.gltf import parts
 from eigenfield.imaging.colour import LUMA_BT709

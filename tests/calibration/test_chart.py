@@ -19,11 +19,12 @@ from eigenfield.calibration.charts import board as boards
 from eigenfield.calibration.charts import corners
 from eigenfield.calibration.charts.bundle import RigEstimate, adjust_bundle
 from eigenfield.calibration.charts.calibrate import calibrate_charts
+from eigenfield.calibration.charts.description import ChartOptions, board_of
 from eigenfield.calibration.charts.lens_models import LENS_MODEL_LADDER
 from eigenfield.calibration.charts.pictures import find_charts, split_name
 from eigenfield.calibration.charts.rig import solve_rig
 from eigenfield.capture import open_capture
-from eigenfield.cli.calibrate_chart import board_of, chart_options, table
+from eigenfield.cli.calibrate_chart import chart_options, table
 from eigenfield.core.errors import CaptureError, EigenfieldError, OutputError
 from eigenfield.runtime.parallel import set_threads
 from support import charts
@@ -301,8 +302,9 @@ def test_another_charuco_board_is_refused_with_the_right_one(charuco_folder, wro
 
 @click.command()
 @chart_options
-def verb(chart):
-    return board_of(chart, Path()) if chart else None
+def verb(**options):
+    chart = ChartOptions(**options)
+    return board_of(chart, Path()) if chart.chart else None
 
 
 def described(*words):

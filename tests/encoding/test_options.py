@@ -46,8 +46,15 @@ def test_making_options_does_nothing_else(caplog):
     assert not caplog.records
     with pytest.raises(FrozenInstanceError):
         EncodeOptions().textures = 3
-    with pytest.raises(TypeError):
-        EncodeOptions(15)
+    for values, named, says in (
+        ((15,), {}, "positional"),
+        ((), {"fit_spheres": 3}, "EncodeOptions has no option fit_spheres"),
+        ((), {"preste": "small"}, "did you mean preset"),
+    ):
+        with pytest.raises(OptionError, match=says):
+            EncodeOptions(*values, **named)
+    with pytest.raises(OptionError, match="Target has no option bytes; there are size, psnr, ssim"):
+        Target(bytes=5000)
 
 
 @pytest.mark.parametrize("asked", FOR_MAPS, ids=lambda asked: next(iter(asked)))

@@ -11,12 +11,13 @@ import cv2
 import numpy as np
 import pytest
 
+from eigenfield.capture import match_photographs
 from eigenfield.cli.evaluate import COLUMNS
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, OptionError, OutputError
 from eigenfield.encoding.projected.atlas import make_atlas
 from eigenfield.encoding.projected.project import texture_map
-from eigenfield.evaluation import ExcludedCircle, evaluate, match_photographs, reconstruct_maps, stored_scores
+from eigenfield.evaluation import ExcludedCircle, evaluate, reconstruct_maps, stored_scores
 from eigenfield.evaluation.uv import measure_map
 from eigenfield.gltf import load, save
 from eigenfield.imaging.flip import flip

@@ -11,9 +11,8 @@ import pytest
 from PIL import Image
 
 from eigenfield import encode, load
-from eigenfield.capture import open_any, open_capture
+from eigenfield.capture import open_any, open_capture, with_scene_cameras
 from eigenfield.core.errors import CaptureError
-from eigenfield.evaluation import with_scene_cameras
 from eigenfield.gltf import save
 from support.captures import write_capture
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from eigenfield.capture import open_capture
-from eigenfield.evaluation import match_photographs
+from eigenfield.capture import match_photographs, open_capture
 from eigenfield.gltf import outline, save
 from eigenfield.viewer import Photographs, Server, make_manifest, page, request
 from support.captures import write_capture

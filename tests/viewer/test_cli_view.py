@@ -13,9 +13,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from eigenfield.capture import open_capture
+from eigenfield.capture import match_photographs, open_capture
 from eigenfield.core.errors import CaptureError
-from eigenfield.evaluation import match_photographs
 from eigenfield.gltf import outline
 from eigenfield.viewer import Photographs, Server, make_manifest, page, photographs
 from support.captures import write_capture

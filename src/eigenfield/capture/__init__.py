@@ -17,6 +17,7 @@ from eigenfield.capture.opening import open_any, open_capture, open_photographs
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.photographs.read import read_header
 from eigenfield.capture.photoset import Capture, PhotoSet, Shot
+from eigenfield.capture.scene_photographs import match_photographs, with_scene_cameras
 from eigenfield.core.observations import Photograph
 
 __all__ = [
@@ -29,8 +30,10 @@ __all__ = [
     "Photograph",
     "Shot",
     "View",
+    "match_photographs",
     "open_any",
     "open_capture",
     "open_photographs",
     "read_header",
+    "with_scene_cameras",
 ]

@@ -86,6 +86,7 @@ def open_capture(
     return _finish(opened.light_field)
 
 
+@checked
 def open_photographs(
     path: StrPath,
     *,

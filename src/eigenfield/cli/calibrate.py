@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import time
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 import click
 
-from eigenfield.cli.calibrate_chart import ChartOptions, calibrate_from_charts, chart_options
+from eigenfield.cli.calibrate_chart import chart_options, summary, table
 from eigenfield.cli.common import (
     PATH,
     common_options,
@@ -79,7 +80,7 @@ def command(
     camera_per_photo: bool,
     seed: int,
     work: Path | None,
-    chart: ChartOptions | None,
+    chart: str | None,
     overwrite: bool,
     as_json: bool,
     quiet: bool,
@@ -90,39 +91,35 @@ def command(
     Without --chart, from the scene itself (structure from motion): photographs that find no place are named with the
     reason. With --chart, FOLDER holds pictures or videos of a board, by camera.
     """
+    from eigenfield.calibration.charts.description import ChartOptions
+    from eigenfield.calibration.motion.report import describe_motion, report_lines
+    from eigenfield.calibration.whole import calibrate, refuse_passing
+    from eigenfield.capture import open_photographs
     from eigenfield.capture.writers.save import refuse_folder
 
+    started = time.monotonic()
     place = _default_output(folder) if output is None else output
     refuse_folder(place, overwrite)
+    board: dict[str, Any] = {field.name: names.pop(field.name) for field in fields(ChartOptions)[1:]}
+    ChartOptions(chart, **board)  # is refused before photographs are read
+    options: dict[str, Any] = {
+        "intrinsics": intrinsics, "camera_per_photo": camera_per_photo, "matching": matching, "work": work,
+        "seed": seed, "overwrite": overwrite,
+    }  # fmt: skip
     if chart is not None:
-        given = {"intrinsics": intrinsics, "work": work, **names}
-        given |= {"camera-per-photo": camera_per_photo or None, "json": as_json or None}
-        for name, value in given.items():
-            if value is not None:
-                raise OptionError("chart", f"--{name} means nothing to charts", remedy="leave it out")
-        calibrate_from_charts(folder, place, chart, overwrite=overwrite, quiet=quiet)
+        if as_json:
+            raise OptionError("chart", "--json means nothing to charts", remedy="leave it out")
+        with progress_bars(quiet) as progress:
+            rig = calibrate(folder, place, chart=chart, progress=progress, **board, **options, **names)
+        note_all(rig.problems, quiet)
+        click.echo("\n".join([*table(rig), f"{place}: {summary(rig)}, {time.monotonic() - started:.0f} s"]))
         return
-
-    started = time.monotonic()
-    from eigenfield.calibration.motion.calibrate import calibrate, refuse_passing
-    from eigenfield.calibration.motion.report import describe_motion, report_lines
-    from eigenfield.capture import open_photographs
 
     photos = open_photographs(folder, strict=False, work=work, **names)
     refuse_passing(photos, folder, work)
     note_all(photos.problems, quiet)
     with progress_bars(quiet) as progress:
-        motion = calibrate(
-            photos,
-            place,
-            intrinsics=intrinsics,
-            camera_per_photo=camera_per_photo,
-            matching=matching,
-            work=work,
-            seed=seed,
-            overwrite=overwrite,
-            progress=progress,
-        )
+        motion = calibrate(photos, place, progress=progress, **options)
     report = describe_motion(motion)
     if as_json:
         echo_json(report)

@@ -116,8 +116,8 @@ def command(
     `eigenfield help measures` defines every figure. Where the file has a residual, captured views are measured without
     it and with it; held-out ones have none. With --json all figures go to standard output, otherwise a table does.
     """  # fmt: skip
-    from eigenfield.capture import open_any
-    from eigenfield.evaluation import evaluate, read_circles, stored_scores, with_scene_cameras
+    from eigenfield.capture import open_any, with_scene_cameras
+    from eigenfield.evaluation import evaluate, read_circles, stored_scores
     from eigenfield.gltf import load, store_scores
     from eigenfield.runtime.files import refuse_existing
 

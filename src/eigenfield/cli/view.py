@@ -4,18 +4,12 @@ from __future__ import annotations
 
 import threading
 import webbrowser
-from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from eigenfield.cli.common import PATH, capture_argument, capture_options, common_options, note
-from eigenfield.core.errors import FormatError, OptionError
-
-if TYPE_CHECKING:
-    from eigenfield.core.scene import Scene
-    from eigenfield.viewer import Photographs
 
 
 @click.command(
@@ -57,23 +51,9 @@ def command(
     The address goes to standard output. Only this machine can open it, unless --host says otherwise, and
     nothing is fetched from elsewhere. Ctrl-C ends it, with exit code 0.
     """
-    from eigenfield.core.scene import check_scale
-    from eigenfield.gltf import outline, without_residual
-    from eigenfield.viewer import Server, make_manifest
+    from eigenfield.viewer import view
 
-    check_scale(metres_per_unit)
-    try:
-        loaded, data = outline(scene)
-    except FormatError as error:
-        if error.code != "not-a-scene" or capture is not None:
-            raise
-        note(f"{scene} has no eigen textures: it is shown as the plain glTF file that it is", quiet)
-        glb, photographs = scene.read_bytes(), None
-    else:
-        glb = without_residual(data)
-        photographs = _photographs(loaded, capture, place, quiet)
-    manifest = make_manifest(glb, scene.name, photographs, metres_per_unit)
-    with Server(manifest, host, port) as server:
+    with view(scene, capture, host=host, port=port, browser=False, metres_per_unit=metres_per_unit, **place) as server:
         try:
             click.echo(server.address)
             if server.is_public:
@@ -84,26 +64,6 @@ def command(
             _wait()
         except KeyboardInterrupt:
             note("stopped", quiet)
-
-
-def _photographs(scene: Scene, capture: Path | None, place: Mapping[str, Any], quiet: bool) -> Photographs | None:
-    if capture is None:
-        given = [name for name, value in place.items() if value is not None]
-        if given:
-            raise OptionError(
-                "no-capture", f"--{given[0]} is for a capture, and none is named", remedy="name it behind the scene"
-            )
-        return None
-    from eigenfield.capture import open_any
-    from eigenfield.evaluation import match_photographs, with_scene_cameras
-    from eigenfield.viewer import Photographs
-
-    light_field = with_scene_cameras(scene, open_any(capture, **place))
-    photographs = Photographs(scene, light_field, match_photographs(scene, light_field))
-    missing = len(scene.rig.names) - len(photographs.names)
-    if missing:
-        note(f"{missing} of {len(scene.rig.names)} cameras have no photograph in {capture}", quiet)
-    return photographs
 
 
 def _wait() -> None:

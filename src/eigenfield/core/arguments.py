@@ -23,13 +23,17 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
     A NumPy array or a list stands for a tuple, and a whole number for a number.
 
     Args:
-        function: Its annotations must be importable.
+        function: What its annotations name only under TYPE_CHECKING is left to it to check.
     """
     signature = inspect.signature(function)
 
-    @functools.lru_cache(1)
-    def hints() -> dict[str, Any]:
-        return get_type_hints(function)
+    @functools.cache
+    def hint(name: str) -> Any:
+        holder = types.SimpleNamespace(__annotations__={name: signature.parameters[name].annotation})
+        try:
+            return get_type_hints(holder, function.__globals__)[name]
+        except NameError:
+            return object
 
     @functools.wraps(function)
     def call(*args: P.args, **named: P.kwargs) -> R:
@@ -40,9 +44,9 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
             raise OptionError("argument", f"{function.__name__}: {error}", remedy=remedy) from None
         for name, value in given.items():
             kind = signature.parameters[name].kind
-            if kind is not inspect.Parameter.VAR_KEYWORD and not matches(value, hints()[name]):
+            if kind is not inspect.Parameter.VAR_KEYWORD and not matches(value, hint(name)):
                 message = f"{name} of {function.__name__} is {_shown(value)}"
-                raise OptionError("argument", message, remedy=f"give {in_words(hints()[name])}")
+                raise OptionError("argument", message, remedy=f"give {in_words(hint(name))}")
         return function(*args, **named)
 
     return call

@@ -9,8 +9,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from eigenfield.core.arguments import checked
 from eigenfield.core.notebook import notebook_progress
-from eigenfield.encoding.options import EncodeOptions, changed_options
+from eigenfield.core.progress import Progress
+from eigenfield.encoding.options import EncodeOptions
 from eigenfield.encoding.target import Target
 from eigenfield.runtime.objects import find_objects, refuse_objects
 
@@ -18,7 +20,6 @@ if TYPE_CHECKING:
     from eigenfield.capture import Capture
     from eigenfield.core.mesh import Mesh
     from eigenfield.core.observations import CalibratedObservations
-    from eigenfield.core.progress import Progress
     from eigenfield.core.proxy import Proxy
     from eigenfield.core.scene import EncodedScene
     from eigenfield.runtime.tasks import Workers
@@ -28,6 +29,7 @@ __all__ = ["EncodeOptions", "Target", "encode"]
 log = logging.getLogger("eigenfield.encode")
 
 
+@checked
 def encode(
     capture: str | os.PathLike[str] | Capture | CalibratedObservations,
     proxy: str | os.PathLike[str] | Mesh | Proxy | None = None,
@@ -85,7 +87,7 @@ def encode(
     from eigenfield.encoding.residual.make import check_residual, with_residual
     from eigenfield.gltf import encode_scene, read_scene
 
-    asked = changed_options(EncodeOptions() if options is None else options, changes)
+    asked = replace(EncodeOptions() if options is None else options, **changes)
     if asked.keep_maps is not None:
         refuse_objects(asked.keep_maps)
     own: dict[str, Any] = {

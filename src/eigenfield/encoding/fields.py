@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import difflib
 import inspect
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
+
+from eigenfield.core.errors import OptionError
 
 T = TypeVar("T")
 
@@ -31,6 +34,23 @@ class Option:
     limits: tuple[int, int] | None = None
     bare: str | None = None
     parts: type | None = None
+
+
+class Options:
+    """A base of dataclasses of options: arguments that they do not have raise OptionError `option-unknown`."""
+
+    def __new__(cls, *values: object, **named: object) -> Self:
+        """Check the arguments' names; values by their place are for those that take them."""
+        try:
+            inspect.signature(cls.__init__).bind(None, *values, **named)
+        except TypeError as error:
+            names = list(inspect.signature(cls.__init__).parameters)[1:]
+            unknown = next((name for name in named if name not in names), None)
+            near = difflib.get_close_matches(unknown or "", names, n=1)
+            message = f"{cls.__name__}: {error}" if unknown is None else f"{cls.__name__} has no option {unknown}"
+            remedy = f"did you mean {near[0]}?" if near else f"there are {', '.join(names)}"
+            raise OptionError("option-unknown", message, remedy=remedy) from None
+        return super().__new__(cls)
 
 
 def option(help: str, **how: Any) -> Any:

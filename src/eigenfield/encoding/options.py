@@ -5,15 +5,13 @@ Importing this loads nothing but the standard library, so that `eigenfield encod
 
 from __future__ import annotations
 
-import difflib
 import os
-from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
-from typing import Any, TypedDict, TypeVar, get_type_hints
+from dataclasses import dataclass, replace
+from typing import TypedDict, TypeVar, get_type_hints
 
 from eigenfield.core.arguments import in_words, matches
 from eigenfield.core.errors import OptionError
-from eigenfield.encoding.fields import document_options, option, options_of
+from eigenfield.encoding.fields import Options, document_options, option, options_of
 from eigenfield.encoding.target import Target
 
 T = TypeVar("T")
@@ -75,7 +73,7 @@ class Coding(TypedDict):
 
 @document_options
 @dataclass(frozen=True, kw_only=True)
-class EncodeOptions:
+class EncodeOptions(Options):
     """The options of `encode`. Every option may be left out; `resolved` fills in what that means.
 
     An option that cannot be, or two that exclude each other, raise OptionError when the value is made. The command
@@ -260,28 +258,6 @@ class EncodeOptions:
         if not all(side is None or 1 <= side <= ATLAS_MAX_SIDE_TEXELS for side in sides):
             remedy = f"ask for sides from 1 to {ATLAS_MAX_SIDE_TEXELS}"
             raise OptionError("atlas", f"an atlas of {self.atlas} was asked for", remedy=remedy)
-
-
-def changed_options(options: EncodeOptions, changes: Mapping[str, Any]) -> EncodeOptions:
-    """The options with other values.
-
-    Args:
-        options: The options.
-        changes: Values by name.
-
-    Raises:
-        OptionError: `option-unknown`; as `EncodeOptions`.
-    """
-    names = [each.name for each in fields(EncodeOptions)]
-    for name in changes:
-        if name not in names:
-            near = difflib.get_close_matches(name, names, n=1)
-            remedy = f"did you mean {near[0]}?" if near else f"there are {', '.join(names)}"
-            raise OptionError("option-unknown", f"encode has no option {name}", remedy=remedy)
-    if not isinstance(options, EncodeOptions):
-        message = f"the options are a {type(options).__name__}"
-        raise OptionError("option-type", message, remedy="give EncodeOptions, or single options by name")
-    return replace(options, **changes)
 
 
 def resolved_value(value: T | None) -> T:

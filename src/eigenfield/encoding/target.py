@@ -10,7 +10,7 @@ from numbers import Real
 from typing import Generic, TypeVar
 
 from eigenfield.core.errors import OptionError
-from eigenfield.encoding.fields import document_options, option
+from eigenfield.encoding.fields import Options, document_options, option
 
 T = TypeVar("T")
 
@@ -25,7 +25,7 @@ TARGET_NEAR_SIZE_RATIO = 0.985  # of a target size: such files are near enough
 
 @document_options
 @dataclass(frozen=True)
-class Target:
+class Target(Options):
     """The target of a file: one of a size, a PSNR and an SSIM.
 
     PSNR (dB, RGB) and SSIM are means over captured cameras (docs/measures.md).

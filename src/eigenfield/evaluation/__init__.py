@@ -2,15 +2,12 @@
 
 from eigenfield.evaluation.exclusion import ExcludedCircle, read_circles
 from eigenfield.evaluation.report import evaluate, stored_scores
-from eigenfield.evaluation.session import match_photographs, with_scene_cameras
 from eigenfield.evaluation.uv import reconstruct_maps
 
 __all__ = [
     "ExcludedCircle",
     "evaluate",
-    "match_photographs",
     "read_circles",
     "reconstruct_maps",
     "stored_scores",
-    "with_scene_cameras",
 ]

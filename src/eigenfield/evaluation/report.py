@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from eigenfield.capture import Capture, open_any
+from eigenfield.capture import Capture, open_any, with_scene_cameras
 from eigenfield.core.arguments import checked
 from eigenfield.core.errors import OptionError
 from eigenfield.core.notebook import notebook_progress
@@ -18,7 +18,7 @@ from eigenfield.core.scene import Scene
 from eigenfield.encoding.residual.views import with_differences
 from eigenfield.evaluation.exclusion import ExcludedCircle
 from eigenfield.evaluation.image import summarise_scores
-from eigenfield.evaluation.session import CameraScores, PictureScores, Session, start_session, with_scene_cameras
+from eigenfield.evaluation.session import CameraScores, PictureScores, Session, start_session
 from eigenfield.evaluation.spread import MeasureJob, measure_on
 from eigenfield.gltf import parts
 from eigenfield.runtime.parallel import parallel_stream

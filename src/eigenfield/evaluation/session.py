@@ -3,19 +3,13 @@
 from __future__ import annotations
 
 import logging
-import math
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path, PurePosixPath
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture import Capture, Lens, LightField, Photograph
-from eigenfield.capture.photographs.read import read_header
-from eigenfield.capture.photoset import Shot
-from eigenfield.core.camera import Camera
+from eigenfield.capture import LightField, Photograph, match_photographs
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.scene import Scene
 from eigenfield.encoding.projected.align import align_map
@@ -32,10 +26,8 @@ log = logging.getLogger("eigenfield.evaluation")
 
 PictureScores = tuple[ImageScores, ImageScores | None]  # of all of a picture, and outside its circle
 
-EVALUATION_LENS_MODELS = ("brown", "fisheye", "rational", "metashape", "metashape-equidistant", "metashape-equisolid")
 PNG_MAP_CHOICES = CURVE_CHOICES = ("all", "sample", "none")
 EVALUATION_SAMPLE_CAMERAS = 16  # of "sample"
-EVALUATION_MAX_CALIBRATION_PIXELS = 0.5  # two calibrations may differ by this much without a warning
 
 
 @dataclass(frozen=True, eq=False)
@@ -271,120 +263,6 @@ def start_session(
         reference = session.texture(scene.rig.reference, session.photograph(scene.rig.reference))
         session = replace(session, reference=reference)
     return session
-
-
-def with_scene_cameras(scene: Scene, photographs: Capture) -> LightField:
-    """A light field as it is, or photographs without a calibration with the scene's cameras and lenses, by name; linear
-    values with the scene's exposure.
-
-    Photographs are turned by their EXIF orientation if those that were encoded were.
-
-    Args:
-        scene: The scene.
-        photographs: With or without cameras.
-
-    Raises:
-        CaptureError: `no-photographs`: no name fits.
-        OptionError: `settings-unknown`.
-    """
-    exposure = _recorded_exposure(scene)
-    if exposure is not None:
-        photographs = photographs.with_exposure(exposure)
-    if photographs.light_field is not None:
-        return photographs.light_field
-    index = {photograph: camera for camera, photograph in _same_names(scene, photographs.names).items()}
-    chosen, numbers = photographs.subset(sorted(index)), [index[photograph] for photograph in sorted(index)]
-    if not len(chosen):
-        raise _no_photographs(scene, photographs.root, photographs.names)
-    lenses, stored = _recorded_lenses(scene), scene.settings.get("asStored")
-    cameras = [scene.rig.cameras[number] for number in numbers]
-    marked = [isinstance(stored, list) and number in stored for number in numbers]  # a file may hold anything here
-    shots = tuple(_orient(*known) for known in zip(chosen.shots, cameras, marked, strict=True))
-    return replace(chosen, shots=shots).with_cameras(cameras, [lenses[number] for number in numbers])
-
-
-def _orient(shot: Shot, camera: Camera, stored: bool) -> Shot:
-    """The photograph turned as the scene has it: by its camera's size, and where both ways fit by its record."""
-    header, size = read_header(shot.path), (camera.width, camera.height)
-    if header.stored_size == size and (stored or header.upright_size != size):
-        return replace(shot, upright=False, width=camera.width, height=camera.height)
-    return shot
-
-
-def _recorded_exposure(scene: Scene) -> float | None:
-    tone = scene.settings.get("tone")
-    found = tone.get("exposure") if isinstance(tone, dict) else None
-    return float(found) if isinstance(found, int | float) and 0 < found < math.inf else None
-
-
-def _recorded_lenses(scene: Scene) -> list[Lens | None]:
-    recorded = scene.settings.get("lenses")
-    if recorded is None:
-        return [None] * len(scene.rig.names)
-    try:
-        lenses = [
-            None if lens is None else Lens(lens[0], tuple(float(value) for value in lens[1])) for lens in recorded
-        ]
-        known = all(lens is None or lens.model in EVALUATION_LENS_MODELS for lens in lenses)
-    except (TypeError, ValueError, IndexError, KeyError) as error:  # a file may hold anything here
-        raise OptionError(
-            "settings-unknown", "the scene's record of its lenses cannot be read", remedy="name the --calibration"
-        ) from error
-    if len(lenses) != len(scene.rig.names) or not known:
-        raise OptionError(
-            "settings-unknown", "the scene records lenses that do not fit its cameras", remedy="name the --calibration"
-        )
-    return lenses
-
-
-def _no_photographs(scene: Scene, root: Path, names: Sequence[str]) -> CaptureError:
-    return CaptureError(
-        "no-photographs",
-        f"no photograph has the name of a camera of the scene (here {names[0] if names else 'none'}, there "
-        f"{scene.rig.names[0]})",
-        path=root,
-        remedy="evaluate with the capture that was encoded",
-    )
-
-
-def match_photographs(scene: Scene, capture: LightField) -> dict[int, int]:
-    """The view of the capture for each scene camera, by name; where no name has its ending, by the name without it.
-
-    Args:
-        scene: The scene.
-        capture: Its photographs.
-
-    Raises:
-        CaptureError: `no-photographs`: no name fits.
-    """
-    photographs = _same_names(scene, capture.names)
-    if not photographs:
-        raise _no_photographs(scene, capture.root, capture.names)
-    for index, view in photographs.items():
-        K, other = scene.rig.cameras[index].K, capture.views[view].camera.K
-        if np.abs(K - other).max() > EVALUATION_MAX_CALIBRATION_PIXELS:
-            log.warning(
-                "%s: the capture's calibration is not the one that was encoded; the scene's own cameras are used",
-                scene.rig.names[index],
-            )
-            break
-    return photographs
-
-
-def _same_names(scene: Scene, names: Sequence[str]) -> dict[int, int]:
-    """The photograph of each scene camera, by index: of the same name, or else the only one of the same stem, if its
-    name is no other camera's."""
-    whole = {name: index for index, name in enumerate(names)}
-    free = [name for name in names if name not in set(scene.rig.names)]
-    stems = Counter(map(_stem, free)), Counter(_stem(name) for name in scene.rig.names if name not in whole)
-    by_stem = {_stem(name): whole[name] for name in free if stems[0][_stem(name)] == stems[1][_stem(name)] == 1}
-    found = {index: whole.get(name, by_stem.get(_stem(name))) for index, name in enumerate(scene.rig.names)}
-    return {index: photograph for index, photograph in found.items() if photograph is not None}
-
-
-def _stem(name: str) -> str:
-    """A photograph's name without its ending, in one case: view_01.JPG and view_01.png are one."""
-    return str(PurePosixPath(name).with_suffix("")).casefold()
 
 
 def _is_aligned(scene: Scene) -> bool:

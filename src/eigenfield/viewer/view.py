@@ -1,50 +1,88 @@
-"""Looking around in a scene from Python: a server that stays while it is held, and a browser."""
+"""Looking around in a scene: a server that stays while it is held, and a browser."""
 
 from __future__ import annotations
 
+import logging
 import os
 import webbrowser
 from pathlib import Path
+from typing import Any
 
+from eigenfield.capture import LightField, PhotoSet, match_photographs, open_any, with_scene_cameras
 from eigenfield.core.arguments import checked
+from eigenfield.core.errors import FormatError, OptionError
 from eigenfield.core.scene import Scene, check_scale
 from eigenfield.gltf import encode_scene, outline, without_residual
 from eigenfield.viewer.manifest import make_manifest
+from eigenfield.viewer.photographs import Photographs
 from eigenfield.viewer.server import LOOPBACK, Server
+
+log = logging.getLogger("eigenfield.viewer")
 
 
 @checked
 def view(
     scene: Scene | str | os.PathLike[str],
+    capture: str | os.PathLike[str] | LightField | PhotoSet | None = None,
     *,
     host: str = LOOPBACK,
     port: int = 0,
     browser: bool = True,
     metres_per_unit: float | None = None,
+    **place: Any,
 ) -> Server:
-    """Look around in a scene, in a browser, until the server is closed or the program ends.
+    """Look around in a scene, in a browser, until the server is closed or the program ends, as `eigenfield view` does.
 
-        with ef.view("scene.glb"):
+        with ef.view("scene.glb", "photos/"):
             input("Enter ends it")
 
     Args:
-        scene: The scene, or its file.
+        scene: The scene, or its file; a plain glTF file is shown as it is.
+        capture: Its photographs, which are shown beside it: their folder, or what `open_any` returns.
         host: Name or address to listen on; any other than this machine's own lets the network see the scene.
         port: To listen on; 0: one that is free.
         browser: Whether a browser is opened; `address` of the result is where the page is.
         metres_per_unit: Metres in one unit of the capture, for headsets.
+        place: Arguments of `open_any` for the path of a capture.
 
     Raises:
-        OptionError: `host-unknown`, `port-busy`, `port-refused`, `metres`.
+        OptionError: `host-unknown`, `port-busy`, `port-refused`, `metres`, `no-capture`; as `open_any`.
         FormatError: The file is no scene.
+        CaptureError: The photographs cannot be read, none belongs to the scene (`no-photographs`), or one does not have
+            its camera's size (`photograph-size`).
     """
     check_scale(metres_per_unit)
-    if isinstance(scene, Scene):
-        data, name = encode_scene(scene), "scene.glb"
+    given = {name: value for name, value in place.items() if value is not None}
+    name = "scene.glb" if isinstance(scene, Scene) else Path(scene).name
+    photographs = None
+    try:
+        loaded, data = (scene, encode_scene(scene)) if isinstance(scene, Scene) else outline(scene)
+    except FormatError as error:
+        if error.code != "not-a-scene" or capture is not None or isinstance(scene, Scene):
+            raise
+        log.warning("%s has no eigen textures: it is shown as the plain glTF file that it is", scene)
+        data = Path(scene).read_bytes()
     else:
-        data, name = outline(scene)[1], Path(scene).name
-    server = Server(make_manifest(without_residual(data), name, None, metres_per_unit), host, port)
+        data = without_residual(data)
+        if given and not isinstance(capture, str | os.PathLike):
+            message = f"--{next(iter(given))} is for a capture, and no folder of one is named"
+            raise OptionError("no-capture", message, remedy="name it behind the scene")
+        if capture is not None:
+            photographs = _photographs(loaded, capture, given)
+    server = Server(make_manifest(data, name, photographs, metres_per_unit), host, port)
     server.start()
-    if browser:
-        webbrowser.open(server.address)
+    if browser and not webbrowser.open(server.address):
+        log.warning("no browser was found: open %s in one", server.address)
     return server
+
+
+def _photographs(
+    scene: Scene, capture: str | os.PathLike[str] | LightField | PhotoSet, place: dict[str, Any]
+) -> Photographs:
+    opened = open_any(capture, **place) if isinstance(capture, str | os.PathLike) else capture
+    light_field = with_scene_cameras(scene, opened)
+    photographs = Photographs(scene, light_field, match_photographs(scene, light_field))
+    missing = len(scene.rig.names) - len(photographs.names)
+    if missing:
+        log.warning("%d of %d cameras have no photograph in %s", missing, len(scene.rig.names), opened.root)
+    return photographs
