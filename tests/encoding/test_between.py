@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +13,10 @@ import pytest
 import eigenfield as ef
 from eigenfield.capture import open_capture
 from eigenfield.core.camera import Camera
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.proxy import Proxy
 from eigenfield.encoding import between as between_module
-from eigenfield.encoding.between import score_words, spread_inside
+from eigenfield.encoding.between import neighbour_parallax, score_words, spread_inside
 from eigenfield.encoding.views import make_rig
 from eigenfield.gltf import load, save
 from support.captures import write_capture
@@ -30,12 +33,13 @@ def encoded(folder, **options):
     return ef.encode(open_capture(folder), proxy=folder / "proxy.ply", textures=6, **options)
 
 
-def test_the_estimate_is_below_the_true_figure_and_near_it(folder, caplog, monkeypatch):
+@pytest.mark.parametrize("fit", ["photographs", "none"])
+def test_the_estimate_is_below_the_true_figure_and_near_it(fit, folder, caplog, monkeypatch):
     """The middle photograph is the one that is left out; the truth is a scene that is made without it."""
     monkeypatch.setattr(between_module, "BETWEEN_WARN_BELOW_DB", 60.0)
     with caplog.at_level(logging.WARNING):
-        scores = encoded(folder).scores
-    held = encoded(folder, hold_out="view_04.png")
+        scores = encoded(folder, fit=fit).scores
+    held = encoded(folder, fit=fit, hold_out="view_04.png")
     truth = ef.evaluate(held, open_capture(folder), progress=None)["image"]["held_out"]
     assert held.scores["image"]["held_out"] == {"cameras": 1, "psnr": pytest.approx(truth["psnr"], abs=0.01)}
     between = scores["between"]
@@ -43,6 +47,12 @@ def test_the_estimate_is_below_the_true_figure_and_near_it(folder, caplog, monke
     assert 0.7 * truth["psnr_luma"] < between["psnr_luma_at_least"] < truth["psnr_luma"] + 0.3
     assert scores["image"]["encoded"]["psnr"] > between["psnr_luma_at_least"] + 3
     assert f"take more between {' and '.join(between['widest'])}, nearer to each other" in caplog.text
+
+
+def grid_rig(centres):
+    K = np.array([[60.0, 0, 32], [0, 60, 28], [0, 0, 1]])
+    cameras = [Camera(K, np.eye(3), -np.array([x, y, -3.0]), 64, 56) for x, y in centres]
+    return make_rig([str(i) for i in range(len(cameras))], cameras, np.zeros(len(cameras), bool), 0)
 
 
 def test_the_captured_figure_is_that_of_evaluate(folder):
@@ -62,8 +72,44 @@ def test_it_is_in_the_file_and_stays_there(folder, tmp_path, run):
     assert "psnr_luma_at_least" in run("info", file)[1]
 
 
-def test_scenes_of_texture_maps_and_of_few_cameras_have_no_scores(folder, tmp_path):
+def test_of_many_cameras_only_those_far_apart_are_measured(tmp_path, monkeypatch):
+    moved = np.random.default_rng(1).uniform(-0.1, 0.1, (9, 3)) * (1, 1, 0)  # so that one triangle is the best
+    cameras = [replace(camera, t=camera.t + by) for camera, by in zip(row_grid(9, 192, 168), moved, strict=True)]
+    folder = write_capture(tmp_path / "moved", tuple(cameras))
+    whole = encoded(folder, fit="none").scores["between"]
+    monkeypatch.setattr(between_module, "BETWEEN_FEW_CAMERAS", 8)
     assert encoded(folder, fit="none").scores == {}
+    monkeypatch.setattr(between_module, "NEIGHBOUR_MAX_PARALLAX_RATIO", 0.001)
+    some = encoded(folder, fit="none").scores["between"]
+    assert some["cameras"] == 1 and some["psnr_luma_at_least"] == pytest.approx(whole["psnr_luma_at_least"], abs=1)
+
+
+def test_of_many_cameras_those_around_each_are_taken():
+    rig = grid_rig([(x, y) for y in range(9) for x in range(9)])
+    left_out = spread_inside(rig)
+    taken = between_module.others_around(rig, left_out)
+    beside = {i + d for i in left_out for d in (-9, -1, 1, 9)}
+    assert (
+        len(left_out) == 12 and beside <= taken and not taken & set(left_out) and rig.reference in taken | {*left_out}
+    )
+
+
+def test_parallax_is_what_near_and_far_parts_of_the_surface_differ_by():
+    """A chequered pattern of squares at depths 2 and 4, seen by cameras 0.1 apart."""
+    x, y = (index.reshape(-1, 1) for index in np.mgrid[-4:4, -4:4])
+    depth = np.broadcast_to(2.0 + 2 * ((x + y) % 2), (64, 4))
+    x, y = x + np.array([0, 1, 1, 0]), y + np.array([0, 0, 1, 1])
+    faces = 4 * np.arange(64)[:, None, None] + [[0, 1, 2], [0, 2, 3]]
+    mesh = Mesh(
+        np.stack([0.4 * depth * x, 0.4 * depth * y, depth], -1).reshape(-1, 3).astype(np.float32),
+        faces.reshape(-1, 3).astype(np.int32),
+    )
+    K = np.array([[100.0, 0, 100], [0, 100, 90], [0, 0, 1]])
+    cameras = [Camera(K, np.eye(3), -np.array([0.1 * i, 0, 0]), 200, 180) for i in range(3)]
+    assert 200 * neighbour_parallax(cameras, Proxy(mesh)) == pytest.approx(100 * 0.1 * (1 / 2 - 1 / 4), rel=0.02)
+
+
+def test_scenes_of_few_cameras_and_small_ones_have_no_scores(tmp_path):
     few = write_capture(tmp_path / "four", row_grid(4, 64, 56))
     scene = encoded(few)
     save(scene, tmp_path / "four.glb")
@@ -72,9 +118,7 @@ def test_scenes_of_texture_maps_and_of_few_cameras_have_no_scores(folder, tmp_pa
 
 def test_cameras_left_out_are_inside_and_no_neighbours():
     def chosen(centres):
-        K = np.array([[60.0, 0, 32], [0, 60, 28], [0, 0, 1]])
-        cameras = [Camera(K, np.eye(3), -np.array([x, y, -3.0]), 64, 56) for x, y in centres]
-        return spread_inside(make_rig([str(i) for i in range(len(cameras))], cameras, np.zeros(len(cameras), bool), 0))
+        return spread_inside(grid_rig(centres))
 
     assert chosen([(x, y) for y in range(3) for x in range(3)]) == [4]
     assert chosen([*((x, y) for y in range(3) for x in range(3)), (1, 1)]) in ([4], [9])  # two in one place

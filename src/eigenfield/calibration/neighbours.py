@@ -22,6 +22,8 @@ from eigenfield.imaging.colour import LUMA_BT709
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.runtime.parallel import parallel_map, tracked_map
 
+NEIGHBOUR_MAX_PARALLAX_RATIO = 0.03  # of the longer side, up to which views between were drawn well: docs/captures.md
+
 
 @dataclass(frozen=True)
 class NeighbourTuning:
@@ -88,7 +90,7 @@ def measure_neighbours(capture: Capture, sound: Sequence[int], progress: Progres
         sound: Indices of those that can be decoded.
         progress: Reports the photographs that are looked at.
     """
-    chosen = _spread(neighbours_of(capture, sound), NEIGHBOUR_TUNING.max_pairs)
+    chosen = spread_pairs(neighbours_of(capture, sound))
     wanted = sorted({index for pair in chosen for index in pair})
     looks = dict(
         zip(wanted, tracked_map(lambda index: _look(capture, index), wanted, "neighbours", progress), strict=True)
@@ -117,17 +119,29 @@ def neighbours_of(capture: Capture, sound: Sequence[int]) -> list[tuple[int, int
         places = np.asarray(capture.layout.positions, np.float64)[list(sound)]
     else:
         return list(pairwise(sound))
+    return [(sound[i], sound[j]) for i, j in nearest_pairs(places)]
+
+
+def nearest_pairs(places: NDArray[np.float64]) -> list[tuple[int, int]]:
+    """Each place with its nearest, every pair once.
+
+    Args:
+        places: (n, 2) or (n, 3), two or more.
+    """
     nearest = np.asarray(KDTree(places).query(places, k=2)[1])
     # of cameras in one place, either may come first
-    other = np.where(nearest[:, 0] == np.arange(len(sound)), nearest[:, 1], nearest[:, 0])
-    pairs = {(min(i, int(j)), max(i, int(j))) for i, j in enumerate(other)}
-    return [(sound[i], sound[j]) for i, j in sorted(pairs)]
+    other = np.where(nearest[:, 0] == np.arange(len(places)), nearest[:, 1], nearest[:, 0])
+    return sorted({(min(i, int(j)), max(i, int(j))) for i, j in enumerate(other)})
 
 
-def _spread(pairs: Sequence[tuple[int, int]], most: int) -> list[tuple[int, int]]:
-    """At most so many of them, evenly spread."""
-    places = np.unique(np.linspace(0, len(pairs) - 1, min(most, len(pairs))).round().astype(int))
-    return [pairs[place] for place in places.tolist()]
+def spread_pairs(pairs: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
+    """`NEIGHBOUR_TUNING.max_pairs` of them at most, evenly spread.
+
+    Args:
+        pairs: In order.
+    """
+    most = min(NEIGHBOUR_TUNING.max_pairs, len(pairs))
+    return [pairs[place] for place in np.unique(np.linspace(0, len(pairs) - 1, most).round().astype(int)).tolist()]
 
 
 def _look(capture: Capture, index: int) -> _Look:
@@ -155,14 +169,13 @@ def _measure(
     if len(here) < tuning.min_matches:
         return None
     source, target = a.points[here], b.points[there]
-    fitted = cv2.estimateAffinePartial2D(source, target, method=cv2.LMEDS)[0]
-    if fitted is None:
+    similarity = fit_similarity(source, target)
+    if similarity is None:
         return None
-    similarity = np.asarray(fitted, np.float64)
     ratio = (np.maximum(b.luma[there], 1) / np.maximum(a.luma[here], 1)) ** tuning.gamma
     return NeighbourPair(
         *pair,
-        _range(target - _moved(source, similarity)),
+        parallax_beside(similarity, source, target),
         _overlap(similarity, size, other),
         float(np.median(np.log2(ratio))),
     )
@@ -187,8 +200,26 @@ def _moved(points: NDArray[np.float64], similarity: NDArray[np.float64]) -> NDAr
     return np.asarray(points @ similarity[:, :2].T + similarity[:, 2], np.float64)
 
 
-def _range(shifts: NDArray[np.float64]) -> float:
-    """Between the least and the greatest of (n, 2) shifts, along the direction in which they differ most."""
+def fit_similarity(source: NDArray[np.float64], target: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """(2, 3) the similarity that moves most points best; None where there is none.
+
+    Args:
+        source: (n, 2) pixels.
+        target: (n, 2) pixels in the other photograph.
+    """
+    fitted = cv2.estimateAffinePartial2D(source, target, method=cv2.LMEDS)[0]
+    return None if fitted is None else np.asarray(fitted, np.float64)
+
+
+def parallax_beside(similarity: NDArray[np.float64], source: NDArray[np.float64], target: NDArray[np.float64]) -> float:
+    """Pixels by which points shift against each other beside a similarity, along the direction of the greatest shifts.
+
+    Args:
+        similarity: Of `fit_similarity`.
+        source: (n, 2) pixels.
+        target: (n, 2) pixels in the other photograph.
+    """
+    shifts = target - _moved(source, similarity)
     away = shifts - np.median(shifts, axis=0)
     axis = np.linalg.svd(away, full_matrices=False)[2][0]
     outer = NEIGHBOUR_TUNING.outer_percentile

@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from eigenfield.core.mesh import Mesh
 
 SCHEMA = "eigenfield.inspect/1"
-NEIGHBOUR_MAX_PARALLAX_RATIO = 0.03  # of the longer side, up to which views between were drawn well: docs/captures.md
 NEIGHBOUR_MIN_OVERLAP = 0.6  # of a photograph
 NEIGHBOUR_MAX_STOPS = 0.3  # of exposure
 
@@ -190,6 +189,8 @@ def describe(capture: Capture, damaged: list[CaptureError]) -> dict[str, Any]:
 
 def _neighbours(capture: Capture, pairs: Sequence[NeighbourPair]) -> dict[str, Any]:
     from statistics import median
+
+    from eigenfield.calibration.neighbours import NEIGHBOUR_MAX_PARALLAX_RATIO
 
     widest = max(pairs, key=lambda pair: pair.parallax)
     return {

@@ -42,3 +42,15 @@ class Proxy:
     mesh: Mesh
     lattice: Lattice | None = None
     sheets: Sheets | None = None
+
+
+def opaque_mesh(proxy: Proxy) -> Mesh:
+    """The mesh; of sheets the faces in whose middle they are at least half opaque."""
+    mesh, sheets = proxy.mesh, proxy.sheets
+    if sheets is None:
+        return mesh
+    assert mesh.uv is not None
+    size = sheets.opacity.shape
+    column, row = (mesh.uv[mesh.faces].mean(axis=1) * (size[1], size[0])).astype(np.int64).T
+    opaque = sheets.opacity[row.clip(0, size[0] - 1), column.clip(0, size[1] - 1)] >= 0.5
+    return mesh.part(opaque)

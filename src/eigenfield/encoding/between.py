@@ -2,7 +2,8 @@
 
 Photographs that were held out are drawn and compared. Where none were, mean and eigen textures are made again in a
 short way, on the finished geometry and without some photographs, and drawn at their cameras. That is a lower estimate
-of what the scene draws there: docs/measures.md compares it with held-out views.
+of what the scene draws there: docs/measures.md compares it with held-out views. Arrays of many cameras that stand near
+each other need neither.
 """
 
 from __future__ import annotations
@@ -17,7 +18,17 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.calibration.neighbours import (
+    NEIGHBOUR_MAX_PARALLAX_RATIO,
+    fit_similarity,
+    nearest_pairs,
+    parallax_beside,
+    spread_pairs,
+)
+from eigenfield.core.camera import Camera
+from eigenfield.core.observations import select_cameras
 from eigenfield.core.progress import Progress
+from eigenfield.core.proxy import Proxy, opaque_mesh
 from eigenfield.core.rig import Rig
 from eigenfield.core.scene import Scene
 from eigenfield.encoding.fitted.colour import split_matrix
@@ -30,15 +41,18 @@ from eigenfield.encoding.fitted.solve import fit_textures, measure_scales, resid
 from eigenfield.encoding.fitted.start import principal_block
 from eigenfield.encoding.plan import EncodePlan
 from eigenfield.imaging.metrics import psnr
+from eigenfield.imaging.raster import rasterise_view, unproject
 from eigenfield.rendering import Renderer, camera_weights, delaunay_triangles
 from eigenfield.rendering.weights import delaunay_weights, hull
 from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger("eigenfield.encode")
 
-BETWEEN_MIN_CAMERAS, BETWEEN_MAX_CAMERAS = 5, 49  # encoded ones of which some can be left out, and worth the time
+BETWEEN_MIN_CAMERAS = 5  # encoded ones, of which some can be left out
+BETWEEN_FEW_CAMERAS = 49  # more are measured only where they are far apart
+BETWEEN_PARALLAX_SIDE_PIXELS = 64  # longer side of the view in which points are taken to see how far that is
 BETWEEN_MIN_SIDE_PIXELS = 128  # of smaller photographs the short way says far too little
-BETWEEN_LEFT_OUT_RATIO = 1 / 4  # of the cameras, at most
+BETWEEN_LEFT_OUT_RATIO, BETWEEN_MAX_LEFT_OUT = 1 / 4, 12  # of the cameras, at most
 BETWEEN_PIXEL_STEP = 2  # each way
 BETWEEN_DENSITIES = (0.07, 0.14, 0.28, 0.55)  # of the atlas's, one after the other: coarse ones fill what few see
 BETWEEN_TEXTURE_DENSITY = 0.28  # likewise
@@ -51,12 +65,12 @@ MEASURED_MAX_CAMERAS = 16  # of the captured ones, evenly spread
 def measure_scene(
     scene: Scene, plan: EncodePlan, work: Path | None = None, progress: Progress | None = None
 ) -> dict[str, Any]:
-    """The scores of a fitted scene of few cameras, for its file (docs/measures.md); empty for others.
+    """The scores of a scene of few cameras, or of cameras far apart, for its file (docs/measures.md); empty for others.
 
     Args:
-        scene: Fitted to the plan's photographs.
+        scene: Made of the plan's photographs.
         plan: Its plan.
-        work: Folder for scratch files of 4 bytes a pixel and about 9 more.
+        work: Folder for scratch files of 4 bytes a pixel of the cameras that take part, and about 9 more.
         progress: Reports the photographs.
 
     Raises:
@@ -88,11 +102,39 @@ def measure_scene(
 
 
 def is_measured(plan: EncodePlan) -> bool:
-    """Whether a scene of a plan gets scores: a still, fitted one of few cameras."""
+    """Whether a scene of a plan gets scores: a still one of few cameras, or of cameras that are far apart."""
     cameras, still = plan.views.rig.encoded_cameras, len(plan.views.capture.times) == 1
     large = min(min(camera.width, camera.height) for camera in cameras) >= BETWEEN_MIN_SIDE_PIXELS
-    few = BETWEEN_MIN_CAMERAS <= len(cameras) <= BETWEEN_MAX_CAMERAS
-    return plan.options.fit != "none" and still and few and large
+    if not still or not large or len(cameras) < BETWEEN_MIN_CAMERAS:
+        return False
+    return len(cameras) <= BETWEEN_FEW_CAMERAS or neighbour_parallax(cameras, plan.proxy) > NEIGHBOUR_MAX_PARALLAX_RATIO
+
+
+def neighbour_parallax(cameras: Sequence[Camera], proxy: Proxy) -> float:
+    """What `inspect` says of neighbouring photographs, by the surface: the median parallax, over the longer side.
+
+    Args:
+        cameras: Two or more.
+        proxy: That they see.
+    """
+    mesh = opaque_mesh(proxy)
+
+    def measure(pair: tuple[int, int]) -> float:
+        one, other = cameras[pair[0]], cameras[pair[1]]
+        scale = BETWEEN_PARALLAX_SIDE_PIXELS / max(one.width, one.height)
+        small = one.resize(max(1, round(scale * one.width)), max(1, round(scale * one.height)))
+        inverse_depth = rasterise_view(mesh, small).inverse_depth
+        row, column = np.nonzero(inverse_depth > 0)
+        points = unproject(small, row, column, inverse_depth[row, column])
+        source, (target, depth) = one.project(points)[0], other.project(points)
+        shared = (depth > 0) & (target > 0).all(axis=1) & (target < (other.width, other.height)).all(axis=1)
+        similarity = fit_similarity(source[shared], target[shared]) if shared.sum() > 2 else None
+        if similarity is None:
+            return np.inf
+        return parallax_beside(similarity, source[shared], target[shared]) / max(one.width, one.height)
+
+    pairs = spread_pairs(nearest_pairs(np.array([camera.centre for camera in cameras])))
+    return float(np.median(parallel_map(measure, pairs)))
 
 
 def score_words(scores: Mapping[str, Any]) -> list[str]:
@@ -121,9 +163,10 @@ def spread_inside(rig: Rig) -> list[int]:
     joined = [index for index, ones in enumerate(near) if ones]  # another camera may stand in the same place
     inner = [index for index in joined if index not in rim] or joined
     gaps = _gaps(rig)
+    most = min(max(1, int(len(near) * BETWEEN_LEFT_OUT_RATIO)), BETWEEN_MAX_LEFT_OUT)
     chosen: list[int] = []
     for index in sorted(inner, key=lambda i: -max(gaps[i, j] for j in near[i])):
-        if not near[index] & set(chosen) and len(chosen) < max(1, int(len(near) * BETWEEN_LEFT_OUT_RATIO)):
+        if not near[index] & set(chosen) and len(chosen) < most:
             chosen.append(index)
     return sorted(chosen)
 
@@ -170,15 +213,15 @@ def _drawn(scene: Scene, plan: EncodePlan, cameras: Sequence[int]) -> dict[str, 
 def _drawn_by_others(
     plan: EncodePlan, left_out: Sequence[int], work: Path | None, progress: Progress | None
 ) -> list[float]:
-    """dB of luma for each camera left out, drawn from the others."""
-    rig, observations = plan.views.rig, plan.views.observations
-    others = [index for index in range(len(rig.encoded)) if index not in left_out]
-    size, order = (plan.atlas[1], plan.atlas[0]), [*others, *left_out]
+    """dB of luma for each camera left out, drawn from the others: of many cameras from those around it."""
+    rig, size = plan.views.rig, (plan.atlas[1], plan.atlas[0])
+    others = sorted(others_around(rig, left_out))
+    order = [*others, *left_out]
+    cameras, observations = [rig.encoded_cameras[i] for i in order], select_cameras(plan.views.observations, order)
+    reference = order.index(rig.encoded_reference)
     with (
-        open_fit_data(
-            rig.encoded_cameras, observations, plan.proxy, size, work, progress, rig.encoded_reference
-        ) as whole,
-        open_subsampled(whole, BETWEEN_PIXEL_STEP, work, order) as data,
+        open_fit_data(cameras, observations, plan.proxy, size, work, progress, reference) as whole,
+        open_subsampled(whole, BETWEEN_PIXEL_STEP, work) as data,
     ):
         known = _first(data, len(others))
         grid = plane_size(size, BETWEEN_TEXTURE_DENSITY)
@@ -197,6 +240,23 @@ def _drawn_by_others(
         found = residual(data, model, NOTHING_WANTED)
     at = range(len(others), len(order))
     return [psnr_of(found.squares[i : i + 1], found.pixels[i : i + 1]) if found.pixels[i] else np.inf for i in at]
+
+
+def others_around(rig: Rig, left_out: Sequence[int]) -> set[int]:
+    """The encoded cameras that take part beside those left out: of few all, of many those around each.
+
+    With all around it, a camera left out lies in the same triangle of others as with the whole array.
+
+    Args:
+        rig: The rig.
+        left_out: Of `spread_inside`.
+    """
+    if len(rig.encoded) <= BETWEEN_FEW_CAMERAS:
+        taken = set(range(len(rig.encoded)))
+    else:
+        near = _neighbours(rig)
+        taken = set().union(*(near[index] for index in left_out)) | {rig.encoded_reference}
+    return taken - set(left_out)
 
 
 def _interpolation(rig: Rig, others: Sequence[int], left_out: Sequence[int]) -> NDArray[np.float64]:

@@ -324,3 +324,18 @@ def rasterise_atlas(mesh: Mesh, width: int, height: int) -> Raster:
     corners = np.ones((len(mesh.uv), 3))
     corners[:, :2] = mesh.uv.astype(np.float64) * (width, height)
     return rasterise(corners, mesh.faces, width, height)
+
+
+def unproject(
+    camera: Camera, row: NDArray[np.int64], column: NDArray[np.int64], inverse_depth: NDArray[np.float32]
+) -> NDArray[np.float64]:
+    """(n, 3) the points in the middles of pixels.
+
+    Args:
+        camera: The camera.
+        row: (n,) of the pixels.
+        column: (n,) likewise.
+        inverse_depth: (n,) of `Raster`, above 0.
+    """
+    rays = np.linalg.solve(camera.K, np.stack([column + 0.5, row + 0.5, np.ones(len(row))]))
+    return np.asarray((rays / inverse_depth - camera.t[:, None]).T @ camera.R)

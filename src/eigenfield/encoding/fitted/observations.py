@@ -175,35 +175,32 @@ def open_on_proxy(
 
 
 @contextlib.contextmanager
-def open_subsampled(
-    data: FitData, step: int, work: Path | None = None, order: Sequence[int] | None = None
-) -> Iterator[FitData]:
+def open_subsampled(data: FitData, step: int, work: Path | None = None) -> Iterator[FitData]:
     """Every `step`-th pixel each way, from a corner that changes with the camera; step 1: the data themselves.
 
     Args:
         data: To take from.
         step: 1 or more.
         work: Folder for scratch files.
-        order: Observations in the order that they are wanted in, where step is not 1; None: all in theirs.
     """
     if step == 1:
         yield data
         return
-    given, indices = data.observations, range(len(data)) if order is None else order
+    given = data.observations
     with subsampled_footprints(data.footprints, step, work) as footprints:
-        shapes = tuple(footprints.shapes[given.camera_of(index)] for index in indices)
+        shapes = tuple(footprints.shapes[given.camera_of(index)] for index in range(len(data)))
         offsets = offsets_of([h * w for h, w in shapes])
         with (
             scratch_array((int(offsets[-1]), 3), np.uint8, work) as codes,
             scratch_array((0 if given.masks is None else int(offsets[-1]),), np.uint8, work) as masks,
         ):
-            for place, index in enumerate(indices):
-                part, taken = slice(offsets[place], offsets[place + 1]), sample_corner(given.camera_of(index), step)
+            for index in range(len(data)):
+                part, taken = slice(offsets[index], offsets[index + 1]), sample_corner(given.camera_of(index), step)
                 codes[part] = given.codes_of(index)[taken].reshape(-1, 3)
                 if given.masks is not None:
                     masks[part] = given.mask(index)[taken].reshape(-1)
             few = None if given.masks is None else masks
-            yield FitData(DecodedObservations(given.cameras[list(indices)], shapes, codes, offsets, few), footprints)
+            yield FitData(DecodedObservations(given.cameras, shapes, codes, offsets, few), footprints)
 
 
 @contextlib.contextmanager

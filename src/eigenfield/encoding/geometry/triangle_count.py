@@ -23,7 +23,7 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import Observations, select_cameras
 from eigenfield.encoding.geometry.distortion import local_variance, luma_of, spread_cameras, visible_points
 from eigenfield.encoding.geometry.simplify_relief import REMAINING_LOSS_RATIO
-from eigenfield.imaging.raster import rasterise_view
+from eigenfield.imaging.raster import rasterise_view, unproject
 from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES, simplify_mesh, weld_vertices
 from eigenfield.runtime.parallel import parallel_map
 
@@ -143,7 +143,7 @@ def _points(views: Sequence[_View], number: int) -> _Points:
     view = views[number]
     step = max(1, int(np.sqrt((view.inverse_depth > 0).sum() / TRIANGLE_VIEW_SAMPLES)))
     row, column = step * np.array(np.nonzero(view.inverse_depth[::step, ::step] > 0))
-    world = _unproject(view.camera, row, column, view.inverse_depth[row, column])
+    world = unproject(view.camera, row, column, view.inverse_depth[row, column])
     beside = []
     for other in views:
         if other is not view and other.time == view.time:
@@ -152,14 +152,6 @@ def _points(views: Sequence[_View], number: int) -> _Points:
             beside.append((other, there, at, gradient))
     each = float((view.inverse_depth > 0).sum()) / max(len(row), 1)
     return _Points((row, column), world, each, beside)
-
-
-def _unproject(
-    camera: Camera, row: NDArray[np.int64], column: NDArray[np.int64], inverse_depth: NDArray[np.float32]
-) -> NDArray[np.float64]:
-    """(n, 3) the points in the middles of pixels."""
-    rays = np.linalg.solve(camera.K, np.stack([column + 0.5, row + 0.5, np.ones(len(row))]))
-    return np.asarray((rays / inverse_depth - camera.t[:, None]).T @ camera.R)
 
 
 def _loss(mesh: Mesh, views: Sequence[_View], samples: Sequence[_Points]) -> float:
@@ -171,7 +163,7 @@ def _loss(mesh: Mesh, views: Sequence[_View], samples: Sequence[_Points]) -> flo
         black = (drawn <= 0) & (view.inverse_depth > 0)
         holes = float(np.square(view.grey[black], dtype=np.float64).sum())
         here = drawn[points.pixel]
-        moved = _unproject(view.camera, *points.pixel, np.where(here > 0, here, 1).astype(np.float32))
+        moved = unproject(view.camera, *points.pixel, np.where(here > 0, here, 1).astype(np.float32))
         error = np.zeros(len(moved))
         for other, there, at, gradient in points.beside:
             shift = np.nan_to_num(other.camera.project(moved)[0] - at)

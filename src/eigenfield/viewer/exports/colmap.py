@@ -17,6 +17,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh, triangle_areas
 from eigenfield.core.progress import Progress, track
+from eigenfield.core.proxy import opaque_mesh
 from eigenfield.core.scene import Scene
 from eigenfield.encoding.residual.views import captured_pixels, with_differences
 from eigenfield.imaging.raster import rasterise_view
@@ -24,7 +25,7 @@ from eigenfield.rendering import RenderJob, ViewWeights, at_resolution, camera_c
 from eigenfield.rendering.render_jobs import png, refuse_attributes
 from eigenfield.runtime.parallel import parallel_map, pieces
 from eigenfield.viewer.exports.folder import atomic_folder, write_file, write_listing
-from eigenfield.viewer.exports.maps import mean_map, opaque_mesh
+from eigenfield.viewer.exports.maps import mean_map
 from eigenfield.viewer.exports.names import file_names
 
 COLMAP_MAX_POINTS, COLMAP_MIN_POINTS = 50_000, 10_000

@@ -10,9 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.appearance import Plane
-from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress, track
-from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import Scene
 from eigenfield.imaging.png import png_bytes
 from eigenfield.rendering.checks import check_textures
@@ -114,18 +112,6 @@ def alpha_added(scene: Scene) -> Callable[[NDArray[np.float32]], NDArray[np.floa
     whole = tiles.transpose(0, 2, 1, 3).reshape(rows * TILE_TEXELS, columns * TILE_TEXELS)
     alpha = whole[:height, :width, None].clip(0, 1)
     return lambda picture: np.concatenate([np.broadcast_to(picture, (height, width, 3)), alpha], axis=2)
-
-
-def opaque_mesh(proxy: Proxy) -> Mesh:
-    """The mesh; of sheets the faces in whose middle they are at least half opaque."""
-    mesh, sheets = proxy.mesh, proxy.sheets
-    if sheets is None:
-        return mesh
-    assert mesh.uv is not None
-    size = sheets.opacity.shape
-    column, row = (mesh.uv[mesh.faces].mean(axis=1) * (size[1], size[0])).astype(np.int64).T
-    opaque = sheets.opacity[row.clip(0, size[0] - 1), column.clip(0, size[1] - 1)] >= 0.5
-    return mesh.part(opaque)
 
 
 def eigen_maps(scene: Scene, count: int) -> Iterator[tuple[NDArray[np.float32], NDArray[np.float32]]]:

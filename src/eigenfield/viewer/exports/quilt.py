@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
+from eigenfield.core.proxy import opaque_mesh
 from eigenfield.core.scene import Scene
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.rendering import RenderJob, ViewWeights, at_resolution, novel_camera, view_weights
 from eigenfield.rendering.render_jobs import png
 from eigenfield.runtime.files import write_bytes
-from eigenfield.viewer.exports.maps import opaque_mesh
 
 QUILT_COLUMNS, QUILT_ROWS = 8, 6
 QUILT_SIDE_PX = 4096  # that every player takes: by default views are made smaller than the cameras' to fit
