@@ -1,5 +1,6 @@
 # docker build --build-arg VERSION=1.2.3 -t eigenfield .
-# docker run --rm -v "$PWD:/work" eigenfield encode photos/ -o scene.glb
+# docker run --rm -v "$PWD:/work" -v eigenfield-cache:/home/eigenfield/.cache eigenfield encode photos/ -o scene.glb
+# The second volume keeps the kernels that the first run compiles for its processor.
 FROM python:3.13-slim AS build
 COPY . /source
 WORKDIR /source
@@ -13,7 +14,7 @@ RUN python -m venv /opt/eigenfield \
 
 FROM python:3.13-slim
 COPY --from=build /opt/eigenfield /opt/eigenfield
-RUN useradd --create-home --uid 1000 eigenfield
+RUN useradd --create-home --uid 1000 eigenfield && install -d -o eigenfield /home/eigenfield/.cache
 USER 1000
 ENV PATH=/opt/eigenfield/bin:$PATH
 WORKDIR /work

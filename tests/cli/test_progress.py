@@ -175,6 +175,8 @@ def test_a_capture_with_cameras_has_the_steps_that_its_encode_takes(fitted: tupl
     assert cost.seconds < cost.layered_seconds
     assert expected_cost(opened, options, settings, threads=4).seconds < cost.seconds / 2
     assert list(expected_cost(opened, options, None, 1).steps) == ["mesh", "fit", "code"]
+    held = expected_cost(opened, EncodeOptions(hold_out="odd"), settings, threads=1)
+    assert held.steps["fit"] < cost.steps["fit"] and held.steps["array"] == cost.steps["array"]
     forced = expected_cost(opened, options, settings | {"surface": "layers", "layers": 4}, threads=1)
     assert list(forced.steps) == ["array", "layers", "mesh", "fit", "code"]
     assert forced.steps["layers"] > 0 and not forced.layered

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from eigenfield.capture import Capture
 from eigenfield.encoding.options import EncodeOptions
+from eigenfield.encoding.views import encoded_ratio
 from eigenfield.reconstruction.array import looks_one_way
 from eigenfield.reconstruction.layered import capture_fault
 from eigenfield.reconstruction.layers import LAYERS_TUNING
@@ -86,18 +87,21 @@ def expected_cost(capture: Capture, options: EncodeOptions, settings: Mapping[st
     sizes, share = capture.sizes, threads**-THREADS_POWER
     pixels = float(sum(width * height for width, height in sizes))
 
-    def seconds(step: StepCost) -> float:
-        return share * (step.fixed + 1e-6 * pixels * (step.of_all + step.of_one / len(sizes)))
+    estimation, textures = [] if settings is None else _estimation(capture, settings), _textures(options)
+    encoded = encoded_ratio(capture, options)
 
-    names = [*([] if settings is None else _estimation(capture, settings)), *_textures(options)]
-    steps = {name: seconds(STEPS[name]) for name in names}
-    layered = {name: seconds(step) for name, step in LAYERED.items()} if "layers" in steps else {}
+    def seconds(name: str, step: StepCost) -> float:
+        of_all = step.of_all * (encoded if name in textures else 1)
+        return share * (step.fixed + 1e-6 * pixels * (of_all + step.of_one / len(sizes)))
+
+    steps = {name: seconds(name, STEPS[name]) for name in (*estimation, *textures)}
+    layered = {name: seconds(name, step) for name, step in LAYERED.items()} if "layers" in steps else {}
     if settings is not None and settings["surface"] == "layers":
         steps, layered = steps | layered, {}
     elif layered:
         steps["layers"] = 0.0
         if len(sizes) >= LAYERS_TUNING.dense_views:
-            steps["trial"] = seconds(DENSE_TRIAL)
+            steps["trial"] = seconds("trial", DENSE_TRIAL)
             layered = {name: DENSE_LAYERS_RATIO * spent for name, spent in layered.items()}
     memory = MEMORY_FIXED_BYTES + MEMORY_BYTES_A_PIXEL * pixels
     return Cost(steps, layered, memory, SCRATCH_BYTES_A_PIXEL * pixels)

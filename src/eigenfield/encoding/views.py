@@ -19,6 +19,7 @@ from eigenfield.core.viewplane import find_grid, fit_view_plane
 from eigenfield.encoding.options import EncodeOptions
 from eigenfield.rendering import delaunay_triangles
 
+ODD_ENCODED_RATIO = 1 / 4  # of a grid's cameras, by --hold-out odd
 REFERENCE_MAX_POINTS = 2000  # by which the scale of a view is measured
 REFERENCE_SCALE_PERCENTILE = 25.0  # of the views' scales, which is that of the wider ones
 REFERENCE_MAX_SCALE_RATIO = 1.5  # to it
@@ -129,15 +130,26 @@ def _pixels_per_unit(camera: Camera, points: NDArray[np.float32]) -> float:
 
 def check_selection(capture: Capture, options: EncodeOptions) -> None:
     """Raise OptionError for what `select_views` will refuse, before cameras and proxy are estimated."""
+    _select_early(capture, options)
+
+
+def encoded_ratio(capture: Capture, options: EncodeOptions) -> float:
+    """The part of the photographs that is not held out, as far as it is known before cameras are estimated."""
+    held = _select_early(capture, options)
+    return ODD_ENCODED_RATIO if held is None else 1 - float(held.mean())
+
+
+def _select_early(capture: Capture, options: EncodeOptions) -> NDArray[np.bool_] | None:
+    """(Nc,) which cameras are held out; None where cameras that are not estimated decide."""
     if capture.light_field is not None:
         places = fit_view_plane(capture.cameras).coordinates([camera.centre for camera in capture.cameras])
     elif capture.layout is not None:
         places = np.stack([capture.layout.columns, capture.layout.rows], axis=1).astype(np.float64)
     elif options.hold_out == "odd":
-        return  # the cameras decide, which are not estimated yet
+        return None
     else:
         places = np.zeros((len(capture), 2))
-    _held_and_reference(options, capture.names, places)
+    return _held_and_reference(options, capture.names, places)[0]
 
 
 def grid_of(coordinates: NDArray[np.float64]) -> NDArray[np.int64] | None:
