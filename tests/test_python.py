@@ -129,20 +129,17 @@ def test_cameras_are_found_as_the_command_line_finds_them(tmp_path, monkeypatch)
 
 
 def test_a_rig_is_calibrated_by_a_chart_as_on_the_command_line(tmp_path):
-    charts.write_charts(
-        tmp_path / "charts",
-        charts.CHECKER,
-        charts.rig(3, spacing=100, distance=500),
-        charts.board_poses(charts.CHECKER, 5, seed=2, spread=50),
-    )
-    found = ef.calibrate(tmp_path / "charts", tmp_path / "ours", chart="checkerboard", board="9x6", square="25mm")
+    cameras, poses = charts.rig(2, spacing=100, distance=500), charts.board_poses(charts.CHECKER, 4, seed=2, spread=50)
+    charts.write_charts(tmp_path / "charts", charts.CHECKER, cameras, poses)
+    board = {"chart": "checkerboard", "board": "9x6", "square": "25mm"}
+    found = ef.calibrate(tmp_path / "charts", tmp_path / "ours", inverted=False, **board)
     assert [report.reason for report in found.reports] == [None] * 2 and found.unit == "mm"
-    words = ["--chart", "checkerboard", "--board", "9x6", "--square", "25mm"]
-    assert call("calibrate", tmp_path / "charts", "-q", "-o", tmp_path / "theirs", *words) == 0
+    words = [word for name, value in board.items() for word in (f"--{name}", value)]
+    assert call("calibrate", tmp_path / "charts", "--not-inverted", "-q", "-o", tmp_path / "theirs", *words) == 0
     for name in ("transforms.json", "report.json"):
         assert (tmp_path / "ours" / name).read_bytes() == (tmp_path / "theirs" / name).read_bytes()
     with pytest.raises(ef.OutputError):
-        ef.calibrate(tmp_path / "charts", tmp_path / "ours", chart="checkerboard", board="9x6", square="25mm")
+        ef.calibrate(tmp_path / "charts", tmp_path / "ours", **board)
 
 
 class Kernel:
