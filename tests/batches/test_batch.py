@@ -141,6 +141,7 @@ def test_instants_without_cameras_have_them_found_once(tmp_path):
         ('[[capture]]\nname = "a"\n', "a [[capture]] has no path"),
         ("captures = 3\n", "has captures where only [options] and [[capture]] are known"),
         ("[[capture\n", "is no TOML"),
+        ('[[capture]]\npath = "a"\ntarget_size = "300kg"\n', "a: '300kg' is no size"),
         ("", "holds no captures"),
         ('[[capture]]\npath = "a"\nproxy = "m.ply"\nlayers = 3\n', "--layers is for making a proxy"),
     ],
@@ -151,6 +152,12 @@ def test_what_a_list_cannot_say(tmp_path, text, words):
         ef.batch(tmp_path / "list.toml", progress=None)
     assert words in str(caught.value) and "\n" not in str(caught.value)
     assert list(tmp_path.iterdir()) == [tmp_path / "list.toml"]  # nothing is made
+
+
+def test_a_list_says_sizes_as_the_command_line_does(tmp_path):
+    (tmp_path / "list.toml").write_text('[options]\ntarget_size = "0.3 MB"\n[[capture]]\npath = "a"\n')
+    (job,) = read_jobs(tmp_path / "list.toml", {})
+    assert job.options.target == ef.Target(size=300_000)
 
 
 def test_a_folder_of_captures(tmp_path):
@@ -199,9 +206,10 @@ def test_the_command_says_what_failed_and_goes_on(run, listed, monkeypatch):
 def test_what_a_page_shows_is_text():
     record = {
         "name": "<b>", "folder": "scenes/a b-1", "page": "x.html", "poster": "x.jpg", "scene": "x.glb", "bytes": 5000,
-        "psnr": 30.0, "held_out_psnr": None, "warnings": ['"'],
+        "psnr": 30.0, "held_out_psnr": None, "between_psnr_luma": 24.56, "warnings": ['"'],
     }  # fmt: skip
     failed = {"name": "c", "error": "<script>"}
+    assert "between at least 24.6 dB of luma" in sheet_html("sizes", [record], instants=False)
     for instants in (False, True):
         page = sheet_html("<i>", [record, failed], instants)
         assert "<b></b>" not in page and "<i>" not in page and "&lt;script&gt;" in page

@@ -14,6 +14,7 @@ from typing import Any
 from eigenfield.core.errors import EigenfieldError, OptionError
 from eigenfield.encoding import EncodeOptions, Target
 from eigenfield.encoding.estimated import reconstruction_settings, refuse_unused
+from eigenfield.encoding.target import parse_size
 from eigenfield.runtime.temporary import is_temporary
 from eigenfield.viewer.exports.names import file_name
 
@@ -168,6 +169,8 @@ def _checked(given: dict[str, Any], base: Path) -> CaptureJob:
             given[key] = str((base / given[key]).absolute())
     if given.get("also") is not None:
         given["also"] = [str((base / one).absolute()) for one in given["also"]]
+    if isinstance(given.get("target_size"), str):
+        given["target_size"] = parse_size(given["target_size"])
     if isinstance(given.get("grid"), list):
         given["grid"] = tuple(given["grid"])
     target = Target(**{key.removeprefix("target_"): given[key] for key in TARGET_KEYS if given.get(key) is not None})

@@ -55,6 +55,8 @@ def _card(record: Mapping[str, Any]) -> str:
         figures.append(f"{record['psnr']:.1f} dB")
     if record["held_out_psnr"] is not None:
         figures.append(f"held out {record['held_out_psnr']:.1f} dB")
+    if record["between_psnr_luma"] is not None:
+        figures.append(f"between at least {record['between_psnr_luma']:.1f} dB of luma")
     name = _text(record["name"])
     lines = "<br>".join(map(_text, record["warnings"]))
     warned = f"<details><summary>Warnings</summary>{lines}</details>" if lines else ""

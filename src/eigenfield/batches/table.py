@@ -18,6 +18,7 @@ COLUMNS = (  # of a record: key, heading, form
     ("psnr", "PSNR", "{:.2f}"),
     ("ssim", "SSIM", "{:.4f}"),
     ("held_out_psnr", "held out", "{:.2f}"),
+    ("between_psnr_luma", "between (luma, at least)", "{:.2f}"),
     ("seconds", "seconds", "{:.0f}"),
     ("error", "error", "{}"),
 )

@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from eigenfield.cli.common import PATH, common_options, note, reconstruction_options
-from eigenfield.cli.encode import parse_atlas, parse_size
+from eigenfield.cli.encode import parse_atlas, parse_target_size
 from eigenfield.cli.field_options import field_options
 from eigenfield.cli.progress import progress_bars
 from eigenfield.encoding import EncodeOptions
@@ -43,7 +43,7 @@ Examples:
 @click.option(
     "--cameras", type=PATH, metavar="FILE", help="The rig's calibration, for --instants; it finds photographs by name."
 )
-@field_options(EncodeOptions, atlas=parse_atlas, target_size=parse_size)
+@field_options(EncodeOptions, atlas=parse_atlas, target_size=parse_target_size)
 @reconstruction_options
 @common_options
 def command(

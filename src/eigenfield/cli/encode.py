@@ -25,6 +25,7 @@ from eigenfield.cli.common import (
 from eigenfield.cli.field_options import field_options, from_fields
 from eigenfield.cli.progress import StepProgress, duration, progress_bars
 from eigenfield.encoding import EncodeOptions
+from eigenfield.encoding.target import parse_size
 
 if TYPE_CHECKING:
     from eigenfield.capture import Capture, LightField
@@ -40,13 +41,8 @@ def parse_atlas(context: click.Context, parameter: click.Parameter, value: str |
     return int(found[1]) if found[2] is None else (int(found[1]), int(found[2]))
 
 
-def parse_size(context: click.Context, parameter: click.Parameter, value: str | None) -> int | None:
-    if value is None:
-        return None
-    found = re.fullmatch(r"(\d+(?:\.\d+)?) *(k|m|g|)b?", value.strip().lower())
-    if found is None:
-        raise click.BadParameter("a size in bytes, kB or MB: 500kB, 1.5MB, 300000")
-    return round(float(found[1]) * {"": 1, "k": 1e3, "m": 1e6, "g": 1e9}[found[2]])
+def parse_target_size(context: click.Context, parameter: click.Parameter, value: str | None) -> int | None:
+    return None if value is None else parse_size(value)
 
 
 GROUPS = {  # of options in the help, the common ones first; what is named in none is of the last
@@ -104,7 +100,7 @@ Examples:
 )
 @click.option("--output", "-o", required=True, type=PATH, metavar="FILE", help="The .glb to write.")
 @capture_options
-@field_options(EncodeOptions, atlas=parse_atlas, target_size=parse_size)
+@field_options(EncodeOptions, atlas=parse_atlas, target_size=parse_target_size)
 @click.option(
     "--work",
     type=PATH,

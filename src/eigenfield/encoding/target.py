@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import math
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Real
@@ -21,6 +22,14 @@ TARGET_MIN_QUALITY, TARGET_MAX_QUALITY = 20, 99  # below, pictures are not recog
 TARGET_FIRST_QUALITY = 80
 TARGET_RANGES = {"size": (1000, math.inf, " bytes"), "psnr": (1, 99, " dB"), "ssim": (0, 1, "")}  # both excluded
 TARGET_NEAR_SIZE_RATIO = 0.985  # of a target size: such files are near enough
+
+
+def parse_size(text: str) -> int:
+    """Bytes from a text: "300kB", "1.5MB" or "300000". Raises OptionError `target`."""
+    found = re.fullmatch(r"(\d+(?:\.\d+)?) *(k|m|g|)b?", text.strip().lower())
+    if found is None:
+        raise OptionError("target", f"{text!r} is no size", remedy="say bytes, kB or MB: 500kB, 1.5MB, 300000")
+    return round(float(found[1]) * {"": 1, "k": 1e3, "m": 1e6, "g": 1e9}[found[2]])
 
 
 @document_options
