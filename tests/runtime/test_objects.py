@@ -207,6 +207,63 @@ def test_s3_answers_are_one_line(s3, run, tmp_path, monkeypatch):
     assert code == 2 and "the store cannot be used" in err and err.count("\n") == 1, err
 
 
+def put_captures(tmp_path: Path, address: str) -> tuple[dict[str, object], Path]:
+    """Two small captures and their mesh in a store; options of a batch, and a folder that holds the same."""
+    for name in ("one", "two"):
+        write_capture(tmp_path / "captures" / name)
+    put(tmp_path / "captures", f"{address}/captures")
+    proxy = tmp_path / "captures" / "one" / "proxy.ply"
+    return {"proxy": str(proxy), "fit": "none", "textures": 2, "atlas": 64}, tmp_path / "captures"
+
+
+def test_a_batch_reads_captures_from_a_store_and_writes_scenes_there(store, tmp_path):
+    options, captures = put_captures(tmp_path, "memory://lab")
+    here = ef.batch(captures, tmp_path / "here", progress=None, **options)
+    first = ef.batch("memory://lab/captures", progress=None, **options)
+    assert [one["name"] for one in first.records] == ["one", "two"] and not first.failed, first.failed
+    for ours, theirs in zip(here.records, first.records, strict=True):
+        place = f"memory://lab/captures-scenes/{theirs['folder']}"
+        scene = here.folder / ours["folder"] / ours["scene"]
+        assert find_objects(f"{place}/{theirs['scene']}").read() == scene.read_bytes()
+        assert find_objects(f"{place}/{theirs['page']}").exists()
+    assert b"scenes/one-" in find_objects("memory://lab/captures-scenes/index.html").read()
+    store.rm(f"/lab/captures-scenes/{first.records[0]['folder']}/{DONE}")  # as after a killed worker
+    assert ef.batch("memory://lab/captures", progress=None, **options).taken_up == 1
+    assert ef.batch("memory://lab/captures", progress=None, **options).taken_up == 2
+    store.pipe_file("/lab/captures/two/transforms.json", store.cat_file("/lab/captures/two/transforms.json"))
+    store.pipe_file("/lab/captures/three/readme.txt", b"no photographs")
+    third = ef.batch("memory://lab/captures", progress=None, **options)
+    assert third.taken_up == 1 and [one["name"] for one in third.failed] == ["three"]
+    assert find_objects("memory://lab/captures-scenes/logs/three.log").exists()
+
+
+def test_a_list_names_addresses(store, tmp_path):
+    _, captures = put_captures(tmp_path, "memory://lab")
+    (tmp_path / "list.toml").write_text(
+        '[options]\nfit = "none"\ntextures = 2\natlas = 64\n[[capture]]\npath = "memory://lab/captures/one"\n'
+        'proxy = "memory://lab/captures/one/proxy.ply"\n[[capture]]\npath = "captures/two"\n'
+        'proxy = "captures/two/proxy.ply"\n'
+    )
+    result = ef.batch(tmp_path / "list.toml", progress=None)
+    assert [one["capture"] for one in result.records] == ["memory://lab/captures/one", str(captures / "two")]
+    assert not result.failed and ef.batch(tmp_path / "list.toml", progress=None).taken_up == 2
+
+
+@pytest.mark.slow
+def test_two_workers_share_a_batch_in_s3(s3, run, tmp_path):
+    put_captures(tmp_path, s3)
+    rows = "".join(f'[[capture]]\npath = "captures/{name}"\n' for name in ("one", "two"))
+    options = '[options]\nproxy = "captures/one/proxy.ply"\nfit = "none"\ntextures = 2\natlas = 64\n'
+    find_objects(s3).fs.pipe_file(f"{s3}/list.toml", (options + rows).encode())
+    words = ["batch", f"{s3}/list.toml", "--workers", 2]
+    first = run(*words)
+    assert first.code == 0 and f"{s3}/list-scenes/index.html: 2 scenes" in first.err, first.err
+    again = run(*words)
+    assert again.out == first.out and "2 of them finished before" in again.err
+    code, _, err = run(*words, "-o", "s3://nobucket/scenes")
+    assert code == 2 and err.count("\n") == 1 and "there is no such bucket" in err, err
+
+
 @pytest.mark.slow
 def test_a_reconstruction_goes_on_from_a_store(s3, run, tmp_path):
     write_array(tmp_path / "photos")

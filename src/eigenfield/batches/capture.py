@@ -2,6 +2,7 @@
 
 A finished scene is a stage: the folder `NAME-KEY` with scene, page, poster and record appears by rename. Its key is of
 the options, the program, and the names, sizes and times of the photographs' files, which need not be read for it.
+In an object store it is of what the store lists, and what is copied from there goes when the task ends.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from eigenfield.gltf import load, save, store_scores
 from eigenfield.proxy import refuse_no_mesh
 from eigenfield.reconstruction import reconstruct
 from eigenfield.reconstruction.whole import capture_identity
+from eigenfield.runtime.objects import DONE, find_objects, own_copies
 from eigenfield.runtime.parallel import threads
 from eigenfield.runtime.stages import Stages, stage_key
 from eigenfield.runtime.tasks import installed, log_into, worker_name
@@ -34,6 +36,7 @@ RECORD_FILE = "record.json"
 CALIBRATION_FILE = "transforms.json"
 
 
+@own_copies()
 def look_at(job: CaptureJob, output: Path) -> dict[str, Any]:
     """What a capture is expected to take, and its record if it is finished.
 
@@ -47,21 +50,33 @@ def look_at(job: CaptureJob, output: Path) -> dict[str, Any]:
     Raises:
         CaptureError, ProxyError, OptionError: The capture, or an option of it, cannot be used.
     """
-    capture = _opened(job, output)
+    capture = None if _in_store(job) else _opened(job, output)
+    key = stage_key([_inputs(job, capture), installed()])
+    record = _finished(output / SCENES_FOLDER / f"{job.name}-{key}")
+    if record is not None:
+        return {"key": key, "seconds": 0.0, "memory": 0.0, "record": record}
+    capture = capture or _opened(job, output)
     check_selection(capture, job.options)
     if job.proxy is not None:
         refuse_no_mesh(Path(job.proxy))
     cost = expected_cost(capture, job.options, job.reconstruction, threads())
-    key = stage_key([_inputs(job, capture), installed()])
-    record = output / SCENES_FOLDER / f"{job.name}-{key}" / RECORD_FILE
-    return {
-        "key": key,
-        "seconds": cost.seconds,
-        "memory": cost.memory,
-        "record": json.loads(record.read_text(encoding="utf-8")) if record.exists() else None,
-    }
+    return {"key": key, "seconds": cost.seconds, "memory": cost.memory, "record": None}
 
 
+def _finished(place: Path) -> dict[str, Any] | None:
+    """The record of a finished scene; None where there is none."""
+    objects = find_objects(place / DONE)
+    if objects is not None and not objects.exists():
+        return None
+    record = find_objects(place / RECORD_FILE)
+    file = place / RECORD_FILE
+    if record is None and not file.exists():
+        return None
+    found: dict[str, Any] = json.loads(file.read_bytes() if record is None else record.read())
+    return found
+
+
+@own_copies()
 def encode_capture(job: CaptureJob, output: Path, key: str) -> dict[str, Any]:
     """Encode and measure a capture, unless it is finished.
 
@@ -88,6 +103,7 @@ def encode_capture(job: CaptureJob, output: Path, key: str) -> dict[str, Any]:
     return found
 
 
+@own_copies()
 def find_cameras(job: CaptureJob, output: Path) -> Path:
     """The cameras of a capture, found or as they are given, as a calibration that others use too.
 
@@ -113,22 +129,36 @@ def find_cameras(job: CaptureJob, output: Path) -> Path:
         assert light_field is not None
         save_calibration(light_field, folder / "calibration")
 
-    return Stages(output).run("cameras", key, build) / "calibration" / CALIBRATION_FILE
+    return output / Stages(output).run("cameras", key, build).name / "calibration" / CALIBRATION_FILE
 
 
 def _opened(job: CaptureJob, output: Path) -> Capture:
-    return open_any(job.path, work=output / WORK_FOLDER / job.name / "frames", **job.place)
+    frames = None if find_objects(output) else output / WORK_FOLDER / job.name / "frames"
+    return open_any(job.path, work=frames, **job.place)
 
 
-def _inputs(job: CaptureJob, capture: Capture) -> list[Any]:
-    """All that a capture's scene depends on, but the program."""
+def _in_store(job: CaptureJob) -> bool:
+    """Whether anything of a capture lies in an object store, so that its files here are copies."""
+    return any(find_objects(path) for path in job.sources)
+
+
+def _inputs(job: CaptureJob, capture: Capture | None) -> list[Any]:
+    """All that a capture's scene depends on, but the program; of one in an object store without opening it."""
 
     def of_file(path: Path) -> list[Any]:
         found = path.stat()
         return [path.name, found.st_size, found.st_mtime_ns]
 
-    proxy = None if job.proxy is None else of_file(Path(job.proxy))
+    def of_place(path: str) -> list[Any]:
+        objects, place = find_objects(path), Path(path)
+        if objects is not None:
+            return objects.stamps()
+        return [of_file(one) for one in (sorted(place.rglob("*")) if place.is_dir() else [place])]
+
+    proxy = None if job.proxy is None else of_place(job.proxy)
     options = asdict(job.options) | {"blind": job.blind, "surface": dict(job.surface)}
+    if capture is None:
+        return [job.name, options, proxy, dict(job.place), [of_place(path) for path in job.sources]]
     return [job.name, options, proxy, capture_identity(capture, of_file)]
 
 
@@ -139,7 +169,8 @@ def _make(job: CaptureJob, output: Path, work: Path, folder: Path) -> dict[str, 
     scene_file, page = folder / f"{job.name}.glb", folder / f"{job.name}.html"
     with log_into(warnings):
         capture = _opened(job, output)
-        work.mkdir(parents=True, exist_ok=True)
+        if not find_objects(work):
+            work.mkdir(parents=True, exist_ok=True)
         made = encode(
             capture, job.proxy, job.options, work=work, progress=None,
             **(dict(job.surface) | {"blind": job.blind} if job.proxy is None else {}),

@@ -15,6 +15,7 @@ from eigenfield.core.errors import EigenfieldError, OptionError
 from eigenfield.encoding import EncodeOptions, Target
 from eigenfield.encoding.estimated import reconstruction_settings, refuse_unused
 from eigenfield.encoding.target import parse_size
+from eigenfield.runtime.objects import absolute_place, address_of, find_objects, local_copy
 from eigenfield.runtime.temporary import is_temporary
 from eigenfield.viewer.exports.names import file_name
 
@@ -35,9 +36,9 @@ class CaptureJob:
 
     Attributes:
         name: Of its scene, and of its files.
-        path: Absolute.
+        path: Absolute, or an address of an object store.
         place: Arguments of `open_any`.
-        proxy: An absolute path of a mesh, if it is given.
+        proxy: Likewise of a mesh, if it is given.
         surface: Arguments of `encode` about cameras and mesh.
         options: Of the scene.
         blind: Whether held-out photographs take no part in cameras and mesh.
@@ -50,6 +51,12 @@ class CaptureJob:
     surface: Mapping[str, Any] = field(default_factory=lambda: dict(SURFACE_DEFAULTS))
     options: EncodeOptions = field(default_factory=EncodeOptions)
     blind: bool = False
+
+    @property
+    def sources(self) -> list[str]:
+        """All that is read, but the mesh."""
+        named = [self.place[key] for key in PATH_KEYS if key in self.place]
+        return [self.path, *named, *self.place.get("also", ())]
 
     @property
     def reconstruction(self) -> dict[str, Any] | None:
@@ -70,19 +77,19 @@ def read_jobs(source: Path | Sequence[Path], shared: Mapping[str, Any]) -> list[
     """The captures of a batch, whose names differ.
 
     Args:
-        source: A TOML file, a folder of captures, or captures.
+        source: A TOML file, a folder of captures, or captures; each may lie in an object store.
         shared: Options of all captures by name; they go before those in a file, and a capture's own before both.
 
     Raises:
         OptionError: `batch-file`, `batch-empty`, `batch-names`, `batch-option`, or of a capture's options.
     """
     if not isinstance(source, Path):
-        rows, base, first = [{"path": str(path)} for path in source], Path.cwd(), None
+        rows, base, first = [{"path": str(path)} for path in source], Path(), None
     elif source.suffix.lower() == ".toml":
         rows, own = _read_toml(source)
-        base, first, shared = source.absolute().parent, source, {**own, **shared}
-    elif source.is_dir():
-        rows, base, first = [{"path": str(path)} for path in captures_in(source)], Path.cwd(), source
+        base, first, shared = absolute_place(source).parent, source, {**own, **shared}
+    elif source.is_dir() or find_objects(source):
+        rows, base, first = [{"path": str(path)} for path in captures_in(source)], Path(), source
     else:
         message = "is no folder of captures and no .toml" if source.exists() else "does not exist"
         raise OptionError(
@@ -99,13 +106,17 @@ def read_jobs(source: Path | Sequence[Path], shared: Mapping[str, Any]) -> list[
 def captures_in(folder: Path) -> list[Path]:
     """What may be a capture in a folder: folders, zips and videos, by their names with numbers as numbers."""
 
-    def is_capture(entry: os.DirEntry[str]) -> bool:
-        hidden = entry.name.startswith(".") or is_temporary(Path(entry.name)) or entry.name.endswith("-scenes")
-        return not hidden and (entry.is_dir() or entry.name.lower().endswith(VIDEO_AND_ZIP))
+    def is_capture(name: str, is_folder: bool) -> bool:
+        hidden = name.startswith(".") or is_temporary(Path(name)) or name.endswith("-scenes")
+        return not hidden and (is_folder or name.lower().endswith(VIDEO_AND_ZIP))
 
-    with os.scandir(folder) as entries:
-        names = [entry.name for entry in entries if is_capture(entry)]
-    return [folder / name for name in sorted(names, key=_by_number)]
+    objects = find_objects(folder)
+    if objects is not None:
+        found = objects.names()
+    else:
+        with os.scandir(folder) as entries:
+            found = [(entry.name, entry.is_dir()) for entry in entries]
+    return [folder / name for name in sorted((one[0] for one in found if is_capture(*one)), key=_by_number)]
 
 
 def _by_number(name: str) -> list[Any]:
@@ -114,7 +125,7 @@ def _by_number(name: str) -> list[Any]:
 
 def _read_toml(path: Path) -> tuple[list[dict[str, Any]], dict[str, Any]]:
     try:
-        document = tomllib.loads(path.read_text(encoding="utf-8"))
+        document = tomllib.loads(local_copy(path).read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         words = error.strerror if isinstance(error, OSError) else f"is no TOML: {error}"
         raise OptionError(
@@ -143,7 +154,7 @@ def _jobs(
     made: dict[str, CaptureJob] = {}  # by the options: checking them takes longer than all else
     for row in rows:
         own = {key.replace("-", "_"): value for key, value in {**shared, **row}.items()}
-        path, name = base / own.pop("path"), own.pop("name", None)
+        path, name = absolute_place(own.pop("path"), base), own.pop("name", None)
         text = repr(own)
         try:
             if text not in made:
@@ -151,8 +162,9 @@ def _jobs(
         except EigenfieldError as error:
             called = f"{name or path.name}: {error.message}" if set(row) - {"path", "name"} else error.message
             raise OptionError(error.code, called, path=source, remedy=error.remedy) from error
-        called = path.name if path.is_dir() else path.stem
-        yield replace(made[text], name=file_name(name or called, "capture"), path=str(path.absolute()))
+        is_file = path.is_file() or path.name.lower().endswith(VIDEO_AND_ZIP)
+        called = path.stem if is_file else path.name
+        yield replace(made[text], name=file_name(name or called, "capture"), path=address_of(path))
 
 
 def _checked(given: dict[str, Any], base: Path) -> CaptureJob:
@@ -166,9 +178,9 @@ def _checked(given: dict[str, Any], base: Path) -> CaptureJob:
             raise OptionError("batch-option", f"no option is called {key}", remedy=remedy)
     for key in PATH_KEYS:
         if given.get(key) is not None:
-            given[key] = str((base / given[key]).absolute())
+            given[key] = address_of(absolute_place(given[key], base))
     if given.get("also") is not None:
-        given["also"] = [str((base / one).absolute()) for one in given["also"]]
+        given["also"] = [address_of(absolute_place(one, base)) for one in given["also"]]
     if isinstance(given.get("target_size"), str):
         given["target_size"] = parse_size(given["target_size"])
     if isinstance(given.get("grid"), list):

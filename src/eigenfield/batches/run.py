@@ -20,6 +20,7 @@ from eigenfield.core.notebook import notebook_progress
 from eigenfield.core.progress import Progress, tell_remaining
 from eigenfield.runtime.executor import as_finished, open_executor, refuse_unseen, refuse_unshared
 from eigenfield.runtime.files import output_errors, write_bytes
+from eigenfield.runtime.objects import absolute_place, find_objects
 from eigenfield.runtime.tasks import Task, Workers
 
 PAGE_FILE = "index.html"
@@ -71,8 +72,9 @@ def batch(
     A capture that fails has its line in the table, and the others go on.
 
     Args:
-        source: A TOML file with `[options]` and `[[capture]]` tables, a folder of captures, or their paths.
-        output: Folder to write. Default: `source` with "-scenes", beside it.
+        source: A TOML file with `[options]` and `[[capture]]` tables, a folder of captures, or their paths; each may be
+            an address of an object store.
+        output: Folder to write, or an address. Default: `source` with "-scenes", beside it.
         workers: Processes of this machine; with a cluster as of `open_executor`. None: this process.
         cluster: Address of a Dask scheduler, "slurm" or "ssh:HOST,HOST".
         instants: Whether the captures are instants of one rig: cameras are found in the first, and the page steps
@@ -97,11 +99,11 @@ def batch(
         if pool.dashboard:
             log.warning("dashboard: %s", pool.dashboard)
         refuse_unshared(pool, folder)
-        for place in {Path(job.path).parent for job in jobs}:
+        for place in {_shared_place(job.path) for job in jobs}:
             refuse_unseen(pool, place)
         try:
             if instants:
-                found = Path(cameras).absolute() if cameras is not None else _cameras(pool, jobs[0], folder)
+                found = absolute_place(cameras) if cameras is not None else _cameras(pool, jobs[0], folder)
                 jobs = [job.with_cameras(found) for job in jobs]
             bar = _Bar(len(jobs), progress)
             looks = _looked(pool, jobs, folder, records, bar)
@@ -114,15 +116,24 @@ def batch(
     return BatchResult(folder, ordered, taken_up)
 
 
+def _shared_place(path: str) -> Path:
+    """What workers must see of a capture: the folder that it lies in, or its bucket."""
+    objects = find_objects(path)
+    return Path(path).parent if objects is None else Path(objects.bucket)
+
+
 def _output(source: Path | Sequence[Path], output: str | os.PathLike[str] | None) -> Path:
     if output is not None:
-        folder = Path(output)
+        folder = absolute_place(output)
     elif isinstance(source, Path):
-        whole = source.absolute()
+        whole = absolute_place(source)
         folder = whole.with_name(f"{whole.stem if whole.suffix == '.toml' else whole.name}-scenes")
     else:
         raise OptionError("output", "a list of captures names no folder for the scenes", remedy="say output")
-    folder = folder.absolute()
+    objects = find_objects(folder)
+    if objects is not None:
+        objects.check_bucket()
+        return folder
     if folder.exists() and not folder.is_dir():
         raise OutputError("output-is-file", "is a file", path=folder, remedy="name a folder")
     with output_errors(folder):
@@ -217,7 +228,8 @@ def _failure(job: CaptureJob, error: BaseException, folder: Path) -> dict[str, A
         text = "".join(traceback.format_exception(error))
     log_file = folder / LOGS_FOLDER / f"{job.name}.log"
     with output_errors(folder):
-        log_file.parent.mkdir(exist_ok=True)
+        if not find_objects(folder):
+            log_file.parent.mkdir(exist_ok=True)
         write_bytes(log_file, "\n".join([text, *notes, ""]).encode("utf-8", "replace"), overwrite=True)
     worker = notes[0].removeprefix("on ") if notes else None
     return {

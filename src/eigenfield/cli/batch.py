@@ -23,6 +23,7 @@ Examples:
   eigenfield batch captures/
   eigenfield batch captures.toml -o scenes --preset small
   eigenfield batch captures/ --workers 2
+  eigenfield batch s3://lab/captures -o s3://lab/scenes
   eigenfield batch captures/ --cluster tcp://head:8786
   eigenfield batch captures/ --cluster ssh:anna,bert
   eigenfield batch clip/ --instants --cameras rig/transforms.json"""
@@ -58,6 +59,7 @@ def command(
     """  # fmt: skip
     from eigenfield.batches import batch
     from eigenfield.batches.table import as_markdown
+    from eigenfield.runtime.objects import address_of
 
     started = time.monotonic()
     shared = {name: value for name, value in options.items() if value not in (None, (), "auto")}
@@ -70,7 +72,7 @@ def command(
     click.echo(as_markdown(done.records), nl=False)
     before = f", {done.taken_up} of them finished before" if done.taken_up else ""
     made = len(done.records) - len(done.failed)
-    note(f"{done.page}: {made} scenes{before}, {time.monotonic() - started:.0f} s", quiet)
+    note(f"{address_of(done.page)}: {made} scenes{before}, {time.monotonic() - started:.0f} s", quiet)
     for record in done.failed:
         where = f" (on {record['worker']})" if record["worker"] else ""
         click.echo(f"eigenfield: {record['name']}: {record['error']}{where}", err=True)

@@ -25,6 +25,7 @@ from typing import Any, NoReturn, TypeVar
 from eigenfield.core.errors import OptionError, OutputError, WorkerError
 from eigenfield.runtime.children import kill_children
 from eigenfield.runtime.files import output_errors
+from eigenfield.runtime.objects import address_of, find_objects
 from eigenfield.runtime.parallel import set_threads, threads
 from eigenfield.runtime.tasks import Task, Workers, machine_memory, missing_extra, name_worker, too_big
 from eigenfield.runtime.temporary import remove_temporaries, temporary_file
@@ -258,7 +259,13 @@ def spread(workers: Workers, calls: Iterable[tuple[Any, ...]]) -> Iterator[Any]:
 
 
 def refuse_unshared(workers: Workers, folder: Path) -> None:
-    """Raise OutputError `folder-not-shared`, with the worker's name, if a worker does not see a folder of this one."""
+    """Raise OutputError `folder-not-shared`, with the worker's name, if a worker does not see a folder of this one.
+
+    Of an address it is enough that workers reach its bucket.
+    """
+    if find_objects(folder):
+        refuse_unseen(workers, folder)
+        return
     token = secrets.token_hex(8)
     with output_errors(folder), temporary_file("eigenfield-shared", folder) as path:
         path.write_text(token, encoding="ascii")
@@ -271,10 +278,22 @@ def refuse_unshared(workers: Workers, folder: Path) -> None:
 
 def refuse_unseen(workers: Workers, path: Path) -> None:
     """Raise OutputError `folder-not-shared`, with the worker's name, if a worker does not see what is read."""
-    for name, seen in workers.everywhere(os.path.exists, path).items():
-        if not seen:
+    for name, fault in workers.everywhere(_fault_of, path).items():
+        if fault is not None:
             remedy = "put it where all machines see it under the same path"
-            raise OutputError("folder-not-shared", f"{name} does not see it", path=path, remedy=remedy)
+            raise OutputError("folder-not-shared", f"{name} {fault}", path=address_of(path), remedy=remedy)
+
+
+def _fault_of(path: Path) -> str | None:
+    """Why this process cannot read a path, or reach the bucket of an address."""
+    try:
+        objects = find_objects(path)
+        if objects is None:
+            return None if path.exists() else "does not see it"
+        objects.check_bucket()
+    except OptionError as error:
+        return f"cannot read it: {error.message}"
+    return None
 
 
 def _read_token(path: Path) -> str | None:

@@ -23,6 +23,7 @@ from eigenfield.runtime.temporary import temporary_folder
 # what each store needs
 STORES = {"s3": "'eigenfield[s3]'", "gs": "gcsfs", "az": "adlfs", "abfs": "adlfs", "memory": "fsspec"}
 DONE = "DONE"
+STAMP_KEYS = "ETag", "etag", "LastModified", "last_modified", "mtime", "created"  # of which each store has one
 _LIBRARIES = "botocore", "aiobotocore", "aiohttp", "gcsfs", "google", "azure"  # whose errors are about the store
 
 _copied = contextlib.ExitStack()
@@ -53,6 +54,23 @@ def find_objects(path: str | os.PathLike[str]) -> Objects | None:
     return Objects(fs, root, address)
 
 
+def absolute_place(path: str | os.PathLike[str], base: str | os.PathLike[str] = "") -> Path:
+    """An address as it is, and another path as an absolute one.
+
+    Args:
+        path: A path of this machine, or an address.
+        base: Folder or address that a relative path is below. Default: the current folder.
+    """
+    place = Path(path) if find_objects(path) else Path(base, path)
+    return place if find_objects(place) else place.absolute()
+
+
+def address_of(path: str | os.PathLike[str]) -> str:
+    """A path as people write it: an address with both of its slashes."""
+    objects = find_objects(path)
+    return str(path) if objects is None else objects.address
+
+
 def refuse_objects(path: str | os.PathLike[str]) -> None:
     """Raise OutputError `output-address` for an address where several files are to be written."""
     objects = find_objects(path)
@@ -75,6 +93,12 @@ class Objects:
     root: str
     address: str
 
+    @property
+    def bucket(self) -> str:
+        """The address of its bucket."""
+        scheme, _, rest = self.address.partition("://")
+        return f"{scheme}://{rest.partition('/')[0]}"
+
     def exists(self) -> bool:
         """Whether there is an object of this name. Raises OptionError `object-missing` where there is no bucket."""
         self.check_bucket()
@@ -86,6 +110,23 @@ class Objects:
         with _store_errors(self.address):
             if not self.fs.exists(self.root.strip("/").partition("/")[0]):
                 raise FileNotFoundError
+
+    def names(self) -> list[tuple[str, bool]]:
+        """What lies directly below the name: each name, and whether there is more below it. Raises as `read`."""
+        with _store_errors(self.address):
+            entries = self.fs.ls(self.root, detail=True)
+        return [(PurePosixPath(one["name"]).name, one["type"] == "directory") for one in entries]
+
+    def stamps(self) -> list[list[Any]]:
+        """Name, size, and digest or time of each object below the name, or of the object. Raises as `read`."""
+        with _store_errors(self.address):
+            found = self.fs.find(self.root, detail=True)
+            if not found:
+                raise FileNotFoundError(self.root)
+        return [
+            [name.removeprefix(self.root), entry["size"], str(next(entry[key] for key in STAMP_KEYS if entry.get(key)))]
+            for name, entry in sorted(found.items())
+        ]
 
     def read(self) -> bytes:
         """The bytes of the object.
@@ -171,6 +212,19 @@ def local_folder(objects: Objects) -> Path:
     if key not in _copies:
         _copies[key] = _new_folder()
     return _copies[key]
+
+
+@contextlib.contextmanager
+def own_copies() -> Iterator[None]:
+    """Copies that are made within the block go with it."""
+    global _copied, _copies
+    before = _copied, _copies
+    _copied, _copies = contextlib.ExitStack(), {}
+    try:
+        yield
+    finally:
+        _copied.close()
+        _copied, _copies = before
 
 
 def remove_copies() -> None:
