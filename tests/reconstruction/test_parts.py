@@ -70,6 +70,19 @@ def test_workers_measure_the_same(run, fitted):
     assert not list(scene.parent.glob(".eigenfield-measure*"))
 
 
+def test_workers_make_the_same_texture_maps(run, tmp_path):
+    folder = write_capture(tmp_path / "nine")
+    words = ["--proxy", folder / "proxy.ply", "--fit", "none", "--textures", 2, "--atlas", 64, "-q"]
+    for name, more in (("here", []), ("there", ["--workers", 1])):
+        ran = run("encode", folder, "-o", tmp_path / f"{name}.glb", *words, *more)
+        assert ran.code == 0, ran.err
+    assert (tmp_path / "here.glb").read_bytes() == (tmp_path / "there.glb").read_bytes()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["here.glb", "nine", "there.glb"]
+    next((folder / "images").iterdir()).write_bytes(b"no picture")
+    code, _, err = run("encode", folder, "-o", tmp_path / "bad.glb", *words, "--workers", 1)
+    assert code == 2 and err.count("\n") == 1 and "images/" in err, err
+
+
 @pytest.mark.parametrize("words", [["--workers", "0"], ["--workers", "2", "--proxy", "PROXY"]])
 def test_workers_that_make_no_sense_are_one_line(run, tmp_path, words):
     folder = write_capture(tmp_path / "nine")

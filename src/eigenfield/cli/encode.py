@@ -149,16 +149,19 @@ def command(
     if proxy is not None:
         refuse_no_mesh(proxy)
     options = from_fields(EncodeOptions, settings)
+    projected = options.resolved().fit == "none"
     if proxy is None:
         settings = reconstruction_settings(options, settings, blind)
     else:
-        refuse_unused({**settings, "workers": workers, "cluster": cluster}, blind)
+        unused = {} if projected else {"workers": workers, "cluster": cluster}
+        refuse_unused({**settings, **unused}, blind)
     with chosen_workers(workers, cluster) as reached, progress_bars(quiet) as progress:
+        for_maps = reached if projected else None
         if proxy is not None:
             scratch = work or (None if find_objects(output) else output.absolute().parent)
             light_field = _open_capture(capture, place, scratch, quiet)
             announce(light_field, options, None, progress)
-            scene = encode(light_field, proxy, options, work=scratch, progress=progress)
+            scene = encode(light_field, proxy, options, work=scratch, workers=for_maps, progress=progress)
         else:
             scratch = output.with_suffix(".work") if work is None else work
 
@@ -167,7 +170,9 @@ def command(
                 announce(opened, options, settings, progress)
 
             made = reconstruct_capture(capture, place, scratch, progress, quiet, check, workers=reached, **settings)
-            scene = encode(made.light_field, made.proxy, options, triangles=None, work=scratch, progress=progress)
+            scene = encode(
+                made.light_field, made.proxy, options, triangles=None, work=scratch, workers=for_maps, progress=progress
+            )
         save(scene, output, **options.for_save, overwrite=overwrite, progress=progress)
     sizes = parts(output)
     width, height = scene.settings["atlas"]

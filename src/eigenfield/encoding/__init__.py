@@ -66,7 +66,8 @@ def encode(
         blind: Estimate proxy and cameras without the held-out photographs too.
         work: Folder that keeps finished stages of the reconstruction, and scratch files: up to 17 bytes a pixel, and
             10 for each sheet that it shows; or 4 bytes x channels x cameras x texels. None: a temporary one.
-        workers: Of `reconstruct`; without a proxy alone.
+        workers: Of `open_executor`: they make the depth maps of cameras all around (see `reconstruct`) and texture
+            maps. A fit has none, and takes no workers where the proxy is given.
         progress: Reports each stage; by default bars in a notebook. None: nothing is reported.
         changes: Fields of `EncodeOptions` by name, in place of those of `options`.
 
@@ -98,7 +99,8 @@ def encode(
         capture, proxy = estimate(capture, asked, reconstruction_settings(asked, own, blind), work, workers, progress)
         asked = replace(asked, triangles=None)  # the mesh has no more than were asked for
     else:
-        refuse_unused({**own, "workers": workers}, blind)
+        unused = {} if asked.resolved().fit == "none" else {"workers": workers}
+        refuse_unused({**own, **unused}, blind)
         capture = calibrated(capture, proxy)
     meant = asked.resolved()
     projected = meant.fit == "none"
@@ -110,7 +112,7 @@ def encode(
 
     folder = None if work is None or find_objects(work) else Path(work)  # scratch files stay on this machine
     plan = plan_encoding(capture, proxy, asked, folder, progress)
-    scene = (encode_projected if projected else encode_fitted)(plan, folder, progress)
+    scene = encode_projected(plan, folder, progress, workers) if projected else encode_fitted(plan, folder, progress)
     scene = replace(scene, scores=measure_scene(scene, plan, folder, progress))
 
     if meant.residual is None:

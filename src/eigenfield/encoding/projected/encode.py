@@ -18,6 +18,7 @@ from eigenfield.encoding.projected.align import align_maps
 from eigenfield.encoding.projected.atlas import make_atlas
 from eigenfield.encoding.projected.eigen import component_count, eigen_textures, eigenvectors, gram_matrix, weights_of
 from eigenfield.encoding.projected.harmonise import harmonise_maps
+from eigenfield.encoding.projected.maps_on_workers import maps_on_workers
 from eigenfield.encoding.projected.mean import Mean, mean_map
 from eigenfield.encoding.projected.project import RESAMPLING, TextureMaps, texture_maps
 from eigenfield.encoding.projected.spread import Spreader, make_spreader
@@ -26,15 +27,19 @@ from eigenfield.encoding.views import CaptureViews, nothing_seen_error
 from eigenfield.imaging.png import png_bytes
 from eigenfield.runtime.files import output_errors, write_bytes
 from eigenfield.runtime.parallel import tracked_map
+from eigenfield.runtime.tasks import Workers
 
 
-def encode_projected(plan: EncodePlan, work: Path | None = None, progress: Progress | None = None) -> EncodedScene:
+def encode_projected(
+    plan: EncodePlan, work: Path | None = None, progress: Progress | None = None, workers: Workers | None = None
+) -> EncodedScene:
     """A scene by the paper's sections 3.2 and 3.3; its textures are numbers, which `save` codes.
 
     Args:
         plan: Cameras, mesh and atlas, and the options.
         work: Folder for a scratch file of 4 bytes x channels x cameras x texels.
         progress: Reports each stage.
+        workers: Of `open_executor`: they make the texture maps. None: this process does.
 
     Raises:
         CaptureError: A photograph cannot be read, or no camera sees the proxy (`nothing-seen`).
@@ -43,14 +48,11 @@ def encode_projected(plan: EncodePlan, work: Path | None = None, progress: Progr
     begin_step(progress, "maps")
     options, views = plan.options, plan.views
     own = {"uvSsim": options.uv_ssim, "align": "dis" if options.align else None, "resampling": RESAMPLING}
-    colours = None
-    with texture_maps(
-        make_atlas(plan.mesh, *plan.atlas),
-        views.rig.encoded_cameras,
-        views.observations,
-        work=work,
-        progress=progress,
-    ) as maps:
+    colours, made = None, None
+    given = make_atlas(plan.mesh, *plan.atlas), views.rig.encoded_cameras, views.observations
+    if workers is not None:
+        made = maps_on_workers(workers, *given, work, progress)
+    with texture_maps(*given, made=made, work=work, progress=progress) as maps:
         if options.harmonise is not None:
             own["harmonise"] = options.harmonise
             colours = _for_all_cameras(harmonise_maps(maps, options.harmonise, progress), views)

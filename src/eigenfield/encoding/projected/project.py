@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -86,6 +86,7 @@ def texture_maps(
     observations: Observations,
     channels: int = 3,
     *,
+    made: Iterable[tuple[NDArray[np.float32], NDArray[np.uint8]]] | None = None,
     work: Path | None = None,
     progress: Progress | None = None,
 ) -> Iterator[TextureMaps]:
@@ -98,6 +99,7 @@ def texture_maps(
         cameras: Of the observations.
         observations: Each is decoded once, from several threads.
         channels: Of a photograph.
+        made: The maps in order, where something else makes them (`maps_on_workers`).
         work: Folder for the scratch file.
         progress: Reports the maps that are made.
     """
@@ -111,5 +113,9 @@ def texture_maps(
             photograph, camera = observations.photograph(index), cameras[observations.camera_of(index)]
             values[index], seen[index] = texture_map(atlas, camera, photograph.pixels, photograph.mask)
 
-        tracked_map(project, range(total), "texture maps", progress)
+        if made is None:
+            tracked_map(project, range(total), "texture maps", progress)
+        else:
+            for index, (row, shown) in enumerate(made):
+                values[index], seen[index] = row, shown
         yield TextureMaps(atlas, values, seen)

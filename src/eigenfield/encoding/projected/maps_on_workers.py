@@ -1,0 +1,103 @@
+"""Texture maps made by workers: each reads photographs from their files, and writes maps to files."""
+
+from __future__ import annotations
+
+import pickle
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.core.camera import Camera
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.observations import Observations
+from eigenfield.core.progress import Progress, track
+from eigenfield.encoding.projected.atlas import Atlas, make_atlas
+from eigenfield.encoding.projected.project import texture_map
+from eigenfield.runtime.executor import refuse_unshared, spread
+from eigenfield.runtime.files import atomic_writer
+from eigenfield.runtime.parallel import parallel_stream, pieces
+from eigenfield.runtime.tasks import Workers
+from eigenfield.runtime.temporary import temporary_folder
+
+MAPS_A_TASK = 8
+JOB_FILE = "job.pickle"
+
+
+@dataclass(frozen=True, eq=False)
+class MapsJob:
+    """What a worker needs to make texture maps.
+
+    Attributes:
+        mesh: With UVs.
+        size: (width, height) of the atlas.
+        cameras: Of the observations.
+        observations: Paths of photographs, no pixels.
+    """
+
+    mesh: Mesh
+    size: tuple[int, int]
+    cameras: Sequence[Camera]
+    observations: Observations
+
+
+def maps_on_workers(
+    workers: Workers, atlas: Atlas, cameras: Sequence[Camera], observations: Observations, work: Path | None,
+    progress: Progress | None,
+) -> Iterator[tuple[NDArray[np.float32], NDArray[np.uint8]]]:  # fmt: skip
+    """The texture map of each observation in order, as `texture_map` makes it.
+
+    Args:
+        workers: Of `open_executor`. They see `work` and the photographs.
+        atlas: Of the mesh.
+        cameras: Of the observations.
+        observations: That are projected.
+        work: Folder for files of a few maps; None: the system's temporary folder.
+        progress: Called for each group of maps.
+
+    Raises:
+        CaptureError: A photograph cannot be read.
+        OutputError: `folder-not-shared`; the folder cannot be written.
+    """
+    folder = Path(tempfile.gettempdir()) if work is None else work
+    refuse_unshared(workers, folder)
+    groups = pieces(len(observations), MAPS_A_TASK)
+    with temporary_folder("eigenfield-maps", folder) as place:
+        job = MapsJob(atlas.mesh, (atlas.width, atlas.height), cameras, observations)
+        (place / JOB_FILE).write_bytes(pickle.dumps(job))
+        made = spread(workers, ((make_maps, place, *group) for group in groups))
+        for file in track(made, "texture maps", len(groups), progress):
+            with np.load(file) as maps:
+                yield from zip(maps["values"], maps["seen"], strict=True)
+            file.unlink()
+
+
+def make_maps(place: Path, first: int, last: int) -> Path:
+    """The file of the maps of observations `first` to `last` - 1, on a worker.
+
+    Args:
+        place: Folder of the job.
+        first: Of the observations.
+        last: Not one of them.
+    """
+    job, atlas = _job(place / JOB_FILE)
+
+    def project(index: int) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
+        photograph, camera = job.observations.photograph(index), job.cameras[job.observations.camera_of(index)]
+        return texture_map(atlas, camera, photograph.pixels, photograph.mask)
+
+    values, seen = zip(*parallel_stream(project, range(first, last)), strict=True)
+    file = place / f"{first}.npz"
+    with atomic_writer(file, overwrite=True) as target:
+        np.savez(target, values=np.stack(values), seen=np.stack(seen))
+    return file
+
+
+@lru_cache(maxsize=1)
+def _job(path: Path) -> tuple[MapsJob, Atlas]:
+    job: MapsJob = pickle.loads(path.read_bytes())
+    return job, make_atlas(job.mesh, *job.size)
