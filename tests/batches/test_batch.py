@@ -20,6 +20,7 @@ from eigenfield.batches.jobs import ALL_KEYS, captures_in, read_jobs
 from eigenfield.batches.sheet import sheet_html
 from eigenfield.demo import draw_demo_capture
 from eigenfield.runtime import executor
+from support import tasks
 
 FAST = 'fit = "none"\ntextures = 3\natlas = 64\nhold_out = "every:4"\n'
 
@@ -217,9 +218,35 @@ def test_what_a_page_shows_is_text():
     assert (Path(executor.__file__).parents[1] / "batches/templates/player.js").exists()
 
 
+@pytest.fixture(params=["processes", "cluster"])
+def unlucky(request, tmp_path):
+    """Where a batch runs, what kills a worker there, and what makes one exceed its memory."""
+    if request.param == "processes":
+        yield {"workers": 2}, lambda: os.kill(multiprocessing.active_children()[0].pid, signal.SIGKILL), lambda: None
+        return
+    from distributed import Client, LocalCluster
+
+    with (
+        LocalCluster(
+            n_workers=2, threads_per_worker=2, memory_limit="1.5GB", dashboard_address=":0", silence_logs=50
+        ) as small,
+        Client(small.scheduler_address, set_as_default=False) as client,
+    ):
+        started = [*client.run(os.getpid).values()]
+        eaten = []
+        yield (
+            {"cluster": small.scheduler_address},
+            lambda: os.kill(started[0], signal.SIGKILL),
+            lambda: eaten.append(client.submit(tasks.hungry, tmp_path, 2_000_000_000)),  # beside a capture
+        )
+        assert eaten[0].result(timeout=60) == "done" and (tmp_path / "full").exists()
+        assert not set(started) & set(client.run(os.getpid).values())  # one was killed, the other had no memory left
+
+
 @pytest.mark.slow
-def test_forty_captures_and_a_killed_worker(capture, tmp_path):
-    """All scenes are there, and what was finished when the worker was killed is not made again."""
+def test_forty_captures_a_killed_worker_and_one_without_memory(capture, tmp_path, unlucky):
+    """All scenes are there, and what was finished when a worker ended is not made again."""
+    where, kill, starve = unlucky
     rows = "".join(
         f'[[capture]]\npath = "{capture}"\nname = "c{number}"\ntextures = {2 + number % 4}\n' for number in range(40)
     )
@@ -228,18 +255,18 @@ def test_forty_captures_and_a_killed_worker(capture, tmp_path):
     before: dict[Path, int] = {}
     shown = []
 
-    def kill_one(stage, done, total):
+    def disturb(stage, done, total):
         shown.append((stage, done))
-        if (stage, done) == ("captures", 15):
+        if stage == "captures" and done in (10, 25):
             before.update({path: path.stat().st_mtime_ns for path in tmp_path.glob("out/scenes/*/record.json")})
-            os.kill(multiprocessing.active_children()[0].pid, signal.SIGKILL)
+            (kill if done == 10 else starve)()
 
-    result = ef.batch(tmp_path / "list.toml", tmp_path / "out", workers=2, progress=kill_one)
+    result = ef.batch(tmp_path / "list.toml", tmp_path / "out", progress=disturb, **where)
     assert len(result.records) == 40 and not result.failed
-    assert len(before) >= 15 and all(path.stat().st_mtime_ns == time for path, time in before.items())
+    assert len(before) >= 25 and all(path.stat().st_mtime_ns == time for path, time in before.items())
     assert len(list((tmp_path / "out/scenes").iterdir())) == 40  # and nothing half written
     assert [done for stage, done in shown if stage == "captures"] == list(range(41))
-    again = ef.batch(tmp_path / "list.toml", tmp_path / "out", workers=2, progress=None)
+    again = ef.batch(tmp_path / "list.toml", tmp_path / "out", progress=None, **where)
     assert again.taken_up == 40 and again.records == result.records
 
 
@@ -255,7 +282,7 @@ def test_an_interrupted_batch_goes_on(capture, tmp_path):
         time.sleep(0.05)
     running.send_signal(signal.SIGINT)
     _, said = running.communicate(timeout=20)
-    assert running.returncode == 130 and "Traceback" not in said
+    assert running.returncode == 130 and "Traceback" not in said and "the same command goes on" in said
     left = list(tmp_path.glob("list-scenes/scenes/*/record.json"))
     assert 3 <= len(left) < 12
     result = ef.batch(listed, workers=2, progress=None)

@@ -64,11 +64,15 @@ def command(
     started = time.monotonic()
     shared = {name: value for name, value in options.items() if value not in (None, (), "auto")}
     given = source[0] if len(source) == 1 else list(source)
-    with progress_bars(quiet) as progress:
-        done = batch(
-            given, output, workers=workers, cluster=cluster, instants=instants, cameras=cameras, progress=progress,
-            **shared,
-        )  # fmt: skip
+    try:
+        with progress_bars(quiet) as progress:
+            done = batch(
+                given, output, workers=workers, cluster=cluster, instants=instants, cameras=cameras, progress=progress,
+                **shared,
+            )  # fmt: skip
+    except KeyboardInterrupt:
+        note("the same command goes on with what is missing", quiet)
+        raise
     click.echo(as_markdown(done.records), nl=False)
     before = f", {done.taken_up} of them finished before" if done.taken_up else ""
     made = len(done.records) - len(done.failed)
