@@ -19,10 +19,10 @@ from eigenfield.core.progress import Progress, track
 from eigenfield.encoding.projected.atlas import Atlas, make_atlas
 from eigenfield.encoding.projected.project import texture_map
 from eigenfield.runtime.executor import refuse_unshared, spread
-from eigenfield.runtime.files import atomic_writer
+from eigenfield.runtime.files import output_errors, rename
 from eigenfield.runtime.parallel import parallel_stream, pieces
 from eigenfield.runtime.tasks import Workers
-from eigenfield.runtime.temporary import temporary_folder
+from eigenfield.runtime.temporary import temporary_file, temporary_folder
 
 MAPS_A_TASK = 8
 JOB_FILE = "job.pickle"
@@ -92,8 +92,10 @@ def make_maps(place: Path, first: int, last: int) -> Path:
 
     values, seen = zip(*parallel_stream(project, range(first, last)), strict=True)
     file = place / f"{first}.npz"
-    with atomic_writer(file, overwrite=True) as target:
-        np.savez(target, values=np.stack(values), seen=np.stack(seen))
+    with output_errors(place), temporary_file(file.name, place) as part:  # another worker may write the same file
+        with part.open("wb") as target:
+            np.savez(target, values=np.stack(values), seen=np.stack(seen))
+        rename(part, file)
     return file
 
 
