@@ -210,7 +210,7 @@ def test_what_a_page_shows_is_text():
         "psnr": 30.0, "held_out_psnr": None, "between_psnr_luma": 24.56, "warnings": ['"'],
     }  # fmt: skip
     failed = {"name": "c", "error": "<script>"}
-    assert "between at least 24.6 dB of luma" in sheet_html("sizes", [record], instants=False)
+    assert "views between at least 24.6 dB of luma" in sheet_html("sizes", [record], instants=False)
     for instants in (False, True):
         page = sheet_html("<i>", [record, failed], instants)
         assert "<b></b>" not in page and "<i>" not in page and "&lt;script&gt;" in page
@@ -285,6 +285,7 @@ def test_an_interrupted_batch_goes_on(capture, tmp_path):
     assert running.returncode == 130 and "Traceback" not in said and "the same command goes on" in said
     left = list(tmp_path.glob("list-scenes/scenes/*/record.json"))
     assert 3 <= len(left) < 12
+    assert "to come: the same command" in (tmp_path / "list-scenes/index.html").read_text("utf-8")
     result = ef.batch(listed, workers=2, progress=None)
     assert result.taken_up == len(left) and len(result.records) == 12 and not result.failed
     assert len(list(tmp_path.glob("list-scenes/scenes/*"))) == 12

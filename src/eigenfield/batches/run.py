@@ -112,7 +112,7 @@ def batch(
         finally:
             ordered = tuple(records[number] for number in sorted(records))
             if ordered:
-                _write(folder, ordered, instants)
+                _write(folder, ordered, instants, len(jobs) - len(ordered))
     return BatchResult(folder, ordered, taken_up)
 
 
@@ -238,7 +238,8 @@ def _failure(job: CaptureJob, error: BaseException, folder: Path) -> dict[str, A
     }  # fmt: skip
 
 
-def _write(folder: Path, records: Sequence[dict[str, Any]], instants: bool) -> None:
+def _write(folder: Path, records: Sequence[dict[str, Any]], instants: bool, missing: int) -> None:
     for name, text in TABLE_WRITERS.items():
         write_bytes(folder / name, text(records).encode("utf-8"), overwrite=True)
-    write_bytes(folder / PAGE_FILE, sheet_html(folder.name, records, instants).encode("utf-8"), overwrite=True)
+    page = sheet_html(folder.name, records, instants, missing)
+    write_bytes(folder / PAGE_FILE, page.encode("utf-8"), overwrite=True)

@@ -16,18 +16,21 @@ from eigenfield.viewer.page import json_for_html
 TEMPLATES = Path(__file__).parent / "templates"
 
 
-def sheet_html(title: str, records: Sequence[Mapping[str, Any]], instants: bool) -> str:
+def sheet_html(title: str, records: Sequence[Mapping[str, Any]], instants: bool, missing: int = 0) -> str:
     """The page.
 
     Args:
         title: Of the page.
         records: Of the captures, in order.
         instants: Whether it steps through them.
+        missing: How many captures are neither finished nor have failed.
     """
     finished = [record for record in records if "error" not in record]
     body = _player(finished) if instants and finished else f'<ul class="sheet">{"".join(map(_card, finished))}</ul>'
     failed = [f"<li><b>{_text(one['name'])}</b> {_text(one['error'])}</li>" for one in records if "error" in one]
     failures = f'<h2>Failed</h2><ul class="failed">{"".join(failed)}</ul>' if failed else ""
+    word = "instant" if instants else "scene"
+    left = f" {_counted(missing, word)} to come: the same command goes on." if missing else ""
     style = (TEMPLATES / "sheet.css").read_text(encoding="utf-8")
     size = sum(record["bytes"] for record in finished)
     return f"""<!doctype html>
@@ -41,7 +44,7 @@ def sheet_html(title: str, records: Sequence[Mapping[str, Any]], instants: bool)
 {style}</style>
 </head>
 <body>
-<header><h1>{_text(title)}</h1><p>{_counted(len(finished), "instant" if instants else "scene")}, {_size(size)}.
+<header><h1>{_text(title)}</h1><p>{_counted(len(finished), word)}, {_size(size)}.{left}
 All figures: <a href="table.csv">CSV</a>, <a href="table.json">JSON</a>, <a href="table.md">Markdown</a>.</p></header>
 <main>{body}{failures}</main>
 </body>
@@ -56,7 +59,7 @@ def _card(record: Mapping[str, Any]) -> str:
     if record["held_out_psnr"] is not None:
         figures.append(f"held out {record['held_out_psnr']:.1f} dB")
     if record["between_psnr_luma"] is not None:
-        figures.append(f"between at least {record['between_psnr_luma']:.1f} dB of luma")
+        figures.append(f"views between at least {record['between_psnr_luma']:.1f} dB of luma")
     name = _text(record["name"])
     lines = "<br>".join(map(_text, record["warnings"]))
     warned = f"<details><summary>Warnings</summary>{lines}</details>" if lines else ""
