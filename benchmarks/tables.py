@@ -235,6 +235,25 @@ def driver(name: str) -> str:
     return found[0] if found else name
 
 
+def photographs() -> str:
+    figures = latest("photographs")
+    rows = []
+    for name, case in figures["captures"].items():
+        own, before, peer = case["encode"], case.get("before"), case["svt_av1_preset_6"]
+        rows.append([
+            f"`{name}`", f"{own['seconds']:.0f}", f"{own['bytes'] / 1e3:.0f}", str(own["peak_mb"]),
+            "" if before is None else f"{before['seconds']:.0f}", "" if before is None else f"{before['bytes'] / 1e3:.0f}",
+            f"{peer['seconds']:.1f}", f"{case['ratio']['seconds_to_svt_av1']:.0f}",
+        ])  # fmt: skip
+    head = ["capture", "seconds", "kB", "peak MB", "seconds before", "kB before", "SVT-AV1, seconds", "ratio"]
+    before = f" *Before* is commit {figures['before']}, in the same run." if "before" in figures else ""
+    return (
+        "### Encoding bare photographs\n\n`eigenfield encode` at `balanced`, cameras and surface estimated, kernels"
+        f" compiled before.{before} SVT-AV1 is preset 6 at crf {figures['crf']}, on the same views in the order of their"
+        " names.\n\n" + table(head, rows) + "\n" + origin(figures, "photographs") + "\n"
+    )  # fmt: skip
+
+
 def batches() -> str:
     figures = latest("batch")
     names = {"one_process": "one process", "processes": "a process a processor", "cluster": "a Dask cluster"}
@@ -285,6 +304,7 @@ def main() -> None:
         + evaluation_tables.page()
         + "\n## Time\n\n"
         + encoding()
+        + photographs()
         + drawing()
         + batches()
         + single(),
