@@ -35,7 +35,7 @@ def photographs(name: str, folder: Path) -> tuple[Path, list[str]]:
     for row in range(0, 17, 2):
         for column in range(0, 17, 2):
             file = f"out_{row:02d}_{column:02d}.jpg"
-            (place / file).symlink_to(data / "tarot_17x17_512" / file)
+            (place / file).symlink_to(data / "tarot_17x17_512" / "images" / file)
     return place, ["--grid", "9x9"]
 
 
