@@ -199,9 +199,9 @@ def test_what_a_step_changes_is_what_a_camera_then_draws():
     camera, t = cameras[0], np.array([[0.4, -0.3, 0.2], [-0.5, 0.6, -0.1]])
     slopes, step = np.array([[0.3, -0.2], [0.1, 0.4]]), np.tile([0.1, 0.05, 1.0], (2, 1))
     tangents = np.array([[[0.06, 0, 0.01], [0, 0.05, -0.02]]])
-    out = np.zeros((5, 2))
+    out = np.zeros((2, 5))
     one = np.ones(2, np.float32)
-    gather_steps(camera.matrix, t, step, tangents, np.zeros(2, np.int32), slopes, one, one, out)
+    gather_steps(camera.matrix, tangents, t, step, np.zeros(2, np.int32), slopes, one, one, out)
     small = 1e-5
     for k in range(2):
         moved = camera.project(t[k : k + 1] + small * step[k])[0][0]
@@ -210,8 +210,8 @@ def test_what_a_step_changes_is_what_a_camera_then_draws():
         )
         across = np.stack([(right - at) / 1e-5, (down - at) / 1e-5], axis=1)
         texels = -np.linalg.solve(across, (moved - at) / small)  # of the texture under a pixel that stays
-        np.testing.assert_allclose(out[0, k], slopes[k] @ texels, rtol=1e-3)
-    np.testing.assert_allclose(out[1], np.square(out[0]), rtol=1e-9)
+        np.testing.assert_allclose(out[k, 0], slopes[k] @ texels, rtol=1e-3)
+    np.testing.assert_allclose(out[:, 1], np.square(out[:, 0]), rtol=1e-9)
 
 
 @pytest.mark.slow

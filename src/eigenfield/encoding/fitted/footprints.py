@@ -178,7 +178,8 @@ def subsampled_footprints(footprints: Footprints, step: int, work: Path | None =
         scratch_array((int(pixels[-1]),), np.uint8, work) as counts,
         _open_points(int(offsets[-1]), len(footprints.shares) > 0, work) as (coordinates, shares),
     ):
-        for camera in cameras:
+
+        def put(camera: int) -> None:
             counts[pixels[camera] : pixels[camera + 1]] = fewer[camera].reshape(-1)
             every, points, weights = footprints.of(camera)
             taken = np.zeros(every.shape, np.bool_)
@@ -187,6 +188,8 @@ def subsampled_footprints(footprints: Footprints, step: int, work: Path | None =
             coordinates[into] = points[kept]
             if len(shares):
                 shares[into] = weights[kept]
+
+        parallel_map(put, cameras)
         shapes = tuple(few.shape for few in fewer)
         yield Footprints(shapes, counts, pixels, coordinates, shares, offsets, footprints.surface, footprints.detail)
 

@@ -45,9 +45,11 @@ from eigenfield.encoding.fitted.solve import measure_scales, squared_shares
 from eigenfield.encoding.fitted.surface_kernels import gather_steps
 from eigenfield.encoding.geometry.distortion import spread_cameras, texels_of
 from eigenfield.imaging.graph import face_edges
-from eigenfield.runtime.parallel import parallel_stream
+from eigenfield.runtime.parallel import parallel_map, parallel_stream, pieces
 
 log = logging.getLogger("eigenfield.fit")
+
+STEP_TASK_TEXELS = 1 << 16  # whose equations one thread adds to at a time
 
 
 @dataclass(frozen=True)
@@ -253,12 +255,18 @@ def _step_equations(
         adjoint(*footprint, data.size, np.square(image), weight, errors)
         return asked[0][covered], seen[0][covered], errors[0]
 
-    sums, squares = np.zeros((5, len(points))), np.zeros_like(mean)
+    sums, squares = np.zeros((len(points), 5)), np.zeros_like(mean)
+    tasks = [slice(*part) for part in pieces(len(points), STEP_TASK_TEXELS)]
     for index, (asked, seen, errors) in enumerate(parallel_stream(backproject, range(len(data)))):
-        camera = cameras[observations.camera_of(index)]
-        gather_steps(camera.matrix, points, steps, tangents, faces, slopes, asked, seen, sums)
+        projection = cameras[observations.camera_of(index)].matrix
+
+        def gather(some: slice, projection=projection, asked=asked, seen=seen) -> None:  # type: ignore[no-untyped-def]
+            texels = (each[some] for each in (points, steps, faces, slopes, asked, seen, sums))
+            gather_steps(projection, tangents, *texels)
+
+        parallel_map(gather, tasks)
         squares += errors
-    pull, weight, first, shown, rest = sums
+    pull, weight, first, shown, rest = sums.T.copy()
     least = np.maximum(shown, 1e-6)
     weight -= np.square(first) / least  # what is the same in all of them the mean takes
     pull -= first * rest / least

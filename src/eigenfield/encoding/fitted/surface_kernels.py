@@ -12,15 +12,15 @@ EDGE_ON_MAX_RATIO = 1e-6  # of the tangents' product: at most so much is seen ed
 
 
 @kernel()
-def gather_steps(matrix, points, steps, tangents, owners, slopes, asked, seen, out):
-    """Add one observation to out (5, t) float64: texel by texel the sums of g r, g g s, g s, s and r, where g is the
+def gather_steps(matrix, tangents, points, steps, owners, slopes, asked, seen, out):
+    """Add one observation to out (t, 5) float64: texel by texel the sums of g r, g g s, g s, s and r, where g is the
     change of the picture for a unit of the step, s the pixels that the texel answers for and r their residual.
 
     Args:
         matrix: (3, 4) of its camera.
+        tangents: (m, 2, 3) how a texel to the right and one down move in the world.
         points: (t, 3) places of the texels in the world.
         steps: (t, 3) how a unit moves them.
-        tangents: (m, 2, 3) how a texel to the right and one down move in the world.
         owners: (t,) the face of each texel.
         slopes: (t, 2) the mean's, for a texel right and down.
         asked: (t,) r.
@@ -59,8 +59,8 @@ def gather_steps(matrix, points, steps, tangents, owners, slopes, asked, seen, o
         back_right = (step_x * down_y - step_y * down_x) / area
         back_down = (right_x * step_y - right_y * step_x) / area
         g = -(slopes[t, 0] * back_right + slopes[t, 1] * back_down)
-        out[0, t] += g * asked[t]
-        out[1, t] += g * g * s
-        out[2, t] += g * s
-        out[3, t] += s
-        out[4, t] += np.float64(asked[t])
+        out[t, 0] += g * asked[t]
+        out[t, 1] += g * g * s
+        out[t, 2] += g * s
+        out[t, 3] += s
+        out[t, 4] += np.float64(asked[t])
