@@ -238,11 +238,11 @@ def _fitted(ready: EncodePlan, data: FitData, work: Path) -> Iterator[FittedEnco
 def of_parts(ready: Prepared, chosen: Sequence[str]) -> dict[str, Any]:
     """The whole fit's curve, and for each part what is lost without it (`beside`)."""
     field = ready.light_field
-    if prepared.grid_of(field) is not None and len(field) >= planes.SUBSAMPLE_MIN_OBSERVATIONS:
+    if prepared.grid_of(field) is not None and len(field) >= encode_options.SUBSAMPLE_MIN_OBSERVATIONS:
         field = prepared.every(field, 2)
     if max(width * height for width, height in field.sizes) > MAX_PIXELS:
         field = prepared.halved(field, ready.work / "halved")
-    few = len(field) < planes.SUBSAMPLE_MIN_OBSERVATIONS
+    few = len(field) < encode_options.SUBSAMPLE_MIN_OBSERVATIONS
     chosen = [name for name in PARTS if name in chosen and (few or not PARTS[name].few)]
     views = Views(field, parallel_map(lambda index: prepared.codes(field, index), range(len(field))), [])
     with ExitStack() as opened:

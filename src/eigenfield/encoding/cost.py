@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from eigenfield.capture import Capture
-from eigenfield.encoding.options import EncodeOptions
+from eigenfield.encoding.options import SUBSAMPLE_MIN_OBSERVATIONS, EncodeOptions
 from eigenfield.encoding.views import encoded_ratio
 from eigenfield.reconstruction.array import looks_one_way
 from eigenfield.reconstruction.layered import capture_fault
@@ -29,19 +29,21 @@ class StepCost(NamedTuple):
 
 STEPS = {  # by the name with which a step begins
     "motion": StepCost("cameras", 5, 3),
-    "array": StepCost("depth", 15, 0, 130),
-    "relief": StepCost("surface", 10),
+    "array": StepCost("depth", 15, 0.5, 35),
+    "relief": StepCost("surface", 8),
     "surface": StepCost("surface", 30, 8),
     "proxy": StepCost("atlas", 10),
     "trial": StepCost("trial of layers", 50),
     "layers": StepCost("layers", 10, 22),
-    "mesh": StepCost("mesh", 5, 1.8),
-    "maps": StepCost("texture maps", 5, 1),
-    "fit": StepCost("fit", 5, 4.5),
-    "code": StepCost("coding", 10, 0.8),
+    "mesh": StepCost("mesh", 5, 1),
+    "maps": StepCost("texture maps", 5, 0.7),
+    "fit": StepCost("fit", 5, 2.4),
+    "code": StepCost("coding", 6, 0.4),
 }
+FEW_VIEWS = {"fit": StepCost("fit", 5, 5)}  # of below SUBSAMPLE_MIN_OBSERVATIONS: more rounds, and all pixels
+TEXTURE_MAPS = {"mesh": StepCost("mesh", 5)}  # without a fit: its surface and triangles stay as they are
 DENSE_TRIAL = StepCost("trial of layers", 20)  # which ends with the fewest layers, as a rule
-LAYERED = {"layers": STEPS["layers"], "mesh": StepCost("mesh", 0, 45), "fit": StepCost("fit", 0, 38)}
+LAYERED = {"layers": STEPS["layers"], "mesh": StepCost("mesh", 0, 40), "fit": StepCost("fit", 0, 30)}
 DENSE_LAYERS_RATIO = 1 / 3  # of the time of layers: dense arrays have fewer
 THREADS_POWER = 0.8  # of the number of threads, by which time falls
 MEMORY_FIXED_BYTES, MEMORY_BYTES_A_PIXEL = 9e8, 50.0
@@ -89,12 +91,15 @@ def expected_cost(capture: Capture, options: EncodeOptions, settings: Mapping[st
 
     estimation, textures = [] if settings is None else _estimation(capture, settings), _textures(options)
     encoded = encoded_ratio(capture, options)
+    costs = STEPS | (TEXTURE_MAPS if "maps" in textures else {})
+    if encoded * len(sizes) < SUBSAMPLE_MIN_OBSERVATIONS:
+        costs |= FEW_VIEWS
 
     def seconds(name: str, step: StepCost) -> float:
         of_all = step.of_all * (encoded if name in textures else 1)
         return share * (step.fixed + 1e-6 * pixels * (of_all + step.of_one / len(sizes)))
 
-    steps = {name: seconds(name, STEPS[name]) for name in (*estimation, *textures)}
+    steps = {name: seconds(name, costs[name]) for name in (*estimation, *textures)}
     layered = {name: seconds(name, step) for name, step in LAYERED.items()} if "layers" in steps else {}
     if settings is not None and settings["surface"] == "layers":
         steps, layered = steps | layered, {}

@@ -22,6 +22,7 @@ DEFAULT_PRESET = "balanced"
 ATLAS_MAX_SIDE_TEXELS = 16384
 DENSITY_LIMITS = 0.01, 100.0  # atlas texels per photograph pixel along one axis
 FIT_MAX_DENSITY = 1.5  # likewise, with a fit
+SUBSAMPLE_MIN_OBSERVATIONS = 50  # from which every second pixel each way is enough for weights, and for chroma
 MAP_OPTIONS = ("align", "uv_ssim", "harmonise", "keep_maps", "codec")  # options that a fit has no use for
 FIT_OPTIONS = ("target", "preset", "fallback")  # options that the paper's way has no use for
 UNKNOWN_CHOICE_TEXTS = {

@@ -23,7 +23,7 @@ from eigenfield.encoding.fitted.coverage import mean_precision
 from eigenfield.encoding.fitted.fit import OpenFit, Pixels, PlaneSettings, code_plane, coded_psnr, fit_plane
 from eigenfield.encoding.fitted.observations import FitData, open_subsampled, with_robust_weights
 from eigenfield.encoding.fitted.rate import Rate, lambda_of_step
-from eigenfield.encoding.options import FIT_MAX_DENSITY, Preset
+from eigenfield.encoding.options import FIT_MAX_DENSITY, SUBSAMPLE_MIN_OBSERVATIONS, Preset
 
 log = logging.getLogger("eigenfield.fit")
 
@@ -100,7 +100,6 @@ HALF_GREY_LEVEL = 0.002  # in the photographs' range
 TEXTURES_PER_OBSERVATION = 1 / 2
 TEXTURES_MIN_COUNT, TEXTURES_MAX_COUNT = 20, 96
 UNMEASURED_PSNR_DB = 99.999
-SUBSAMPLE_MIN_OBSERVATIONS = 50  # from which every second pixel each way is enough for weights, and for chroma
 FEW_OBSERVATIONS_ROUNDS = 4  # or the preset's, if more: few observations converge slowly and average outliers less
 
 
