@@ -405,7 +405,7 @@ test("a browser that does not give codes of 10 bits draws nearly the same with 8
       const { largest, mean } = difference(await canvasPixels(page), decodePng(readFileSync(scenePath(reference.file))));
       // half a code of 8 bits is up to 0.5 grey levels of the mean, as if random 0.3; textures have codes as fine as
       // their values allow. With ten bits the means of these pictures are 0.11 at most.
-      assert.ok(mean <= 0.5 && largest <= 4, `${reference.file}: mean ${mean}, largest ${largest}`);
+      assert.ok(mean <= 0.5 && largest <= 6, `${reference.file}: mean ${mean}, largest ${largest}`);
       assert.ok(mean >= 0.15, `${reference.file}: mean ${mean}, as if all ten bits were there`);
     }
   }
