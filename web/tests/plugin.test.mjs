@@ -106,8 +106,10 @@ for (const name of [...new Set(references.map(({ scene }) => scene))]) {
         const share = within(picture, expected);
         assert.ok(share > 0.99, `${reference.file}: only ${share} of the pixels within two grey levels`);
       } else {
-        const most = reference.snapped ? 1 : 2; // without the browser's rounding of vertices, and with it
-        assert.ok(largest <= most, `${reference.file}: largest ${largest}`);
+        // the browser rounds vertices: a pixel at a steep face may show what lies beside it
+        const share = reference.snapped ? 1 : within(picture, expected);
+        assert.ok(largest <= (reference.snapped ? 1 : 6), `${reference.file}: largest ${largest}`);
+        assert.ok(share > 0.999, `${reference.file}: only ${share} of the pixels within two grey levels`);
       }
     }
     await close();
