@@ -106,10 +106,8 @@ for (const name of [...new Set(references.map(({ scene }) => scene))]) {
         const share = within(picture, expected);
         assert.ok(share > 0.99, `${reference.file}: only ${share} of the pixels within two grey levels`);
       } else {
-        // the browser rounds vertices: a pixel at a steep face may show what lies beside it
-        const share = reference.snapped ? 1 : within(picture, expected);
-        assert.ok(largest <= (reference.snapped ? 1 : 6), `${reference.file}: largest ${largest}`);
-        assert.ok(share > 0.999, `${reference.file}: only ${share} of the pixels within two grey levels`);
+        const most = reference.snapped ? 1 : 2; // without the browser's rounding of vertices, and with it
+        assert.ok(largest <= most, `${reference.file}: largest ${largest}`);
       }
     }
     await close();
@@ -407,7 +405,7 @@ test("a browser that does not give codes of 10 bits draws nearly the same with 8
       const { largest, mean } = difference(await canvasPixels(page), decodePng(readFileSync(scenePath(reference.file))));
       // half a code of 8 bits is up to 0.5 grey levels of the mean, as if random 0.3; textures have codes as fine as
       // their values allow. With ten bits the means of these pictures are 0.11 at most.
-      assert.ok(mean <= 0.5 && largest <= 6, `${reference.file}: mean ${mean}, largest ${largest}`);
+      assert.ok(mean <= 0.5 && largest <= 4, `${reference.file}: mean ${mean}, largest ${largest}`);
       assert.ok(mean >= 0.15, `${reference.file}: mean ${mean}, as if all ten bits were there`);
     }
   }
