@@ -69,7 +69,7 @@ def test_a_target_far_from_the_preset_has_a_mesh_of_its_own(tmp_path, caplog, mo
     cameras = row_grid(9, 64, 56)
     folder = write_capture(tmp_path / "relief", cameras, relief(cameras[4], 0.5, False, step=2))
     capture, options = open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "density": 1.5}
-    asked = Target(psnr=26)
+    asked = Target(psnr=28)
     with caplog.at_level("INFO", "eigenfield.encode"):
         monkeypatch.setattr("eigenfield.encoding.fitted.encode.REFIT_MIN_MESH_RATIO", 0.1)
         once = ef.encode(capture, **options, target=asked)
@@ -82,14 +82,14 @@ def test_a_target_far_from_the_preset_has_a_mesh_of_its_own(tmp_path, caplog, mo
     assert 0 < meshes[0] < meshes[1]
     sizes = [len(encode_scene(scene)) for scene in (found, once)]
     assert sizes[0] < sizes[1]
-    assert evaluate(found, capture)["image"]["encoded"]["psnr"] >= 26
+    assert evaluate(found, capture)["image"]["encoded"]["psnr"] >= 28
     caplog.clear()
     ef.encode(capture, **options, target=Target(size=1200))
     assert caplog.text.count("fitted again") <= caplog.text.count("1200 bytes cannot be reached") == 1
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("asked", [Target(psnr=24), Target(size=4000)])
+@pytest.mark.parametrize("asked", [Target(psnr=24), Target(size=3500)])
 def test_of_two_fits_the_better_is_kept(tmp_path, caplog, monkeypatch, asked):
     """The second may be worse: another mesh and atlas are a guess from the quality."""
     cameras = row_grid(9, 64, 56)

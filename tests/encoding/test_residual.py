@@ -97,7 +97,7 @@ def test_captured_views_are_exact_and_others_as_before(base, exact, capture):
         made = corrected_picture(drawn, difference)
         covered = drawn.coverage > 0.999
         assert made.image.shape == (camera.height, camera.width, 3)
-        assert psnr(made.image, photograph, covered) >= 50 > 45 > psnr(drawn.image, photograph, covered)
+        assert psnr(made.image, photograph, covered) >= 50 > 40 > psnr(drawn.image, photograph, covered)
     for where in ({"at": (0.3, -0.4)}, {"camera": "view_04.png"}, {"camera": "view_00.png"}):
         np.testing.assert_array_equal(ef.render(exact, **where).image, ef.render(base, **where).image)
 

@@ -74,7 +74,7 @@ class SurfaceTuning:
     """
 
     rounds: int = 4
-    mean_iterations: int = 3
+    mean_iterations: int = 5
     max_cameras: int = 49
     subsample_observations: int = 25
     subsample_pixels: int = 1 << 25
