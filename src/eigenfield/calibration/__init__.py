@@ -8,7 +8,8 @@ from eigenfield.calibration.lenses import KnownLens
 from eigenfield.calibration.motion.sfm import SfmResult, structure_from_motion
 from eigenfield.calibration.motion.triangulate import triangulate_points
 from eigenfield.calibration.neighbours import NeighbourPair, measure_neighbours
-from eigenfield.calibration.planar.joint import PlanarArray, refine_planar, register_views
+from eigenfield.calibration.planar.joint import PlanarArray, refine_planar
+from eigenfield.calibration.planar.register import register_views
 from eigenfield.calibration.planar.start import PlanarStart, start_given, start_planar
 from eigenfield.calibration.whole import calibrate
 

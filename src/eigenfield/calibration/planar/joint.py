@@ -20,7 +20,6 @@ from eigenfield.calibration.planar.array import ARRAY_PARAMETERS, ARRAY_POSITION
 from eigenfield.calibration.planar.fit import PhotometricTarget, gauss_newton_step, select_textured_points
 from eigenfield.calibration.planar.kernels import occlusion_votes
 from eigenfield.calibration.planar.start import PlanarStart, irregularity, reverse_depth
-from eigenfield.core.camera import Camera
 from eigenfield.core.progress import Progress
 from eigenfield.runtime.parallel import parallel_map
 from eigenfield.stereo.estimate import estimate_depth
@@ -310,12 +309,12 @@ def _correct_cameras(joint: _JointRefinement, rings: Sequence[NDArray[np.int64]]
     False, and nothing changed, if the cameras already fit a regular grid or their calibration.
     """
     pictures = joint.pictures
-    blurred = np.stack(parallel_map(_blur, pictures))
+    soft = np.stack(parallel_map(blurred, pictures))
     old: NDArray[np.int64] | None = None
     for number, views in enumerate(rings):
         if old is not None:
             _extrapolate(joint, old, np.setdiff1d(views, old))
-        joint.refine_cameras(views, 4, 3, pictures=blurred, tau=2 * PLANAR_TUNING.tau_levels)
+        joint.refine_cameras(views, 4, 3, pictures=soft, tau=2 * PLANAR_TUNING.tau_levels)
         joint.refine_cameras(views, 4, 2)
         joint.sweep_depth(_subsample(views), 2.0 if number == 0 else 1.0, near=number > 0)
         joint.refine_cameras(views, 4, 2)
@@ -344,52 +343,6 @@ def _is_regular(joint: _JointRefinement, views: NDArray[np.int64]) -> bool:
         return False
     joint.parameters[:] = joint.start.parameters
     return True
-
-
-def register_views(
-    planar: PlanarArray,
-    known: NDArray[np.int64],
-    photographs: NDArray[np.uint8],
-    new: NDArray[np.int64],
-    positions: NDArray[np.float64],
-    bases: Sequence[Camera] | None = None,
-    exact: bool = False,
-) -> PlanarArray:
-    """The array with further views, each fitted to the array's texture and depth by its own photograph alone.
-
-    Args:
-        planar: The refined array.
-        known: Indices of its views among all n.
-        photographs: (v, H, W, 3) uint8 of the new views.
-        new: (v,) their indices among all n.
-        positions: (n, 2) of all views in any unit: new cameras start on the affine grid of the known ones.
-        bases: Of all n, if cameras were given.
-        exact: Cameras stay where they start; only the photographs' errors are measured.
-    """
-    before, after = (np.hstack([positions[i], np.ones((len(i), 1))]) for i in (known, new))
-    parameters = np.zeros((len(positions), ARRAY_PARAMETERS))
-    parameters[known] = planar.parameters
-    parameters[new, :4] = after @ np.linalg.lstsq(before, planar.parameters[:, :4], rcond=None)[0]
-    model = replace(planar.model, bases=tuple(bases or planar.model.bases[:1] * len(positions)))
-    error = np.full(len(positions), np.nan)
-    error[known] = planar.error
-    sharp = pack_pictures(photographs)
-    soft = np.stack(parallel_map(_blur, sharp))
-    extent = max(1.0, float(np.linalg.norm(planar.parameters[:, ARRAY_POSITION], axis=1).max()))
-    bias = PLANAR_TUNING.visibility_bias_pixels / extent
-    points = select_textured_points(planar.d, planar.texture, planar.count, len(known), ARRAY_PARAMETERS)
-    for pictures, count, tau, rounds in (
-        (soft, 4, 2 * PLANAR_TUNING.tau_levels, 3),
-        (sharp, 4, PLANAR_TUNING.tau_levels, 2),
-        (sharp, ARRAY_PARAMETERS, PLANAR_TUNING.tau_levels, 3),
-    ):
-        for _ in range(rounds):
-            matrices = model.matrices(planar.reference, new, parameters[new])
-            buffers = depth_buffers(matrices, planar.d, pictures.shape[1:3])
-            target = PhotometricTarget(planar.reference, pictures, buffers, *points, bias)
-            moved, error[new] = gauss_newton_step(model, new, parameters[new], target, count, tau)
-            parameters[new] = parameters[new] if exact else moved
-    return replace(planar, model=model, parameters=parameters, error=error)
 
 
 def _rings(places: NDArray[np.float64]) -> list[NDArray[np.int64]]:
@@ -472,7 +425,8 @@ def _inner_error(pictures: NDArray[np.uint32], start: PlanarStart, rings: Sequen
     return float(np.nanmean(joint.error[rings[-1]]))
 
 
-def _blur(picture: NDArray[np.uint32]) -> NDArray[np.uint32]:
+def blurred(picture: NDArray[np.uint32]) -> NDArray[np.uint32]:
+    """A packed picture without its finest detail, in which cameras find their place from farther off."""
     return pack_pictures(np.asarray(cv2.GaussianBlur(unpack_pictures(picture), (0, 0), 2.0), np.uint8)[None])[0]
 
 
