@@ -89,12 +89,13 @@ def test_holding_out_every_fifth_and_names():
     names = [f"{i}.png" for i in range(20)]
     assert np.flatnonzero(held_out_cameras("every:5", names, coordinates(4, 5))).tolist() == [2, 7, 12, 17]
     assert np.flatnonzero(held_out_cameras("3.png, 7.png", names, coordinates(4, 5))).tolist() == [3, 7]
+    assert np.flatnonzero(held_out_cameras("3, 7.PNG", names, coordinates(4, 5))).tolist() == [3, 7]
     assert not held_out_cameras(None, names, coordinates(4, 5)).any()
 
 
 @pytest.mark.parametrize(
     ("rule", "says"),
-    [("every:1", "2 or more"), ("every:x", "2 or more"), ("lost.png", "no camera is called lost.png"),
+    [("every:1", "2 or more"), ("every:x", "2 or more"), ("30.png", "no camera is called 30.png"),
      ("every:2,3", "2 or more"), (",".join(f"{i}.png" for i in range(18)), "2 cameras would remain")],
 )  # fmt: skip
 def test_impossible_rules_are_refused(rule, says):

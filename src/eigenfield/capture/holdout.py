@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.camera_names import named_camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.viewplane import find_grid
 
@@ -18,7 +19,8 @@ def held_out_cameras(rule: str | None, names: Sequence[str], coordinates: NDArra
 
     Args:
         rule: `odd`: the views with an odd row or an odd column of a grid. `every:K`: every K-th in the capture's
-            order, from number K // 2 on, so that the first is not among them. Otherwise names, separated by commas.
+            order, from number K // 2 on, so that the first is not among them. Otherwise names, with or without
+            their endings, separated by commas.
         names: Of all cameras.
         coordinates: (Nc, 2) on the view plane.
 
@@ -43,14 +45,7 @@ def held_out_cameras(rule: str | None, names: Sequence[str], coordinates: NDArra
         held[int(step) // 2 :: int(step)] = True
     else:
         wanted = [name.strip() for name in rule.split(",") if name.strip()]
-        unknown = [name for name in wanted if name not in names]
-        if unknown:
-            raise OptionError(
-                "hold-out",
-                f"no camera is called {unknown[0]}",
-                remedy="`eigenfield inspect CAPTURE --json` lists the names",
-            )
-        held[[list(names).index(name) for name in wanted]] = True
+        held[[named_camera(name, names, "hold-out") for name in wanted]] = True
     if (~held).sum() < HOLDOUT_MIN_ENCODED_CAMERAS:
         raise OptionError(
             "hold-out",

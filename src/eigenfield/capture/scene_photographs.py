@@ -7,7 +7,7 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.photographs.read import read_header
 from eigenfield.capture.photoset import Capture, Shot
 from eigenfield.core.camera import Camera
+from eigenfield.core.camera_names import name_stem
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.scene import Scene
 
@@ -128,12 +129,8 @@ def _same_names(scene: Scene, names: Sequence[str]) -> dict[int, int]:
     name is no other camera's."""
     whole = {name: index for index, name in enumerate(names)}
     free = [name for name in names if name not in set(scene.rig.names)]
-    stems = Counter(map(_stem, free)), Counter(_stem(name) for name in scene.rig.names if name not in whole)
-    by_stem = {_stem(name): whole[name] for name in free if stems[0][_stem(name)] == stems[1][_stem(name)] == 1}
-    found = {index: whole.get(name, by_stem.get(_stem(name))) for index, name in enumerate(scene.rig.names)}
+    stems = Counter(map(name_stem, free)), Counter(name_stem(name) for name in scene.rig.names if name not in whole)
+    once = [name for name in free if stems[0][name_stem(name)] == stems[1][name_stem(name)] == 1]
+    by_stem = {name_stem(name): whole[name] for name in once}
+    found = {index: whole.get(name, by_stem.get(name_stem(name))) for index, name in enumerate(scene.rig.names)}
     return {index: photograph for index, photograph in found.items() if photograph is not None}
-
-
-def _stem(name: str) -> str:
-    """A photograph's name without its ending, in one case: view_01.JPG and view_01.png are one."""
-    return str(PurePosixPath(name).with_suffix("")).casefold()

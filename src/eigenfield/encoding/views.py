@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from eigenfield.capture import Capture
 from eigenfield.capture.holdout import held_out_cameras
 from eigenfield.core.camera import Camera
+from eigenfield.core.camera_names import named_camera
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.observations import CalibratedObservations, Observations, cameras_of, select_cameras
 from eigenfield.core.rig import Rig
@@ -173,11 +174,7 @@ def _held_and_reference(
     encoded = np.flatnonzero(~held)
     if name is None:
         return held, int(encoded[np.argmin(np.linalg.norm(places[encoded], axis=1))])
-    if name not in names:
-        raise OptionError(
-            "reference", f"no camera is called {name}", remedy="`eigenfield inspect CAPTURE --json` lists the names"
-        )
-    index = names.index(name)
+    index = named_camera(name, names, "reference")
     if index not in encoded:
-        raise OptionError("reference", f"{name} is held out", remedy="name an encoded camera as --reference")
+        raise OptionError("reference", f"{names[index]} is held out", remedy="name an encoded camera as --reference")
     return held, index

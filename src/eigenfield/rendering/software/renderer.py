@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 
 from eigenfield.core.arguments import checked
 from eigenfield.core.camera import Camera
+from eigenfield.core.camera_names import named_camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.scene import Scene
@@ -355,15 +355,12 @@ def camera_index(scene: Scene, name: str) -> int:
 
     Args:
         scene: The scene.
-        name: Of the camera.
+        name: Of the camera, with or without its ending.
 
     Raises:
         OptionError: `unknown-camera`, with the names most like it.
     """
-    if name in scene.rig.names:
-        return scene.rig.names.index(name)
-    near = difflib.get_close_matches(name, scene.rig.names, n=3, cutoff=0.0)
-    raise OptionError("unknown-camera", f"no camera is called {name!r}", remedy=f"nearest are {', '.join(near)}")
+    return named_camera(name, scene.rig.names, "unknown-camera")
 
 
 def at_resolution(camera: Camera, resolution: tuple[int, int]) -> Camera:
