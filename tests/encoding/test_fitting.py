@@ -28,6 +28,7 @@ from eigenfield.encoding.fitted.kernels import (
     target,
 )
 from eigenfield.encoding.fitted.model import Block, PlaneModel, make_composer
+from eigenfield.encoding.fitted.normal_kernels import multiply, multiply_both
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_subsampled, with_robust_weights
 from eigenfield.encoding.fitted.passes import psnr_of, render_and_backproject
 from eigenfield.encoding.fitted.planes import fitted_textures
@@ -138,6 +139,21 @@ def test_drawing_and_its_transpose(height, width, channels, opaque, seed):
     forward(counts, points, shares, size, texture, np.float32(1), drawn)
     adjoint(counts, points, shares, size, image, codes, back)
     assert float((drawn * weight * image).sum()) == pytest.approx(float((texture * back).sum()), rel=1e-3, abs=1e-3)
+    product, other = np.zeros_like(texture), random.normal(size=(channels, width, height)).astype(np.float32)
+    other_product = np.zeros_like(other)
+    back[:] = 0
+    adjoint(counts, points, shares, size, drawn, codes, back)
+    multiply(counts, points, shares, size, codes, texture, product)
+    np.testing.assert_allclose(product, back, rtol=1e-4, atol=1e-5)
+    both, back, other_back = np.zeros_like(texture), np.zeros_like(texture), np.zeros_like(other)
+    expected = np.zeros_like(drawn)
+    forward(counts, points, shares, size, texture, np.float32(1), expected)
+    forward(counts, points, shares, size, other, np.float32(1), expected)
+    adjoint(counts, points, shares, size, expected, codes, back)
+    adjoint(counts, points, shares, size, expected, codes, other_back)
+    multiply_both(counts, points, shares, size, codes, texture, other, both, other_product)
+    np.testing.assert_allclose(both, back, rtol=1e-4, atol=1e-5)
+    np.testing.assert_allclose(other_product, other_back, rtol=1e-4, atol=1e-5)
     squares, total = squares_of(counts, drawn, codes)
     assert squares == pytest.approx(float((weight * drawn * drawn).sum()), rel=1e-4)
     assert total == pytest.approx(weight[covered].sum(), rel=1e-5)

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from eigenfield.encoding.fitted.point_taps import draw_point, return_point
 from eigenfield.rendering.software.kernels import filter_weights
-from eigenfield.rendering.software.simd import gather_bicubic, scatter_bicubic
 from eigenfield.runtime.jit import kernel
 
 # The footprint of a camera: `counts` (h, w) uint8 says of how many points of the atlas each pixel is the weighted sum;
@@ -132,6 +132,36 @@ def tap_index(left, top, u, v, width, height):
 
 
 @kernel()
+def draw_at_border(flat, shape, ratio, points, at, part, image, area, pixel):
+    """`point_taps.draw_point` where taps are beyond the border."""
+    channels, height, width = shape
+    left, top, a, d = bicubic_taps(points[2 * at : 2 * at + 2], ratio[1], ratio[0], width, height)
+    for k in range(channels):
+        for v in range(4):
+            for u in range(4):
+                value = flat[k * height * width + tap_index(left, top, u, v, width, height)]
+                image[k * area + pixel] += part * d[v] * a[u] * value
+
+
+@kernel()
+def return_at_border(flat, shape, ratio, points, at, part, image, area, pixel):
+    """The transpose of `draw_at_border`."""
+    channels, height, width = shape
+    left, top, a, d = bicubic_taps(points[2 * at : 2 * at + 2], ratio[1], ratio[0], width, height)
+    for k in range(channels):
+        for v in range(4):
+            for u in range(4):
+                into = k * height * width + tap_index(left, top, u, v, width, height)
+                flat[into] += d[v] * a[u] * part * image[k * area + pixel]
+
+
+@kernel(inline=True)
+def ratio_of(shape, size):
+    """Rows, and columns, of a texture of `shape` for one of the finest atlas."""
+    return np.float32(shape[1] / size[0]), np.float32(shape[2] / size[1])
+
+
+@kernel()
 def forward(counts, coordinates, shares, size, texture, sign, image):
     """image += sign G texture: the texture drawn by Catmull-Rom.
 
@@ -144,29 +174,17 @@ def forward(counts, coordinates, shares, size, texture, sign, image):
         sign: 1 or -1.
         image: (C, h, w).
     """
-    channels, height, width = texture.shape
-    down, across = np.float32(height / size[0]), np.float32(width / size[1])
-    flat, plane = texture.reshape(-1), height * width
-    drawn, area, wide = image.reshape(-1), image.shape[1] * image.shape[2], image.shape[2]
+    shape, flat, points, drawn = texture.shape, texture.reshape(-1), coordinates.reshape(-1), image.reshape(-1)
+    ratio, area, wide = ratio_of(shape, size), image.shape[1] * image.shape[2], image.shape[2]
     at = 0
     for row in range(counts.shape[0]):
-        for pixel in range(counts.shape[1]):
-            count = counts[row, pixel]
-            into = row * wide + pixel
+        for column in range(counts.shape[1]):
+            count, pixel = counts[row, column], row * wide + column
             for _ in range(count):
                 part = sign * share_of(count, shares, at)
-                left, top, a, d = bicubic_taps(coordinates[at], across, down, width, height)
+                if not draw_point(flat, shape, ratio, points, at, part, drawn, area, pixel):
+                    draw_at_border(flat, shape, ratio, points, at, part, drawn, area, pixel)
                 at += 1
-                if 1 <= left < width - 2 and 1 <= top < height - 2:
-                    first = (top - 1) * width + left - 1
-                    for k in range(channels):
-                        drawn[k * area + into] += part * gather_bicubic(flat, first + k * plane, width, a, d)
-                else:
-                    for k in range(channels):
-                        for v in range(4):
-                            for u in range(4):
-                                value = flat[k * plane + tap_index(left, top, u, v, width, height)]
-                                drawn[k * area + into] += part * d[v] * a[u] * value
 
 
 @kernel(inline=True)
@@ -188,32 +206,20 @@ def adjoint(counts, coordinates, shares, size, image, weight, out):
         weight: w, see `part_of`.
         out: (C, rows, columns).
     """
-    channels, height, width = out.shape
-    down, across = np.float32(height / size[0]), np.float32(width / size[1])
-    flat, plane = out.reshape(-1), height * width
-    drawn, area, wide = image.reshape(-1), image.shape[1] * image.shape[2], image.shape[2]
+    shape, flat, points, drawn = out.shape, out.reshape(-1), coordinates.reshape(-1), image.reshape(-1)
+    ratio, area, wide = ratio_of(shape, size), image.shape[1] * image.shape[2], image.shape[2]
     at = 0
     for row in range(counts.shape[0]):
-        for pixel in range(counts.shape[1]):
-            count = counts[row, pixel]
-            source, whole = row * wide + pixel, part_of(weight, row, pixel)
+        for column in range(counts.shape[1]):
+            count, pixel, whole = counts[row, column], row * wide + column, part_of(weight, row, column)
             if whole <= 0:
                 at += count
                 continue
             for _ in range(count):
-                w = whole * share_of(count, shares, at)
-                left, top, a, d = bicubic_taps(coordinates[at], across, down, width, height)
+                part = whole * share_of(count, shares, at)
+                if not return_point(flat, shape, ratio, points, at, part, drawn, area, pixel):
+                    return_at_border(flat, shape, ratio, points, at, part, drawn, area, pixel)
                 at += 1
-                if 1 <= left < width - 2 and 1 <= top < height - 2:
-                    first = (top - 1) * width + left - 1
-                    for k in range(channels):
-                        scatter_bicubic(flat, first + k * plane, width, a, d, w * drawn[k * area + source])
-                else:
-                    for k in range(channels):
-                        for v in range(4):
-                            for u in range(4):
-                                into = k * plane + tap_index(left, top, u, v, width, height)
-                                flat[into] += d[v] * a[u] * w * drawn[k * area + source]
 
 
 @kernel()

@@ -17,8 +17,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.encoding.fitted.footprints import Footprint
 from eigenfield.encoding.fitted.kernels import adjoint, forward, robust_weights, squares_of, target
 from eigenfield.encoding.fitted.model import AtlasComposer, PlaneModel, sum_up
+from eigenfield.encoding.fitted.normal_kernels import multiply, multiply_both
 from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.encoding.fitted.products import add_shares, one_blas_thread, scalar_products
 from eigenfield.runtime.parallel import parallel_map, pieces
@@ -86,6 +88,9 @@ def render_and_backproject(
     for_coarse = coarse and (for_textures or for_weights)
     matrix, sign = (model.matrix / np.float32(255)).astype(np.float32), MINUS if photographs else PLUS
     fine_mean = composer.fine_mean(mean) if composer is not None and mean is not None else None
+    # What is drawn goes back to where it came from, and nearly every pixel shows a single point
+    symmetric = not photographs and composer is None and not len(data.footprints.shares)
+    symmetric = symmetric and (mean is not None, coarse and textures is not None) == (for_mean, for_coarse)
     # All batches share their arrays: memory given back and asked for anew costs more than what is done with it
     batch = min(PASS_BATCH_OBSERVATIONS, len(data))
     room = np.empty((2, batch, model.channels, *model.grid), np.float32)  # pages not written to take no memory
@@ -109,6 +114,11 @@ def render_and_backproject(
             for at in range(*part):
                 index = first + at
                 footprint, weight = data.footprint(index), observations.weights(index)
+                if for_coarse:
+                    back[at] = 0
+                if symmetric:
+                    _multiply(footprint, size, weight, mean, None if sums is None else sums[at], added, back[at])
+                    continue
                 image = data.blank(index, model.channels)
                 if photographs:
                     target(*footprint, observations.codes_of(index), matrix, image)
@@ -130,7 +140,6 @@ def render_and_backproject(
                 if for_mean:
                     adjoint(*footprint, size, image, weight, added)
                 if for_coarse:
-                    back[at] = 0
                     adjoint(*footprint, size, image, weight, back[at])
 
         parallel_map(piece, pieces(last - first, PASS_TASK_OBSERVATIONS))
@@ -141,6 +150,24 @@ def render_and_backproject(
             if for_weights and block.count:
                 asked[number][some] = scalar_products(inside, block.textures.reshape(block.count, -1))
     return NormalEquations(shares.sum(axis=0), found, asked, squares, pixels)
+
+
+def _multiply(
+    footprint: Footprint,
+    size: tuple[int, int],
+    weight: NDArray[np.uint8],
+    mean: NDArray[np.float32] | None,
+    sums: NDArray[np.float32] | None,
+    mean_product: NDArray[np.float32],
+    sums_product: NDArray[np.float32],
+) -> None:
+    """Add an observation's G^T w G (mean + sums) to both products, each of the size of what it belongs to."""
+    if mean is not None and sums is not None:
+        multiply_both(*footprint, size, weight, mean, sums, mean_product, sums_product)
+    elif mean is not None:
+        multiply(*footprint, size, weight, mean, mean_product)
+    elif sums is not None:
+        multiply(*footprint, size, weight, sums, sums_product)
 
 
 def psnr_of(squares: NDArray[np.float64], pixels: NDArray[np.float64], channels: int = 1) -> float:

@@ -6,23 +6,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from eigenfield.encoding.fitted.kernels import SHARE_ONE, bicubic_taps, part_of, share_of, tap_index
+from eigenfield.encoding.fitted.kernels import SHARE_ONE, bicubic_taps, draw_at_border, part_of, share_of, tap_index
+from eigenfield.encoding.fitted.point_taps import draw_point, return_two
 from eigenfield.runtime.jit import kernel
 
 SHEET_MIN_SHARE = np.float32(1 / 1024)  # of a pixel, of a point that counts
 SHEET_MIN_REST = np.float32(1 / 512)  # of a pixel, that what is behind is seen through
-
-
-@kernel(inline=True)
-def read_texels(flat, left, top, a, d, width, height):
-    """A flat texture of width x height at taps of `bicubic_taps`."""
-    value = np.float32(0)
-    for v in range(4):
-        line = np.float32(0)
-        for u in range(4):
-            line += a[u] * flat[tap_index(left, top, u, v, width, height)]
-        value += d[v] * line
-    return value
 
 
 @kernel()
@@ -39,9 +28,9 @@ def sheet_points(near, column_of, row_of, opacity, rest, counts, starts, coordin
         coordinates: (n, 2) written.
         shares: (n,) written.
     """
-    height, width = opacity.shape
-    right, bottom, one = np.float32(width - 1), np.float32(height - 1), np.float32(1)
-    put, point, flat = starts.shape[0] > 0, np.empty(2, np.float32), opacity.reshape(-1)
+    shape, flat, one = (1, *opacity.shape), opacity.reshape(-1), np.float32(1)
+    right, bottom = np.float32(opacity.shape[1] - 1), np.float32(opacity.shape[0] - 1)
+    put, point, value = starts.shape[0] > 0, np.empty(2, np.float32), np.empty(1, np.float32)
     for row in range(counts.shape[0]):
         for pixel in range(counts.shape[1]):
             behind, inverse = rest[row, pixel], near[row, pixel]
@@ -49,9 +38,10 @@ def sheet_points(near, column_of, row_of, opacity, rest, counts, starts, coordin
                 continue
             point[0] = min(max(column_of[row, pixel] / inverse, np.float32(0)), right)
             point[1] = min(max(row_of[row, pixel] / inverse, np.float32(0)), bottom)
-            left, top, a, d = bicubic_taps(point, one, one, width, height)
-            value = read_texels(flat, left, top, a, d, width, height)
-            share = behind * min(max(value, np.float32(0)), np.float32(1))
+            value[0] = 0
+            if not draw_point(flat, shape, (one, one), point, 0, one, value, 0, 0):
+                draw_at_border(flat, shape, (one, one), point, 0, one, value, 0, 0)
+            share = behind * min(max(value[0], np.float32(0)), np.float32(1))
             if share < SHEET_MIN_SHARE:
                 continue
             if behind - share < SHEET_MIN_REST:
@@ -79,8 +69,8 @@ def opacity_steps(counts, coordinates, shares, texture, image, weight, out):
         weight: See `part_of`.
         out: The sums.
     """
-    height, width = texture.shape[1:]
-    flat, one = texture.reshape(-1), np.float32(1)
+    shape, flat, points, one = texture.shape, texture.reshape(-1), coordinates.reshape(-1), np.float32(1)
+    height, width, ratio = shape[1], shape[2], (one, one)
     colours, parts = np.empty(256, np.float32), np.empty(256, np.float32)
     gain, norm = out[0].reshape(-1), out[1].reshape(-1)
     at = 0
@@ -93,19 +83,21 @@ def opacity_steps(counts, coordinates, shares, texture, image, weight, out):
                 continue
             behind, light = np.float32(0), np.float32(0)  # of what was passed, from the back on: colours and parts
             for k in range(count):
-                left, top, a, d = bicubic_taps(coordinates[first + k], one, one, width, height)
-                colours[k] = read_texels(flat, left, top, a, d, width, height)
+                colours[k] = 0
+                if not draw_point(flat, shape, ratio, points, first + k, one, colours, 0, k):
+                    draw_at_border(flat, shape, ratio, points, first + k, one, colours, 0, k)
                 parts[k] = share_of(count, shares, first + k)
             for k in range(count - 1, -1, -1):
                 if light > SHEET_MIN_REST:
                     through = light + parts[k]
                     g = through * (colours[k] - behind / light)
-                    left, top, a, d = bicubic_taps(coordinates[first + k], one, one, width, height)
-                    for v in range(4):
-                        for u in range(4):
-                            into = tap_index(left, top, u, v, width, height)
-                            w = d[v] * a[u]
-                            gain[into] += whole * w * g * image[0, row, pixel]
-                            norm[into] += whole * abs(w) * g * g
+                    value, size = whole * g * image[0, row, pixel], whole * g * g
+                    if not return_two(gain, norm, shape, ratio, points, first + k, value, size):
+                        left, top, a, d = bicubic_taps(coordinates[first + k], one, one, width, height)
+                        for v in range(4):
+                            for u in range(4):
+                                into = tap_index(left, top, u, v, width, height)
+                                gain[into] += d[v] * a[u] * value
+                                norm[into] += abs(d[v] * a[u]) * size
                 behind += parts[k] * colours[k]
                 light += parts[k]

@@ -91,68 +91,6 @@ def add_texel(typing_context, sums, at, part, texel):
     return types.none(sums, types.int64, part, texel), generate
 
 
-def _square_of_taps(context, builder, signature, arguments):
-    """Four pointers to a row's four texels each, their weights across as a vector, and weights down as vectors of one
-    number each."""
-    vector, index = ir.VectorType(ir.FloatType(), TEXEL_LANES), ir.IntType(32)
-    data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
-    place, line, across, down = arguments[1:5]
-
-    horizontal = ir.Constant(vector, ir.Undefined)
-    for i in range(TEXEL_LANES):
-        scalar = builder.extract_value(across, i)
-        horizontal = builder.insert_element(horizontal, scalar, ir.Constant(index, i))
-    pointers = []
-    for _ in range(TEXEL_LANES):
-        pointers.append(builder.bitcast(builder.gep(data, [place]), vector.as_pointer()))
-        place = builder.add(place, line)
-    return pointers, horizontal, [splat(builder, builder.extract_value(down, i), vector) for i in range(TEXEL_LANES)]
-
-
-@intrinsic
-def gather_bicubic(typing_context, texture, first, line, across, down):
-    """sum_v down[v] sum_u across[u] texture[first + v line + u], float32, u and v from 0 to 3.
-
-    Nothing is checked. Terms are added in this order on every machine, since the results go into files.
-
-    Args:
-        texture: Flat float32 array.
-        first: Address of the first texel.
-        line: Distance of rows.
-        across, down: Tuples of four float32.
-    """
-
-    def generate(context, builder, signature, arguments):
-        pointers, horizontal, vertical = _square_of_taps(context, builder, signature, arguments)
-        rows = [builder.fmul(builder.load(p, align=4), w) for p, w in zip(pointers, vertical, strict=True)]
-        total = builder.fadd(builder.fadd(rows[0], rows[1]), builder.fadd(rows[2], rows[3]))
-        total = builder.fmul(total, horizontal)
-        lanes = [builder.extract_element(total, ir.Constant(ir.IntType(32), i)) for i in range(TEXEL_LANES)]
-        return builder.fadd(builder.fadd(lanes[0], lanes[1]), builder.fadd(lanes[2], lanes[3]))
-
-    return types.float32(texture, first, line, across, down), generate
-
-
-@intrinsic
-def scatter_bicubic(typing_context, texture, first, line, across, down, value):
-    """The transpose of `gather_bicubic`: texture[first + v line + u] += down[v] across[u] value.
-
-    Args:
-        texture, first, line, across, down: As of `gather_bicubic`.
-        value: float32.
-    """
-
-    def generate(context, builder, signature, arguments):
-        pointers, horizontal, vertical = _square_of_taps(context, builder, signature, arguments)
-        share = builder.fmul(horizontal, splat(builder, arguments[5], horizontal.type))
-        for pointer, weight in zip(pointers, vertical, strict=True):
-            found = builder.fadd(builder.load(pointer, align=4), builder.fmul(share, weight))
-            builder.store(found, pointer, align=4)
-        return context.get_dummy_value()
-
-    return types.none(texture, first, line, across, down, value), generate
-
-
 @intrinsic
 def fetch_early(typing_context, texture, address):
     """Prefetch texture[address] into the cache.
