@@ -25,6 +25,7 @@ from eigenfield.stereo.multiplane.kernels import (
     add_layer_gradient,
     add_priors,
     draw_layer,
+    pixel_rays,
     plane_places,
     prolong,
     restrict,
@@ -78,13 +79,15 @@ def test_a_homography_takes_a_view_to_the_plane_that_it_sees():
 def places_by(base):
     """Where a photograph's pixels read a plane, by an affine map of their coordinates."""
     places = np.empty((*SHAPE, 2), np.float32)
-    plane_places(*FRAME, base, np.zeros((2, 3)), np.float32(0), places)
+    rays = np.empty((*places.shape[:2], 4), np.float32)
+    pixel_rays(base, np.zeros((2, 3)), rays)
+    plane_places(*FRAME, rays, np.float32(0), places)
     return places
 
 
 def drawn_layers(labels, layers, matrix):
     places, drawn = np.empty((len(layers), *SHAPE, 2), np.float32), np.empty((len(layers), *SHAPE, 4), np.float32)
-    draw_layers(labels, layers, view_rays(matrix), places, drawn)
+    draw_layers(labels, layers, view_rays(matrix, places.shape[1:3]), places, drawn)
     return places, drawn
 
 
@@ -296,7 +299,7 @@ def test_the_gradient_of_sheets_agrees_with_differences():
     by_layer, by_label = np.zeros_like(layers), np.zeros_like(labels)
     total = backpropagate(codes, places, drawn, list(by_layer))
     for k in range(2):
-        add_label_gradient(drawn[k], places[k], layers[k], *view_rays(matrix), by_label[k])
+        add_label_gradient(drawn[k], places[k], layers[k], view_rays(matrix, places.shape[1:3]), by_label[k])
     assert total == pytest.approx(error(labels, layers), rel=1e-5)
     step = np.float32(1e-3) * np.random.default_rng(6).standard_normal(layers.shape).astype(np.float32)
     change = error(labels, layers + step) - error(labels, layers - step)

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.runtime.parallel import parallel_map
-from eigenfield.stereo.multiplane.drawing import Labels, Rays, backpropagate, draw_layers, view_rays
+from eigenfield.stereo.multiplane.drawing import Labels, backpropagate, draw_layers, view_rays
 from eigenfield.stereo.multiplane.kernels import add_priors, move
 from eigenfield.stereo.multiplane.pyramid import Pyramid
 from eigenfield.stereo.views import unpack_pictures
@@ -99,14 +99,14 @@ class Descent:
             tick: Is called after each step with its number, from 1 on.
         """
         order, waiting, tuning = np.random.default_rng(0), np.zeros(0, np.int64), self.tuning
-        shape = len(self.layers), *pictures.shape[1:]
+        shape = len(self.layers), *pictures.shape[1:3]
         places, drawn = np.empty((*shape, 2), np.float32), np.empty((*shape, CHANNELS), np.float32)
         gradients, numbers = [pyramid.gradient for pyramid in self._pyramids], 3 * pictures[0].size
         for number in range(1, tuning.steps + 1):
             if not len(waiting):
                 waiting = order.permutation(len(pictures))
             view, waiting = int(waiting[-1]), waiting[:-1]
-            rays = view_rays(matrices[view])
+            rays = view_rays(matrices[view], shape[1:])
             draw_layers(self.labels, self.layers, rays, places, drawn)
             error = backpropagate(unpack_pictures(pictures[view]), places, drawn, gradients)
             falling = tuning.last_rate_ratio ** ((number - 1) / tuning.steps)
@@ -124,7 +124,7 @@ class Descent:
         number: int,
         falling: float,
         scale: np.float32,
-        rays: Rays,
+        rays: NDArray[np.float32],
         places: NDArray[np.float32],
         drawn: NDArray[np.float32],
         index: int,
@@ -135,7 +135,7 @@ class Descent:
             number: Of the step.
             falling: Part of the rates that is left.
             scale: Of the gradient.
-            rays: Of the photograph's view.
+            rays: (H, W, 4) of the photograph's view.
             places: Of `draw_layers`.
             drawn: The gradient of the drawn layers, see `backpropagate`.
             index: Of the layer.

@@ -14,6 +14,7 @@ from eigenfield.stereo.multiplane.kernels import (
     composite_gradient,
     draw_layer,
     field_places,
+    pixel_rays,
     plane_places,
 )
 
@@ -21,12 +22,11 @@ BAND_ROWS = 32  # of a picture, composited at a time
 PLACE_ITERATIONS = 6
 PLACE_TOLERANCE_PIXELS = np.float32(1e-3)  # of a layer
 
-Rays = tuple[NDArray[np.float64], NDArray[np.float64]]  # `base` and `slope` of the kernels
 Labels = NDArray[np.float64] | NDArray[np.float32]  # (D,) of planes, or (D, h, w) of height fields
 
 
-def view_rays(matrix: NDArray[np.float64]) -> Rays:
-    """`base` (3, 3) and `slope` (2, 3) of `plane_places`, for a view.
+def inverse_view(matrix: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """`base` (3, 3) and `slope` (2, 3) of `pixel_rays`, for a view.
 
     The plane of label d maps the reference view to a photograph by H + d m e3', with m a column of the view's matrix.
     Its inverse, by Sherman and Morrison, is H^-1 + d (c_3 I - c e3') H^-1 but for a scale, with c = H^-1 m.
@@ -40,15 +40,31 @@ def view_rays(matrix: NDArray[np.float64]) -> Rays:
     return base, np.ascontiguousarray((turn @ base)[:2])
 
 
+def view_rays(matrix: NDArray[np.float64], shape: tuple[int, int]) -> NDArray[np.float32]:
+    """(H, W, 4) of `pixel_rays`, for a view.
+
+    Args:
+        matrix: (3, 4) of the view, see `view_matrices`.
+        shape: (H, W) of its picture.
+    """
+    rays = np.empty((*shape, 4), np.float32)
+    pixel_rays(*inverse_view(matrix), rays)
+    return rays
+
+
 def draw_layers(
-    labels: Labels, layers: NDArray[np.float32], rays: Rays, places: NDArray[np.float32], drawn: NDArray[np.float32]
+    labels: Labels,
+    layers: NDArray[np.float32],
+    rays: NDArray[np.float32],
+    places: NDArray[np.float32],
+    drawn: NDArray[np.float32],
 ) -> None:
     """drawn = each layer as a view sees it.
 
     Args:
         labels: (D,) of planes, or (D, h, w) of height fields.
         layers: (D, h, w, 4).
-        rays: Of the view.
+        rays: (H, W, 4) of `view_rays`.
         places: (D, H, W, 2), written: where the view reads each layer.
         drawn: (D, H, W, 4), written.
     """
@@ -58,9 +74,9 @@ def draw_layers(
         own = labels[index]
         start = np.float32(own.mean())
         if labels.ndim == 1:
-            plane_places(*size, *rays, start, places[index])
+            plane_places(*size, rays, start, places[index])
         else:
-            field_places(own, *rays, start, PLACE_ITERATIONS, PLACE_TOLERANCE_PIXELS, places[index])
+            field_places(own, rays, start, PLACE_ITERATIONS, PLACE_TOLERANCE_PIXELS, places[index])
         draw_layer(layers[index], places[index], drawn[index])
 
     parallel_map(one, range(len(layers)))
@@ -78,7 +94,7 @@ def draw_picture(
         shape: (H, W) of its picture.
     """
     places, drawn = (np.empty((len(layers), *shape, numbers), np.float32) for numbers in (2, 4))
-    draw_layers(labels, layers, view_rays(matrix), places, drawn)
+    draw_layers(labels, layers, view_rays(matrix, shape), places, drawn)
     picture = np.empty((*shape, 3), np.float32)
     parallel_map(lambda band: composite(drawn, *band, picture), pieces(shape[0], BAND_ROWS))
     return picture

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from eigenfield.core.progress import Progress
 from eigenfield.runtime.parallel import parallel_map
 from eigenfield.stereo.multiplane.descent import Descent, DescentTuning
-from eigenfield.stereo.multiplane.drawing import Rays, view_rays
+from eigenfield.stereo.multiplane.drawing import inverse_view
 from eigenfield.stereo.multiplane.image import MultiplaneImage
 from eigenfield.stereo.multiplane.kernels import add_label_gradient, add_priors, move
 from eigenfield.stereo.multiplane.pyramid import Pyramid
@@ -208,14 +208,14 @@ class _SheetDescent(Descent):
         number: int,
         falling: float,
         scale: np.float32,
-        rays: Rays,
+        rays: NDArray[np.float32],
         places: NDArray[np.float32],
         drawn: NDArray[np.float32],
         index: int,
     ) -> None:
         labels, pyramid, tuning = self.labels[index], self._label_pyramids[index], self.tuning
         step = pyramid.gradient[..., 0]
-        add_label_gradient(drawn[index], places[index], self.layers[index], *rays, step)  # of the layer as it was drawn
+        add_label_gradient(drawn[index], places[index], self.layers[index], rays, step)  # of the layer as it was drawn
         super()._move(number, falling, scale, rays, places, drawn, index)
         narrow = np.float32(1 / (tuning.label_huber_width * self._spacing))
         add_priors(labels, 1, scale, self._label_variation, self._nothing, self._nothing, narrow, step)
@@ -232,7 +232,7 @@ def plane_homographies(matrix: NDArray[np.float64], labels: NDArray[np.float64])
         matrix: (3, 4) of the view, see `view_matrices`.
         labels: (D,).
     """
-    base, slope = view_rays(matrix)
+    base, slope = inverse_view(matrix)
     homographies = np.repeat(base[None], len(labels), axis=0)
     homographies[:, :2] += labels[:, None, None] * slope
     return homographies

@@ -12,82 +12,99 @@ from eigenfield.stereo.taps import FASTMATH_ORDERED
 
 
 @kernel()
-def plane_places(height, width, base, slope, label, places):
-    """places (H, W, 2) = column and row in a layer of what a photograph's pixels see of it; -1, -1 beyond its border.
+def pixel_rays(base, slope, rays):
+    """rays (H, W, 4) = u, v, s and t of each pixel of a photograph, which sees (u, v) + d (s, t) on the plane of label
+    d; u is NaN where the plane is behind the camera.
 
-    A pixel sees (u, v) + d (s, t) on the plane of label d.
+    Args:
+        base: (3, 3) float64, from the pixel (x, y, 1) to (u, v, 1), homogeneous.
+        slope: (2, 3) float64, from the pixel to (s, t) times that scale.
+        rays: Written.
+    """
+    for row in range(rays.shape[0]):
+        y = np.float64(row)
+        for column in range(rays.shape[1]):
+            x = np.float64(column)
+            scale = base[2, 0] * x + base[2, 1] * y + base[2, 2]
+            over = 1 / scale
+            u = np.float32((base[0, 0] * x + base[0, 1] * y + base[0, 2]) * over)
+            rays[row, column, 0] = u if scale > 0 else np.float32(np.nan)
+            rays[row, column, 1] = np.float32((base[1, 0] * x + base[1, 1] * y + base[1, 2]) * over)
+            rays[row, column, 2] = np.float32((slope[0, 0] * x + slope[0, 1] * y + slope[0, 2]) * over)
+            rays[row, column, 3] = np.float32((slope[1, 0] * x + slope[1, 1] * y + slope[1, 2]) * over)
+
+
+@kernel()
+def plane_places(height, width, rays, label, places):
+    """places (H, W, 2) = column and row in a layer of what a photograph's pixels see of it; -1, -1 beyond its border.
 
     Args:
         height, width: Of the layer.
-        base: (3, 3) float64, from the pixel (x, y, 1) to (u, v, 1), homogeneous.
-        slope: (2, 3) float64, from the pixel to (s, t) times that scale.
+        rays: (H, W, 4) of `pixel_rays`.
         label: float32 of the plane.
         places: Written.
     """
     for row in range(places.shape[0]):
         for column in range(places.shape[1]):
-            scale, u, v, s, t = pixel_ray(base, slope, column, row)
-            put_place(scale, u + label * s, v + label * t, height, width, places, row, column)
+            u, v = (
+                rays[row, column, 0] + label * rays[row, column, 2],
+                rays[row, column, 1] + label * rays[row, column, 3],
+            )
+            put_place(u, v, height, width, places, row, column)
+
+
+@kernel(inline=True)
+def label_at(flat, width, u, v, right, bottom):
+    """Labels read bilinearly at the column u and row v, which may be beyond their border: right, bottom."""
+    across, down = min(max(u, np.float32(0)), right), min(max(v, np.float32(0)), bottom)
+    left, top = np.int64(across), np.int64(down)
+    f, g, at = across - np.float32(left), down - np.float32(top), top * width + left
+    above = flat[at] + f * (flat[at + 1] - flat[at])
+    below = flat[at + width] + f * (flat[at + width + 1] - flat[at + width])
+    return above + g * (below - above)
 
 
 @kernel()
-def field_places(labels, base, slope, start, iterations, tolerance, places):
+def field_places(labels, rays, start, iterations, tolerance, places):
     """As `plane_places`, of a height field: d is that of the place itself.
 
     A fixed point finds it while d changes by less than one over the parallax (s, t) from texel to texel. It begins with
-    the label that the pixel above has found: the one beside would have the processor wait for it.
+    the label that the pixel above has found: the one beside would have the processor wait for it. Two iterations are
+    enough for nearly all, and are done without asking, since a wrong guess of the answer costs as much as one.
 
     Args:
         labels: (height, width) float32.
-        base, slope: As of `plane_places`.
+        rays: (H, W, 4) of `pixel_rays`.
         start: float32 label to begin with.
-        iterations: Of the fixed point, at most.
+        iterations: Of the fixed point, at most; at least two.
         tolerance: float32, pixels of the layer by which the last one moves the place, at most.
         places: Written.
     """
     height, width = labels.shape
-    right, bottom = np.float32(width - 1.001), np.float32(height - 1.001)
+    right, bottom, flat = np.float32(width - 1.001), np.float32(height - 1.001), labels.reshape(-1)
     found = np.full(places.shape[1], start, np.float32)
     for row in range(places.shape[0]):
         for column in range(places.shape[1]):
-            d = found[column]
-            scale, u0, v0, s, t = pixel_ray(base, slope, column, row)
-            if not scale > 0:
+            u0, v0, s, t = rays[row, column, 0], rays[row, column, 1], rays[row, column, 2], rays[row, column, 3]
+            if np.isnan(u0):
                 found[column] = start
                 places[row, column, 0], places[row, column, 1] = np.float32(-1), np.float32(-1)
                 continue
-            u, v, reach = u0 + d * s, v0 + d * t, max(abs(s), abs(t))
-            for _ in range(iterations):
-                across, down = min(max(u, np.float32(0)), right), min(max(v, np.float32(0)), bottom)
-                left, top = np.int64(across), np.int64(down)
-                f, g = across - np.float32(left), down - np.float32(top)
-                above = labels[top, left] + f * (labels[top, left + 1] - labels[top, left])
-                below = labels[top + 1, left] + f * (labels[top + 1, left + 1] - labels[top + 1, left])
-                before, d = d, above + g * (below - above)
-                u, v = u0 + d * s, v0 + d * t
+            d, reach = found[column], max(abs(s), abs(t))
+            before = label_at(flat, width, u0 + d * s, v0 + d * t, right, bottom)
+            d = label_at(flat, width, u0 + before * s, v0 + before * t, right, bottom)
+            for _ in range(2, iterations):
                 if abs(d - before) * reach < tolerance:
                     break
+                before, d = d, label_at(flat, width, u0 + d * s, v0 + d * t, right, bottom)
             found[column] = d
-            put_place(scale, u, v, height, width, places, row, column)
+            put_place(u0 + d * s, v0 + d * t, height, width, places, row, column)
 
 
 @kernel(inline=True)
-def pixel_ray(base, slope, column, row):
-    """The homogeneous scale of a pixel, and its u, v, s and t, see `plane_places`."""
-    x, y = np.float64(column), np.float64(row)
-    scale = base[2, 0] * x + base[2, 1] * y + base[2, 2]
-    over = 1 / scale
-    u = np.float32((base[0, 0] * x + base[0, 1] * y + base[0, 2]) * over)
-    v = np.float32((base[1, 0] * x + base[1, 1] * y + base[1, 2]) * over)
-    s = np.float32((slope[0, 0] * x + slope[0, 1] * y + slope[0, 2]) * over)
-    t = np.float32((slope[1, 0] * x + slope[1, 1] * y + slope[1, 2]) * over)
-    return scale, u, v, s, t
-
-
-@kernel(inline=True)
-def put_place(scale, u, v, height, width, places, row, column):
-    """places[row, column] = (u, v), or -1, -1 behind the camera or beyond the border of height x width."""
-    inside = scale > 0 and u >= 0 and v >= 0 and u < width - 1 and v < height - 1
+def put_place(u, v, height, width, places, row, column):
+    """places[row, column] = (u, v), or -1, -1 beyond the border of height x width, or if u is NaN."""
+    inside = u >= 0 and v >= 0 and u < width - 1 and v < height - 1
     places[row, column, 0] = u if inside else np.float32(-1)
     places[row, column, 1] = v if inside else np.float32(-1)
 
@@ -125,17 +142,17 @@ def add_layer_gradient(gradient, places, layer_gradient):
 
 
 @kernel()
-def add_label_gradient(gradient, places, layer, base, slope, label_gradient):
+def add_label_gradient(gradient, places, layer, rays, label_gradient):
     """Add what a picture's gradient (H, W, 4) is for the labels (h, w) of a height field.
 
-    A label moves the place at which a pixel reads the layer along (s, t), see `plane_places`: its gradient is that of
+    A label moves the place at which a pixel reads the layer along (s, t), see `pixel_rays`: its gradient is that of
     the pixel times the layer's slope along (s, t).
 
     Args:
         gradient: (H, W, 4).
         places: (H, W, 2).
         layer: (h, w, 4).
-        base, slope: As of `plane_places`.
+        rays: (H, W, 4) of `pixel_rays`.
         label_gradient: (h, w), added to.
     """
     flat, drawn, line = layer.reshape(-1), gradient.reshape(-1), np.int64(4 * layer.shape[1])
@@ -149,8 +166,7 @@ def add_label_gradient(gradient, places, layer, base, slope, label_gradient):
             left, top = np.int64(u), np.int64(v)
             f, g = u - np.float32(left), v - np.float32(top)
             across, down = bilinear_slopes(flat, top * line + 4 * left, line, f, g, drawn, at)
-            _, _, _, s, t = pixel_ray(base, slope, column, row)
-            moved = across * s + down * t
+            moved = across * rays[row, column, 2] + down * rays[row, column, 3]
             right = f * moved
             rest = moved - right
             label_gradient[top, left] += (np.float32(1) - g) * rest

@@ -37,7 +37,7 @@ def sheet_visibility(
     for matrix, camera in track(views, "what is seen", len(views), progress):
         shape = len(seen), (camera.height + 1) // 2, (camera.width + 1) // 2
         places, drawn = (np.empty((*shape, numbers), np.float32) for numbers in (2, 4))
-        draw_layers(sheets.labels, sheets.layers, view_rays(matrix), places, drawn)
+        draw_layers(sheets.labels, sheets.layers, view_rays(matrix, shape[1:]), places, drawn)
         through = np.ones(shape, np.float32)
         for k in range(len(seen) - 2, -1, -1):
             through[k] = through[k + 1] * (1 - drawn[k + 1, ..., 3])
