@@ -25,7 +25,7 @@ except ImportError:  # Windows, where what a killed process left stays
 
 PREFIX = "eigenfield"
 PREFIX_MAX_CHARACTERS = 40  # a name of 255 bytes must still have room for the rest
-REMOVE_ATTEMPTS = 10  # a thread may write into a folder that is being removed
+REMOVE_ATTEMPTS = 10  # a thread may be about to write into a folder that is being removed
 PART_NAME = re.compile(r"\.(?P<prefix>.*)-[0-9a-f]{16}\.part", re.DOTALL)
 
 _made: set[Path] = set()
@@ -65,8 +65,9 @@ def remove_temporaries() -> None:
     global _stopped
     with _gate:
         _stopped = True
-        for path in _made.copy():
-            _remove(path)
+        for _ in range(2):  # a thread may have renamed one meanwhile, see `_remove`
+            for path in _made.copy():
+                _remove(path)
 
 
 @contextlib.contextmanager
@@ -75,7 +76,7 @@ def _temporary(prefix: str, folder: Path | None, make: Callable[[Path], None]) -
     prefix = prefix[:PREFIX_MAX_CHARACTERS]
     _remove_left(place, prefix)
     while True:
-        path = place / f".{prefix}-{secrets.token_hex(8)}.part"
+        path = place / _new_name(prefix)
         try:
             with _gate:
                 if _stopped:
@@ -97,12 +98,23 @@ def _temporary(prefix: str, folder: Path | None, make: Callable[[Path], None]) -
 
 
 def _remove(path: Path) -> None:
+    if not path.is_dir():
+        with contextlib.suppress(OSError):
+            path.unlink()
+        return
+    # A thread that writes into the folder goes on forever: under another name it finds it no longer
+    aside = path.with_name(_new_name(path.name[1 : -len("-0123456789abcdef.part")]))
+    _made.add(aside)
+    with contextlib.suppress(OSError):
+        path = path.rename(aside)
     for _ in range(REMOVE_ATTEMPTS):
-        if not path.is_dir():
-            with contextlib.suppress(OSError):
-                path.unlink()
-            return
-        shutil.rmtree(path, ignore_errors=True)
+        if path.exists():
+            shutil.rmtree(path, ignore_errors=True)
+    _made.discard(aside)
+
+
+def _new_name(prefix: str) -> str:
+    return f".{prefix}-{secrets.token_hex(8)}.part"
 
 
 def _lock(path: Path) -> int | None:
