@@ -11,6 +11,7 @@ import os
 import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future
+from itertools import pairwise
 from pathlib import Path
 from queue import SimpleQueue
 from typing import Any, TypeVar
@@ -174,3 +175,9 @@ def _real_time_threads() -> set[int]:
 def pieces(total: int, size: int) -> list[tuple[int, int]]:
     """[start, stop) ranges of `size` that cover `total`; the same at any number of threads."""
     return [(start, min(start + size, total)) for start in range(0, total, size)]
+
+
+def even_pieces(total: int, count: int) -> list[tuple[int, int]]:
+    """`count` [start, stop) ranges that cover `total`, none of them empty; their sizes differ by at most one."""
+    cuts = [total * number // count for number in range(count + 1)]
+    return [(start, stop) for start, stop in pairwise(cuts) if start < stop]

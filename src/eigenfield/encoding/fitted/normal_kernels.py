@@ -45,7 +45,7 @@ def multiply(counts, coordinates, shares, size, weight, texture, product):
     """
     flat, into, points, shape = texture.reshape(-1), product.reshape(-1), coordinates.reshape(-1), texture.shape
     ratio, colour = ratio_of(shape, size), np.empty(texture.shape[0], np.float32)
-    at = 0
+    at = np.int64(0)
     for row in range(counts.shape[0]):
         for column in range(counts.shape[1]):
             count, whole = np.int64(counts[row, column]), part_of(weight, row, column)
@@ -85,7 +85,7 @@ def multiply_both(counts, coordinates, shares, size, weight, fine, coarse, fine_
         coordinates.reshape(-1),
         np.empty(fine.shape[0], np.float32),
     )
-    at = 0
+    at = np.int64(0)
     for row in range(counts.shape[0]):
         for column in range(counts.shape[1]):
             count, whole = np.int64(counts[row, column]), part_of(weight, row, column)

@@ -26,12 +26,12 @@ from eigenfield.encoding.fitted.colour import split_matrix
 from eigenfield.encoding.fitted.fit import MEAN_WANTED, NOTHING_WANTED
 from eigenfield.encoding.fitted.model import PlaneModel
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_on_proxy
-from eigenfield.encoding.fitted.passes import PASS_TASK_OBSERVATIONS, psnr_of
+from eigenfield.encoding.fitted.passes import PASS_TASKS, psnr_of
 from eigenfield.encoding.fitted.sheet_kernels import opacity_steps
 from eigenfield.encoding.fitted.solve import fit_textures, measure_scales, residual
 from eigenfield.encoding.fitted.start import residual_image
 from eigenfield.encoding.geometry.distortion import spread_cameras
-from eigenfield.runtime.parallel import parallel_map, pieces
+from eigenfield.runtime.parallel import even_pieces, parallel_map
 
 log = logging.getLogger("eigenfield.encode")
 
@@ -123,7 +123,7 @@ def _sums(data: FitData, model: PlaneModel) -> NDArray[np.float32]:
             opacity_steps(*data.footprint(index), model.mean, image, weight, added)
         return added
 
-    for added in parallel_map(piece, pieces(len(data), PASS_TASK_OBSERVATIONS)):
+    for added in parallel_map(piece, even_pieces(len(data), PASS_TASKS)):
         total += added
     return total
 

@@ -23,10 +23,10 @@ from eigenfield.encoding.fitted.model import AtlasComposer, PlaneModel, sum_up
 from eigenfield.encoding.fitted.normal_kernels import multiply, multiply_both
 from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.encoding.fitted.products import add_shares, one_blas_thread, scalar_products
-from eigenfield.runtime.parallel import parallel_map, pieces
+from eigenfield.runtime.parallel import even_pieces, parallel_map
 
 PASS_BATCH_OBSERVATIONS = 48  # whose sums are in memory at a time: each batch reads and writes all textures once
-PASS_TASK_OBSERVATIONS = 12  # of one thread's task
+PASS_TASKS = 8  # of a batch, each with sums of its own
 PLUS, MINUS = np.float32(1), np.float32(-1)
 
 Textures = list[NDArray[np.float32]]
@@ -92,12 +92,12 @@ def render_and_backproject(
     symmetric = not photographs and composer is None and not len(data.footprints.shares)
     symmetric = symmetric and (mean is not None, coarse and textures is not None) == (for_mean, for_coarse)
     # All batches share their arrays: memory given back and asked for anew costs more than what is done with it
-    batch = min(PASS_BATCH_OBSERVATIONS, len(data))
+    batches = even_pieces(len(data), -(-len(data) // PASS_BATCH_OBSERVATIONS))
+    batch = max((last - first for first, last in batches), default=0)
     room = np.empty((2, batch, model.channels, *model.grid), np.float32)  # pages not written to take no memory
-    shares = np.zeros(
-        (len(pieces(batch, PASS_TASK_OBSERVATIONS)), *(model.mean.shape if for_mean else (0, 0, 0))), np.float32
-    )
-    for first, last in pieces(len(data), PASS_BATCH_OBSERVATIONS):
+    tasks = min(PASS_TASKS, batch)
+    shares = np.zeros((tasks, *(model.mean.shape if for_mean else (0, 0, 0))), np.float32)
+    for first, last in batches:
         some = slice(first, last)
         sums, back = None, room[1, : last - first]
         if coarse and textures is not None:
@@ -105,12 +105,12 @@ def render_and_backproject(
             sum_up(model, textures, [rows[some] for rows in weights], sums)
 
         def piece(
-            part: tuple[int, int],
+            task: tuple[NDArray[np.float32], tuple[int, int]],
             first: int = first,
             sums: NDArray[np.float32] | None = sums,
             back: NDArray[np.float32] = back,
         ) -> None:
-            added = shares[part[0] // PASS_TASK_OBSERVATIONS]
+            added, part = task
             for at in range(*part):
                 index = first + at
                 footprint, weight = data.footprint(index), observations.weights(index)
@@ -142,7 +142,7 @@ def render_and_backproject(
                 if for_coarse:
                     adjoint(*footprint, size, image, weight, back[at])
 
-        parallel_map(piece, pieces(last - first, PASS_TASK_OBSERVATIONS))
+        parallel_map(piece, list(zip(shares, even_pieces(last - first, tasks), strict=False)))
         for number, block in enumerate(blocks if for_coarse else ()):
             inside = np.ascontiguousarray(back[:, :, *block.window]).reshape(last - first, -1)
             if for_textures and block.count:

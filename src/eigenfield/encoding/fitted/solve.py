@@ -22,9 +22,9 @@ from eigenfield.encoding.fitted.footprints import Footprint
 from eigenfield.encoding.fitted.kernels import SHARE_ONE, add_laplacian, adjoint, next_direction, take_step
 from eigenfield.encoding.fitted.model import MEAN_ALONE_GRID, AtlasComposer, PlaneModel
 from eigenfield.encoding.fitted.observations import FitData
-from eigenfield.encoding.fitted.passes import PASS_TASK_OBSERVATIONS, NormalEquations, Textures, render_and_backproject
+from eigenfield.encoding.fitted.passes import PASS_TASKS, NormalEquations, Textures, render_and_backproject
 from eigenfield.encoding.fitted.products import combine, one_blas_thread, weighted_gram
-from eigenfield.runtime.parallel import parallel_map, pieces
+from eigenfield.runtime.parallel import even_pieces, parallel_map
 
 MEAN_SMOOTHNESS_RATIO = 0.004  # of the median diagonal entry of a seen texel
 SHEET_SMOOTHNESS_RATIO = 0.02  # likewise, of the mean of sheets: 0.1 dB held out (Fern)
@@ -98,7 +98,7 @@ def _texel_sums(data: FitData, model: PlaneModel, squared: bool) -> tuple[NDArra
                 adjoint(*footprint, data.size, ones, weight, grid)
         return mean, grid
 
-    for mean, grid in parallel_map(piece, pieces(len(data), PASS_TASK_OBSERVATIONS)):
+    for mean, grid in parallel_map(piece, even_pieces(len(data), PASS_TASKS)):
         fine += mean
         coarse += grid
     np.maximum(fine, 0, out=fine)

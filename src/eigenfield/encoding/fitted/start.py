@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 from eigenfield.encoding.fitted.kernels import adjoint, forward, target
 from eigenfield.encoding.fitted.model import Block, PlaneModel, Rectangle
 from eigenfield.encoding.fitted.observations import FitData
-from eigenfield.encoding.fitted.passes import MINUS, PASS_TASK_OBSERVATIONS
+from eigenfield.encoding.fitted.passes import MINUS, PASS_TASKS
 from eigenfield.encoding.fitted.products import combine, one_blas_thread, weighted_gram
 from eigenfield.encoding.fitted.solve import Scales
 from eigenfield.runtime.files import scratch_array
-from eigenfield.runtime.parallel import parallel_map, pieces
+from eigenfield.runtime.parallel import even_pieces, parallel_map
 
 MAP_MIN_SHARE_RATIO = 0.2  # of a texel's median share in one picture: residuals are divided by no smaller one
 REGION_BLOCK_TEXELS = 8  # side of a block: rectangles are made of whole blocks
@@ -80,7 +80,7 @@ def residual_energy(data: FitData, model: PlaneModel) -> tuple[NDArray[np.float3
         return added
 
     total = np.zeros((2, *model.grid), np.float32)
-    for added in parallel_map(piece, pieces(len(data), PASS_TASK_OBSERVATIONS)):
+    for added in parallel_map(piece, even_pieces(len(data), PASS_TASKS)):
         total += added
     energy, seen = np.maximum(total, 0)
     return energy, seen
