@@ -82,6 +82,19 @@ def test_photographs_in_one_small_file_out(data, tmp_path, call):
     assert figures["psnr"] > 37.5 and figures["psnr_luma"] > 38.5 and figures["coverage"] > 0.999
 
 
+def test_a_sparse_array_tells_near_from_far(data, tmp_path, call):
+    """Occlusion hardly tells them apart in the sparse Tarot; with the wrong order, its camera goes right with the
+    column."""
+    folder = data / "tarot_5x4_1024"
+    call("proxy", folder, "-o", tmp_path / "proxy.ply", "--surface", "relief", "-q")
+    for calibration in (folder / "calibration" / "refined.json", tmp_path / "proxy.cameras" / "transforms.json"):
+        capture = open_capture(folder, calibration=calibration)
+        cameras = dict(zip(capture.names, (view.camera for view in capture.views), strict=True))
+        step = cameras["out_06_12.jpg"].centre - cameras["out_06_04.jpg"].centre
+        right, down, _ = cameras["out_06_08.jpg"].R @ step
+        assert right < 0 and abs(down) < -0.1 * right
+
+
 def test_lenses_are_removed(data):
     """The fox: every view is there, straightened to its own size."""
     capture = open_capture(data / "fox_transforms_half")

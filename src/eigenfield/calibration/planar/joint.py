@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from eigenfield.calibration.planar.array import ARRAY_PARAMETERS, ARRAY_POSITION, ARRAY_SHIFT, ArrayModel
 from eigenfield.calibration.planar.fit import PhotometricTarget, gauss_newton_step, select_textured_points
@@ -54,6 +55,8 @@ class PlanarTuning:
         sweep_max_views: Views of a plane sweep.
         sweep_reach_labels: Labels that a sweep of an outer ring tries beyond the local range of the depth so far.
         sweep_window_pixels: Window of that local range, at half resolution.
+        sweep_near_max_parallax_pixels: Range of disparities between neighbouring cameras up to which outer rings sweep
+            so. With 26 they gain (Tarot 9x9), with 108 the depth so far is too often wrong (the sparse Tarot).
         vote_max_views: Views of a ring that vote on which side is near.
         vote_gap_pixels: Distance between two surfaces in the outermost voter.
         vote_contrast_levels: Difference of their colours, grey levels.
@@ -73,6 +76,7 @@ class PlanarTuning:
     sweep_max_views: int = 90
     sweep_reach_labels: float = 4.0
     sweep_window_pixels: int = 15
+    sweep_near_max_parallax_pixels: float = 50.0
     vote_max_views: int = 12
     vote_gap_pixels: float = 4.0
     vote_contrast_levels: float = 8.0
@@ -119,6 +123,10 @@ class _JointRefinement:
         self.centre = start.centre
         self.low, self.high = start.low, start.high
         self.extent = self.extent_of(np.arange(len(pictures)))
+        apart, _ = cKDTree(start.places).query(start.places, 2)
+        self.dense = (
+            float(np.median(apart[:, 1])) * (start.high - start.low) <= PLANAR_TUNING.sweep_near_max_parallax_pixels
+        )
         self.bias = PLANAR_TUNING.visibility_bias_pixels / self.extent
         side = np.abs(start.places).max()
         margin = int(np.ceil(side * max(abs(start.low), abs(start.high)) / 8)) * 8 + 8
@@ -164,20 +172,21 @@ class _JointRefinement:
         points = select_textured_points(self.d, self.texture, self.count, len(views), parameters)
         return PhotometricTarget(self.reference, pictures, buffers, *points, self.bias)
 
-    def sweep_depth(self, views: NDArray[np.int64], coarser: float = 1.0, *, near: bool = False) -> None:
+    def sweep_depth(self, views: NDArray[np.int64], coarser: float = 1.0, *, outer: bool = False) -> None:
         """Plane sweep at half resolution and semi-global matching.
 
         Args:
             views: That are compared.
             coarser: Factor of the distance of labels.
-            near: Whether only labels near those of the present depth map are tried.
+            outer: Whether a ring around others is among the views: of a dense array, only labels near those of the
+                depth that the others gave are tried.
         """
         small = self.reference.at_half_resolution()
         matrices = HALF_FROM_FULL_INDEX @ self.model.matrices(small, views, self.parameters[views])
         step = min(coarser * PLANAR_TUNING.sweep_step_pixels / self.extent_of(views), (self.high - self.low) / 64)
         labels = np.arange(self.low, self.high + step, step, dtype=np.float32)
         floor = ceiling = None
-        if near:
+        if outer and self.dense:
             d = cv2.resize(self.d, small.shape[::-1], interpolation=cv2.INTER_NEAREST)
             window = np.ones((PLANAR_TUNING.sweep_window_pixels,) * 2, np.uint8)
             reach = PLANAR_TUNING.sweep_reach_labels * step
@@ -316,7 +325,7 @@ def _correct_cameras(joint: _JointRefinement, rings: Sequence[NDArray[np.int64]]
             _extrapolate(joint, old, np.setdiff1d(views, old))
         joint.refine_cameras(views, 4, 3, pictures=soft, tau=2 * PLANAR_TUNING.tau_levels)
         joint.refine_cameras(views, 4, 2)
-        joint.sweep_depth(_subsample(views), 2.0 if number == 0 else 1.0, near=number > 0)
+        joint.sweep_depth(_subsample(views), 2.0 if number == 0 else 1.0, outer=number > 0)
         joint.refine_cameras(views, 4, 2)
         if number == min(1, len(rings) - 1) and _is_regular(joint, views):
             return False
@@ -419,7 +428,7 @@ def _inner_error(pictures: NDArray[np.uint32], start: PlanarStart, rings: Sequen
         joint.refine_cameras(before, 4, 2)
         _extrapolate(joint, before, np.setdiff1d(views, before))
         joint.refine_cameras(views, 4, 2)
-        joint.sweep_depth(views, near=True)
+        joint.sweep_depth(views, outer=True)
     joint.refine_cameras(rings[-1], 4, 2)
     joint.measure_errors(rings[-1])
     return float(np.nanmean(joint.error[rings[-1]]))
