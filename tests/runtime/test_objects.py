@@ -151,6 +151,14 @@ def test_encode_reads_and_writes_the_same_bytes_as_on_a_disk(store, run, tmp_pat
     assert code == 2 and "memory://lab/there.glb: exists already" in err
 
 
+def test_errors_of_a_copy_name_its_address(store, run, tmp_path):
+    folder = write_capture(tmp_path / "nine")
+    (folder / "images" / "view_03.png").write_bytes(b"\x89PNG\r\n\x1a\n")
+    put(folder, "memory://lab/nine")
+    code, _, err = run(*encode_words("memory://lab/nine", "memory://lab/there.glb"))
+    assert code == 2 and err.startswith("eigenfield: memory://lab/nine/images/view_03.png: "), err
+
+
 @pytest.mark.parametrize("words", [
     ["encode", "memory://lab/none", "-o", "memory://lab/a.glb"],
     ["info", "memory://lab/none.glb"],
@@ -235,6 +243,7 @@ def test_a_batch_reads_captures_from_a_store_and_writes_scenes_there(store, tmp_
     third = ef.batch("memory://lab/captures", progress=None, **options)
     assert third.taken_up == 1 and [one["name"] for one in third.failed] == ["three"]
     assert find_objects("memory://lab/captures-scenes/logs/three.log").exists()
+    assert third.failed[0]["error"].startswith("memory://lab/captures/three: ")
 
 
 def test_a_list_names_addresses(store, tmp_path):

@@ -22,6 +22,7 @@ from eigenfield.cli.completion import COMPLETION_VARIABLE
 from eigenfield.core.errors import EigenfieldError
 from eigenfield.core.version import __version__
 from eigenfield.runtime.children import kill_children
+from eigenfield.runtime.objects import name_address
 from eigenfield.runtime.signals import STOP_SIGNALS, held
 from eigenfield.runtime.temporary import remove_temporaries
 
@@ -159,7 +160,7 @@ def main() -> None:
             _exit_interrupted()
         if context.get("traceback"):
             raise
-        click.echo(f"eigenfield: {error}", err=True)
+        click.echo(f"eigenfield: {name_address(error)}", err=True)
         sys.exit(2)
     except (KeyboardInterrupt, click.Abort):
         _exit_interrupted()

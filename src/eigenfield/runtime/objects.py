@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from eigenfield.core.errors import OptionError, OutputError
+from eigenfield.core.errors import EigenfieldError, OptionError, OutputError
 from eigenfield.core.recognise import split_address
 from eigenfield.runtime.temporary import temporary_folder
 
@@ -222,9 +222,25 @@ def own_copies() -> Iterator[None]:
     _copied, _copies = contextlib.ExitStack(), {}
     try:
         yield
+    except EigenfieldError as error:
+        raise name_address(error) from error.__cause__
     finally:
         _copied.close()
         _copied, _copies = before
+
+
+def name_address(error: EigenfieldError) -> EigenfieldError:
+    """The error with an address for its path as people write it, also where that is of a copy on this machine."""
+    if error.path is None:
+        return error
+    for address, place in _copies.items():
+        if Path(error.path).is_relative_to(place):
+            error.path = f"{address.rstrip('/')}/{Path(error.path).relative_to(place).as_posix()}".removesuffix("/.")
+            break
+    found = split_address(error.path)
+    if found is not None:
+        error.path = "://".join(found)
+    return error
 
 
 def remove_copies() -> None:

@@ -123,10 +123,8 @@ class _JointRefinement:
         self.centre = start.centre
         self.low, self.high = start.low, start.high
         self.extent = self.extent_of(np.arange(len(pictures)))
-        apart, _ = cKDTree(start.places).query(start.places, 2)
-        self.dense = (
-            float(np.median(apart[:, 1])) * (start.high - start.low) <= PLANAR_TUNING.sweep_near_max_parallax_pixels
-        )
+        apart = float(np.median(np.asarray(cKDTree(start.places).query(start.places, 2)[0])[:, 1]))
+        self.dense = apart * (start.high - start.low) <= PLANAR_TUNING.sweep_near_max_parallax_pixels
         self.bias = PLANAR_TUNING.visibility_bias_pixels / self.extent
         side = np.abs(start.places).max()
         margin = int(np.ceil(side * max(abs(start.low), abs(start.high)) / 8)) * 8 + 8
