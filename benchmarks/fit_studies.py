@@ -88,7 +88,7 @@ def _all(*changes: Change) -> Iterator[None]:
 
 def _no_rounds() -> AbstractContextManager[Any]:
     presets = {name: replace(one, rounds=0) for name, one in encode_options.PRESETS.items()}
-    few = _replaced(planes, "FEW_OBSERVATIONS_ROUNDS", 0)
+    few = _replaced(planes, "FEW_OBSERVATIONS_ROUNDS", ())
     return _all(lambda: patch.dict(encode_options.PRESETS, presets), few)
 
 
@@ -117,7 +117,7 @@ CODING = {
 FITTING = {
     "rounds": Part("no fit in the pictures: the mean, then the decomposition of what it leaves", _no_rounds),
     "few-rounds": Part(
-        "as many rounds as with many cameras", _replaced(planes, "FEW_OBSERVATIONS_ROUNDS", 0), few=True
+        "as many rounds as with many cameras", _replaced(planes, "FEW_OBSERVATIONS_ROUNDS", ()), few=True
     ),
     "robust": Part(
         "all pixels count alike", _replaced(planes, "with_robust_weights", lambda data, _: nullcontext(data)), few=True

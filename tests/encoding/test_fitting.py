@@ -17,7 +17,7 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.proxy import Proxy
 from eigenfield.encoding import Target
 from eigenfield.encoding.fitted.colour import LUMA, split_matrix, to_rgb
-from eigenfield.encoding.fitted.fit import Pixels, PlaneSettings, code_plane, coded_psnr, fit_plane
+from eigenfield.encoding.fitted.fit import Pixels, PlaneSettings, Turns, code_plane, coded_psnr, fit_plane
 from eigenfield.encoding.fitted.kernels import (
     SHARE_ONE,
     add_laplacian,
@@ -219,7 +219,7 @@ def settings_of(textures: int = 3) -> PlaneSettings:
 
 def fit_and_code(data: FitData, rounds: int) -> tuple[Plane, float, float]:
     """The coded plane, dB before coding and after."""
-    fit = fit_plane(Pixels(data, data, data), settings_of(), "test", rounds)
+    fit = fit_plane(Pixels(data, data, data), settings_of(), "test", Turns(rounds))
     plane = code_plane(fit, Rate(1e-3, 1e-3, svt_coder(8))).value
     return plane, fit.uncoded, coded_psnr(fit, plane)
 
@@ -255,8 +255,8 @@ def test_a_place_that_looks_different_from_everywhere_gets_textures_of_its_own(w
             picture[inside] = lit[index][rows[inside], columns[inside]]
     with open_fit_data(CAMERAS, InMemory(pictures), Proxy(bumpy_square(12)), (SIDE, SIDE)) as glitter:
         pixels = Pixels(glitter, glitter, glitter)
-        alone = fit_plane(pixels, settings_of(), "test", 1)
-        fit = fit_plane(pixels, replace(settings_of(), local=5), "test", 1)
+        alone = fit_plane(pixels, settings_of(), "test", Turns(1))
+        fit = fit_plane(pixels, replace(settings_of(), local=5), "test", Turns(1))
     assert len(alone.model.blocks) == 1
     _, region = fit.model.blocks
     top, bottom, left, right = region.rectangle
@@ -274,7 +274,7 @@ def test_pixels_far_off_count_for_less(world):
         picture[glints] = 1.0
 
     def reached(work: FitData) -> float:
-        model = fit_plane(Pixels(glinting, work, work), settings_of(), "test", 4).model
+        model = fit_plane(Pixels(glinting, work, work), settings_of(), "test", Turns(4)).model
         found = residual(data, model)
         return psnr_of(found.squares, found.pixels, 3)
 
@@ -300,7 +300,7 @@ def test_what_a_pixel_counts_for():
 def test_components_that_are_not_worth_their_bytes_are_left_out(world):
     data, _, _ = world
     settings = replace(settings_of(), textures=8)  # of which the photographs have three
-    fit = fit_plane(Pixels(data, data, data), settings, "test", 1)
+    fit = fit_plane(Pixels(data, data, data), settings, "test", Turns(1))
     counts, reached = [], []
     for step in (1e-3, 0.05, 1.0):
         plane = code_plane(fit, Rate(step, step, svt_coder(8))).value

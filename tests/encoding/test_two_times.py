@@ -8,7 +8,7 @@ import pytest
 import eigenfield as ef
 from eigenfield.core.errors import FormatError, OptionError
 from eigenfield.core.proxy import Proxy
-from eigenfield.encoding.fitted.fit import Pixels, PlaneSettings, fit_plane
+from eigenfield.encoding.fitted.fit import Pixels, PlaneSettings, Turns, fit_plane
 from eigenfield.encoding.fitted.model import Block, PlaneModel
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_subsampled, with_robust_weights
 from eigenfield.encoding.fitted.solve import fit_textures, fit_weights, measure_scales, residual
@@ -129,7 +129,7 @@ def test_mean_textures_and_weights_fitted_to_the_same_photographs_twice_are_thos
 def whole_fit(data: FitData):
     settings = PlaneSettings(RGB, (SIDE, SIDE), (64, 64), 2)
     with with_robust_weights(data) as robust:
-        return fit_plane(Pixels(data, robust, robust), settings, "test", 3)
+        return fit_plane(Pixels(data, robust, robust), settings, "test", Turns(3))
 
 
 def test_a_whole_fit_of_the_same_photographs_twice_is_that_of_one_time():
@@ -147,7 +147,7 @@ def test_a_whole_fit_of_the_same_photographs_twice_is_that_of_one_time():
 def test_different_photographs_at_two_times_are_told_apart_by_their_weights():
     with opened(MIXED) as data:
         settings = PlaneSettings(RGB, (SIDE, SIDE), (64, 64), 5)
-        fit = fit_plane(Pixels(data, data, data), settings, "test", 2)
+        fit = fit_plane(Pixels(data, data, data), settings, "test", Turns(2))
     weights = fit.model.blocks[0].weights
     assert weights.shape == (6, 5)
     apart = np.linalg.norm(weights[:, None] - weights[None], axis=2) + 9 * np.eye(6)

@@ -39,7 +39,6 @@ log = logging.getLogger("eigenfield.fit")
 FIT_STOP_DB = 0.05  # by which a round must change the pictures for another to follow
 FIT_SIGMA_RATIO = 4.0  # sigma of the robust weights, in root mean squares of the residual of the round before
 FIT_MEAN_ITERATIONS = 8  # of conjugate gradients: the mean alone, from one colour
-FIT_TEXTURE_ITERATIONS = 5
 FIT_WEIGHT_ITERATIONS = 4
 FIT_CLOSING_ITERATIONS = 3  # for the mean, after coding
 WEIGHT_QUANTISER_STEP = 0.0008  # of a weight times what its component draws, in the photographs' range: 0.2 grey levels
@@ -66,6 +65,19 @@ class PlaneSettings:
     grid: tuple[int, int]
     textures: int
     local: int = 0
+
+
+@dataclass(frozen=True)
+class Turns:
+    """Of textures and weights.
+
+    Attributes:
+        rounds: at most.
+        texture_iterations: of conjugate gradients in each.
+    """
+
+    rounds: int
+    texture_iterations: int = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +139,7 @@ def fit_plane(
     pixels: Pixels,
     settings: PlaneSettings,
     name: str,
-    rounds: int,
+    turns: Turns,
     work: Path | None = None,
     progress: Progress | None = None,
 ) -> OpenFit:
@@ -137,7 +149,7 @@ def fit_plane(
         pixels: the observations.
         settings: what the plane is to be.
         name: of the plane.
-        rounds: at most.
+        turns: of textures and weights.
         work: folder for scratch files.
         progress: reports the steps.
 
@@ -147,7 +159,7 @@ def fit_plane(
     fitted, channels = pixels.fitted, len(settings.matrix)
     grey = np.full((channels, *settings.mean), 0.5, np.float32) * settings.matrix.sum(axis=1)[:, None, None]
     model = PlaneModel(settings.matrix, grey.astype(np.float32), settings.grid, [])
-    tick = _ticker(progress, f"fit {name}", 3 + 2 * rounds)
+    tick = _ticker(progress, f"fit {name}", 3 + 2 * turns.rounds)
     scales = measure_scales(fitted, model)
     if not scales.mean.any():
         raise nothing_seen_error()
@@ -161,13 +173,13 @@ def fit_plane(
         _add_regions(pixels, model, scales, min(settings.local, len(fitted) - 1), work)
     tick()
     reached, variance = -math.inf, None
-    for number in range(rounds if count else 0):
+    for number in range(turns.rounds if count else 0):
         left = residual(fitted, model, variance=variance)
         before, reached = reached, psnr_of(left.squares, left.pixels, channels)
         log.info("%s, after round %d: %.2f dB", name, number, reached)
         if abs(reached - before) < FIT_STOP_DB:
             break
-        fit_textures(fitted, model, scales, left, FIT_TEXTURE_ITERATIONS)
+        fit_textures(fitted, model, scales, left, turns.texture_iterations)
         tick()
         fit_weights(pixels.weighed, model, FIT_WEIGHT_ITERATIONS)
         variance = FIT_SIGMA_RATIO**2 * float(left.squares.sum() / max(left.pixels.sum(), 1.0))

@@ -20,7 +20,7 @@ from eigenfield.core.progress import Progress
 from eigenfield.encoding.fitted.code_planes import code_opacity
 from eigenfield.encoding.fitted.colour import split_matrix
 from eigenfield.encoding.fitted.coverage import mean_precision
-from eigenfield.encoding.fitted.fit import OpenFit, Pixels, PlaneSettings, code_plane, coded_psnr, fit_plane
+from eigenfield.encoding.fitted.fit import OpenFit, Pixels, PlaneSettings, Turns, code_plane, coded_psnr, fit_plane
 from eigenfield.encoding.fitted.observations import FitData, open_subsampled, with_robust_weights
 from eigenfield.encoding.fitted.rate import Rate, lambda_of_step
 from eigenfield.encoding.options import FIT_MAX_DENSITY, SUBSAMPLE_MIN_OBSERVATIONS, Preset
@@ -100,7 +100,12 @@ HALF_GREY_LEVEL = 0.002  # in the photographs' range
 TEXTURES_PER_OBSERVATION = 1 / 2
 TEXTURES_MIN_COUNT, TEXTURES_MAX_COUNT = 20, 96
 UNMEASURED_PSNR_DB = 99.999
-FEW_OBSERVATIONS_ROUNDS = 4  # or the preset's, if more: few observations converge slowly and average outliers less
+# Rounds of so many observations at most, or the preset's if more: few converge slowly and average outliers less
+FEW_OBSERVATIONS_ROUNDS = ((15, 4), (SUBSAMPLE_MIN_OBSERVATIONS - 1, 3))
+MANY_TEXTURE_ITERATIONS, FEW_TEXTURE_ITERATIONS = (
+    4,
+    5,
+)  # with 4, nine small views had texels that stood out
 
 
 def fitted_textures(observations: int) -> int:
@@ -171,7 +176,8 @@ def open_fits(
         progress: Reports the steps.
     """
     few = len(data) < SUBSAMPLE_MIN_OBSERVATIONS
-    rounds = max(preset.rounds, FEW_OBSERVATIONS_ROUNDS) if few else preset.rounds
+    least = next((rounds for most, rounds in FEW_OBSERVATIONS_ROUNDS if len(data) <= most), 0)
+    turns = Turns(max(preset.rounds, least), FEW_TEXTURE_ITERATIONS if few else MANY_TEXTURE_ITERATIONS)
     with contextlib.ExitStack() as kept:
         some = kept.enter_context(open_subsampled(data, 1 if few else 2, work))
 
@@ -181,7 +187,7 @@ def open_fits(
                 pixels = Pixels(data, robust, robust)
             else:
                 pixels = Pixels(data, some if plane.subsampled else data, some)
-            return fit_plane(pixels, plane.settings(data.size, density, textures), plane.name, rounds, work, progress)
+            return fit_plane(pixels, plane.settings(data.size, density, textures), plane.name, turns, work, progress)
 
         patient = preset.patient and aom_program() is not None
         if preset.patient:
