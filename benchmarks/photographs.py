@@ -1,5 +1,5 @@
-"""Bare photographs to a scene at `balanced`: seconds and bytes, beside SVT-AV1 preset 6 on the same views in the same
-run; with --before also those of an earlier version, one run of each in turns.
+"""Bare photographs to a scene at `balanced`: seconds, bytes and PSNR, beside SVT-AV1 preset 6 on the same views in the
+same run; with --before also those of an earlier version, one run of each in turns.
 
     EIGENFIELD_DATA=captures python benchmarks/photographs.py [tarot-9x9 shop fern] [--before CHECKOUT] [--store]
 
@@ -66,12 +66,17 @@ def video(capture: str) -> None:
 
 
 def encode(capture: Path, arguments: list[str], tree: Path | None = None) -> dict[str, Any]:
-    """One whole encode: seconds, peak memory, bytes."""
+    """One whole encode: seconds, peak memory, bytes, and dB of the captured views as this version draws them."""
     with tempfile.TemporaryDirectory() as folder:
         output = Path(folder) / "scene.glb"
         command = ["-m", "eigenfield", "encode", str(capture), *arguments, "-o", str(output), "--quiet"]
         found = measure.run(command, tree)
-        return {"seconds": found["seconds"], "peak_mb": found["peak_anonymous_mb"], "bytes": output.stat().st_size}
+        measured = measure.run(["-m", "eigenfield", "evaluate", str(output), str(capture), *arguments, "--json", "-q"])
+        image = json.loads(measured["output"])["image"]["encoded"]
+        return {
+            "seconds": found["seconds"], "peak_mb": found["peak_anonymous_mb"], "bytes": output.stat().st_size,
+            "psnr": round(image["psnr"], 2),
+        }  # fmt: skip
 
 
 def main() -> None:
