@@ -241,17 +241,20 @@ def photographs() -> str:
     for name, case in figures["captures"].items():
         own, before, peer = case["encode"], case.get("before"), case["svt_av1_preset_6"]
         rows.append([
-            f"`{name}`", f"{own['seconds']:.0f}", f"{own['bytes'] / 1e3:.0f}", str(own["peak_mb"]),
-            "" if before is None else f"{before['seconds']:.0f}", "" if before is None else f"{before['bytes'] / 1e3:.0f}",
+            f"`{name}`", *(_time_and_rate(one) for one in (own, before)), str(own["peak_mb"]),
             f"{peer['seconds']:.1f}", f"{case['ratio']['seconds_to_svt_av1']:.0f}",
         ])  # fmt: skip
-    head = ["capture", "seconds", "kB", "peak MB", "seconds before", "kB before", "SVT-AV1, seconds", "ratio"]
+    head = ["capture", "seconds, kB, dB", "before", "peak MB", "SVT-AV1, seconds", "ratio"]
     before = f" *Before* is commit {figures['before']}, in the same run." if "before" in figures else ""
     return (
         "### Encoding bare photographs\n\n`eigenfield encode` at `balanced`, cameras and surface estimated, kernels"
-        f" compiled before.{before} SVT-AV1 is preset 6 at crf {figures['crf']}, on the same views in the order of their"
+        f" compiled before.{before} PSNR is that of captured views, RGB. SVT-AV1 is preset 6 at crf {figures['crf']}, on the same views in the order of their"
         " names.\n\n" + table(head, rows) + "\n" + origin(figures, "photographs") + "\n"
     )  # fmt: skip
+
+
+def _time_and_rate(case: dict[str, Any] | None) -> str:
+    return "" if case is None else f"{case['seconds']:.0f}, {case['bytes'] / 1e3:.0f}, {case['psnr']:.2f}"
 
 
 def batches() -> str:

@@ -37,13 +37,13 @@ STEPS = {  # by the name with which a step begins
     "layers": StepCost("layers", 10, 22),
     "mesh": StepCost("mesh", 5, 1),
     "maps": StepCost("texture maps", 5, 0.7),
-    "fit": StepCost("fit", 5, 2.4),
+    "fit": StepCost("fit", 5, 1.5),
     "code": StepCost("coding", 6, 0.4),
 }
-FEW_VIEWS = {"fit": StepCost("fit", 5, 5)}  # of below SUBSAMPLE_MIN_OBSERVATIONS: more rounds, and all pixels
+FEW_VIEWS = {"fit": StepCost("fit", 5, 3.5)}  # of below SUBSAMPLE_MIN_OBSERVATIONS: more rounds, and all pixels
 TEXTURE_MAPS = {"mesh": StepCost("mesh", 5)}  # without a fit: its surface and triangles stay as they are
 DENSE_TRIAL = StepCost("trial of layers", 20)  # which ends with the fewest layers, as a rule
-LAYERED = {"layers": STEPS["layers"], "mesh": StepCost("mesh", 0, 40), "fit": StepCost("fit", 0, 30)}
+LAYERED = {"layers": STEPS["layers"], "mesh": StepCost("mesh", 0, 25), "fit": StepCost("fit", 0, 20)}
 DENSE_LAYERS_RATIO = 1 / 3  # of the time of layers: dense arrays have fewer
 THREADS_POWER = 0.8  # of the number of threads, by which time falls
 MEMORY_FIXED_BYTES, MEMORY_BYTES_A_PIXEL = 9e8, 50.0

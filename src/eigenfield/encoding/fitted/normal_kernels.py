@@ -73,18 +73,10 @@ def multiply_both(counts, coordinates, shares, size, weight, fine, coarse, fine_
         fine_product: As `fine`.
         coarse_product: As `coarse`.
     """
-    one, one_into, one_shape, one_ratio = (
-        fine.reshape(-1),
-        fine_product.reshape(-1),
-        fine.shape,
-        ratio_of(fine.shape, size),
-    )
+    one, one_into, one_shape = fine.reshape(-1), fine_product.reshape(-1), fine.shape
     other, other_into, other_shape = coarse.reshape(-1), coarse_product.reshape(-1), coarse.shape
-    other_ratio, points, colour = (
-        ratio_of(coarse.shape, size),
-        coordinates.reshape(-1),
-        np.empty(fine.shape[0], np.float32),
-    )
+    one_ratio, other_ratio = ratio_of(one_shape, size), ratio_of(other_shape, size)
+    points, colour = coordinates.reshape(-1), np.empty(one_shape[0], np.float32)
     at = np.int64(0)
     for row in range(counts.shape[0]):
         for column in range(counts.shape[1]):

@@ -102,10 +102,8 @@ TEXTURES_MIN_COUNT, TEXTURES_MAX_COUNT = 20, 96
 UNMEASURED_PSNR_DB = 99.999
 # Rounds of so many observations at most, or the preset's if more: few converge slowly and average outliers less
 FEW_OBSERVATIONS_ROUNDS = ((15, 4), (SUBSAMPLE_MIN_OBSERVATIONS - 1, 3))
-MANY_TEXTURE_ITERATIONS, FEW_TEXTURE_ITERATIONS = (
-    4,
-    5,
-)  # with 4, nine small views had texels that stood out
+MANY_TEXTURE_ITERATIONS = 4
+FEW_TEXTURE_ITERATIONS = 5  # with 4, nine small views had texels that stood out
 
 
 def fitted_textures(observations: int) -> int:
