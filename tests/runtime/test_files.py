@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from eigenfield.core.errors import EigenfieldError, OptionError, OutputError
-from eigenfield.runtime.files import atomic_writer, refuse_existing, scratch_array, write_bytes
+from eigenfield.runtime.files import atomic_writer, refuse_existing, scratch_array, scratch_rows, write_bytes
 from eigenfield.runtime.parallel import parallel_map, parallel_stream, set_threads
 
 
@@ -87,6 +87,19 @@ def test_an_error_inside_a_scratch_arrays_block_stays_what_it_is(tmp_path):
     with pytest.raises(FileNotFoundError), scratch_array((3,), np.float32, tmp_path):
         (tmp_path / "nothing").read_bytes()
     assert list(tmp_path.iterdir()) == []
+
+
+def test_scratch_rows_grow(tmp_path):
+    with scratch_rows((2,), np.float32, tmp_path) as rows, scratch_rows((), np.uint16, tmp_path) as none:
+        for count in (3, 0, 4):
+            rows.append(np.full((count, 2), count, np.float64))
+        array = rows.mapped()
+        assert array.shape == (7, 2) and array.dtype == np.float32 and array[:, 1].tolist() == [3] * 3 + [4] * 4
+        array[0] = 1
+        assert none.mapped().shape == (0,)
+    assert list(tmp_path.iterdir()) == []
+    with pytest.raises(OutputError), scratch_rows((3,), np.float32, tmp_path / "no"):
+        pass
 
 
 def test_scratch_arrays_leave_nothing(tmp_path):

@@ -33,7 +33,7 @@ STEPS = {  # by the name with which a step begins
     "relief": StepCost("surface", 8),
     "surface": StepCost("surface", 30, 8),
     "proxy": StepCost("atlas", 10),
-    "trial": StepCost("trial of layers", 50),
+    "trial": StepCost("trial of layers", 35),
     "layers": StepCost("layers", 10, 22),
     "mesh": StepCost("mesh", 5, 1),
     "maps": StepCost("texture maps", 5, 0.7),

@@ -38,7 +38,7 @@ class LayersTuning:
         min_views: Photographs of a capture that has sheets.
         max_axis_angle_degrees: Angle between a camera's axis and the mean axis.
         dense_views: Number of views of an array from which sheets must gain more.
-        counts: Numbers of sheets that are tried.
+        counts: Numbers of sheets that are tried. 12 draw views left out by at most 0.11 dB better than 8.
         max_plane_step_pixels: Displacement from plane to plane at the size that planes are fitted at.
         min_planes: Number of planes, at least.
         max_planes: Number of planes, at most.
@@ -64,7 +64,7 @@ class LayersTuning:
     min_views: int = 3
     max_axis_angle_degrees: float = 25.0
     dense_views: int = 25
-    counts: tuple[int, ...] = (4, 8, 12)
+    counts: tuple[int, ...] = (4, 8)
     max_plane_step_pixels: float = 1.5
     min_planes: int = 8
     max_planes: int = 64

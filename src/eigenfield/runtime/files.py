@@ -186,6 +186,48 @@ def current_umask() -> int:
     return mask
 
 
+class ScratchRows:
+    """Rows of an array, appended to a temporary file."""
+
+    def __init__(self, file: IO[bytes], place: Path, tail: tuple[int, ...], dtype: DTypeLike) -> None:
+        self._file, self._place, self._tail, self._dtype, self._count = file, place, tail, np.dtype(dtype), 0
+
+    def append(self, rows: NDArray[Any]) -> None:
+        """Add rows at the end.
+
+        Raises:
+            OutputError: `disk-full`, or the file cannot be written.
+        """
+        with output_errors(self._place):
+            self._file.write(np.ascontiguousarray(rows, self._dtype).data)
+        self._count += len(rows)
+
+    def mapped(self) -> NDArray[Any]:
+        """All rows, memory-mapped."""
+        shape = (self._count, *self._tail)
+        if not self._count:
+            return np.zeros(shape, self._dtype)
+        with output_errors(self._place):
+            self._file.flush()
+            return np.memmap(self._file, dtype=self._dtype, mode="r+", shape=shape)
+
+
+@contextlib.contextmanager
+def scratch_rows(tail: tuple[int, ...], dtype: DTypeLike, folder: Path | None = None) -> Iterator[ScratchRows]:
+    """Rows of an array whose number is not known before, in a temporary file that is deleted after the block.
+
+    Args:
+        tail: Shape of a row.
+        dtype: Of the array.
+        folder: Where the file is made; None: the system's temporary folder.
+    """
+    place = Path(folder) if folder is not None else Path(tempfile.gettempdir())
+    with contextlib.ExitStack() as opened:
+        with output_errors(place):
+            file = opened.enter_context(tempfile.TemporaryFile(prefix=".eigenfield-", dir=place))
+        yield ScratchRows(file, place, tail, dtype)
+
+
 @contextlib.contextmanager
 def scratch_array(shape: tuple[int, ...], dtype: DTypeLike, folder: Path | None = None) -> Iterator[NDArray[Any]]:
     """A zeroed array in a memory-mapped temporary file, deleted after the block (or when the process ends).

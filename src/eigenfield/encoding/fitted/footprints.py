@@ -27,8 +27,8 @@ from eigenfield.rendering.software.drawing import (
     rasterise_surface,
     smooth_edges,
 )
-from eigenfield.runtime.files import scratch_array
-from eigenfield.runtime.parallel import parallel_map
+from eigenfield.runtime.files import scratch_array, scratch_rows
+from eigenfield.runtime.parallel import parallel_map, parallel_stream
 
 Footprint = tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.uint16]]
 ONE_SAMPLE = Sampling(1, CENTRE_OFFSETS_PX, 0)  # of each sheet a pixel
@@ -77,8 +77,6 @@ def open_footprints(
     and less it takes more samples. An opaque surface has smooth edges, and each sheet one sample a pixel. The scratch
     files have 9 bytes a pixel and some more at edges, and 10 for each sheet that a pixel shows.
 
-    Each camera is rasterised twice, which costs less than room for the most points that a pixel may have.
-
     Args:
         surface: the mesh under the finest atlas.
         cameras: whose footprints are wanted.
@@ -88,28 +86,28 @@ def open_footprints(
     """
     shapes = tuple((camera.height, camera.width) for camera in cameras)
     pixels = offsets_of([h * w for h, w in shapes])
-    add = partial(_add_opaque, surface, detail)
+    put = partial(_opaque_points, surface, detail)
     if sheets is not None:
         opacity = np.zeros((1, *surface.size), np.float32)
         make_upsampler(surface, (sheets.opacity.shape[0], sheets.opacity.shape[1])).up(sheets.opacity[None], opacity)
-        add = partial(_add_sheets, surface, sheets.faces, opacity[0])
+        put = partial(_points_of_sheets, surface, sheets.faces, opacity[0])
+    with (
+        scratch_array((int(pixels[-1]),), np.uint8, work) as counts,
+        scratch_rows((2,), np.float32, work) as coordinates,
+        scratch_rows((), np.uint16, work) as shares,
+    ):
 
-    def part_of(camera: int) -> NDArray[np.uint8]:
-        return np.asarray(counts[pixels[camera] : pixels[camera + 1]]).reshape(shapes[camera])
+        def points_of(camera: int) -> _Points:
+            of_camera = np.asarray(counts[pixels[camera] : pixels[camera + 1]]).reshape(shapes[camera])
+            return put(cameras[camera], of_camera)
 
-    def count(camera: int) -> int:
-        add(cameras[camera], part_of(camera), None)
-        return int(part_of(camera).sum(dtype=np.int64))
-
-    def put(camera: int) -> None:
-        points = slice(offsets[camera], offsets[camera + 1])
-        add(cameras[camera], part_of(camera), (coordinates[points], shares[points]))
-
-    with scratch_array((int(pixels[-1]),), np.uint8, work) as counts:
-        offsets = offsets_of(parallel_map(count, range(len(cameras))))
-        with _open_points(int(offsets[-1]), sheets is not None, work) as (coordinates, shares):
-            parallel_map(put, range(len(cameras)))
-            yield Footprints(shapes, counts, pixels, coordinates, shares, offsets, surface, detail)
+        sizes = []
+        for points, parts in parallel_stream(points_of, range(len(cameras))):
+            coordinates.append(points)
+            shares.append(parts)
+            sizes.append(len(points))
+        found = coordinates.mapped(), shares.mapped(), offsets_of(sizes)
+        yield Footprints(shapes, counts, pixels, *found, surface, detail)
 
 
 _Points = tuple[NDArray[np.float32], NDArray[np.uint16]]
@@ -125,42 +123,40 @@ def _open_points(count: int, shared: bool, work: Path | None) -> Iterator[_Point
         yield coordinates, shares
 
 
-def _add_opaque(
-    surface: Surface, detail: float, camera: Camera, counts: NDArray[np.uint8], into: _Points | None
-) -> None:
-    """Count the points of a camera's pixels, or put the points that were counted."""
+def _opaque_points(surface: Surface, detail: float, camera: Camera, counts: NDArray[np.uint8]) -> _Points:
+    """(n, 2) texel coordinates and (0,) shares of a camera's points; fills its counts."""
     sampling = smooth_edges(detail)
     frame = Framebuffer(surface, camera.height, camera.width, sampling)
     rasterise_surface(surface, camera, sampling, frame)
     edges = frame.spans, frame.multisampled, frame.subsamples
-    if into is None:
-        footprint_counts(frame.inverse_depth, *edges, counts)
-    else:
-        places = frame.inverse_depth, frame.column_of, frame.row_of
-        footprint_coordinates(*places, *edges, *surface.size, counts, into[0])
+    coordinates = np.empty((footprint_counts(frame.inverse_depth, *edges, counts), 2), np.float32)
+    places = frame.inverse_depth, frame.column_of, frame.row_of
+    footprint_coordinates(*places, *edges, *surface.size, counts, coordinates)
+    return coordinates, np.zeros(0, np.uint16)
 
 
-def _add_sheets(
-    surface: Surface,
-    faces: Sequence[int],
-    opacity: NDArray[np.float32],
-    camera: Camera,
-    counts: NDArray[np.uint8],
-    into: _Points | None,
-) -> None:
-    """As `_add_opaque`, of sheets with so many faces each and an opacity as large as the atlas."""
-    rest = np.ones(counts.shape, np.float32)
-    starts: NDArray[np.int64] = np.zeros((0, counts.shape[1]), np.int64)
-    coordinates, shares = (np.zeros((0, 2), np.float32), np.zeros(0, np.uint16)) if into is None else into
-    if into is not None:
-        starts = (np.cumsum(counts, dtype=np.int64) - counts.reshape(-1)).reshape(counts.shape)
-    counts[:] = 0
+def _points_of_sheets(
+    surface: Surface, faces: Sequence[int], opacity: NDArray[np.float32], camera: Camera, counts: NDArray[np.uint8]
+) -> _Points:
+    """As `_opaque_points`, of sheets with so many faces each and an opacity as large as the atlas."""
+    drawn = []
     for ends in reversed(list(pairwise(accumulate(faces, initial=0)))):
         sheet = _part_of(surface, slice(*ends))
         frame = Framebuffer(sheet, camera.height, camera.width, ONE_SAMPLE)
         rasterise_surface(sheet, camera, ONE_SAMPLE, frame)
-        places = frame.inverse_depth, frame.column_of, frame.row_of
-        sheet_points(*places, opacity, rest, counts, starts, coordinates, shares)
+        drawn.append((frame.inverse_depth, frame.column_of, frame.row_of))
+    starts: NDArray[np.int64] = np.zeros((0, counts.shape[1]), np.int64)
+    coordinates, shares = np.zeros((0, 2), np.float32), np.zeros(0, np.uint16)
+    for counted in (False, True):
+        if counted:
+            starts = (np.cumsum(counts, dtype=np.int64) - counts.reshape(-1)).reshape(counts.shape)
+            total = int(counts.sum(dtype=np.int64))
+            coordinates, shares = np.empty((total, 2), np.float32), np.empty(total, np.uint16)
+        rest = np.ones(counts.shape, np.float32)
+        counts[:] = 0
+        for places in drawn:
+            sheet_points(*places, opacity, rest, counts, starts, coordinates, shares)
+    return coordinates, shares
 
 
 def _part_of(surface: Surface, faces: slice) -> Surface:
