@@ -19,6 +19,7 @@ from scipy.sparse.linalg import splu
 
 from eigenfield.core.progress import Progress
 from eigenfield.proxy.relief.layers_kernels import mark_revealed
+from eigenfield.runtime.parallel import parallel_stream
 from eigenfield.stereo.semiglobal import semi_global_matching
 from eigenfield.stereo.sweep import plane_sweep
 from eigenfield.stereo.views import Pictures, label_parallax, pack_pictures
@@ -185,15 +186,20 @@ def _sweep_behind(
     )  # fmt: skip
     side, most = SECOND_LAYER_TUNING.cost_window_pixels, np.float32(SECOND_LAYER_TUNING.max_difference_levels)
     window = np.maximum(uniform_filter(want.astype(np.float32), side), np.float32(1 / side**2))
-    best = np.full(d.shape, np.inf, np.float32)
-    for index, label in enumerate(labels):
+
+    def smooth(index: int) -> NDArray[np.floating]:
+        """Smooth the cost of a label in its place; (h, w) what it was in levels, infinite where it was not tried."""
         tried = want & (cost[..., index] < 255)
         level = np.where(tried, cost[..., index] / np.float32(8), most) * want
         level = uniform_filter(level, side) / window
-        best = np.where(tried, np.minimum(best, level), best)
-        anchored = np.abs(label - d) * np.float32(SECOND_LAYER_TUNING.anchor_levels_per_label)
+        anchored = np.abs(labels[index] - d) * np.float32(SECOND_LAYER_TUNING.anchor_levels_per_label)
         layer = np.where(want, np.where(tried, level, most), np.minimum(most, anchored))
         cost[..., index] = np.rint(np.clip(layer * 8, 0, 240)).astype(np.uint8)
+        return np.where(tried, level, np.float32(np.inf))
+
+    best = np.full(d.shape, np.inf, np.float32)
+    for level in parallel_stream(smooth, range(len(labels))):
+        np.minimum(best, level, out=best)
     penalties = SECOND_LAYER_TUNING.sgm_p1_levels, SECOND_LAYER_TUNING.sgm_p2_levels
     guess, confidence = semi_global_matching(cost, np.zeros(d.shape, np.float32), labels, *penalties)
     sure = confidence / (confidence + np.float32(SECOND_LAYER_TUNING.half_confidence))
