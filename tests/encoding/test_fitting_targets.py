@@ -67,9 +67,9 @@ def test_a_psnr_is_reached_and_one_that_cannot_be_is_said_to_be_out_of_reach(fit
 @pytest.mark.slow
 def test_a_target_far_from_the_preset_has_a_mesh_of_its_own(tmp_path, caplog, monkeypatch):
     cameras = row_grid(9, 64, 56)
-    folder = write_capture(tmp_path / "relief", cameras, relief(cameras[4], 0.5, False, step=2))
+    folder = write_capture(tmp_path / "relief", cameras, relief(cameras[4], 0.5, False))
     capture, options = open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "density": 1.5}
-    asked = Target(psnr=28)
+    asked = Target(psnr=26)
     with caplog.at_level("INFO", "eigenfield.encode"):
         monkeypatch.setattr("eigenfield.encoding.fitted.encode.REFIT_MIN_MESH_RATIO", 0.1)
         once = ef.encode(capture, **options, target=asked)
@@ -82,7 +82,7 @@ def test_a_target_far_from_the_preset_has_a_mesh_of_its_own(tmp_path, caplog, mo
     assert 0 < meshes[0] < meshes[1]
     sizes = [len(encode_scene(scene)) for scene in (found, once)]
     assert sizes[0] < sizes[1]
-    assert evaluate(found, capture)["image"]["encoded"]["psnr"] >= 28
+    assert evaluate(found, capture)["image"]["encoded"]["psnr"] >= 26
     caplog.clear()
     ef.encode(capture, **options, target=Target(size=1200))
     assert caplog.text.count("fitted again") <= caplog.text.count("1200 bytes cannot be reached") == 1
