@@ -29,13 +29,7 @@ from eigenfield.encoding.fitted.kernels import (
 )
 from eigenfield.encoding.fitted.model import Block, PlaneModel, make_composer
 from eigenfield.encoding.fitted.normal_kernels import multiply, multiply_both
-from eigenfield.encoding.fitted.observations import (
-    FitData,
-    open_fit_data,
-    open_subsampled,
-    sampled_cameras,
-    with_robust_weights,
-)
+from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_subsampled, with_robust_weights
 from eigenfield.encoding.fitted.passes import psnr_of, render_and_backproject
 from eigenfield.encoding.fitted.planes import fitted_textures
 from eigenfield.encoding.fitted.rate import Rate
@@ -122,24 +116,6 @@ def test_subsampled_pixels_are_some_of_all(world):
             assert 0.2 < codes[0].size / codes[1].size < 0.3
     with open_subsampled(data, 1) as same:
         assert same is data
-
-
-def test_sampled_cameras_see_every_second_pixel(world):
-    data, _, _ = world
-    pictures = InMemory([data.observations.codes_of(i).astype(np.float32) / 255 for i in range(len(data))], [None] * 9)
-    with (
-        open_fit_data(CAMERAS, pictures, Proxy(bumpy_square(12)), (SIDE, SIDE), step=2) as few,
-        open_subsampled(data, 2) as some,
-    ):
-        assert few.footprints.detail == data.footprints.detail
-        for index in range(len(data)):
-            np.testing.assert_array_equal(few.observations.codes_of(index), some.observations.codes_of(index))
-            counts = [one.footprint(index)[0] for one in (few, some)]
-            both = (counts[0] == 1) & (counts[1] == 1)
-            assert both.sum() > 200
-            places = [middles(one, index)[both] for one in (few, some)]
-            np.testing.assert_allclose(*places, atol=2e-3)
-    assert sampled_cameras(CAMERAS, 1) == list(CAMERAS)
 
 
 @settings(max_examples=30, deadline=None)

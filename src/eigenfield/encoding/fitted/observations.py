@@ -110,7 +110,6 @@ def open_fit_data(
     work: Path | None = None,
     progress: Progress | None = None,
     reference: int = 0,
-    step: int = 1,
 ) -> Iterator[FitData]:
     """Decode every photograph once, and rasterise the mesh in each camera, into scratch files of 4 bytes a pixel of the
     photographs and about 9 a pixel of the cameras: memory does not grow with their number.
@@ -123,49 +122,24 @@ def open_fit_data(
         work: Folder for the scratch files.
         progress: Reports the photographs that are decoded.
         reference: Index of the scene's reference camera in `cameras`.
-        step: Every so many pixels each way are taken, from `sample_corner` on: those of `sampled_cameras`.
 
     Raises:
         CaptureError: A photograph cannot be read.
         OutputError: `disk-full`.
     """
-    with _open_observations(cameras, observations, step, work, progress) as decoded:
+    with _open_observations(cameras, observations, work, progress) as decoded:
         surface = make_surface(proxy.mesh, *atlas)
         detail = median_footprint(surface, cameras[reference])
-        with open_footprints(surface, sampled_cameras(cameras, step), detail, proxy.sheets, work) as footprints:
+        with open_footprints(surface, cameras, detail, proxy.sheets, work) as footprints:
             yield FitData(decoded, footprints)
-
-
-def sampled_cameras(cameras: Sequence[Camera], step: int) -> list[Camera]:
-    """Cameras that see every `step`-th pixel of others each way, from `sample_corner` on, and no more.
-
-    Args:
-        cameras: The others.
-        step: 1: the cameras themselves.
-    """
-    if step == 1:
-        return list(cameras)
-    made = []
-    for number, camera in enumerate(cameras):
-        rows, columns = (part.start for part in sample_corner(number, step))
-        corner = np.array([columns, rows]) + 0.5  # in the middle of its pixel, and of the new one
-        K = (
-            np.array([[1 / step, 0, 0.5 - corner[0] / step], [0, 1 / step, 0.5 - corner[1] / step], [0, 0, 1]])
-            @ camera.K
-        )
-        width, height = (
-            len(range(start, size, step)) for start, size in ((columns, camera.width), (rows, camera.height))
-        )
-        made.append(replace(camera, K=K, width=width, height=height))
-    return made
 
 
 @contextlib.contextmanager
 def _open_observations(
-    cameras: Sequence[Camera], observations: Observations, step: int, work: Path | None, progress: Progress | None
+    cameras: Sequence[Camera], observations: Observations, work: Path | None, progress: Progress | None
 ) -> Iterator[DecodedObservations]:
-    by, total, few = cameras_of(observations), len(observations), sampled_cameras(cameras, step)
-    shapes = tuple((few[camera].height, few[camera].width) for camera in by)
+    by, total = cameras_of(observations), len(observations)
+    shapes = tuple((cameras[camera].height, cameras[camera].width) for camera in by)
     offsets = offsets_of([h * w for h, w in shapes])
     with (
         scratch_array((int(offsets[-1]), 3), np.uint8, work) as codes,
@@ -173,10 +147,10 @@ def _open_observations(
     ):
 
         def put(index: int) -> bool:
-            photograph, taken = observations.photograph(index), sample_corner(by[index], step)
+            photograph = observations.photograph(index)
             mask, part = photograph.mask, slice(offsets[index], offsets[index + 1])
-            codes[part] = to_codes(photograph.pixels[taken]).reshape(-1, 3)
-            masks[part] = 255 if mask is None else np.where(mask[taken] > 0.5, 255, 0).reshape(-1)
+            codes[part] = to_codes(photograph.pixels).reshape(-1, 3)
+            masks[part] = 255 if mask is None else np.where(mask > 0.5, 255, 0).reshape(-1)
             return mask is not None
 
         masked = tracked_map(put, range(total), "photographs", progress)
@@ -191,7 +165,7 @@ def open_on_proxy(
 
     Args:
         data: The observations.
-        cameras: Theirs, or `sampled_cameras`.
+        cameras: Theirs.
         proxy: The other proxy.
         work: Folder for scratch files.
     """

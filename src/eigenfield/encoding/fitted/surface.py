@@ -39,7 +39,7 @@ from eigenfield.encoding.fitted.colour import split_matrix
 from eigenfield.encoding.fitted.fit import FIT_MEAN_ITERATIONS, fit_mean
 from eigenfield.encoding.fitted.kernels import adjoint, forward, target
 from eigenfield.encoding.fitted.model import PlaneModel
-from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_on_proxy, sampled_cameras
+from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_on_proxy, open_subsampled
 from eigenfield.encoding.fitted.passes import MINUS, psnr_of
 from eigenfield.encoding.fitted.solve import measure_scales, squared_shares
 from eigenfield.encoding.fitted.surface_kernels import gather_steps
@@ -157,13 +157,12 @@ def fit_surface(
     movable = _movable_mesh(mesh, proxy.lattice, used, shape)
     best, reached, off = mesh, -np.inf, np.zeros(len(movable.lines))
     model = PlaneModel.grey(split_matrix()[0], shape)
-    few = sampled_cameras(used, step)
-    with open_fit_data(used, some, proxy, shape, work, step=step) as given:
+    with open_fit_data(used, some, proxy, shape, work) as every:
         for number in range(SURFACE_TUNING.rounds + 1):
             if progress is not None:
                 progress("fit surface", number, SURFACE_TUNING.rounds + 1)
-            moved = open_on_proxy(given, few, replace(proxy, mesh=mesh), work) if number else nullcontext(given)
-            with moved as data:
+            moved = open_on_proxy(every, used, replace(proxy, mesh=mesh), work) if number else nullcontext(every)
+            with moved as whole, open_subsampled(whole, step, work) as data:
                 iterations = SURFACE_TUNING.mean_iterations if number else FIT_MEAN_ITERATIONS
                 left = fit_mean(data, model, measure_scales(data, model), iterations)
                 if not left.pixels.any():
