@@ -123,6 +123,27 @@ def _pointers(context, builder, signature, arguments, positions):
 _SHAPE, _RATIO = types.UniTuple(types.int64, 3), types.UniTuple(types.float32, 2)
 
 
+def _signature(texture, points, image):
+    """Of `draw_point` and its transpose."""
+    count = types.int64
+    return types.boolean(texture, _SHAPE, _RATIO, points, count, types.float32, image, count, count)
+
+
+def _each_channel(act):
+    """The body of `draw_point` or its transpose: `act` is given each channel and where the pixel's value of it is."""
+
+    def generate(context, builder, signature, arguments):
+        texture, points, image = _pointers(context, builder, signature, arguments, (0, 3, 6))
+        shape, ratio, at, part, area, pixel = (arguments[i] for i in (1, 2, 4, 5, 7, 8))
+        taps = _Taps(builder, texture, shape, points, at, ratio)
+        with builder.if_then(taps.inside, likely=True), cgutils.for_range(builder, taps.channels, intp=_LONG) as loop:
+            value = builder.gep(image, [builder.add(pixel, builder.mul(loop.index, area))])
+            act(builder, taps, loop.index, part, value)
+        return taps.inside
+
+    return generate
+
+
 @intrinsic
 def draw_point(typing_context, texture, shape, ratio, points, at, part, image, area, pixel):
     """image[k area + pixel] += part times what the point shows of channel k.
@@ -139,18 +160,12 @@ def draw_point(typing_context, texture, shape, ratio, points, at, part, image, a
         pixel: Number of the pixel.
     """
 
-    def generate(context, builder, signature, arguments):
-        texture, points, image = _pointers(context, builder, signature, arguments, (0, 3, 6))
-        shape, ratio, at, part, area, pixel = (arguments[i] for i in (1, 2, 4, 5, 7, 8))
-        taps = _Taps(builder, texture, shape, points, at, ratio)
-        with builder.if_then(taps.inside, likely=True), cgutils.for_range(builder, taps.channels, intp=_LONG) as loop:
-            goal = builder.gep(image, [builder.add(pixel, builder.mul(loop.index, area))])
-            value = builder.fmul(part, taps.read(loop.index))
-            builder.store(builder.fadd(builder.load(goal, align=4), value), goal, align=4)
-        return taps.inside
+    def draw(builder, taps, channel, part, value):
+        builder.store(
+            builder.fadd(builder.load(value, align=4), builder.fmul(part, taps.read(channel))), value, align=4
+        )
 
-    count = types.int64
-    return types.boolean(texture, _SHAPE, _RATIO, points, count, types.float32, image, count, count), generate
+    return _signature(texture, points, image), _each_channel(draw)
 
 
 @intrinsic
@@ -158,17 +173,10 @@ def return_point(typing_context, texture, shape, ratio, points, at, part, image,
     """The transpose of `draw_point`: part times image[k area + pixel] goes to the texels of channel k that the point
     shows."""
 
-    def generate(context, builder, signature, arguments):
-        texture, points, image = _pointers(context, builder, signature, arguments, (0, 3, 6))
-        shape, ratio, at, part, area, pixel = (arguments[i] for i in (1, 2, 4, 5, 7, 8))
-        taps = _Taps(builder, texture, shape, points, at, ratio)
-        with builder.if_then(taps.inside, likely=True), cgutils.for_range(builder, taps.channels, intp=_LONG) as loop:
-            source = builder.gep(image, [builder.add(pixel, builder.mul(loop.index, area))])
-            taps.add(texture, loop.index, builder.fmul(part, builder.load(source, align=4)))
-        return taps.inside
+    def give_back(builder, taps, channel, part, value):
+        taps.add(taps.texture, channel, builder.fmul(part, builder.load(value, align=4)))
 
-    count = types.int64
-    return types.boolean(texture, _SHAPE, _RATIO, points, count, types.float32, image, count, count), generate
+    return _signature(texture, points, image), _each_channel(give_back)
 
 
 @intrinsic
