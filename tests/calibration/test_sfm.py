@@ -28,7 +28,9 @@ from eigenfield.capture import GridLayout, Lens, LightField, PhotoSet, Shot, ope
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, OptionError, OutputError
 from eigenfield.rendering import draw_texture
+from eigenfield.runtime.executor import open_executor
 from eigenfield.runtime.parallel import set_threads, threads
+from eigenfield.runtime.parts import Parts
 from support.motion import HEIGHT, WIDTH, K, cameras, photographed, picture, relief, spotted
 
 
@@ -81,6 +83,23 @@ def numbers(field: LightField) -> bytes:
 
 
 # what works
+
+
+def test_workers_find_the_same_features_and_matches(scene, kept, tmp_path, monkeypatch):
+    monkeypatch.setattr("eigenfield.calibration.motion.on_workers.PHOTOGRAPHS_A_TASK", 2)
+    monkeypatch.setattr("eigenfield.calibration.motion.on_workers.PAIRS_A_TASK", 4)
+    monkeypatch.setattr("eigenfield.calibration.motion.sfm.map_views", lambda *_: None)
+    with open_executor(1) as workers, pytest.raises(CaptureError):
+        parts = Parts(workers, tmp_path / "parts", "of this capture")
+        parts.folder.mkdir()
+        structure_from_motion(scene[0], intrinsics=KnownLens(K), work=tmp_path / "work", parts=parts)
+    here, there = (
+        {file.relative_to(folder): file.read_bytes() for file in folder.rglob("*.npz")}
+        for folder in (kept, tmp_path / "work")
+    )
+    assert len(here) == 6 and here == there
+    made = [place.name.split("-")[0] for place in parts.folder.iterdir() if place.is_dir()]
+    assert made.count("features") == 3 and made.count("matches") == 3
 
 
 def test_cameras_with_known_lens_are_found(scene, solved):

@@ -117,7 +117,8 @@ def reconstruct(
         hold_out: A rule of `hold_out`: layers, whose opacity is appearance, are not made from these views. Default:
             those of `blind`.
         work: The folder of finished stages; None: nothing is stored.
-        workers: Of `open_executor`: they make the depth maps of cameras all around. They see `work`.
+        workers: Of `open_executor`: they find features, compare pairs, and make the depth maps of cameras all around.
+            They see `work`.
         progress: Called within stages; by default bars in a notebook.
 
     Raises:
@@ -141,7 +142,7 @@ def reconstruct(
             capture, points, calibration = _estimate_cameras(run, capture)
         if _is_array(capture, settings):
             if workers is not None:
-                log.warning("an array has one depth map of all views: workers have no part in its reconstruction")
+                log.warning("an array has one depth map of all views: workers have no part in it")
             array = align_array(run, capture, points)
             light_field, calibration = array.light_field, array.folder / "calibration"
         else:
@@ -202,7 +203,10 @@ def _estimate_cameras(run: StageRunner, photos: PhotoSet) -> tuple[LightField, N
     """Cameras of photographs without any information, by structure from motion."""
 
     def build(folder: Path) -> None:
-        motion = structure_from_motion(photos, work=run.stages.folder / "matches", progress=run.progress)
+        with run.parts() as parts:
+            motion = structure_from_motion(
+                photos, work=run.stages.folder / "matches", parts=parts, progress=run.progress
+            )
         save_calibration(motion.light_field, folder / "calibration", motion.points)
         write_cameras(folder / STAGE_CAMERAS_FILE, photos, motion.light_field, motion.points.positions)
 

@@ -7,7 +7,7 @@ Zisserman, CVPR 2012); with domain-size pooling where there is little texture (D
 from __future__ import annotations
 
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -71,8 +71,34 @@ class Features:
         return len(self.points)
 
 
+NO_FEATURES = Features(np.zeros((0, 2)), np.zeros((0, 128), np.uint8), np.zeros((0, 3), np.uint8))
+
+
+def extract_here(
+    shots: Sequence[Shot], options: FeatureOptions, stage: str, progress: Progress | None
+) -> list[Features | CaptureError]:
+    """The features of photographs, or the error for one that cannot be read, by the threads of this process.
+
+    Args:
+        shots: The photographs.
+        options: How features are searched.
+        stage: What the progress is called.
+        progress: Called for each photograph.
+    """
+    extract = or_error(partial(extract_features_of, options=options))
+    return tracked_map(extract, shots, stage, progress)
+
+
+Extract = Callable[
+    [Sequence[Shot], FeatureOptions, str, Progress | None], list[Features | CaptureError]
+]  # `extract_here`, or the same on workers
+
+
 def extract_features(
-    photos: PhotoSet, options: FeatureOptions | None = None, progress: Progress | None = None
+    photos: PhotoSet,
+    options: FeatureOptions | None = None,
+    progress: Progress | None = None,
+    extract: Extract = extract_here,
 ) -> list[Features | CaptureError]:
     """The features of every photograph, or the error for a photograph that cannot be read.
 
@@ -81,20 +107,14 @@ def extract_features(
         options: How features are searched. None: the default, and WEAK_FEATURE_OPTIONS if the median photograph has
             few.
         progress: Called for each photograph.
+        extract: Does it for photographs and options.
     """
     chosen = FeatureOptions() if options is None else options
-    found = _extract(photos.shots, chosen, "features", progress)
+    found = extract(photos.shots, chosen, "features", progress)
     counts = [len(features) for features in found if isinstance(features, Features)]
     if options is None and counts and np.median(counts) < FEATURE_MIN_MEDIAN_COUNT:
-        found = _extract(photos.shots, WEAK_FEATURE_OPTIONS, "weaker features", progress)
+        found = extract(photos.shots, WEAK_FEATURE_OPTIONS, "weaker features", progress)
     return found
-
-
-def _extract(
-    shots: Sequence[Shot], options: FeatureOptions, stage: str, progress: Progress | None
-) -> list[Features | CaptureError]:
-    extract = or_error(partial(extract_features_of, options=options))
-    return tracked_map(extract, shots, stage, progress)
 
 
 def extract_features_of(shot: Shot, options: FeatureOptions) -> Features:

@@ -22,7 +22,7 @@ from eigenfield.calibration.align import natural_gauge, transform_camera
 from eigenfield.calibration.lenses import KnownLens, distort_to_pixels
 from eigenfield.calibration.motion.cache import cached_features, cached_matches
 from eigenfield.calibration.motion.colmap_core import pycolmap
-from eigenfield.calibration.motion.features import Features, undistort_features
+from eigenfield.calibration.motion.features import NO_FEATURES, Features, undistort_features
 from eigenfield.calibration.motion.mapping import MAPPING_TUNING, SparseModel, map_views
 from eigenfield.calibration.motion.matching import MATCHING_TUNING, Match, Matching, check_matching
 from eigenfield.capture.calibration import escape_name
@@ -34,13 +34,13 @@ from eigenfield.capture.points import SparsePoints
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.progress import Progress
+from eigenfield.runtime.parts import Parts
 from eigenfield.runtime.stages import Stages
 
 log = logging.getLogger("eigenfield.calibration")
 
 SFM_MIN_FEATURES = 60  # with fewer, a photograph is called blurred or textureless
 SFM_NOMINAL_FOCAL_SIDES = 1.2  # of the longer side, if no focal length is known
-NO_FEATURES = Features(np.zeros((0, 2)), np.zeros((0, 128), np.uint8), np.zeros((0, 3), np.uint8))
 
 
 @dataclass(frozen=True)
@@ -93,6 +93,7 @@ def structure_from_motion(
     matching: Matching = "auto",
     work: Path | None = None,
     seed: int = 0,
+    parts: Parts | None = None,
     progress: Progress | None = None,
 ) -> SfmResult:
     """Estimate the cameras of photographs, and points of the scene.
@@ -105,6 +106,7 @@ def structure_from_motion(
         matching: Which photographs are compared; see `choose_pairs`.
         work: A folder that stores features and matches for the next run.
         seed: Of RANSAC.
+        parts: Workers that find features and compare pairs; None: this process does.
         progress: Called in every stage.
 
     Raises:
@@ -116,11 +118,11 @@ def structure_from_motion(
     _check_photographs(photos)
     check_matching(matching, photos.layout)
     stages = None if work is None else Stages(work)
-    found, key = cached_features(stages, photos, progress)
+    found, key = cached_features(stages, photos, parts, progress)
     undistorted, features = _undistort_features([f if isinstance(f, Features) else NO_FEATURES for f in found], known)
     cameras, shared = _cameras(photos.shots, known, camera_per_photo)
     each = [cameras[k] for k in shared]
-    matches = cached_matches(stages, key, photos, undistorted, each, known, matching, seed, progress)
+    matches = cached_matches(stages, key, photos, undistorted, each, known, matching, seed, parts, progress)
     model = map_views([f.points for f in undistorted], cameras, shared, matches, known is not None, seed, progress)
     report = _report(photos, found, matches, model)
     if model is None:

@@ -1,0 +1,103 @@
+"""Features and matches that workers find: a task has a few photographs, or a few pairs of them."""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from eigenfield.calibration.motion.features import NO_FEATURES, FeatureOptions, Features, extract_here
+from eigenfield.calibration.motion.matching import Match, Pair, match_pairs
+from eigenfield.calibration.motion.stored import (
+    MATCHES_FILE,
+    read_features,
+    read_matches,
+    write_features,
+    write_matches,
+)
+from eigenfield.capture.photoset import Shot
+from eigenfield.core.errors import CaptureError
+from eigenfield.core.progress import Progress, track
+from eigenfield.runtime.parallel import pieces
+from eigenfield.runtime.parts import Parts
+
+PHOTOGRAPHS_A_TASK = 4
+PAIRS_A_TASK = 32
+KEPT_PHOTOGRAPHS = 64  # whose features a worker keeps from task to task, 1 MB each
+
+
+def extract_on_workers(
+    parts: Parts, shots: Sequence[Shot], options: FeatureOptions, stage: str, progress: Progress | None
+) -> list[Features | CaptureError]:
+    """As `extract_here`, with the same features.
+
+    Args:
+        parts: Where the work is done.
+        shots: The photographs.
+        options: How features are searched.
+        stage: What the progress is called.
+        progress: Called for each group of photographs.
+    """
+    groups = [shots[first:last] for first, last in pieces(len(shots), PHOTOGRAPHS_A_TASK)]
+    made = parts.make(stage.replace(" ", "-"), build_features, [(group, options) for group in groups])
+    found = track(made, stage, len(groups), progress)
+    return [each for folder, group in zip(found, groups, strict=True) for each in read_features(folder, group)]
+
+
+def build_features(folder: Path, shots: Sequence[Shot], options: FeatureOptions) -> None:
+    """Write the features of photographs, on a worker.
+
+    Args:
+        folder: That takes the files.
+        shots: The photographs.
+        options: How features are searched.
+    """
+    write_features(folder, extract_here(shots, options, "features", None))
+
+
+def match_on_workers(
+    parts: Parts,
+    features: Sequence[Features],
+    cameras: Sequence[Any],
+    pairs: Sequence[Pair],
+    seed: int,
+    progress: Progress | None,
+) -> list[Match]:
+    """As `match_pairs`, with the same matches.
+
+    Args:
+        parts: Where the work is done.
+        features: Of each photograph.
+        cameras: A pycolmap.Camera for each photograph.
+        pairs: Pairs (i, j), i < j.
+        seed: Of RANSAC.
+        progress: Called for each group of pairs.
+    """
+    groups = [pairs[first:last] for first, last in pieces(len(pairs), PAIRS_A_TASK)]
+    with parts.shared([pickle.dumps(photograph) for photograph in zip(features, cameras, strict=True)]) as files:
+        made = parts.make("matches", build_matches, [(files, group, seed) for group in groups])
+        found = track(made, "matches", len(groups), progress)
+        return [match for folder in found for match in read_matches(folder / MATCHES_FILE)]
+
+
+def build_matches(folder: Path, files: Sequence[Path], pairs: Sequence[Pair], seed: int) -> None:
+    """Write the matches of pairs, on a worker.
+
+    Args:
+        folder: That takes the file.
+        files: Of each photograph, with its features and its camera.
+        pairs: Pairs (i, j), i < j.
+        seed: Of RANSAC.
+    """
+    needed = {index for pair in pairs for index in pair}
+    photographs = [_photograph(file) if index in needed else (NO_FEATURES, None) for index, file in enumerate(files)]
+    features, cameras = zip(*photographs, strict=True)
+    write_matches(folder / MATCHES_FILE, match_pairs(features, cameras, pairs, seed))
+
+
+@lru_cache(maxsize=KEPT_PHOTOGRAPHS)
+def _photograph(file: Path) -> tuple[Features, Any]:
+    photograph: tuple[Features, Any] = pickle.loads(file.read_bytes())
+    return photograph
