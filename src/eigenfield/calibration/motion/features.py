@@ -89,9 +89,8 @@ def extract_here(
     return tracked_map(extract, shots, stage, progress)
 
 
-Extract = Callable[
-    [Sequence[Shot], FeatureOptions, str, Progress | None], list[Features | CaptureError]
-]  # `extract_here`, or the same on workers
+# `extract_here`, or the same on workers
+Extract = Callable[[Sequence[Shot], FeatureOptions, str, Progress | None], list[Features | CaptureError]]
 
 
 def extract_features(
@@ -107,7 +106,7 @@ def extract_features(
         options: How features are searched. None: the default, and WEAK_FEATURE_OPTIONS if the median photograph has
             few.
         progress: Called for each photograph.
-        extract: Does it for photographs and options.
+        extract: Finds them for given photographs and options.
     """
     chosen = FeatureOptions() if options is None else options
     found = extract(photos.shots, chosen, "features", progress)
