@@ -8,6 +8,7 @@ import shutil
 import numpy as np
 import pytest
 
+from eigenfield.core.errors import WorkerError
 from eigenfield.proxy.surface import multiview
 from eigenfield.runtime.executor import open_executor
 from eigenfield.runtime.parts import Parts
@@ -23,15 +24,24 @@ def build_number(folder, number):
 def test_finished_parts_are_taken_up(tmp_path):
     with open_executor() as workers:
         parts = Parts(workers, tmp_path, "of this capture")
-        places = parts.make("n", build_number, [(1,), (2,), (3,)])
+        places = parts.make("n", build_number, [(1,), (2,), (3,)], 1e6)
         assert (next(places) / "number").read_text() == "1"
         places.close()  # the run is killed here
         made = [int(line) for line in (tmp_path / "made").read_text().split()]
         assert made in ([1], [1, 2], [1, 2, 3])
-        again = [(place / "number").read_text() for place in parts.make("n", build_number, [(1,), (2,), (3,)])]
+        again = [(place / "number").read_text() for place in parts.make("n", build_number, [(1,), (2,), (3,)], 1e6)]
         assert again == ["1", "2", "3"] and sorted((tmp_path / "made").read_text().split()) == ["1", "2", "3"]
         other = Parts(workers, tmp_path, "of another")
-        assert len(list(other.make("n", build_number, [(4,)]))) == 1
+        assert len(list(other.make("n", build_number, [(4,)], 1e6))) == 1
+
+
+def test_a_part_meets_no_worker_that_has_too_little_memory(tmp_path, monkeypatch):
+    monkeypatch.setattr("eigenfield.runtime.executor.machine_memory", lambda: 1e9)
+    with open_executor(1) as workers:
+        parts = Parts(workers, tmp_path, "of this capture")
+        with pytest.raises(WorkerError, match=r"needs about 2\.0 GB of memory, and no worker has more than 1\.0 GB"):
+            list(parts.make("n", build_number, [(1,)], 2e9))
+    assert not (tmp_path / "made").exists()
 
 
 def picture(index, rng):

@@ -10,7 +10,7 @@ from typing import Any
 
 from eigenfield.runtime.executor import spread
 from eigenfield.runtime.stages import Stages, stage_key
-from eigenfield.runtime.tasks import Workers
+from eigenfield.runtime.tasks import Task, Workers
 from eigenfield.runtime.temporary import temporary_folder
 
 
@@ -28,7 +28,9 @@ class Parts:
     folder: Path
     identity: str
 
-    def make(self, name: str, build: Callable[..., None], calls: Sequence[tuple[Any, ...]]) -> Iterator[Path]:
+    def make(
+        self, name: str, build: Callable[..., None], calls: Sequence[tuple[Any, ...]], memory: float
+    ) -> Iterator[Path]:
         """The folders of all parts, in order. Those that an earlier run has finished are not made again.
 
         Args:
@@ -36,9 +38,11 @@ class Parts:
             build: Importable by name; writes the files of a part into the folder that is its first argument.
             calls: Its other arguments for each part: paths and small numbers. A part is known by its place among them,
                 so they must follow from `identity`.
+            memory: Bytes that a part takes at most: it meets no worker that has less.
         """
         keys = [stage_key([self.identity, name, number, len(calls)]) for number in range(len(calls))]
-        each = ((make_part, self.folder, name, key, build, call) for key, call in zip(keys, calls, strict=True))
+        task = Task(make_part, memory)
+        each = ((task, self.folder, name, key, build, call) for key, call in zip(keys, calls, strict=True))
         return spread(self.workers, each)
 
     @contextmanager
