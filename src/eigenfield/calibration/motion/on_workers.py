@@ -28,7 +28,7 @@ PAIRS_A_TASK = 32
 KEPT_PHOTOGRAPHS = 64  # whose features a worker keeps from task to task, 1 MB each
 # Measured: 0.89 GB for four photographs of half a megapixel, 3.09 for four of twelve
 PROGRAM_MEMORY_BYTES, PHOTOGRAPH_MEMORY_BYTES, PIXEL_MEMORY_BYTES = 0.25e9, 0.18e9, 48.0
-MATCHES_MEMORY_BYTES = 0.5e9
+MATCHES_MEMORY_BYTES = 1.3e9  # measured: 6,000 features each, 16 threads; 0.4 with one
 
 
 def extract_on_workers(
