@@ -2,25 +2,32 @@
 
 from __future__ import annotations
 
+import codecs
 import csv
+import io
 import json
 import multiprocessing
 import os
+import re
 import shutil
 import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
+from pathlib import Path, PurePosixPath, PureWindowsPath
 
 import pytest
+from hypothesis import strategies as st
 
 import eigenfield as ef
 from eigenfield.batches.jobs import ALL_KEYS, captures_in, read_jobs
 from eigenfield.batches.sheet import sheet_html
+from eigenfield.batches.table import as_csv, as_markdown
+from eigenfield.core.errors import escape_name
 from eigenfield.demo import draw_demo_capture
 from eigenfield.runtime import executor
 from support import tasks
+from support.fuzzed import fuzzed
 
 FAST = 'fit = "none"\ntextures = 3\natlas = 64\nhold_out = "every:4"\n'
 
@@ -145,6 +152,20 @@ def test_instants_without_cameras_have_them_found_once(tmp_path):
         ('[[capture]]\npath = "a"\ntarget_size = "300kg"\n', "a: '300kg' is no size"),
         ("", "holds no captures"),
         ('[[capture]]\npath = "a"\nproxy = "m.ply"\nlayers = 3\n', "--layers is for making a proxy"),
+        ('[[capture]]\npath = "a"\nname = 1979-05-27\n', "name is a date; give a text"),
+        ('[[capture]]\npath = "a"\nalso = 3\n', "a: also is a int; give a sequence"),
+        ('[[capture]]\npath = "a"\nblind = "no"\n', "a: blind is a str; give True or False"),
+        (
+            '[[capture]]\npath = "a"\ndensity = 1' + "0" * 400,
+            "capture 1: density is a table, a list of lists or a number",
+        ),
+        ('[[capture]]\npath = "a"\ndensity = 1' + "0" * 5000, "is no TOML: Exceeds the limit"),
+        ('[[capture]]\npath = "a"\natlas' + ".a" * 1500 + " = 1", "capture 1: atlas is a table"),
+        ("a = " + "[" * 9000, "is no TOML: "),
+        ('[[capture]]\npath = "a"\nhold-out = "odd"\nhold_out = "odd"\n', "capture 1: an option is there twice"),
+        ('[[capture]]\npath = "a"\npath = "b"\n', "is no TOML: Cannot overwrite a value"),
+        ('[[capture]]\npath = "a"\n"x\\ny" = 1\n', "a: no option is called x\\ny"),
+        ('[[capture]]\npath = "a"\nname = "x\\ny"\n[[capture]]\npath = "b"\nname = "x/y"\n', "are called x_y"),
     ],
 )
 def test_what_a_list_cannot_say(tmp_path, text, words):
@@ -153,6 +174,77 @@ def test_what_a_list_cannot_say(tmp_path, text, words):
         ef.batch(tmp_path / "list.toml", progress=None)
     assert words in str(caught.value) and "\n" not in str(caught.value)
     assert list(tmp_path.iterdir()) == [tmp_path / "list.toml"]  # nothing is made
+
+
+def test_a_list_in_another_encoding(tmp_path):
+    text = '[[capture]]\npath = "ä"\n'
+    (tmp_path / "list.toml").write_text(text, "utf-8-sig")
+    assert [job.name for job in read_jobs(tmp_path / "list.toml", {})] == ["ä"]
+    for encoding in ("utf-16", "latin-1"):
+        (tmp_path / "list.toml").write_text(text, encoding)
+        with pytest.raises(ef.OptionError, match=r"is no TOML: 'utf-8' codec can't decode byte") as caught:
+            read_jobs(tmp_path / "list.toml", {})
+        assert caught.value.code == "batch-file"
+
+
+def is_one_part(name):
+    return (
+        name == PurePosixPath(name).name == PureWindowsPath(name).name.rstrip(". ")
+        and not PureWindowsPath(name).drive
+        and not PureWindowsPath(name).is_reserved()
+        and name.isprintable()
+    )
+
+
+NAMES = (
+    "day1/left", "day1\\left", "../../outside/x", "..", ".", "/etc/x", "\\\\host\\x", "C:", "C:\\x", "nul", "CON .txt",
+    "a\0b", "a\rb\n", "x. ", "CONOUT$", "\u202ex", "/",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_name_is_one_part_of_a_path(tmp_path, name):
+    """Given in a list, as an option, or taken from a path."""
+    (tmp_path / "list.toml").write_text(f'[[capture]]\npath = "a"\nname = {json.dumps(name)}\n')
+    named = [*read_jobs(tmp_path / "list.toml", {}), *read_jobs([Path("a")], {"name": name})]
+    for job in [*named, *read_jobs([Path(name)], {}), *read_jobs([Path("memory://lab", name)], {})]:
+        assert is_one_part(job.name), job.name
+
+
+def test_a_capture_with_a_path_for_a_name_stays_within_the_folder(tmp_path):
+    (tmp_path / "list.toml").write_text(f'[[capture]]\npath = "none"\nname = "{tmp_path}/outside/x"\n')
+    result = ef.batch(tmp_path / "list.toml", progress=None)
+    assert {path.name for path in tmp_path.iterdir()} == {"list.toml", "list-scenes"}
+    assert (result.folder / result.records[0]["log"]).exists() and len(result.records) == 1
+
+
+@st.composite
+def lists(draw):
+    """Lists of captures, most of which something is wrong with."""
+    keys = st.sampled_from([*ALL_KEYS, "name", "path", "hold-out", '"a\\nb"', "atlas.a", "'='"])
+    texts = st.one_of(st.sampled_from(["odd", "auto", "memory://b/a", "300kB", *NAMES]), st.text(max_size=6)).map(
+        json.dumps
+    )
+    plain = st.one_of(
+        texts, st.integers(-(10**30), 10**30), st.floats(), st.sampled_from(["true", "1979-05-27", "{a=1}"])
+    )
+    values = st.one_of(plain.map(str), st.lists(plain.map(str), max_size=3).map(lambda items: f"[{', '.join(items)}]"))
+    lines = st.tuples(keys, values).map(" = ".join)
+    heads = st.sampled_from(["[[capture]]", '[[capture]]\npath = "a"', "[options]", "[capture]", "[[options]]", "[[x"])
+    return "\n".join(draw(st.lists(st.one_of(lines, heads, heads), max_size=6)))
+
+
+def check_list(folder, data):
+    path = folder / "list.toml"
+    text = data.draw(lists()).encode("utf-8", "surrogatepass")
+    path.write_bytes(data.draw(st.sampled_from([text, text, codecs.BOM_UTF8 + text, text[:-1], b"\xff" + text])))
+    try:
+        assert all(is_one_part(job.name) for job in read_jobs(path, {}))
+    except ef.EigenfieldError as error:
+        assert str(error).startswith(str(path)) and len(str(error).splitlines()) == 1
+
+
+test_any_list_is_read_or_refused, test_many_lists_are_read_or_refused = fuzzed(check_list)
 
 
 def test_a_list_says_sizes_as_the_command_line_does(tmp_path):
@@ -202,6 +294,26 @@ def test_the_command_says_what_failed_and_goes_on(run, listed, monkeypatch):
     assert "2 of them finished before" in run("batch", listed).err
     bad = run("batch", listed, "--cluster", "tcp://127.0.0.1:9")
     assert bad.code == 2 and "cannot be reached" in bad.err and len(bad.err.splitlines()) == 1
+
+
+def test_a_table_shows_text_and_runs_nothing():
+    texts = [
+        "=1+1", "+1", "-1", "@SUM(A1)", "\t=1", "\r=1", " =1", "＝1", "a;=1", '"=1', 'a;"=1"', "a\n=1",
+        "a|b", "`a`", "<script>", "[a](javascript:b)", "![a](http://b/c)", "a\n\n# b", "\\|", "\u2028",
+    ]  # fmt: skip
+    records = [{"name": text, "error": text, "psnr": -1.5} for text in texts]
+    written = list(csv.reader(io.StringIO(as_csv(records)), delimiter=";"))  # as some countries have it
+    assert len(written) == 1 + len(texts) and not any(
+        cell.lstrip().startswith(("=", "+", "-", "@", "＝")) for row in written for cell in row
+    )
+    rows = list(csv.DictReader(io.StringIO(as_csv(records))))
+    assert [row["name"].replace("'", "") for row in rows] == [escape_name(text) for text in texts]
+    assert {row["psnr"] for row in rows} == {"-1.5"}
+    lines = as_markdown(records).splitlines()
+    assert len(lines) == 2 + len(texts) and "<" not in "".join(lines)
+    for line in lines:
+        left = re.sub(r"\\.", "", line)  # without what is escaped
+        assert left.count("|") == 10 and not set(left) & set("`[]")
 
 
 def test_what_a_page_shows_is_text():

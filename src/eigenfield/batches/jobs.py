@@ -9,12 +9,16 @@ import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, get_type_hints
 
+from eigenfield.capture import open_any
+from eigenfield.capture.readers.text import excerpt
+from eigenfield.core.arguments import in_words, matches
 from eigenfield.core.errors import EigenfieldError, OptionError
 from eigenfield.encoding import EncodeOptions, Target
 from eigenfield.encoding.estimated import reconstruction_settings, refuse_unused
 from eigenfield.encoding.target import parse_size
+from eigenfield.reconstruction import reconstruct
 from eigenfield.runtime.objects import absolute_place, address_of, find_objects, local_copy
 from eigenfield.runtime.temporary import is_temporary
 from eigenfield.viewer.exports.names import file_name
@@ -27,6 +31,12 @@ SURFACE_DEFAULTS: dict[str, Any] = {  # arguments of `encode` about cameras and 
 TARGET_KEYS = tuple(f"target_{one.name}" for one in fields(Target))
 OPTION_KEYS = tuple(one.name for one in fields(EncodeOptions) if one.name not in ("target", "keep_maps"))
 ALL_KEYS = (*PLACE_KEYS, "proxy", *SURFACE_DEFAULTS, "blind", *TARGET_KEYS, *OPTION_KEYS)
+TYPES = {  # of what `EncodeOptions` and `Target` do not check
+    **get_type_hints(reconstruct), **get_type_hints(open_any),
+    "name": str, "proxy": str | os.PathLike[str], "blind": bool,
+}  # fmt: skip
+WHOLE_NUMBER_LIMIT = 2**63  # of TOML
+ERROR_MAX_CHARACTERS = 160
 VIDEO_AND_ZIP = (".zip", ".mp4", ".mov", ".mkv", ".avi")
 
 
@@ -125,12 +135,15 @@ def _by_number(name: str) -> list[Any]:
 
 def _read_toml(path: Path) -> tuple[list[dict[str, Any]], dict[str, Any]]:
     try:
-        document = tomllib.loads(local_copy(path).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        words = error.strerror if isinstance(error, OSError) else f"is no TOML: {error}"
-        raise OptionError(
-            "batch-file", str(words), path=path, remedy="name a TOML file with [[capture]] tables"
-        ) from None
+        document = tomllib.loads(local_copy(path).read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        raise _file_error(path, str(error.strerror), "name a TOML file with [[capture]] tables") from None
+    except (
+        ValueError,
+        RecursionError,
+    ) as error:  # numbers of thousands of digits and deep lists are no TOMLDecodeError
+        words = f"is no TOML: {error}"[:ERROR_MAX_CHARACTERS]
+        raise _file_error(path, words, "name a TOML file with [[capture]] tables") from None
     rows, shared = document.pop("capture", []), document.pop("options", {})
     if (
         document
@@ -138,14 +151,30 @@ def _read_toml(path: Path) -> tuple[list[dict[str, Any]], dict[str, Any]]:
         or not isinstance(rows, list)
         or not all(isinstance(r, dict) for r in rows)
     ):
-        message = f"has {next(iter(document), 'entries')} where only [options] and [[capture]] are known"
-        raise OptionError("batch-file", message, path=path, remedy="leave it out, or put it into one of these")
+        message = f"has {excerpt(next(iter(document), 'entries'))} where only [options] and [[capture]] are known"
+        raise _file_error(path, message, "leave it out, or put it into one of these")
     for row in rows:
-        if not isinstance(row.get("path"), str) or not isinstance(row.get("name", ""), str):
-            raise OptionError(
-                "batch-file", "a [[capture]] has no path", path=path, remedy='say path = "FOLDER" in each'
-            )
-    return rows, shared
+        if not isinstance(row.get("path"), str):
+            raise _file_error(path, "a [[capture]] has no path", 'say path = "FOLDER" in each')
+    named = [_by_name(path, f"capture {number}", row) for number, row in enumerate(rows, 1)]
+    return named, _by_name(path, "[options]", shared)
+
+
+def _by_name(path: Path, where: str, table: dict[str, Any]) -> dict[str, Any]:
+    """Options by the names that they have in Python: plain values, and lists of these."""
+    for key, value in table.items():
+        for each in value if isinstance(value, list) else [value]:
+            if isinstance(each, dict | list) or (isinstance(each, int) and abs(each) >= WHOLE_NUMBER_LIMIT):
+                message = f"{where}: {excerpt(key)} is a table, a list of lists or a number beyond 64 bits"
+                raise _file_error(path, message, "options are texts, numbers, true, false, and lists of these")
+    named = {key.replace("-", "_"): value for key, value in table.items()}
+    if len(named) < len(table):
+        raise _file_error(path, f"{where}: an option is there twice, with - and with _", "leave one of them out")
+    return named
+
+
+def _file_error(path: Path, message: str, remedy: str) -> OptionError:
+    return OptionError("batch-file", message, path=path, remedy=remedy)
 
 
 def _jobs(
@@ -153,14 +182,15 @@ def _jobs(
 ) -> Iterator[CaptureJob]:
     made: dict[str, CaptureJob] = {}  # by the options: checking them takes longer than all else
     for row in rows:
-        own = {key.replace("-", "_"): value for key, value in {**shared, **row}.items()}
+        own = {**shared, **row}
         path, name = absolute_place(own.pop("path"), base), own.pop("name", None)
         text = repr(own)
         try:
+            _check_type("name", name)
             if text not in made:
                 made[text] = _checked(own, base)
         except EigenfieldError as error:
-            called = f"{name or path.name}: {error.message}" if set(row) - {"path", "name"} else error.message
+            called = f"{excerpt(name or path.name)}: {error.message}" if set(row) - {"path", "name"} else error.message
             raise OptionError(error.code, called, path=source, remedy=error.remedy) from error
         is_file = path.is_file() or path.name.lower().endswith(VIDEO_AND_ZIP)
         called = path.stem if is_file else path.name
@@ -175,7 +205,8 @@ def _checked(given: dict[str, Any], base: Path) -> CaptureJob:
             remedy = (
                 f"did you mean {near[0]}?" if near else "options are named as those of encode: hold_out, preset, ..."
             )
-            raise OptionError("batch-option", f"no option is called {key}", remedy=remedy)
+            raise OptionError("batch-option", f"no option is called {excerpt(key)}", remedy=remedy)
+        _check_type(key, given[key])
     for key in PATH_KEYS:
         if given.get(key) is not None:
             given[key] = address_of(absolute_place(given[key], base))
@@ -201,6 +232,11 @@ def _checked(given: dict[str, Any], base: Path) -> CaptureJob:
     )
     job.reconstruction  # noqa: B018  what it refuses is said before the work
     return job
+
+
+def _check_type(key: str, value: Any) -> None:
+    if value is not None and key in TYPES and not matches(value, TYPES[key]):
+        raise OptionError("option-type", f"{key} is a {type(value).__name__}", remedy=f"give {in_words(TYPES[key])}")
 
 
 def _refuse_same_names(jobs: Sequence[CaptureJob], source: Path | None) -> None:

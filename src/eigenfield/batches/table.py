@@ -5,12 +5,16 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
+
+from eigenfield.core.errors import escape_name
 
 Records = Sequence[Mapping[str, Any]]
 
 SCHEMA = "eigenfield.batch/1"
+FORMULA = re.compile(r"(^|;)(?=[\s\"]*[=+\-@＝＋－＠])")  # in some countries a semicolon begins a cell
 COLUMNS = (  # of a record: key, heading, form
     ("name", "capture", "{}"),
     ("bytes", "bytes", "{:,}"),
@@ -30,9 +34,13 @@ def cells(record: Mapping[str, Any]) -> list[str]:
 
 
 def as_markdown(records: Records) -> str:
-    """A table in Markdown."""
+    """A table in Markdown, whose cells are text: no code, HTML, links or pictures."""
     rows = [[heading for _, heading, _ in COLUMNS], ["---"] * len(COLUMNS), *map(cells, records)]
-    return "".join(f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in row)} |\n" for row in rows)
+    return "".join(f"| {' | '.join(map(_markdown_text, row))} |\n" for row in rows)
+
+
+def _markdown_text(cell: str) -> str:
+    return re.sub(r"([\\`|\[\]])", r"\\\1", escape_name(cell)).replace("<", "&lt;")
 
 
 def as_csv(records: Records) -> str:
@@ -40,8 +48,13 @@ def as_csv(records: Records) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow([key for key, _, _ in COLUMNS])
-    writer.writerows([record.get(key) for key, _, _ in COLUMNS] for record in records)
+    writer.writerows([_csv_value(record.get(key)) for key, _, _ in COLUMNS] for record in records)
     return text.getvalue()
+
+
+def _csv_value(value: Any) -> Any:
+    """A number as it is, and a text with an apostrophe where a spreadsheet would begin a formula."""
+    return FORMULA.sub(r"\1'", escape_name(value)) if isinstance(value, str) else value
 
 
 def as_json(records: Records) -> str:

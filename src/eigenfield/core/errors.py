@@ -15,6 +15,16 @@ of these and is never caught: it keeps its traceback.
 from __future__ import annotations
 
 import os
+import unicodedata
+
+
+def escape_name(text: str) -> str:
+    """A name from a file as one line that every terminal and JSON can hold: control characters, separators of lines and
+    lone surrogates (bytes that are no UTF-8) are written as escapes."""
+    if text.isprintable():
+        return text
+    escaped = ("Cc", "Cs", "Zl", "Zp")
+    return "".join(c.encode("unicode_escape").decode() if unicodedata.category(c) in escaped else c for c in text)
 
 
 class EigenfieldError(Exception):
@@ -41,7 +51,7 @@ class EigenfieldError(Exception):
 
     def __str__(self) -> str:
         text = self.message if self.path is None else f"{self.path}: {self.message}"
-        return text if self.remedy is None else f"{text}; {self.remedy}"
+        return escape_name(text if self.remedy is None else f"{text}; {self.remedy}")
 
 
 class CaptureError(EigenfieldError):

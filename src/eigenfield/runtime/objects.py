@@ -141,7 +141,7 @@ class Objects:
     def local_file(self) -> Iterator[Path]:
         """A path on this machine: what the block writes there becomes the object when the block succeeds."""
         with temporary_folder() as folder:
-            place = folder / PurePosixPath(self.root).name
+            place = folder / _inside(PurePosixPath(self.root).name)
             yield place
             with _store_errors(self.address):
                 self.fs.put_file(str(place), self.root)
@@ -200,7 +200,7 @@ def local_copy(path: str | os.PathLike[str]) -> Path:
     if objects is None:
         return Path(path)
     if objects.address not in _copies:
-        place = _new_folder() / PurePosixPath(objects.root).name
+        place = _new_folder() / _inside(PurePosixPath(objects.root).name)
         objects.copy_to(place)
         _copies[objects.address] = place
     return _copies[objects.address]
@@ -259,7 +259,7 @@ atexit.register(remove_copies)
 def _inside(name: str) -> str:
     """The relative path of an object's name; OutputError where it would leave the folder."""
     parts = PurePosixPath(name.lstrip("/")).parts
-    if ".." in parts or "\\" in name:
+    if ".." in parts or "\\" in name or "\0" in name or Path(*parts).drive:
         message = f"holds an object that is named {name!r}, which is no name of a file"
         raise OutputError("object-name", message, remedy="rename it, or name another prefix")
     return "/".join(parts)

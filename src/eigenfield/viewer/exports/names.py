@@ -10,8 +10,10 @@ from eigenfield.capture.photographs.kinds import ALL_EXTENSIONS
 
 NAME_MAX_BYTES = 120  # of a folder's or file's name, without its ending
 PATH_MAX_PARTS = 6  # folders and file of a path
-NAME_FORBIDDEN_CHARACTERS = '<>:"|?*'  # on Windows; and everywhere what is not printable
-NAME_RESERVED = re.compile(r"(con|prn|aux|nul|com[0-9¹²³]|lpt[0-9¹²³])(\..*)?", re.IGNORECASE)  # devices of Windows
+NAME_FORBIDDEN_CHARACTERS = '<>:"|?*/\\'  # on Windows; and everywhere what is not printable
+NAME_RESERVED = re.compile(  # devices of Windows
+    r"(con|prn|aux|nul|con(in|out)\$|com[0-9¹²³]|lpt[0-9¹²³]) *(\..*)?", re.IGNORECASE
+)
 
 
 def file_names(names: Sequence[str]) -> list[str]:
