@@ -157,6 +157,36 @@ def test_a_buffer_that_is_missing_is_named(tmp_path):
         read_mesh(written(tmp_path, "b.gltf", file.gltf("short.bin")))
 
 
+@pytest.mark.parametrize(
+    "uri",
+    [
+        "../mesh.bin", "sub/../../mesh.bin", "%2e%2e/mesh.bin", "..%2Fmesh.bin", "..\\mesh.bin", "%2E.%5cmesh.bin",
+        "sub/..", "{folder}/mesh.bin", "/{folder}/mesh.bin", "%2F{folder}/mesh.bin", "\\\\host\\mesh.bin",
+        "C:\\mesh.bin", "C:/mesh.bin", "link.bin", "linked/mesh.bin", "sub/link.bin", "./link.bin",
+    ],
+)  # fmt: skip
+def test_a_buffer_outside_of_the_folder_is_not_read(tmp_path, uri):
+    """By its name, or by a link; what lies in the folder by a link is read."""
+    file, primitive = roof()
+    file.mesh(primitive)
+    written(tmp_path, "mesh.bin", file.body)
+    folder = tmp_path / "mesh"
+    (folder / "sub").mkdir(parents=True)
+    for place, target in (
+        ("link.bin", tmp_path / "mesh.bin"),
+        ("sub/link.bin", "../../mesh.bin"),
+        ("linked", tmp_path),
+    ):
+        (folder / place).symlink_to(target)
+    with pytest.raises(ProxyError, match="lie outside of its folder, and are not read") as caught:
+        read_mesh(written(folder, "a.gltf", file.gltf(uri.format(folder=tmp_path))))
+    assert caught.value.code == "proxy-outside"
+    written(folder, "sub/mesh.bin", file.body)
+    (folder / "inner.bin").symlink_to("sub/mesh.bin")
+    (tmp_path / "seen").symlink_to(folder)
+    assert_is_the_roof(read_mesh(written(tmp_path / "seen", "b.gltf", file.gltf("./inner.bin"))), uv=True)
+
+
 @pytest.mark.parametrize("name", ["KHR_meshopt_compression", "EXT_meshopt_compression", "MAKER_holograms", "KHR_a\nb"])
 def test_extensions_that_are_required_and_not_read_are_named(tmp_path, name):
     file, primitive = roof()

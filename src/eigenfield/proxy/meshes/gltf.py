@@ -9,6 +9,7 @@ from __future__ import annotations
 import base64
 import json
 import logging
+import re
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
@@ -49,7 +50,7 @@ def read_gltf(data: bytes, path: Path) -> RawMesh:
         path: Of the file, for external buffers and messages.
 
     Raises:
-        ProxyError: `proxy-extension`, `proxy-nodes`, `proxy-index-range`, `proxy-unreadable`.
+        ProxyError: `proxy-extension`, `proxy-nodes`, `proxy-index-range`, `proxy-outside`, `proxy-unreadable`.
         FormatError: What is damaged, with its place.
         ValueError: Damaged data.
     """
@@ -361,18 +362,26 @@ class _GltfFile:
         return self._buffers[index]
 
     def _fetch(self, uri: str) -> memoryview:
-        """The bytes of a data URI, or of a file beside this one whose name is percent-encoded (RFC 3986)."""
+        """The bytes of a data URI, or of a file in this one's folder whose name is percent-encoded (RFC 3986)."""
         if uri[:5].lower() == "data:":
             head, _, body = uri[5:].partition(",")
             raw = unquote_to_bytes(body)
             return memoryview(base64.b64decode(raw) if head.lower().endswith(";base64") else raw)
-        for name in (unquote(uri), uri, unquote(uri).replace("\\", "/")):
+        folder, plain = self._path.parent, unquote(uri).replace("\\", "/")
+        outside = plain.startswith("/") or _DRIVE.match(plain) is not None or ".." in plain.split("/")
+        for name in () if outside else (unquote(uri), uri, plain):
             try:
-                file = self._path.parent / name
+                file = folder / name
                 if file.is_file():
+                    if not file.resolve().is_relative_to(folder.resolve()):  # by a link
+                        outside = True
+                        break
                     return memoryview(file.read_bytes())
             except (OSError, ValueError):  # a name that no file can have
                 continue
+        if outside:
+            message = f"its data {quote(unquote(uri))} lie outside of its folder, and are not read"
+            raise ProxyError("proxy-outside", message, remedy="put that file beside it, or export one .glb")
         raise ProxyError(
             "proxy-unreadable",
             f"its data {quote(unquote(uri))} are not beside it",
@@ -380,6 +389,7 @@ class _GltfFile:
         )
 
 
+_DRIVE = re.compile(r"[a-z]:/", re.IGNORECASE)  # of Windows
 _TRANSFORM = {"TRANSLATION": 3, "ROTATION": 4, "SCALE": 3}
 
 

@@ -50,8 +50,8 @@ def read_mesh(path: str | os.PathLike[str], origin: NDArray[np.float64] | None =
         origin: (3,) taken off every position before they become float32: the `origin` of a capture. None: nothing.
 
     Raises:
-        ProxyError: `proxy-missing`, `proxy-format`, `proxy-unreadable`, `proxy-extension`, `proxy-nodes`,
-            `proxy-polygon`, `proxy-empty`, `proxy-no-faces`, `proxy-index-range`, `proxy-not-finite` or
+        ProxyError: `proxy-missing`, `proxy-format`, `proxy-unreadable`, `proxy-outside`, `proxy-extension`,
+            `proxy-nodes`, `proxy-polygon`, `proxy-empty`, `proxy-no-faces`, `proxy-index-range`, `proxy-not-finite` or
             `proxy-degenerate`.
     """
     file = local_copy(path)
