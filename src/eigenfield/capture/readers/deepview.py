@@ -97,7 +97,7 @@ def _make_entry(camera: Any, number: int, longest: float, path: Path) -> Entry:
     (width,), (height,) = numbers("width", 1, 1), numbers("height", 1, 1)
     radial = numbers("radial_distortion", 0, DEEPVIEW_MAX_RADIAL, [])
     check_lens(radial, label, path)
-    refuse_lens_keys(camera, ("radial_distortion",), label, path)
+    refuse_lens_keys(camera, ("radial_distortion", "projection_type"), label, path)
     lens = _make_lens(camera.get("projection_type") or "perspective", radial, label, path)
     intrinsics = Intrinsics(*check_size(width, height, label, path), (focal, focal * aspect), None, (cx, cy))
     check_rotation_vector(longest, label, path)

@@ -9,10 +9,11 @@ from __future__ import annotations
 import re
 from collections.abc import Container, Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 
+from eigenfield.capture.readers.text import excerpt
 from eigenfield.core.errors import CaptureError
 
 # of keys in lower case, without what is no letter and no digit
@@ -23,8 +24,11 @@ LENS_KEY = re.compile(
 LENS_COEFFICIENT_KEY = re.compile(r"(k|p|s|sx|sy|kappa)\d{1,2}|tau[xy]|omega|xi")  # of one number
 LENS_LIST_KEY = re.compile(r"d|kc")  # of coefficients in a row
 LENS_PROJECTION_KEY = re.compile(r".*(fisheye|latlong|equirect|orthographic)")  # of a flag
-LENS_OTHER_KEY = re.compile(r".*(id|index|number|serial|mm|units?|focal|length|aperture|count|errors?|rms|std|cov\w*)")
-LENS_MODEL_KEY = re.compile(r".*(model|type|projection|distortion|lens)")  # whose word names a lens
+# what is written beside a lens, by how it ends
+LENS_OTHER_KEY = re.compile(
+    r".*(id|index|number|serial|mm|units?|focal|length|aperture|count|errors?|rms|std|thresh|cov\w*)"
+)
+LENS_MODEL_KEY = re.compile(r".*(model|type|projection|distortion|lens)")  # of a word that may name a lens
 LENS_MODEL_WORD = re.compile(
     r"(opencv|simple|radial|thinprism)*"
     r"(fish|equidist|equisolid|kannala|omni|eucm|division|fov|stereog|equirect|panoram|spheric)"
@@ -43,13 +47,18 @@ def refuse_lens_keys(values: Mapping[str, Any], read: Container[str], label: str
         path: The calibration.
     """
     for key in lens_keys(values, read):
-        raise CaptureError(
-            "camera-model",
-            f"{label} has {key!r}, which looks like a lens and is not read",
-            path=path,
-            remedy="name it as `eigenfield help captures` says of the format, undistort the photographs, or remove it "
-            "if it means nothing",
-        )
+        refuse_lens_key(key, label, path)
+
+
+def refuse_lens_key(key: str, label: str, path: Path) -> NoReturn:
+    """CaptureError `camera-model` for a key that looks like a lens and is not read."""
+    raise CaptureError(
+        "camera-model",
+        f"{label} has {excerpt(key)!r}, which looks like a lens and is not read",
+        path=path,
+        remedy="name it as `eigenfield help captures` says of the format, undistort the photographs, or remove it if "
+        "it means nothing",
+    )
 
 
 def lens_keys(values: Mapping[str, Any], read: Container[str] = (), depth: int = 0) -> Iterator[str]:
@@ -57,7 +66,7 @@ def lens_keys(values: Mapping[str, Any], read: Container[str] = (), depth: int =
     for key, value in values.items():
         if not isinstance(key, str) or key in read:
             continue
-        if _is_lens(_plain(key), value):
+        if is_lens(key, value):
             yield key
         elif isinstance(value, Mapping) and depth < LENS_MAX_DEPTH:
             yield from lens_keys(value, (), depth + 1)
@@ -67,22 +76,29 @@ def _plain(word: str) -> str:
     return re.sub(r"[\W_]+", "", word).lower()
 
 
-def _is_lens(key: str, value: Any) -> bool:
+def is_lens(key: str, value: Any) -> bool:
+    """Whether a key looks like a lens, and its value says something of one."""
+    key = _plain(key)
+    if isinstance(value, str) and LENS_MODEL_WORD.match(_plain(value)):
+        return LENS_MODEL_KEY.fullmatch(key) is not None
     one, row, other = (pattern.fullmatch(key) for pattern in (LENS_COEFFICIENT_KEY, LENS_LIST_KEY, LENS_OTHER_KEY))
     if not (one or row or LENS_KEY.match(key)):
         return False
     if isinstance(value, bool):
         return value and LENS_PROJECTION_KEY.match(key) is not None
-    if isinstance(value, str) and LENS_MODEL_WORD.match(_plain(value)):
-        return LENS_MODEL_KEY.fullmatch(key) is not None
     numbers = np.array(list(_numbers(value)))
-    if other or not numbers.any():  # NaN is something
+    if other or not has_numbers(value):
         return False
     if one:
         return len(numbers) == 1
     if row:
         return not isinstance(value, (int, float)) and len(numbers) <= LENS_MAX_COEFFICIENTS
     return key != "lens" or len(numbers) > 1 or abs(numbers[0]) < 1  # beyond, Blender's focal length in millimetres
+
+
+def has_numbers(value: Any) -> bool:
+    """Whether a value holds a number that is not 0; NaN is one."""
+    return any(number != 0 for number in _numbers(value))
 
 
 def _numbers(value: Any, depth: int = 0) -> Iterator[float]:

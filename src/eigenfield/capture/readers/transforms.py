@@ -32,7 +32,9 @@ TRANSFORMS_PERSPECTIVE_MODELS = (
 )  # fmt: skip
 TRANSFORMS_FISHEYE_MODELS = ("OPENCV_FISHEYE", "SIMPLE_RADIAL_FISHEYE", "RADIAL_FISHEYE")
 TRANSFORMS_LENS_KEYS = ("k1", "k2", "k3", "k4", "p1", "p2")  # in the order of nerfstudio's distortion_params
-TRANSFORMS_READ_LENS_KEYS = {*TRANSFORMS_LENS_KEYS, "k5", "k6", "distortion_params", "is_fisheye", "frames"}
+TRANSFORMS_READ_LENS_KEYS = {
+    *TRANSFORMS_LENS_KEYS, "k5", "k6", "distortion_params", "is_fisheye", "camera_model", "frames"
+}  # fmt: skip
 # a lens that no other reader of this format knows: they refuse the name, as they should
 TRANSFORMS_OWN_MODEL = "EIGENFIELD"
 TRANSFORMS_OWN_COEFFICIENTS = {
