@@ -17,6 +17,7 @@ from eigenfield.capture.photoset import PhotoSet, Shot
 from eigenfield.capture.readers.filestorage import is_storage
 from eigenfield.capture.readers.opencv import read_opencv_intrinsics
 from eigenfield.core.camera import Camera
+from eigenfield.core.camera_names import name_key
 from eigenfield.core.errors import CaptureError
 
 LensEntry = tuple[Intrinsics, Lens | None]
@@ -59,7 +60,7 @@ def read_known_lenses(path: Path, photos: PhotoSet) -> list[KnownLens]:
 
 
 def _stem(name: str) -> str:
-    return PurePosixPath(name.replace("\\", "/")).stem.casefold()
+    return name_key(PurePosixPath(name.replace("\\", "/")).stem)
 
 
 def _read_plain_matrix(path: Path) -> Mapping[str, LensEntry] | None:
@@ -79,7 +80,7 @@ def _read_plain_matrix(path: Path) -> Mapping[str, LensEntry] | None:
 
 def _read_entries(path: Path, photos: PhotoSet) -> Mapping[str, LensEntry]:
     if path.is_file() and is_storage(path):
-        return {name.casefold(): entry for name, entry in read_opencv_intrinsics(path).items()}
+        return {name_key(name): entry for name, entry in read_opencv_intrinsics(path).items()}
     formats = tuple(row for row in FORMATS if row.read_cameras is not None)
     claim = claim_of_file(path, formats) if path.is_file() else detect_format(path, formats, OpenOptions(None, None))
     if claim is None or claim.format.read_cameras is None:

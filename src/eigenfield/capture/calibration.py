@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.capture.photographs.lens import Lens
-from eigenfield.core.camera import Camera
+from eigenfield.core.camera import CAMERA_ROTATION_TOLERANCE, Camera
 from eigenfield.core.errors import CaptureError
 from eigenfield.core.errors import escape_name as escape_name  # which readers take from here
 
@@ -22,6 +22,30 @@ Made = TypeVar("Made")
 # of focal lengths in pixels and positions in world units: products of two of them stay finite, and a file keeps float32
 CALIBRATION_MAX_MAGNITUDE = 1e30
 CALIBRATION_FOCAL_TOLERANCE = 0.02  # by which a focal length and an angle of view may differ
+# of singular values: three decimals move nine entries by 0.0005 each, singular values by 0.0015 and axes by 0.1 degrees
+CALIBRATION_ROTATION_TOLERANCE = 2e-3
+
+
+def split_scale(matrix: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
+    """The rotation nearest to a matrix of a uniform scale or of three decimals, and the scale.
+
+    Args:
+        matrix: (3, 3).
+
+    Returns:
+        (3, 3), and the positive scale. The matrix itself and 1 where it is a rotation already, and where it is
+        mirrored, sheared or no matrix at all, which `Camera.from_matrices` refuses.
+    """
+    if not np.isfinite(matrix).all():
+        return matrix, 1.0
+    with np.errstate(all="ignore"):
+        u, s, vt = np.linalg.svd(matrix)
+        scale = float(np.cbrt(s.prod()))
+        uneven = np.abs(s / scale - 1).max()
+        mirrored = np.linalg.det(u @ vt) < 0
+    if np.abs(s - 1).max() <= CAMERA_ROTATION_TOLERANCE or mirrored or not uneven <= CALIBRATION_ROTATION_TOLERANCE:
+        return matrix, 1.0
+    return u @ vt, 1.0 if abs(scale - 1) <= CALIBRATION_ROTATION_TOLERANCE else scale
 
 
 @dataclass(frozen=True)
@@ -77,7 +101,7 @@ class Entry:
         file: The photograph's path as the calibration writes it, with forward slashes.
         label: Names the entry in messages.
         intrinsics: As the calibration states them.
-        R: (3, 3) world-to-camera rotation, OpenCV axes.
+        R: (3, 3) world-to-camera rotation, OpenCV axes; possibly with a scale or few digits, as `split_scale` takes it.
         centre: (3,) the camera's centre in the world.
         lens: The photograph's distortion; None if there is none.
         mask: The mask's path as the calibration writes it.
@@ -109,7 +133,8 @@ class Entry:
             )
         try:
             with np.errstate(all="ignore"):  # NaN, infinities and singular matrices are what `from_matrices` looks for
-                camera = Camera.from_matrices(K, self.R, -(self.R @ self.centre), width, height, self.label)
+                R, _ = split_scale(self.R)
+                camera = Camera.from_matrices(K, R, -(R @ self.centre), width, height, self.label)
         except CaptureError as error:
             raise CaptureError(error.code, error.message, path=path, remedy=error.remedy) from None
         # the centre is what a calibration knows well: keep it where checking snapped a rotation of few digits

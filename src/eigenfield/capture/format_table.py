@@ -47,7 +47,7 @@ FORMAT_NOTES = {
         f"models {', '.join((*transforms.TRANSFORMS_PERSPECTIVE_MODELS, *transforms.TRANSFORMS_FISHEYE_MODELS))}; "
         f"{_codes(transforms.TRANSFORMS_LENS_KEYS)} `k5` `k6` or `distortion_params`, `is_fisheye`, angles, "
         "`mask_path`, `applied_transform`; of a frame or of the file",
-        f"other models; the lens parameters {_codes(transforms.TRANSFORMS_UNREAD_KEYS)}; `k4` of no model",
+        "other models; other keys that look like a lens and are not 0 (`s1`, `K1`, `distortion`); `k4` of no model",
         "camera axes OpenGL; `applied_transform` (below); `fl_x` goes before an angle that contradicts it, with a line",
     ),
     "colmap": FormatNotes(

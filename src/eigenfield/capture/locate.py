@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import os
-import unicodedata
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import TypeVar
 
 from eigenfield.capture.lightfield import View
@@ -15,6 +14,7 @@ from eigenfield.capture.messages import describe
 from eigenfield.capture.photographs.kinds import read_extensions, without_copies
 from eigenfield.capture.photographs.read import decode_mask
 from eigenfield.capture.photoset import Shot
+from eigenfield.core.camera_names import name_key
 from eigenfield.core.errors import CaptureError
 
 T = TypeVar("T", View, Shot)
@@ -41,11 +41,6 @@ def photograph_root(path: Path, found: Path) -> Path:
 
 def _holds_photographs(folder: Path) -> bool:
     return bool(photographs_in(folder) or photographs_in(folder / IMAGES_FOLDER))
-
-
-def _name_key(name: str) -> str:
-    """A file name as file systems compare them that know neither case nor one way to write an accent."""
-    return unicodedata.normalize("NFC", name).casefold()
 
 
 def is_file(path: Path) -> bool:
@@ -76,20 +71,54 @@ class PhotographFinder:
         self.root, self.base, self.apart = root, base, apart
         self._resolved = root.resolve()
         self._by_name: dict[str, list[Path]] | None = None
+        self._listed: dict[Path, dict[str, list[Path]]] = {}
 
     def find(self, file: str) -> Path | None:
         """By the path relative to root, to the calibration, to root/images, then by the file's name alone."""
         return self.find_exactly(file) or self._by_file_name(file)
 
     def find_exactly(self, file: str) -> Path | None:
-        """By relative path only: for masks, which often have the names of their photographs."""
+        """By relative path only: for masks, which often have the names of their photographs. Where no path is spelled
+        so, folders and file are compared by `name_key`."""
         if not file.strip("./"):
             return None
-        for folder in (self.root, self.base, self.root / IMAGES_FOLDER):
+        folders = (self.root, self.base, self.root / IMAGES_FOLDER)
+        for folder in folders:
             for candidate in _with_extensions(folder / file):
                 if is_file(candidate) and (not self.apart or self._is_below(candidate)):
                     return Path(os.path.normpath(candidate))
+        spelled = (self._spelled_otherwise(folder, file) for folder in folders)
+        return next((path for path in spelled if path and (not self.apart or self._is_below(path))), None)
+
+    def _spelled_otherwise(self, folder: Path, file: str) -> Path | None:
+        """The only file whose path below a folder has the same `name_key` in every part."""
+        *inner, last = PurePosixPath(file).parts
+        if last == ".." or PurePosixPath(file).is_absolute():
+            return None
+        places = [folder]
+        for part in inner:
+            if part == "..":
+                places = [Path(os.path.normpath(place / part)) for place in places]
+            else:
+                places = [path for place in places for path in self._list(place).get(name_key(part), ())]
+        for name in _with_extensions(Path(last)):
+            found = [path for place in places for path in self._list(place).get(name_key(name.name), ())]
+            files = [path for path in found if is_file(path)]
+            if files:
+                return files[0] if len(files) == 1 else None
         return None
+
+    def _list(self, folder: Path) -> dict[str, list[Path]]:
+        """What is in a folder, by `name_key`; nothing where it is none."""
+        if folder not in self._listed:
+            listed: dict[str, list[Path]] = defaultdict(list)
+            try:
+                for name in sorted(os.listdir(folder)):  # noqa: PTH208
+                    listed[name_key(name)].append(folder / name)
+            except (OSError, ValueError):
+                listed.clear()
+            self._listed[folder] = dict(listed)
+        return self._listed[folder]
 
     def _is_below(self, path: Path) -> bool:
         # the folder, not the file: photographs themselves may be links to elsewhere
@@ -99,10 +128,10 @@ class PhotographFinder:
         if self._by_name is None:
             self._by_name = defaultdict(list)
             for path in _candidate_files(self.root):
-                for key in {_name_key(path.name), _name_key(path.stem)}:
+                for key in {name_key(path.name), name_key(path.stem)}:
                     self._by_name[key].append(path)
         name = file.rsplit("/", 1)[-1]
-        matches = self._by_name.get(_name_key(name), []) if name else []
+        matches = self._by_name.get(name_key(name), []) if name else []
         return matches[0] if len(matches) == 1 else None
 
 
@@ -145,13 +174,13 @@ class MaskFinder:
             inner.sort()
             relative = Path(inside).relative_to(folder).as_posix()
             for path in photographs_in(Path(inside)):
-                self._stems[_name_key(relative), _name_key(path.stem)].append(path)
+                self._stems[name_key(relative), name_key(path.stem)].append(path)
 
     def find(self, photograph: Path, folders: Iterable[str]) -> Path | None:
         """The mask of a photograph, looked for in `folders` below the masks' own, "." among them or not."""
         for folder in folders:
             for stem in (photograph.name, photograph.stem):  # a.jpg.png before a.png
-                matches = self._stems.get((_name_key(folder), _name_key(stem)), [])
+                matches = self._stems.get((name_key(folder), name_key(stem)), [])
                 if len(matches) == 1:
                     return matches[0]
                 if matches:

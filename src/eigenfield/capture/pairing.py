@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eigenfield.capture.calibration import Calibration, Entry, escape_name, or_error
+from eigenfield.capture.calibration import Calibration, Entry, escape_name, or_error, split_scale
 from eigenfield.capture.duplicates import describe_duplicates, find_duplicates
 from eigenfield.capture.far import move_to_origin
 from eigenfield.capture.lightfield import LightField, View
@@ -25,6 +25,8 @@ from eigenfield.runtime.parallel import parallel_map
 log = logging.getLogger(__name__)
 
 LIGHT_FIELD_MIN_VIEWS = 3  # photographs that make a light field
+# by which the principal point of a photograph may be next to its corner: (0, 0), and fractions of one photograph
+CORNER_MAX_PIXELS, CORNER_MAX_FRACTION = 1.5, 0.02
 PINHOLE_MAX_ANGLE_DEGREES = 170.0  # of view, without a fisheye lens
 
 
@@ -125,7 +127,40 @@ def _make_views(
             f"{len(disagreeing)} cameras have a focal length and an angle of view that contradict each other "
             f"({stated:.4g} and {by_angle:.4g} pixels for {escape_name(view.path.name)}): the focal length is taken"
         )
+    problems += _describe_rotations(made)
+    if outside := [one for one in made if _is_outside(one.view.camera)]:
+        camera, unsized = outside[0].view.camera, not outside[0].sized
+        problems.append(
+            f"{len(outside)} cameras have their principal point outside of the photograph or in its corner "
+            f"(({camera.K[0, 2]:.4g}, {camera.K[1, 2]:.4g}) of {camera.width}x{camera.height} for "
+            f"{escape_name(outside[0].view.path.name)}): "
+            + ("the calibration gives no width and height (w, h), so " if unsized else "")
+            + "its numbers may be of a larger photograph, or fractions; right only for photographs that were cut out"
+        )
     return [one.view for one in made], errors, problems
+
+
+def _is_outside(camera: Camera) -> bool:
+    sides = np.array([camera.width, camera.height])
+    near = np.maximum(CORNER_MAX_FRACTION * sides, CORNER_MAX_PIXELS)
+    inside = np.minimum(camera.K[:2, 2], sides - camera.K[:2, 2])  # from the nearest side
+    return bool((inside < 0).any() or (inside <= near).all())
+
+
+def _describe_rotations(made: Sequence[_Made]) -> list[str]:
+    """Lines about rotations that `Entry.camera` corrected."""
+    problems = []
+    if scaled := [one for one in made if one.pose_scale != 1]:
+        problems.append(
+            f"{len(scaled)} cameras have a pose with a scale ({scaled[0].pose_scale:.4g} for "
+            f"{escape_name(scaled[0].view.path.name)}), which is divided out"
+        )
+    if rounded := [one.view for one in made if one.pose_rounded and one.pose_scale == 1]:
+        problems.append(
+            f"{len(rounded)} cameras have rotations of few digits (that of {escape_name(rounded[0].path.name)} is not "
+            "orthonormal): the nearest rotations are taken"
+        )
+    return problems
 
 
 class _Made(NamedTuple):
@@ -135,11 +170,17 @@ class _Made(NamedTuple):
         view: The view.
         scaled: Its camera was scaled to the photograph's size.
         focals: As `Intrinsics.contradiction`.
+        sized: The calibration states the size of the photograph.
+        pose_scale: Taken out of the pose, by `split_scale`.
+        pose_rounded: The rotation is not the matrix of the calibration.
     """
 
     view: View
     scaled: bool
     focals: tuple[float, float] | None
+    sized: bool
+    pose_scale: float
+    pose_rounded: bool
 
 
 def _make_view(entry: Entry, path: Path, finder: PhotographFinder, calibration: Path) -> _Made:
@@ -170,7 +211,9 @@ def _make_view(entry: Entry, path: Path, finder: PhotographFinder, calibration: 
     if scaled:
         camera = scale_camera(camera, width, height)
     mask = _find_own_mask(entry, finder, calibration)
-    return _Made(View(path.name, path, camera, entry.lens, mask, upright, entry.bounds), scaled, focals)
+    view = View(path.name, path, camera, entry.lens, mask, upright, entry.bounds)
+    rotation, pose_scale = split_scale(entry.R)
+    return _Made(view, scaled, focals, None not in claimed, pose_scale, rotation is not entry.R)
 
 
 def _refuse_too_wide(entry: Entry, camera: Camera, focals: tuple[float, float] | None, calibration: Path) -> None:

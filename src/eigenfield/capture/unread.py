@@ -9,6 +9,7 @@ from pathlib import Path
 from eigenfield.capture.locate import files_named, photographs_in
 from eigenfield.capture.messages import count_phrase
 from eigenfield.capture.photographs.kinds import OPTIONAL_KINDS, OTHER_KINDS, VIDEO_EXTENSIONS, unread_kind
+from eigenfield.core.camera_names import name_key
 
 UNREAD_COPIES = "they are of photographs that are read"  # a RAW beside its JPEG, the film of a live photograph
 
@@ -25,7 +26,7 @@ def describe_unread(folders: Iterable[Path], *, photographs_only: bool = False) 
     found: dict[str, list[str]] = defaultdict(list)
     for folder in sorted(set(folders)):
         photographs = photographs_in(folder)
-        read, stems = set(photographs), {path.stem.casefold() for path in photographs}
+        read, stems = set(photographs), {name_key(path.stem) for path in photographs}
         for path in files_named(folder, endings):
             remedy = _remedy(path, stems, photographs_only)
             if path not in read and remedy is not None:
@@ -39,7 +40,7 @@ def describe_unread(folders: Iterable[Path], *, photographs_only: bool = False) 
 def _remedy(path: Path, stems: set[str], photographs_only: bool) -> str | None:
     kind = unread_kind(path.name)
     may_be_copy = kind is None or kind.module is not None or path.name.lower().endswith(VIDEO_EXTENSIONS)
-    if may_be_copy and path.stem.casefold() in stems:
+    if may_be_copy and name_key(path.stem) in stems:
         return None if photographs_only else UNREAD_COPIES
     if kind is None:
         return None

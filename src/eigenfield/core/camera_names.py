@@ -4,14 +4,20 @@ from __future__ import annotations
 
 import difflib
 import posixpath
+import unicodedata
 from collections.abc import Sequence
 
 from eigenfield.core.errors import OptionError
 
 
+def name_key(name: str) -> str:
+    """A file's name as file systems compare names that know neither case nor one way to write an accent."""
+    return unicodedata.normalize("NFC", unicodedata.normalize("NFC", name).casefold())
+
+
 def name_stem(name: str) -> str:
-    """A photograph's name without its ending, in one case: view_01.JPG and view_01.png are one."""
-    return posixpath.splitext(name)[0].casefold()
+    """A photograph's name without its ending, by `name_key`: view_01.JPG and view_01.png are one."""
+    return name_key(posixpath.splitext(name)[0])
 
 
 def named_camera(name: str, names: Sequence[str], option: str) -> int:
@@ -27,7 +33,7 @@ def named_camera(name: str, names: Sequence[str], option: str) -> int:
     """
     if name in names:
         return list(names).index(name)
-    alike = [index for index, other in enumerate(names) if name_stem(other) in (name.casefold(), name_stem(name))]
+    alike = [index for index, other in enumerate(names) if name_stem(other) in (name_key(name), name_stem(name))]
     if len(alike) == 1:
         return alike[0]
     near = [names[index] for index in alike[:3]] or difflib.get_close_matches(name, names, n=3, cutoff=0.0)

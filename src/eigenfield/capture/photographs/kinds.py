@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from eigenfield.core.camera_names import name_key
+
 PHOTOGRAPH_EXTENSIONS = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff", ".avif")
 VIDEO_EXTENSIONS = (".mp4", ".mov", ".mkv", ".avi", ".webm", ".m4v", ".mpg", ".mpeg", ".mts", ".m2ts")
 
@@ -88,9 +90,9 @@ def without_copies(files: Iterable[Path]) -> list[Path]:
     ranks = [_rank(file.name) for file in files]
     best: dict[str, int] = {}
     for file, rank in zip(files, ranks, strict=True):
-        stem = file.stem.casefold()
+        stem = name_key(file.stem)
         best[stem] = min(rank, best.get(stem, rank))
-    return [file for file, rank in zip(files, ranks, strict=True) if rank == best[file.stem.casefold()]]
+    return [file for file, rank in zip(files, ranks, strict=True) if rank == best[name_key(file.stem)]]
 
 
 def _rank(name: str) -> int:

@@ -14,14 +14,24 @@ from typing import Any
 
 import numpy as np
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name, read_each
+from eigenfield.capture.calibration import (
+    CALIBRATION_MAX_MAGNITUDE,
+    Calibration,
+    Entry,
+    Intrinsics,
+    escape_name,
+    read_each,
+)
 from eigenfield.capture.photographs.lens import Lens
+from eigenfield.capture.readers.lens_keys import refuse_lens_keys
 from eigenfield.capture.readers.text import (
     check_finite,
     check_lens,
+    check_rotation_vector,
     check_size,
     damaged_error,
     excerpt,
+    longest_vector,
     read_contents,
     read_head,
 )
@@ -53,11 +63,18 @@ def read_deepview(path: Path) -> Calibration:
         ) from error
     if not isinstance(cameras, list) or not cameras:
         raise CaptureError("calibration-empty", "lists no camera", path=path, remedy="name another calibration")
-    entries, errors = read_each(lambda item: _make_entry(item[1], item[0], path), enumerate(cameras))
+    turns = (camera.get("orientation") for camera in cameras if isinstance(camera, dict))
+    longest = longest_vector(turn for turn in turns if _are_numbers(turn))
+    entries, errors = read_each(lambda item: _make_entry(item[1], item[0], longest, path), enumerate(cameras))
     return Calibration(path, "deepview", entries, errors)
 
 
-def _make_entry(camera: Any, number: int, path: Path) -> Entry:
+def _are_numbers(values: Any) -> bool:
+    numbers = isinstance(values, list) and all(type(v) in (int, float) for v in values)
+    return numbers and all(abs(v) <= CALIBRATION_MAX_MAGNITUDE for v in values)
+
+
+def _make_entry(camera: Any, number: int, longest: float, path: Path) -> Entry:
     from scipy.spatial.transform import Rotation  # not where another format is read
 
     name = camera.get("name") if isinstance(camera, dict) else None
@@ -80,19 +97,22 @@ def _make_entry(camera: Any, number: int, path: Path) -> Entry:
     (width,), (height,) = numbers("width", 1, 1), numbers("height", 1, 1)
     radial = numbers("radial_distortion", 0, DEEPVIEW_MAX_RADIAL, [])
     check_lens(radial, label, path)
-    lens = _make_lens(camera.get("projection_type", "perspective"), radial, label, path)
+    refuse_lens_keys(camera, ("radial_distortion", "projection_type"), label, path)
+    lens = _make_lens(camera.get("projection_type") or "perspective", radial, label, path)
     intrinsics = Intrinsics(*check_size(width, height, label, path), (focal, focal * aspect), None, (cx, cy))
+    check_rotation_vector(longest, label, path)
     R = Rotation.from_rotvec(turn).as_matrix()
     return Entry(name.replace("\\", "/"), label, intrinsics, R, centre, lens)
 
 
 def _make_lens(kind: Any, radial: list[float], label: str, path: Path) -> Lens | None:
     k1, k2, k3, k4 = (*radial, 0.0, 0.0, 0.0, 0.0)[:4]
-    if kind == "fisheye":
+    word = kind.strip().lower() if isinstance(kind, str) else ""
+    if word == "fisheye":
         return Lens("fisheye", (k1, k2, k3, k4))
     lens = Lens("brown", (k1, k2, 0.0, 0.0, k3))
-    if kind != "perspective" or k4:
-        what = f"the projection_type {excerpt(kind)!r}" if kind != "perspective" else "four radial coefficients"
+    if word != "perspective" or k4:
+        what = f"the projection_type {excerpt(kind)!r}" if word != "perspective" else "four radial coefficients"
         raise CaptureError(
             "camera-model",
             f"{label} has {what}, which is not read",

@@ -1,8 +1,9 @@
-"""OpenCV's FileStorage files as plain trees: YAML, XML and JSON, and ROS's camera_info YAML, which looks alike.
+"""OpenCV's FileStorage files as plain trees: YAML, XML and JSON, and any YAML (ROS, PyYAML) and TOML that looks alike.
 
 Not by cv2.FileStorage, which is no match for damaged files. YAML comes as events of PyYAML, without its resolvers:
-`no`, `1:30` and dates are words here, and `1e-5` is a number. Aliases are refused, as they could make a small file grow
-without end. OpenCV's YAML is none in two places, which are corrected first: `%YAML:1.0` and `{ x:1 }`.
+`no`, `1:30` and dates are words here, `1e-5` is a number, and tags make nothing. What an alias repeats counts each time
+against a limit, so that a small file cannot grow without end. OpenCV's YAML is none in two places, which are corrected
+first: `%YAML:1.0` and `{ x:1 }`.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import json
 import math
 import re
+import tomllib
 from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import Element
@@ -22,9 +24,12 @@ from eigenfield.capture.readers.text import damaged_error, excerpt, read_head, r
 from eigenfield.capture.readers.xml_tree import load_xml
 
 Tree = dict[str, Any]
-STORAGE_EXTENSIONS = (".yml", ".yaml", ".xml", ".json")
+STORAGE_PLAIN_EXTENSIONS = (".yml", ".yaml", ".toml")  # which have no head that tells
+STORAGE_EXTENSIONS = (*STORAGE_PLAIN_EXTENSIONS, ".xml", ".json")
+STORAGE_MAX_NODES = 2**20  # of a YAML with aliases, what they repeat counted each time
 STORAGE_MAX_DEPTH = 32
 STORAGE_MAX_BYTES = 8 * 2**20  # the points of a thousand charts fit
+STORAGE_MAX_INTEGER = 2**1000  # beyond, it may be no float
 STORAGE_YAML_HEAD = re.compile(r"\A%YAML[^\n]*")  # OpenCV writes %YAML:1.0, which is no directive of YAML
 STORAGE_FLOW_KEY = re.compile(r"(?<=[{,])(\s*\w+:)(?=\S)")
 STORAGE_QUOTED = re.compile(r'"((?:[^"\\]|\\.)*)"', re.DOTALL)
@@ -48,6 +53,8 @@ def load_storage(path: Path) -> Tree:
             tree = _from_xml(load_xml(path, STORAGE_MAX_BYTES))
         elif suffix == ".json":
             tree = _from_json(read_text(path, STORAGE_MAX_BYTES), path)
+        elif suffix == ".toml":
+            tree = _from_toml(read_text(path, STORAGE_MAX_BYTES), path)
         else:
             tree = _from_yaml(read_text(path, STORAGE_MAX_BYTES))
         found = _with_matrices(tree, 0)
@@ -59,7 +66,9 @@ def load_storage(path: Path) -> Tree:
 
 
 def is_storage(path: Path) -> bool:
-    """Whether a file begins as OpenCV begins its files."""
+    """Whether a file is named as YAML or TOML, or begins as OpenCV begins its files."""
+    if path.suffix.lower() in STORAGE_PLAIN_EXTENSIONS:
+        return True
     head = read_head(path, 512)
     return head.startswith(b"%YAML") or b"<opencv_storage" in head
 
@@ -105,6 +114,25 @@ def _from_json(source: str, path: Path) -> Any:
         return json.loads(source, parse_int=float)
     except (ValueError, RecursionError) as error:
         raise damaged_error(path, f"is no valid JSON ({str(error)[:80]})") from error
+
+
+def _from_toml(source: str, path: Path) -> Any:
+    try:
+        return _with_floats(tomllib.loads(source), 0)
+    except (ValueError, RecursionError) as error:
+        raise damaged_error(path, f"is no valid TOML ({escape_name(str(error)[:80])})") from error
+
+
+def _with_floats(node: Any, depth: int) -> Any:
+    if depth > STORAGE_MAX_DEPTH:
+        raise _BadStorageError("nested too deep")
+    if isinstance(node, dict):
+        return {key: _with_floats(value, depth + 1) for key, value in node.items()}
+    if isinstance(node, list):
+        return [_with_floats(value, depth + 1) for value in node]
+    if isinstance(node, int) and not isinstance(node, bool):
+        return float(node) if abs(node) < STORAGE_MAX_INTEGER else math.inf
+    return node
 
 
 def _from_xml(root: Element) -> Any:
@@ -153,9 +181,21 @@ def _from_yaml(source: str) -> Any:
     return documents[0] if documents else None
 
 
+def _merged(mapping: dict[str, Any]) -> dict[str, Any]:
+    """A mapping with those that its key `<<` names, whose values count where it has none."""
+    others = mapping.pop("<<", None)
+    for other in others if isinstance(others, list) else [others]:
+        if isinstance(other, dict):
+            mapping = {**other, **mapping}
+    return mapping
+
+
 def _parse_documents(source: str) -> list[Any]:
     """Every document of a YAML stream. Raises yaml.YAMLError and _BadStorageError."""
     documents: list[Any] = []
+    anchors: dict[str, tuple[Any, int]] = {}  # with the number of nodes in each
+    total, repeated = 0, 0
+    begun: list[tuple[str | None, int]] = []  # the anchor of each open node, and the total at its beginning
     open_nodes = [documents]  # a mapping's keys and values alternate in its list
     kinds: list[type[list[Any] | dict[str, Any]]] = [list]
     for event in yaml.parse(source, Loader=STORAGE_YAML_LOADER):
@@ -163,14 +203,29 @@ def _parse_documents(source: str) -> list[Any]:
         if isinstance(event, yaml.ScalarEvent):
             is_word = is_key or event.style not in ("", None)
             open_nodes[-1].append(event.value if is_word else _parse_scalar(event.value))
+            total += 1
+            if event.anchor:
+                anchors[event.anchor] = open_nodes[-1][-1], 1
         elif isinstance(event, yaml.CollectionStartEvent):
             if is_key or len(kinds) > STORAGE_MAX_DEPTH:
                 raise _BadStorageError("a collection for a name" if is_key else "nested too deep")
             open_nodes.append([])
+            begun.append((event.anchor, total))
             kinds.append(dict if isinstance(event, yaml.MappingStartEvent) else list)
         elif isinstance(event, yaml.CollectionEndEvent):
             items, kind = open_nodes.pop(), kinds.pop()
-            open_nodes[-1].append(items if kind is list else dict(zip(items[::2], items[1::2], strict=True)))
+            anchor, before = begun.pop()
+            node = items if kind is list else _merged(dict(zip(items[::2], items[1::2], strict=True)))
+            open_nodes[-1].append(node)
+            total += 1
+            if anchor:
+                anchors[anchor] = node, total - before
         elif isinstance(event, yaml.AliasEvent):
-            raise _BadStorageError("an alias, which is not read here")
+            if event.anchor not in anchors or is_key:
+                raise _BadStorageError(f"an alias of nothing that is finished before it, *{excerpt(event.anchor)}")
+            node, size = anchors[event.anchor]
+            open_nodes[-1].append(node)
+            total, repeated = total + size, repeated + size
+            if repeated > STORAGE_MAX_NODES:
+                raise _BadStorageError("its aliases repeat too much")
     return documents

@@ -33,6 +33,7 @@ from eigenfield.capture.calibration import (
 )
 from eigenfield.capture.messages import describe
 from eigenfield.capture.photographs.lens import Lens
+from eigenfield.capture.readers.lens_keys import refuse_lens_keys
 from eigenfield.capture.readers.skew import SKEW_MAX_RATIO, SKEW_NEGLIGIBLE_RATIO
 from eigenfield.capture.readers.text import (
     check_finite,
@@ -280,6 +281,7 @@ def _read_calibration(sensor: Element | None, number: str, path: Path) -> tuple[
             remedy=f"use one of {', '.join(METASHAPE_LENS_MODELS)}, or undistort the photographs",
         )
     width, height = _read_size(calibration, sensor, label, path)
+    refuse_lens_keys({part.tag: part.text for part in calibration}, METASHAPE_PARAMETERS, label, path)
     values = {part.tag: _read_number(part, label, path) for part in calibration if part.tag in METASHAPE_PARAMETERS}
     if "f" in values:
         fx, fy = values["f"] + values.get("b1", 0.0), values["f"]

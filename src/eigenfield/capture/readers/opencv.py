@@ -1,10 +1,11 @@
-"""Calibrations in OpenCV's FileStorage files (YAML, XML, JSON). Names are not fixed: those in common use are known.
+"""Calibrations in OpenCV's terms (YAML, XML, JSON, TOML). Names are not fixed: those in common use are known.
 
-Camera matrix `camera_matrix`, `K`, `M`, distortion `distortion_coefficients`, `dist`, `D`, pose `R` or `rvec` with `T`
-or `tvec` (world-to-camera, X_camera = R X + T), or a 3 x 4 `extrinsic_matrix`; several cameras by an ending (`K_01`,
-`M1`) or by a mapping each; one file for all, intrinsics and extrinsics apart (`intri.yml` and `extri.yml` of EasyMocap;
-OpenCV's stereo sample), or a file a camera, named as its photograph. OpenCV counts pixel centres from 0: half a pixel
-is added to the principal point.
+Camera matrix `camera_matrix`, `K`, `M`, or `fx`, `fy`, `cx`, `cy`; distortion `distortion_coefficients`, `dist`, `D`,
+or `k1`, `k2`, `p1`, `p2` ...; pose `R` or `rvec` with `T` or `tvec` (world-to-camera, X_camera = R X + T), or a 3 x 4
+`extrinsic_matrix`; several cameras by an ending (`K_01`, `M1`) or by a mapping each; one file for all (CMU Panoptic;
+the TOML of Caliscope and Anipose), intrinsics and extrinsics apart (`intri.yml` and `extri.yml` of EasyMocap; OpenCV's
+stereo sample), or a file a camera, named as its photograph. Another key that looks like a lens is an error
+(`lens_keys`). OpenCV counts pixel centres from 0: half a pixel is added to the principal point.
 """
 
 from __future__ import annotations
@@ -18,27 +19,45 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name
+from eigenfield.capture.calibration import CALIBRATION_MAX_MAGNITUDE, Calibration, Entry, Intrinsics, escape_name
+from eigenfield.capture.locate import IMAGES_FOLDER, photographs_in
 from eigenfield.capture.messages import describe
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.readers.by_order import photographs_in_order
 from eigenfield.capture.readers.filestorage import STORAGE_EXTENSIONS, Tree, is_storage, load_storage
+from eigenfield.capture.readers.lens_keys import has_numbers, is_lens, refuse_lens_key
 from eigenfield.capture.readers.skew import remove_skew
 from eigenfield.capture.readers.text import (
     camera_centre,
     check_finite,
     check_lens,
+    check_rotation_vector,
     check_size,
     damaged_error,
     excerpt,
     files_in,
+    longest_vector,
 )
+from eigenfield.core.camera_names import name_key
 from eigenfield.core.errors import CaptureError
 
 OPENCV_FOLDERS = ("", "calibration", "calib", "cameras", "intri_extri")
 OPENCV_ROLES = {
     "matrix": ("camera_matrix", "cameramatrix", "intrinsic_matrix", "intrinsics", "intrinsic", "mtx", "k", "m"),
-    "distortion": ("distortion_coefficients", "distortion_coeffs", "distcoeffs", "dist_coeffs", "dist", "d"),
+    "plain_matrix": ("matrix",),  # the camera matrix where there is no other
+    "fx": ("fx", "f_x", "focal_x"), "fy": ("fy", "f_y", "focal_y"),
+    "focal": ("focal_length", "focallength", "focal", "f"),
+    "cx": ("cx", "c_x", "ppx"), "cy": ("cy", "c_y", "ppy"), "principal": ("principal_point", "principalpoint", "pp"),
+    "distortion": (
+        *(
+            f"{first}{joint}{last}"
+            for first in ("dist", "distortion") for joint in ("_", "") for last in (
+                "coef", "coefs", "coeff", "coeffs", "coefficient", "coefficients", "params", "parameters", "vector")
+        ),
+        "lens_distortion", "lensdistortion", "distortions", "distortion", "dist", "d",
+    ),
+    "radial": ("radial_distortion", "radialdistortion", "radial"),
+    "tangential": ("tangential_distortion", "tangentialdistortion", "tangential"),
     "rotation": ("rotation_matrix", "rotation_vector", "rotation", "rvec", "rot", "r"),
     "translation": ("translation_vector", "translation", "tvec", "t"),
     "extrinsic": ("extrinsic_matrix", "extrinsics", "extrinsic", "rt"),
@@ -51,6 +70,20 @@ OPENCV_ROLES = {
 OPENCV_WORDS = sorted(
     ((word, role) for role, words in OPENCV_ROLES.items() for word in words), key=lambda pair: -len(pair[0])
 )
+# in OpenCV's order, where each has a key of its own
+OPENCV_COEFFICIENTS = ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6", "s1", "s2", "s3", "s4", "taux", "tauy")
+OPENCV_COEFFICIENT_COUNTS = (0, 4, 5, 8, 12, 14)
+OPENCV_LENS_ROLES = ("distortion", "radial", "tangential", *OPENCV_COEFFICIENTS)
+OPENCV_ARRAY_ROLES = ("matrix", "plain_matrix", "rotation", "translation", "extrinsic", "views")
+OPENCV_SHARED_ROLES = ("width", "height", "size", "model")
+OPENCV_INTRINSIC_ROLES = ("matrix", "fx", "fy", "focal", "cx", "cy", "principal", *OPENCV_LENS_ROLES, "unread")
+# mappings that are a part of a camera and not a camera of this name
+OPENCV_PARTS = {
+    "intrinsics", "intrinsic", "extrinsics", "extrinsic", "pose", "distortion", "lens", "calibration", "parameters",
+    "params",
+}  # fmt: skip
+OPENCV_ANGLES_KEY = re.compile(r"euler|rpy$|(rot|rvec|angle).*deg|ypr$|(yaw|pitch|roll)(deg|degrees)?$")
+OPENCV_NAME_BEGINNINGS = ("cam_", "cam", "camera_", "camera", "port_")  # where a file numbers its cameras
 OPENCV_STEREO_PAIRS = ({"1", "2"}, {"0", "1"}, {"left", "right"}, {"l", "r"})
 OPENCV_BROWN_MODELS = (
     "plumb_bob",
@@ -74,6 +107,10 @@ def _has_pose(values: Values) -> bool:
     return "extrinsic" in values or {"rotation", "translation"} <= values.keys()
 
 
+def _has_matrix(values: Values) -> bool:
+    return not values.keys().isdisjoint(("matrix", "fx", "focal"))
+
+
 def find_opencv(folder: Path) -> Path | None:
     """An OpenCV file in a folder (or `calibration/`, `calib/`, `cameras/`) that holds cameras *with poses* and names:
     one file, one of intrinsics with its extrinsics beside it, or the folder where each camera has a file."""
@@ -84,7 +121,7 @@ def find_opencv(folder: Path) -> Path | None:
                 cameras = _load_cameras(path)
             except CaptureError:
                 continue
-            posed = [key for key, found in cameras.items() if _has_pose(found) and "matrix" in found]
+            posed = [key for key, found in cameras.items() if _has_pose(found) and _has_matrix(found)]
             if len(posed) > 1 and not _is_stereo(cameras):
                 return path
             if posed == [""] or (posed and len(cameras) == 1):
@@ -131,15 +168,27 @@ def read_opencv(path: Path, photographs: Path | None = None) -> Calibration:
                 raise
             errors.append(error)
             continue
+        longest = longest_vector(vector for _, found in poses if (vector := _rotation_vector(found)) is not None)
         for name, found in poses:
             try:
-                entries.append(_make_entry(name, found, file))
+                entries.append(_make_entry(name, found, longest, file))
             except CaptureError as error:
                 errors.append(error)
-        without = [key for key, found in cameras.items() if not _has_pose(found) and "matrix" in found]
+        without = [key for key, found in cameras.items() if not _has_pose(found) and _has_matrix(found)]
+        errors += [_angles_error(key, cameras[key]["angles"], file) for key in without if "angles" in cameras[key]]
+        blind = [key for key, found in cameras.items() if _has_pose(found) and not _has_matrix(found)]
+        if not _is_stereo(cameras):
+            problems += describe(blind, "camera has", "cameras have", f"a pose and no camera matrix in {file.name}")
         if poses and not _is_stereo(cameras) and not any("views" in found for found in cameras.values()):
             problems += describe(without, "camera has", "cameras have", f"no pose in {file.name}")
-    if not entries and not errors and not posed:
+    if not entries and not errors and posed:
+        raise CaptureError(
+            "opencv-matrix",
+            "has poses, but no camera has a camera matrix (camera_matrix, K, or fx, fy, cx, cy)",
+            path=path,
+            remedy="add the intrinsics",
+        )
+    if not entries and not errors:
         raise CaptureError(
             "opencv-poses",
             "has no camera with a pose (R and T)",
@@ -156,7 +205,7 @@ def read_opencv_intrinsics(path: Path) -> dict[str, tuple[Intrinsics, Lens | Non
     it holds no camera matrix, and `camera-...` and `lens` for a camera that cannot be.
     """
     cameras = _load_cameras(path)
-    found = {name: camera for name, camera in cameras.items() if "matrix" in camera}
+    found = {name: camera for name, camera in cameras.items() if _has_matrix(camera)}
     if not found:
         raise CaptureError(
             "calibration-empty",
@@ -186,7 +235,7 @@ def _load_cameras(path: Path) -> dict[str, Values]:
     """By name, in the file's order; of the file itself and the one that holds the other half (intri and extri)."""
     cameras = _cameras_by_name(load_storage(path))
     other = _find_companion(path)
-    if other is not None and not (cameras and all(_has_pose(c) and "matrix" in c for c in cameras.values())):
+    if other is not None and not (cameras and all(_has_pose(c) and _has_matrix(c) for c in cameras.values())):
         for name, found in _cameras_by_name(load_storage(other)).items():
             cameras[name] = {**found, **cameras.get(name, {})}
     return cameras
@@ -202,49 +251,109 @@ def _find_companion(path: Path) -> Path | None:
 
 def _cameras_by_name(tree: Tree) -> dict[str, Values]:
     cameras: dict[str, Values] = {}
-    for name, mapping in _walk_mappings(tree, ""):
+    owners: dict[str, str] = {}  # of a camera that an ending names, the mapping that it stands in
+    for name, mapping, lens in _walk_mappings(tree, ""):
         for key, value in mapping.items():
             role, ending = _match_role(key, value)
-            if role is not None:
-                place = f"{name}_{ending}" if name and ending else name or ending
-                cameras.setdefault(place, {}).setdefault(role, value)
-    shared = {r: v for r, v in cameras.get("", {}).items() if r in ("width", "height", "size", "model")}
-    telling = {"matrix", "rotation", "translation", "extrinsic", "views"}
-    return {name: {**shared, **found} for name, found in cameras.items() if telling & found.keys()}
+            place = f"{name}_{ending}" if name and ending else name or ending
+            values = cameras.setdefault(place, {})
+            owners[place] = name
+            if role is None:
+                if lens is not None and not isinstance(value, (dict, list)) and has_numbers(value):
+                    values.setdefault("unread", lens)
+                elif not isinstance(value, dict) and is_lens(key, value):
+                    values.setdefault("unread", key)
+            elif role in OPENCV_LENS_ROLES and role in values and not _is_same(values[role], value):
+                values.setdefault("unread", key)
+            else:
+                values.setdefault(role, value)
+                if role in OPENCV_LENS_ROLES:
+                    values.setdefault("lens_key", key)
+    for found in cameras.values():
+        if "plain_matrix" in found:
+            found.setdefault("matrix", found.pop("plain_matrix"))
+    telling = {"matrix", "fx", "focal", "rotation", "translation", "extrinsic", "views"}
+    known = {name: found for name, found in cameras.items() if telling & found.keys()}
+    for name, found in cameras.items():
+        if name not in known and not found.keys().isdisjoint((*OPENCV_LENS_ROLES, "unread")):
+            _pass_on(found, owners[name], name, known)
+    return _with_shared(cameras.get("", {}), known)
 
 
-def _walk_mappings(node: Any, name: str, depth: int = 0) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    """Every mapping of the tree, with the name of its camera."""
+def _pass_on(found: Values, owner: str, name: str, known: dict[str, Values]) -> None:
+    """Hand a lens that no camera has to the cameras that it may be of: as what is not read, under its own key."""
+    if not name:
+        return  # all cameras share it
+    key = found.get("unread", found.get("lens_key"))
+    for values in [known[owner]] if owner in known else known.values():
+        values.setdefault("unread", key)
+
+
+def _with_shared(top: Values, known: dict[str, Values]) -> dict[str, Values]:
+    """The cameras with what the file says of all of them."""
+    roles: tuple[str, ...] = OPENCV_SHARED_ROLES
+    others = {name: found for name, found in known.items() if name}
+    if others and not _has_pose(top) and not any(_has_matrix(found) for found in others.values()):
+        roles, known = (*roles, *OPENCV_INTRINSIC_ROLES), others
+    elif others and not _has_pose(top) and not _has_matrix(top):
+        roles = (*roles, *OPENCV_LENS_ROLES, "unread")
+    shared = {role: value for role, value in top.items() if role in roles}
+    return {name: {**shared, **found} for name, found in known.items()}
+
+
+def _is_same(one: Any, other: Any) -> bool:
+    return np.array_equal(_as_array(one), _as_array(other)) if isinstance(one, (list, np.ndarray)) else one == other
+
+
+def _walk_mappings(
+    node: Any, name: str, lens: str | None = None, depth: int = 0
+) -> Iterator[tuple[str, Mapping[str, Any], str | None]]:
+    """Every mapping of the tree, with the name of its camera, and the key that makes it a part of a lens."""
     if isinstance(node, dict):
         own = next((node[k] for k in ("name", "camera_name", "image", "file") if isinstance(node.get(k), str)), None)
-        yield (own if own and depth else name), node
+        name = own if own and depth else name
+        yield name, node, lens
         for key, value in node.items():
-            yield from _walk_mappings(value, key, depth + 1)
+            part = key.lower() in OPENCV_PARTS
+            inner = lens or (key if isinstance(value, dict) and is_lens(key, value) else None)
+            yield from _walk_mappings(value, name if part or inner else key, inner, depth + 1)
     elif isinstance(node, list) and not all(isinstance(v, float) for v in node):
         for i, value in enumerate(node):
-            yield from _walk_mappings(value, f"{i}", depth + 1)
+            yield from _walk_mappings(value, f"{i}", lens, depth + 1)
 
 
 def _match_role(key: str, value: Any) -> tuple[str | None, str]:
     """The role of a name, and the camera that its ending names; None where name or value do not fit."""
-    low = key.lower()
+    low = key.lower().replace("-", "_").replace(" ", "_")
+    if low.replace("_", "") in OPENCV_COEFFICIENTS and isinstance(value, float):
+        return low.replace("_", ""), ""
+    if OPENCV_ANGLES_KEY.search(low.replace("_", "")) and has_numbers(value):
+        return "angles", ""
     for word, role in OPENCV_WORDS:
         ending = key[len(word) :]
-        if not low.startswith(word) or not (not ending or ending[0] == "_" or ending.isdigit()):
+        if not low.startswith(word) or not (not ending or ending[0] in "_- " or ending.isdigit()):
             continue
-        if role in ("matrix", "distortion", "rotation", "translation", "extrinsic", "views"):
-            shape = _as_array(value)
-            if shape is None or not _has_role_shape(role, shape):
+        array = _as_array(value)
+        if role in OPENCV_ARRAY_ROLES:
+            if array is None or not _has_role_shape(role, array, word):
                 continue
-            return role, ending.removeprefix("_")
-        return (role, ending.removeprefix("_")) if _is_plain(role, value) else (None, "")
+        elif role in ("distortion", "radial", "tangential"):
+            if isinstance(value, float) and word != "d" and not ending:
+                array = np.array([value])
+            if array is None or array.size != max(array.shape, default=0):
+                continue
+        elif not _is_plain(role, value):
+            return None, ""
+        return role, ending[1:] if ending and ending[0] in "_- " else ending
     return None, ""
 
 
 def _is_plain(role: str, value: Any) -> bool:
-    if role in ("width", "height"):
+    if role in ("width", "height", "fx", "fy", "cx", "cy"):
         return isinstance(value, float)
-    if role == "size":
+    if role == "focal" and isinstance(value, float):
+        return True
+    if role in ("size", "focal", "principal"):
         array = _as_array(value)
         return array is not None and array.size == 2
     return isinstance(value, (float, str, bool))
@@ -264,8 +373,10 @@ def _as_array(value: Any) -> NDArray[np.float64] | None:
     return np.array(rows)
 
 
-def _has_role_shape(role: str, array: NDArray[np.float64]) -> bool:
-    if role == "matrix":
+def _has_role_shape(role: str, array: NDArray[np.float64], word: str) -> bool:
+    if role == "matrix" and word.startswith("intrinsic") and array.shape == (4,):  # fx, fy, cx, cy, as of Kalibr
+        return bool(0 < array[1] <= 2 * array[0] <= 4 * array[1])
+    if role in ("matrix", "plain_matrix"):
         return array.shape == (3, 3) or array.size == 9
     if role == "rotation":
         return array.size in (3, 9)
@@ -273,9 +384,7 @@ def _has_role_shape(role: str, array: NDArray[np.float64]) -> bool:
         return array.size == 3
     if role == "extrinsic":
         return array.shape in ((3, 4), (4, 4))
-    if role == "views":
-        return array.ndim == 2 and array.shape[1] == 6
-    return array.size in (0, 4, 5, 8, 12, 14)
+    return array.ndim == 2 and array.shape[1] == 6
 
 
 def _is_stereo(cameras: Mapping[str, Values]) -> bool:
@@ -294,28 +403,52 @@ def _posed_cameras(cameras: dict[str, Values], path: Path, root: Path) -> Iterat
             intrinsics = {role: value for role, value in cameras[name].items() if role not in OPENCV_POSE_ROLES}
             yield file, intrinsics | {role: value for role, value in pose.items() if role in OPENCV_POSE_ROLES}
         return
+    stems = {name_key(file.stem) for folder in (root, root / IMAGES_FOLDER) for file in photographs_in(folder)}
     for name, found in cameras.items():
-        if "views" in found and not _has_pose(found) and "matrix" in found:
+        if "views" in found and not _has_pose(found) and _has_matrix(found):
             views = _as_array(found["views"])
             assert views is not None
             for file, row in zip(photographs_in_order(root, len(views), path), views, strict=True):
                 yield file, {**found, "rotation": row[:3], "translation": row[3:]}
-        elif _has_pose(found) and "matrix" in found:
-            yield name or path.stem, found
+        elif _has_pose(found) and _has_matrix(found):
+            yield _photograph_name(name or path.stem, stems), found
+
+
+def _photograph_name(name: str, stems: set[str]) -> str:
+    """The name of a camera as photographs or videos have it: camera 0 of a file is their cam_0."""
+    names = (name, *(f"{beginning}{name}" for beginning in OPENCV_NAME_BEGINNINGS))
+    return next((one for one in names if name_key(one) in stems), name)
 
 
 # one camera
 
 
-def _make_entry(name: str, found: Values, path: Path) -> Entry:
+def _make_entry(name: str, found: Values, longest: float, path: Path) -> Entry:
     label = f"camera {escape_name(name)}"
     if "\0" in name:
         raise damaged_error(path, f"{label} is no name of a file", "mend or remove it")
     intrinsics, lens = _read_intrinsics(found, label, path)
+    if _rotation_vector(found) is not None:
+        check_rotation_vector(longest, label, path)
     R, t = _read_pose(found, label, path)
     check_finite([R, t], label, path)
     centre = camera_centre(R, t, label, path)
     return Entry(name.replace("\\", "/"), label, intrinsics, R, centre, lens)
+
+
+def _rotation_vector(found: Values) -> NDArray[np.float64] | None:
+    """A pose's rotation of three numbers; None for others, and where it is not finite, which `_read_pose` refuses."""
+    array = _as_array(found["rotation"]) if {"rotation", "translation"} <= found.keys() else None
+    return array if array is not None and array.size == 3 and np.abs(array).max() < CALIBRATION_MAX_MAGNITUDE else None
+
+
+def _angles_error(name: str, key: str, path: Path) -> CaptureError:
+    return CaptureError(
+        "camera-rotation-vector",
+        f"camera {escape_name(name) or path.stem} has its rotation in {key!r}: degrees and Euler angles are not read",
+        path=path,
+        remedy="give rotation vectors in radians, as cv2.Rodrigues makes them, or 3x3 matrices",
+    )
 
 
 def _read_pose(found: Values, label: str, path: Path) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -335,12 +468,17 @@ def _read_pose(found: Values, label: str, path: Path) -> tuple[NDArray[np.float6
 
 
 def _read_intrinsics(found: Values, label: str, path: Path) -> tuple[Intrinsics, Lens | None]:
-    matrix = _as_array(found["matrix"])
-    assert matrix is not None
+    lens = _make_lens(found, label, path)
+    size = _read_size(found, label, path)
+    matrix = _as_array(found["matrix"]) if "matrix" in found else None
+    if matrix is None or matrix.size == 4:  # fx, fy, cx, cy
+        focal, principal = _read_named(found) if matrix is None else (tuple(matrix[:2]), tuple(matrix[2:]))
+        check_finite([focal, [v for v in principal if v is not None]], label, path)
+        cx, cy = (None if value is None else float(value) + 0.5 for value in principal)
+        return Intrinsics(*size, (float(focal[0]), float(focal[1])), None, (cx, cy)), lens
     K = matrix.reshape(3, 3)
     check_finite([K], label, path)
     K, skewed = remove_skew(K, label, path)
-    lens = _make_lens(found, label, path)
     if skewed is not None and lens is not None:
         raise CaptureError(
             "camera-skew",
@@ -349,7 +487,17 @@ def _read_intrinsics(found: Values, label: str, path: Path) -> tuple[Intrinsics,
             remedy="mend it",
         )
     K[:2, 2] += 0.5
-    return Intrinsics.of_matrix(K, *_read_size(found, label, path)), lens or skewed
+    return Intrinsics.of_matrix(K, *size), lens or skewed
+
+
+def _read_named(found: Values) -> tuple[tuple[float, ...], tuple[float | None, ...]]:
+    """Focal lengths, and the principal point, None where it is not stated."""
+    both = _as_array(found["focal"]) if isinstance(found.get("focal"), (list, np.ndarray)) else found.get("focal")
+    fx, fy = np.broadcast_to(both, 2).tolist() if both is not None else (None, None)
+    middle = _as_array(found["principal"]) if "principal" in found else None
+    cx, cy = middle.reshape(2).tolist() if middle is not None else (None, None)
+    fx, fy = found.get("fx", fx), found.get("fy", found.get("fx", fy))
+    return (fx, fy), (found.get("cx", cx), found.get("cy", cy))
 
 
 def _read_size(values: Values, label: str, path: Path) -> tuple[int | None, int | None]:
@@ -364,18 +512,72 @@ def _read_size(values: Values, label: str, path: Path) -> tuple[int | None, int 
 
 
 def _make_lens(found: Values, label: str, path: Path) -> Lens | None:
-    array = _as_array(found["distortion"]) if "distortion" in found else None
-    c = () if array is None else tuple(array.reshape(-1).tolist())
+    if "unread" in found:
+        refuse_lens_key(found["unread"], label, path)
+    fisheye = _is_fisheye(found.get("model"), label, path)
+    c = _read_coefficients(found, fisheye, label, path)
     check_lens(c, label, path)
-    if _is_fisheye(found.get("model"), label, path):
-        if len(c) not in (0, 4):
+    if fisheye:
+        if len(c) > 4:
             raise CaptureError("lens", f"{label} is a fisheye with {len(c)} coefficients", path=path, remedy="mend it")
-        return Lens("fisheye", c or (0.0,) * 4)
+        return Lens("fisheye", (*c, 0.0, 0.0, 0.0, 0.0)[:4])
     if not any(c):
         return None
     if len(c) <= 5:
-        return Lens("brown", (*c, 0.0)[:5])
+        return Lens("brown", (*c, 0.0, 0.0, 0.0, 0.0)[:5])
     return Lens("rational", c)
+
+
+def _read_coefficients(found: Values, fisheye: bool, label: str, path: Path) -> tuple[float, ...]:
+    """Coefficients in OpenCV's order, as many as it knows or fewer; those of a fisheye are k1 to k4.
+
+    Raises CaptureError `lens` where their order is not certain: of three or six numbers the third is p1 to OpenCV, and
+    k3 to others.
+    """
+    ways = [role for role in ("distortion", "radial", "tangential") if role in found and has_numbers(found[role])]
+    named = {key: found[key] for key in OPENCV_COEFFICIENTS if found.get(key)}
+    problem = ""
+    values: tuple[float, ...] = ()
+    if named and ways:
+        problem = f"{' and '.join(ways)} and {' '.join(named)}"
+    elif named:
+        order = ("k1", "k2", "k3", "k4") if fisheye else OPENCV_COEFFICIENTS
+        strange = named.keys() - set(order)
+        alone = not fisheye and "k4" in named and not {"k5", "k6"} & named.keys() and not _is_rational(found)
+        if strange or alone:
+            problem = f"{' '.join(sorted(strange) or ['k4'])} without a model that has them"
+        values = tuple(float(named.get(key, 0.0)) for key in order)
+        count = next(n for n in (*OPENCV_COEFFICIENT_COUNTS, len(values)) if not any(values[n:]))
+        values = values[:count]
+    elif ways == ["distortion"]:
+        values = _as_numbers(found["distortion"])
+        if not any(values[2:]):
+            values = values[:2]
+        elif len(values) not in OPENCV_COEFFICIENT_COUNTS and not (fisheye and len(values) < 4):
+            problem = f"{len(values)} distortion coefficients, of which the order is not known"
+    elif ways:
+        radial, tangential = (_as_numbers(found.get(role, [])) for role in ("radial", "tangential"))
+        if len(ways) == 3 or "distortion" in ways or any(radial[3:]) or any(tangential[2:]) or fisheye:
+            problem = f"{' and '.join(ways)} coefficients of which the order is not known"
+        k1, k2, k3, p1, p2 = (*(*radial, 0.0, 0.0, 0.0)[:3], *(*tangential, 0.0, 0.0)[:2])
+        values = (k1, k2, p1, p2, k3)
+    if problem:
+        raise CaptureError(
+            "lens",
+            f"{label} has {problem}",
+            path=path,
+            remedy="give 1, 2, 4, 5, 8, 12 or 14 coefficients k1 k2 p1 p2 k3 ... in OpenCV's order",
+        )
+    return values
+
+
+def _as_numbers(value: Any) -> tuple[float, ...]:
+    array = np.array([value]) if isinstance(value, float) else _as_array(value)
+    return () if array is None else tuple(array.reshape(-1).tolist())
+
+
+def _is_rational(found: Values) -> bool:
+    return str(found.get("model")).strip().lower().startswith("rational")
 
 
 def _is_fisheye(model: Any, label: str, path: Path) -> bool:

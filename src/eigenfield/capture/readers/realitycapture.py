@@ -19,6 +19,7 @@ from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escap
 from eigenfield.capture.locate import PhotographFinder
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.photographs.read import read_header
+from eigenfield.capture.readers.lens_keys import refuse_lens_keys
 from eigenfield.capture.readers.text import check_finite, check_lens, damaged_error, excerpt, read_head, read_text
 from eigenfield.capture.readers.transforms import OPENGL_TO_OPENCV_AXES
 from eigenfield.core.errors import CaptureError
@@ -93,6 +94,7 @@ def _make_entry(row: list[str], columns: list[str], finder: PhotographFinder, pa
     axes = Rotation.from_euler("ZXY", [-heading, pitch, roll], degrees=True).as_matrix()
     k1, k2, k3, k4, t1, t2 = map(number, REALITYCAPTURE_LENS)
     check_lens((k1, k2, k3, k4, t1, t2), label, path)
+    refuse_lens_keys(dict(zip(columns, row, strict=False)), REALITYCAPTURE_LENS, label, path)
     lens = Lens("metashape", (k1, k2, k3, k4, t2, t1, 0.0, 0.0, 0.0)) if k4 else Lens("brown", (k1, k2, t1, t2, k3))
     width, height = _size_of(name, finder)
     side = max(width, height)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -9,12 +10,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from eigenfield.capture.calibration import CALIBRATION_MAX_MAGNITUDE, escape_name
+from eigenfield.capture.calibration import CALIBRATION_MAX_MAGNITUDE, escape_name, split_scale
 from eigenfield.core.errors import CaptureError
 
 CALIBRATION_MAX_BYTES = 64 * 2**20  # of one file that is read whole
 CALIBRATION_MAX_SIDE_PIXELS = 1_000_000  # of a photograph in a calibration
 CALIBRATION_MAX_LENS_COEFFICIENT = 1e6  # for normalised coordinates, which are around 1
+ROTATION_VECTOR_MAX_LENGTH = 2 * math.pi * 1.001  # radians: pi is enough, but optimisers go on beyond
 EXCERPT_MAX_CHARACTERS = 40  # of a bad word that a message repeats
 
 
@@ -117,11 +119,36 @@ def check_finite(values: Iterable[ArrayLike], label: str, path: Path) -> None:
 
 
 def camera_centre(R: NDArray[np.float64], t: NDArray[np.float64], label: str, path: Path) -> NDArray[np.float64]:
-    """(3,) the centre -R^T t of a world-to-camera pose; CaptureError as `check_finite`."""
+    """(3,) the centre -R^T t of a world-to-camera pose, x_camera = R x + t, whose R may have a scale (`split_scale`);
+    CaptureError as `check_finite`."""
+    rotation, scale = split_scale(R)
     with np.errstate(over="ignore", invalid="ignore"):
-        centre: NDArray[np.float64] = -R.T @ t
+        centre: NDArray[np.float64] = -rotation.T @ t / scale
     check_finite([centre], label, path)
     return centre
+
+
+def longest_vector(vectors: Iterable[ArrayLike]) -> float:
+    """The greatest length of rotation vectors; 0 for none."""
+    return max((float(np.linalg.norm(np.asarray(vector, np.float64))) for vector in vectors), default=0.0)
+
+
+def check_rotation_vector(longest: float, label: str, path: Path) -> None:
+    """CaptureError `camera-rotation-vector` where rotations of three numbers are no vectors in radians.
+
+    Args:
+        longest: Of all vectors of the file: small angles in degrees are told by others beside them.
+        label: Names the camera.
+        path: The calibration.
+    """
+    if longest > ROTATION_VECTOR_MAX_LENGTH:
+        raise CaptureError(
+            "camera-rotation-vector",
+            f"{label} has a rotation of three numbers, and those of this file are up to {longest:.4g} long, more than "
+            "2 pi: degrees and Euler angles are not read",
+            path=path,
+            remedy="give rotation vectors in radians, as cv2.Rodrigues makes them, or 3x3 matrices",
+        )
 
 
 def check_lens(coefficients: Iterable[float], label: str, path: Path) -> None:

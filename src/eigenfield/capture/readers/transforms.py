@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -19,7 +20,8 @@ from numpy.typing import NDArray
 
 from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name, read_each
 from eigenfield.capture.photographs.lens import Lens
-from eigenfield.capture.readers.text import CALIBRATION_MAX_SIDE_PIXELS, read_contents
+from eigenfield.capture.readers.lens_keys import lens_keys
+from eigenfield.capture.readers.text import CALIBRATION_MAX_SIDE_PIXELS, excerpt, read_contents
 from eigenfield.core.errors import CaptureError
 
 TRANSFORMS_FILE = "transforms.json"
@@ -30,11 +32,9 @@ TRANSFORMS_PERSPECTIVE_MODELS = (
 )  # fmt: skip
 TRANSFORMS_FISHEYE_MODELS = ("OPENCV_FISHEYE", "SIMPLE_RADIAL_FISHEYE", "RADIAL_FISHEYE")
 TRANSFORMS_LENS_KEYS = ("k1", "k2", "k3", "k4", "p1", "p2")  # in the order of nerfstudio's distortion_params
-# what other lenses have: of OpenCV's thin prism and tilt, COLMAP's models, and instant-ngp's other projections
-TRANSFORMS_UNREAD_KEYS = (
-    "s1", "s2", "s3", "s4", "sx1", "sy1", "tauX", "tauY", "omega", "xi", "ftheta_p0", "ftheta_p1",
-    "ftheta_p2", "ftheta_p3", "ftheta_p4", "latlong", "equirectangular", "orthographic",
-)  # fmt: skip
+TRANSFORMS_READ_LENS_KEYS = {
+    *TRANSFORMS_LENS_KEYS, "k5", "k6", "distortion_params", "is_fisheye", "camera_model", "frames"
+}  # fmt: skip
 # a lens that no other reader of this format knows: they refuse the name, as they should
 TRANSFORMS_OWN_MODEL = "EIGENFIELD"
 TRANSFORMS_OWN_COEFFICIENTS = {
@@ -68,7 +68,15 @@ def read_transforms(path: Path) -> Calibration:
     if not frames:
         raise CaptureError("calibration-empty", "lists no frame", path=path, remedy="name another calibration")
     undo = _read_applied_transform(top, path)
-    entries, errors = read_each(lambda item: _make_entry(top, item[1], item[0], path, undo), enumerate(frames))
+    strange = tuple(lens_keys(top, TRANSFORMS_READ_LENS_KEYS))
+
+    def make(item: tuple[int, Any]) -> Entry:
+        number, own = item
+        inside = own if isinstance(own, dict) else {}
+        frame = _Frame(inside, top, f"frame {number}", path, tuple(key for key in strange if key not in inside))
+        return _make_entry(frame, own, undo)
+
+    entries, errors = read_each(make, enumerate(frames))
     return Calibration(path, "transforms", entries, errors)
 
 
@@ -101,6 +109,7 @@ class _Frame:
     Attributes:
         own: The frame's own values.
         top: Those of the file, where the frame has none.
+        top_lens_keys: Of those of the file, what looks like a lens and is not read.
         label: Names the frame in errors.
         path: The file, named in errors.
     """
@@ -109,6 +118,7 @@ class _Frame:
     top: Mapping[str, Any]
     label: str
     path: Path
+    top_lens_keys: tuple[str, ...] = ()
 
     def get(self, key: str, default: Any = None) -> Any:
         return self.own[key] if key in self.own else self.top.get(key, default)
@@ -158,14 +168,13 @@ def _as_float(value: float) -> float:
         return math.inf
 
 
-def _make_entry(top: Mapping[str, Any], own: Any, number: int, path: Path, undo: Similarity) -> Entry:
-    frame = _Frame(own if isinstance(own, dict) else {}, top, f"frame {number}", path)
+def _make_entry(frame: _Frame, own: Any, undo: Similarity) -> Entry:
     if not isinstance(own, dict):
         raise frame.error("frame-not-object", f"{frame.label} is not an object", "mend or remove it")
     file = own.get("file_path")
     if not isinstance(file, str) or not file or "\0" in file:
         raise frame.error("frame-file", f"{frame.label} has no usable file_path", "mend or remove it")
-    frame = replace(frame, label=f"frame {number} ({escape_name(file)})")
+    frame = replace(frame, label=f"{frame.label} ({escape_name(file)})")
     mask = own.get("mask_path")
     if mask is not None and (not isinstance(mask, str) or "\0" in mask):
         raise frame.error("frame-mask", f"{frame.label} has a mask_path that is no text", "mend or remove it")
@@ -230,18 +239,18 @@ def _read_angle(owner: _Frame, required: bool) -> tuple[float, float | None] | N
 
 
 def _read_lens(frame: _Frame) -> Lens | None:
-    model = frame.get("camera_model", "OPENCV")
+    given = frame.own.get("camera_model") or frame.top.get("camera_model") or "OPENCV"  # null is no model
+    model = re.sub(r"[\s-]+", "_", given.strip().upper()) if isinstance(given, str) else None
     if model == TRANSFORMS_OWN_MODEL:
         return _read_own_lens(frame)
     fisheye = model in TRANSFORMS_FISHEYE_MODELS or bool(frame.get("is_fisheye", False))
     if not fisheye and model not in TRANSFORMS_PERSPECTIVE_MODELS:
         raise frame.error(
             "camera-model",
-            f"{frame.label} has the camera model {model!r}, which is not read",
+            f"{frame.label} has the camera model {excerpt(given)!r}, which is not read",
             f"undistort it to {', '.join(TRANSFORMS_PERSPECTIVE_MODELS[:5])} or {TRANSFORMS_FISHEYE_MODELS[0]}",
         )
-    strange = (frame.own.keys() | frame.top.keys()).intersection(TRANSFORMS_UNREAD_KEYS)
-    unread = sorted(key for key in strange if frame.get(key))
+    unread = [*lens_keys(frame.own, TRANSFORMS_READ_LENS_KEYS), *frame.top_lens_keys]
     k1, k2, k3, k4, p1, p2 = _read_coefficients(frame)
     k5, k6 = (frame.number(key) or 0.0 for key in ("k5", "k6"))
     if not all(map(math.isfinite, (k1, k2, k3, k4, k5, k6, p1, p2))):

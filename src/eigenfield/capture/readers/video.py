@@ -24,6 +24,7 @@ from eigenfield.capture.arrangement import Arrangement, OpenOptions, require_pho
 from eigenfield.capture.locate import IMAGES_FOLDER, files_named, photographs_in
 from eigenfield.capture.messages import natural_key
 from eigenfield.capture.photographs.kinds import VIDEO_EXTENSIONS
+from eigenfield.core.camera_names import name_key
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.runtime.parallel import parallel_map
 from eigenfield.runtime.stages import Stages, stage_key
@@ -48,8 +49,8 @@ def videos_in(folder: Path) -> list[Path]:
 def videos_of(folder: Path) -> list[Path]:
     """The videos of a rig: those in the folder, or in its `videos/`, whichever are more. The film of a live photograph,
     which lies beside it under its name, is none."""
-    stems = {path.stem.casefold() for path in photographs_in(folder)}
-    here = [path for path in videos_in(folder) if path.stem.casefold() not in stems]
+    stems = {name_key(path.stem) for path in photographs_in(folder)}
+    here = [path for path in videos_in(folder) if name_key(path.stem) not in stems]
     inner = videos_in(folder / VIDEO_FOLDER)
     return here if len(here) >= len(inner) else inner
 
