@@ -11,7 +11,7 @@ from PIL import Image
 
 from eigenfield.capture import open_any, open_capture, with_scene_cameras
 from eigenfield.capture.photographs import header as headers
-from eigenfield.capture.photographs.icc import encode_srgb
+from eigenfield.capture.photographs.colour import encode_srgb
 from eigenfield.capture.photographs.read import decode, decode_mask, read_header
 from eigenfield.core.errors import CaptureError
 from eigenfield.gltf import load

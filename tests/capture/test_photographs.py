@@ -16,7 +16,8 @@ from hypothesis import strategies as st
 from PIL import Image, ImageCms
 
 from eigenfield.capture.photographs import header as photographs
-from eigenfield.capture.photographs.icc import ICC_SRGB_TO_XYZ, BrokenProfileError, encode_srgb, read_profile
+from eigenfield.capture.photographs.colour import COLOUR_SRGB_TO_XYZ, encode_srgb
+from eigenfield.capture.photographs.icc import BrokenProfileError, read_profile
 from eigenfield.capture.photographs.read import decode, decode_mask, read_header
 from eigenfield.core.errors import CaptureError
 
@@ -242,7 +243,7 @@ def test_matrix_profile_agrees_with_littlecms(tmp_path):
 
 def test_matrix_profile_at_16_bit_keeps_neighbouring_values_apart(tmp_path):
     ramp = np.repeat((30000 + 8 * np.arange(64, dtype=np.uint16))[None, :, None], 3, axis=2).repeat(2, axis=0)
-    path = save(tmp_path / "a.png", png16(ramp, profile=profile_bytes(ICC_SRGB_TO_XYZ, GAMMA22)))
+    path = save(tmp_path / "a.png", png16(ramp, profile=profile_bytes(COLOUR_SRGB_TO_XYZ, GAMMA22)))
     pixels, _ = decode(path)
     assert len(np.unique(pixels[0, :, 0])) == 64
     linear = (ramp[0, :, 0] / 65535) ** 2.19921875
@@ -252,7 +253,7 @@ def test_matrix_profile_at_16_bit_keeps_neighbouring_values_apart(tmp_path):
 
 def test_srgb_profiles_change_nothing(tmp_path):
     for number, profile in enumerate(
-        (ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes(), profile_bytes(ICC_SRGB_TO_XYZ, SRGB_PARA))
+        (ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes(), profile_bytes(COLOUR_SRGB_TO_XYZ, SRGB_PARA))
     ):
         assert read_profile(profile).kind == "none"
         path = save(tmp_path / f"{number}.png", Image.fromarray(EIGHT), icc_profile=profile)
@@ -260,7 +261,7 @@ def test_srgb_profiles_change_nothing(tmp_path):
 
 
 def test_grey_profile_is_a_curve(tmp_path):
-    profile = profile_bytes(ICC_SRGB_TO_XYZ, b"curv\0\0\0\0" + struct.pack(">I", 0), b"GRAY")
+    profile = profile_bytes(COLOUR_SRGB_TO_XYZ, b"curv\0\0\0\0" + struct.pack(">I", 0), b"GRAY")
     path = save(tmp_path / "a.png", Image.fromarray(EIGHT[..., 0]), icc_profile=profile)
     expected = encode_srgb(EIGHT[..., 0].astype(np.float32) / 255)
     assert np.allclose(decode(path)[0][..., 2], expected, atol=1e-6)

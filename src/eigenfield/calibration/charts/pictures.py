@@ -22,6 +22,7 @@ from eigenfield.capture.calibration import escape_name
 from eigenfield.capture.locate import files_named, photographs_in
 from eigenfield.capture.messages import natural_key
 from eigenfield.capture.photographs.read import decode, read_header
+from eigenfield.capture.readers.video import find_film
 from eigenfield.core.errors import CaptureError
 
 CHART_VIDEO_SUFFIXES = (".mp4", ".mov", ".avi", ".mkv", ".webm", ".m4v")
@@ -129,7 +130,7 @@ def decode_frames(camera: ChartCamera) -> Iterator[tuple[int, NDArray[np.uint8]]
     path = camera.paths[0]
     try:
         with av.open(str(path)) as container:
-            for index, frame in enumerate(container.decode(video=0)):
+            for index, frame in enumerate(container.decode(find_film(container))):
                 if index in wanted:
                     yield wanted[index], frame.to_ndarray(format="gray")
                 if index >= camera.frames[-1]:
@@ -294,9 +295,9 @@ def _video_length(path: Path) -> tuple[int, tuple[int, int]]:
     """Number of frames, by counting packets (headers are often wrong), and size."""
     try:
         with av.open(str(path)) as container:
-            if not container.streams.video:
+            stream = find_film(container)
+            if stream is None:
                 raise _unreadable_video(path, "it has no pictures")
-            stream = container.streams.video[0]
             count = sum(1 for packet in container.demux(stream) if packet.size)
             size = (int(stream.codec_context.width), int(stream.codec_context.height))
     except (av.FFmpegError, OSError) as error:

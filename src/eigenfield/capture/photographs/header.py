@@ -13,6 +13,7 @@ from PIL import Image
 from eigenfield.core.errors import CaptureError
 
 EXIF_ORIENTATION_TAG = 0x0112
+PHOTOGRAPH_HEAD_BYTES = 64 * 1024  # in which AVIF and HEIC state their depth, sizes and colours
 PHOTOGRAPH_MAX_PIXELS = 400_000_000  # a photograph of more pixels is refused before it is decoded
 
 # what Pillow's decoders are known to raise on damaged bytes

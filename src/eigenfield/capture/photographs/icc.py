@@ -9,66 +9,25 @@ clipped. Profiles with tables (A2B0) are left to littleCMS, at 8 bit.
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-ICC_MAX_TAGS = 200
-ICC_SRGB_TOLERANCE = 1 / 255  # a profile that moves no colour of a 9^3 grid by more than this is sRGB itself
-ICC_CURVE_PARAMETERS = (1, 3, 4, 5, 7)  # of parametric curves, by type
-ICC_CURVE_STEPS = 65535  # values are looked up in curves of this many steps: exact for 8 and 16 bit
-
-# IEC 61966-2-1 primaries adapted to D50 by Bradford, columns r, g, b (as in every sRGB profile)
-ICC_SRGB_TO_XYZ = np.array(
-    [[0.4360747, 0.3850649, 0.1430804], [0.2225045, 0.7168786, 0.0606169], [0.0139322, 0.0971045, 0.7141733]]
+from eigenfield.capture.photographs.colour import (
+    COLOUR_CURVE_STEPS,
+    COLOUR_HDR_CURVES,
+    COLOUR_SRGB_TO_XYZ,
+    Profile,
+    read_code_points,
+    skip_if_srgb,
 )
 
+ICC_MAX_TAGS = 200
+ICC_CURVE_PARAMETERS = (1, 3, 4, 5, 7)  # of parametric curves, by type
 
 class BrokenProfileError(ValueError):
     """Bytes that are no ICC profile; who reads photographs warns and goes on without."""
-
-
-@dataclass(frozen=True, eq=False)
-class Profile:
-    """A transform from a profile's colours to sRGB.
-
-    Attributes:
-        kind: "none" (it is sRGB), "matrix", "grey" (one curve), or "tables" (not done here).
-        space: The profile's colour space, four letters ("RGB ", "GRAY", "CMYK").
-        curves: (3, 65536) or (1, 65536) float32, from values to linear light.
-        matrix: (3, 3) float32, from the profile's linear light to sRGB's.
-    """
-
-    kind: Literal["none", "matrix", "grey", "tables"]
-    space: str
-    curves: NDArray[np.float32]
-    matrix: NDArray[np.float32]
-
-    def apply(self, values: NDArray[np.float32]) -> NDArray[np.float32]:
-        """(..., 3) values in 0..1 to sRGB-coded values in 0..1."""
-        if self.kind == "none":
-            return values
-        index = np.rint(np.clip(values, 0, 1) * np.float32(ICC_CURVE_STEPS)).astype(np.int32)
-        linear = np.empty_like(values)
-        for channel in range(3):
-            linear[..., channel] = self.curves[channel % len(self.curves)][index[..., channel]]
-        if self.kind == "matrix":
-            linear = linear @ self.matrix.T
-        return encode_srgb(linear)
-
-
-def encode_srgb(linear: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Linear light to sRGB-coded values, clipped to 0..1 (IEC 61966-2-1)."""
-    light = np.clip(linear, 0, 1)
-    coded: NDArray[np.float32] = np.where(
-        light <= 0.0031308,
-        light * np.float32(12.92),
-        np.float32(1.055) * light ** np.float32(1 / 2.4) - np.float32(0.055),
-    )
-    return coded
 
 
 @lru_cache(maxsize=8)
@@ -77,27 +36,19 @@ def read_profile(data: bytes) -> Profile:
     try:
         space, tags = _read_tags(data)
         identity = np.eye(3, dtype=np.float32)
+        if "cicp" in tags and tags["cicp"][9] in COLOUR_HDR_CURVES:  # its tables bring the light to another range
+            return read_code_points(tags["cicp"][8], tags["cicp"][9])
         if "A2B0" in tags or space not in ("RGB ", "GRAY"):
             return Profile("tables", space, np.zeros((0, 0), np.float32), identity)
         if space == "GRAY":
-            return _skip_if_srgb(Profile("grey", space, _read_curve(tags["kTRC"])[None], identity))
+            return skip_if_srgb(Profile("grey", space, _read_curve(tags["kTRC"])[None], identity))
         columns = np.stack([_read_xyz(tags[name]) for name in ("rXYZ", "gXYZ", "bXYZ")], axis=1)
         curves = np.stack([_read_curve(tags[name]) for name in ("rTRC", "gTRC", "bTRC")])
     except (KeyError, struct.error, IndexError, OverflowError) as error:
         raise BrokenProfileError(f"{type(error).__name__}: {error}") from error
-    return _skip_if_srgb(
-        Profile("matrix", space, curves, (np.linalg.inv(ICC_SRGB_TO_XYZ) @ columns).astype(np.float32))
+    return skip_if_srgb(
+        Profile("matrix", space, curves, (np.linalg.inv(COLOUR_SRGB_TO_XYZ) @ columns).astype(np.float32))
     )
-
-
-def _skip_if_srgb(profile: Profile) -> Profile:
-    steps = np.linspace(0, 1, 9, dtype=np.float32)
-    grid = np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), axis=-1)
-    if profile.kind == "grey":
-        grid = np.repeat(steps[:, None], 3, axis=1)
-    if np.abs(profile.apply(grid) - grid).max() > ICC_SRGB_TOLERANCE:
-        return profile
-    return Profile("none", profile.space, profile.curves[:, :0], profile.matrix)
 
 
 def _read_tags(data: bytes) -> tuple[str, dict[str, bytes]]:
@@ -123,7 +74,7 @@ def _read_xyz(tag: bytes) -> NDArray[np.float64]:
 
 def _read_curve(tag: bytes) -> NDArray[np.float32]:
     """A `curv` or `para` tag as a table of linear light over STEPS + 1 values."""
-    x = np.arange(ICC_CURVE_STEPS + 1) / ICC_CURVE_STEPS
+    x = np.arange(COLOUR_CURVE_STEPS + 1) / COLOUR_CURVE_STEPS
     if tag[:4] == b"para":
         return _read_parametric_curve(tag, x)
     if tag[:4] != b"curv":

@@ -18,10 +18,12 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import AvifImagePlugin, Image, ImageCms, JpegImagePlugin, PngImagePlugin, TiffImagePlugin, WebPImagePlugin
 
+from eigenfield.capture.photographs.colour import Profile, encode_srgb
 from eigenfield.capture.photographs.exr import EXR_MAGIC, decode_exr, read_exr_header
 from eigenfield.capture.photographs.header import (
     DECODER_ERRORS,
     EXIF_ORIENTATION_TAG,
+    PHOTOGRAPH_HEAD_BYTES,
     Header,
     decoder_error,
     missing_module_error,
@@ -31,21 +33,31 @@ from eigenfield.capture.photographs.header import (
     refuse_size,
     unreadable_error,
 )
-from eigenfield.capture.photographs.icc import BrokenProfileError, encode_srgb, read_profile
+from eigenfield.capture.photographs.icc import BrokenProfileError, read_profile
+from eigenfield.capture.photographs.jpeg import decode_jpeg
 from eigenfield.capture.photographs.jxl import JXL_CODESTREAM, JXL_CONTAINER, read_jxl_header
 from eigenfield.capture.photographs.kinds import PHOTOS_REMEDY, RAW_EXTENSIONS
+from eigenfield.capture.photographs.png import PNG_SIGNATURE, read_png_orientation, without_notes
 from eigenfield.capture.photographs.raw import decode_raw, read_raw_header
+from eigenfield.capture.photographs.stated import read_stated_colours
+from eigenfield.capture.photographs.tiff import (
+    TIFF_DEPTH_TAG,
+    TIFF_EXTRA_TAG,
+    TIFF_PHOTOMETRIC_TAG,
+    TIFF_PLANES_TAG,
+    read_tiff_tags,
+    refuse_tiff_damage,
+    refuse_tiff_kind,
+)
 from eigenfield.core.errors import CaptureError
 
 log = logging.getLogger(__name__)
 
 FORMAT_HEAD_BYTES = 64  # by which a format is recognised
-PHOTOGRAPH_HEAD_BYTES = 64 * 1024  # in which AVIF and HEIC state their depth and sizes
 AVIF_BRANDS = (b"avif", b"avis")
 HEIF_BRANDS = (b"heic", b"heix", b"heim", b"heis", b"hevc", b"hevx", b"hevm", b"hevs", b"mif1", b"msf1", b"miaf")
-HEIC_HDR_CURVES = {16: "HDR by the curve PQ", 18: "HDR by the curve HLG"}  # transfer characteristics, ITU-T H.273
 PANORAMA_MARKS = (b"GPano:ProjectionType", b"GPano:FullPanoWidthPixels", b"GPano:CroppedAreaImageWidthPixels")
-TIFF_DEPTH_TAG, TIFF_PHOTOMETRIC_TAG, TIFF_PLANES_TAG, TIFF_EXTRA_TAG = 258, 262, 284, 338
+LOW_DEPTHS = (8, 10, 12)  # of values that a photograph of 16 bit has only by mistake
 MASK_MIN_BRIGHTEST_FRACTION = 0.5  # of white, which the brightest pixel of a mask must reach
 
 
@@ -88,6 +100,8 @@ def decode(
     alpha = np.ascontiguousarray(values[..., -1]) if values.shape[2] in (2, 4) else None
     if is_linear:
         colours = encode_srgb(colours * np.float32(1.0 if exposure is None else exposure))
+    elif isinstance(profile, Profile):
+        colours = profile.apply(colours)
     elif profile is not None:
         colours = _to_srgb(colours, profile, values.shape[2] < 3, path)
     return np.ascontiguousarray(colours), alpha
@@ -123,13 +137,13 @@ def open_picture(file: Any, path: Path) -> tuple[str, Image.Image]:
     name = format_of(path, read_at(file, 0, FORMAT_HEAD_BYTES))
     try:
         if name == "PNG":
-            return name, PngImagePlugin.PngImageFile(file)
+            return name, _open_png(file)
         if name == "JPEG":
             return name, JpegImagePlugin.JpegImageFile(file)
         if name == "WebP":
             return name, WebPImagePlugin.WebPImageFile(file)
         if name == "TIFF":
-            return name, TiffImagePlugin.TiffImageFile(file)
+            return name, _open_tiff(file, path)
         if name == "AVIF":
             return name, AvifImagePlugin.AvifImageFile(file)
         if name == "HEIC":
@@ -155,7 +169,7 @@ def format_of(path: Path, start: bytes) -> str | None:
         return "RAW"
     if start.startswith(EXR_MAGIC):
         return "EXR"
-    if start.startswith(b"\x89PNG\r\n\x1a\n"):
+    if start.startswith(PNG_SIGNATURE):
         return "PNG"
     if start.startswith(b"\xff\xd8\xff"):
         return "JPEG"
@@ -172,6 +186,28 @@ def format_of(path: Path, start: bytes) -> str | None:
         if brands[0] in HEIF_BRANDS:
             return "HEIC"
     return None
+
+
+def _open_png(file: Any) -> Image.Image:
+    try:
+        return PngImagePlugin.PngImageFile(file)
+    except DECODER_ERRORS:
+        file.seek(0)
+        data = file.read()
+        sound = without_notes(data)
+        if sound is data:
+            raise
+        return PngImagePlugin.PngImageFile(io.BytesIO(sound))
+
+
+def _open_tiff(file: Any, path: Path) -> Image.Image:
+    try:
+        image = TiffImagePlugin.TiffImageFile(file)
+    except DECODER_ERRORS:  # Pillow takes a kind that it does not know for damage
+        refuse_tiff_kind(read_tiff_tags(file), path)
+        raise
+    refuse_tiff_kind(image.tag_v2, path)
+    return image
 
 
 def _open_heic(file: Any, path: Path) -> Image.Image:
@@ -225,7 +261,7 @@ def _make_header(name: str, image: Image.Image, file: Any, path: Path) -> Header
             orientation = image.tag_v2.get(EXIF_ORIENTATION_TAG, 1)
         elif name == "PNG":
             depth = read_at(file, 24, 1)[0]
-            orientation = _png_orientation(file)
+            orientation = read_png_orientation(file)
         else:
             orientation = image.getexif().get(EXIF_ORIENTATION_TAG, 1)
         if name == "AVIF":
@@ -249,19 +285,6 @@ def _says_panorama(image: Image.Image) -> bool:
     return any(mark in text for mark in PANORAMA_MARKS)
 
 
-def _png_orientation(file: Any) -> Any:
-    """From the eXIf chunk, which may follow the pixels: Pillow would decode them to find it."""
-    at = 8
-    while len(start := read_at(file, at, 8)) == 8:
-        size, kind = struct.unpack(">I4s", start)
-        if kind == b"eXIf" and size <= PHOTOGRAPH_HEAD_BYTES:
-            exif = Image.Exif()
-            exif.load(b"Exif\0\0" + read_at(file, at + 8, size))
-            return exif.get(EXIF_ORIENTATION_TAG, 1)
-        at += 12 + size
-    return 1
-
-
 def _avif_depth(head: bytes) -> int:
     """The deepest of the AV1 configurations (av1C: third byte, bits 6 and 5 are high_bitdepth and twelve_bit)."""
     depth, at = 8, head.find(b"av1C")
@@ -272,9 +295,9 @@ def _avif_depth(head: bytes) -> int:
     return depth
 
 
-def _decode_values(path: Path, upright: bool) -> tuple[NDArray[np.float32], bytes | None, bool]:
-    """(H, W, 1 | 2 | 3 | 4) values as the file has them, the ICC profile that is still to be applied, and whether they
-    are linear; others are in 0..1."""
+def _decode_values(path: Path, upright: bool) -> tuple[NDArray[np.float32], bytes | Profile | None, bool]:
+    """(H, W, 1 | 2 | 3 | 4) values as the file has them, the profile (ICC's bytes, or what else it states) that is still
+    to be applied, and whether they are linear; others are in 0..1."""
     try:
         data = path.read_bytes()
     except OSError as error:
@@ -285,22 +308,34 @@ def _decode_values(path: Path, upright: bool) -> tuple[NDArray[np.float32], byte
     if kind == "RAW":
         pixels, header = decode_raw(path)
         return _apply_orientation(pixels, header.orientation if upright else 1), None, False
+    if kind == "PNG":
+        data = without_notes(data)
     file = io.BytesIO(data)
     name, image = open_picture(file, path)
     header = _make_header(name, image, file, path)
+    stated, narrow = read_stated_colours(name, data, image, header.depth, path)
+    jpeg = decode_jpeg(data, image.mode, image.size, path) if name == "JPEG" else None
     try:
-        image.load()
-        profile = image.info.get("icc_profile")
+        if jpeg is None:
+            image.load()
+        icc: bytes | None = image.info.get("icc_profile")
     except DECODER_ERRORS as error:
         raise decoder_error(path, error) from error
+    if isinstance(image, TiffImagePlugin.TiffImageFile):
+        refuse_tiff_damage(data, image.tag_v2, image.mode, path)
+    profile = icc if stated is None else stated
     if name == "HEIC" and image.size != (header.width, header.height):  # the decoder corrects what the file says
         raise unreadable_error(path, f"it says {header.width}x{header.height} pixels and has {image.size}")
     values = _decode_over_8bit(data, header, image, path) if header.depth > 8 else None
     if values is None:
-        image, profile = _convert_8bit_mode(image, profile, path)
-        values = np.asarray(image, dtype=np.float32) / np.float32(255)
+        if image.mode in ("CMYK", "LAB"):
+            image, profile = _print_colours_to_srgb(image, icc, path), None
+        eight = _convert_8bit_mode(image, path) if jpeg is None else jpeg
+        values = np.asarray(eight, dtype=np.float32) / np.float32(255)
     if values.ndim == 2:
         values = values[..., None]
+    if narrow:
+        values = (values * np.float32(255) - np.float32(16)) / np.float32(219)  # of 16 bit, too, but for 1/257
     # TIFF comes turned already, from both decoders
     wanted = header.orientation if upright else 1
     if name == "TIFF":
@@ -340,6 +375,8 @@ def _decode_over_8bit(data: bytes, header: Header, image: Image.Image, path: Pat
     if stored is None or stored.dtype != np.uint16:
         log.warning("%s: its %d bits cannot be had here, read at 8 bit", path, header.depth)
         return None
+    if header.depth == 16:
+        _name_low_values(stored, path)
     values = stored.astype(np.float32) / np.float32((1 << header.depth) - 1)
     if values.ndim == 3 and values.shape[2] >= 3:
         values[..., :3] = values[..., 2::-1]  # OpenCV has blue first
@@ -352,24 +389,29 @@ def _decode_over_8bit(data: bytes, header: Header, image: Image.Image, path: Pat
     return values
 
 
+def _name_low_values(stored: NDArray[np.uint16], path: Path) -> None:
+    """Say that 16 bit hold values of fewer, as cameras of machines store them, which viewers show as black."""
+    top = int(stored[..., :3].max() if stored.ndim == 3 else stored.max())
+    bits = next((bits for bits in LOW_DEPTHS if 0 < top < 1 << bits), 14 if top == (1 << 14) - 1 else None)
+    if bits is not None:
+        log.warning(
+            "%s: its greatest value is %d of 65535, as where %d bit lie in 16: save it with its values times %d if so",
+            path, top, bits, 1 << (16 - bits),
+        )  # fmt: skip
+
+
 def _decode_deep_heic(data: bytes, header: Header, path: Path) -> NDArray[np.float32]:
     import pi_heif
 
     try:
         found = pi_heif.open_heif(io.BytesIO(data), convert_hdr_to_8bit=False, hdr_to_16bit=False)
-        values = np.asarray(found).astype(np.float32) / np.float32((1 << header.depth) - 1)
+        return np.asarray(found).astype(np.float32) / np.float32((1 << header.depth) - 1)
     except DECODER_ERRORS as error:
         raise decoder_error(path, error) from error
-    curve = found.info.get("nclx_profile", {}).get("transfer_characteristics")
-    if curve in HEIC_HDR_CURVES:
-        log.warning("%s: its values are %s, which is not converted", path, HEIC_HDR_CURVES[curve])
-    return values
 
 
-def _convert_8bit_mode(image: Image.Image, profile: bytes | None, path: Path) -> tuple[Image.Image, bytes | None]:
-    """Any 8-bit image as L, LA, RGB or RGBA, and the profile if it is still to be applied."""
-    if image.mode in ("CMYK", "LAB"):
-        return _print_colours_to_srgb(image, profile, path), None
+def _convert_8bit_mode(image: Image.Image, path: Path) -> Image.Image:
+    """Any 8-bit image as L, LA, RGB or RGBA."""
     if image.mode in ("I", "F", "HSV") or image.mode.startswith("I;"):
         raise CaptureError(
             "image-kind",
@@ -378,10 +420,10 @@ def _convert_8bit_mode(image: Image.Image, profile: bytes | None, path: Path) ->
             remedy="save it as 8- or 16-bit RGB",
         )
     if (image.mode in ("L", "RGB") and not image.has_transparency_data) or image.mode in ("LA", "RGBA"):
-        return image, profile
+        return image
     if image.mode == "1":
-        return image.convert("L"), profile
-    return image.convert("RGBA" if image.has_transparency_data else "RGB"), profile
+        return image.convert("L")
+    return image.convert("RGBA" if image.has_transparency_data else "RGB")
 
 
 def _print_colours_to_srgb(image: Image.Image, profile: bytes | None, path: Path) -> Image.Image:

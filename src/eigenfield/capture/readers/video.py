@@ -1,8 +1,8 @@
 """One video a camera, all started together: one frame of each makes the set of photographs.
 
 Frames are taken out once, into lossless PNG in a work folder; masks and everything else then treat them as photographs.
-Colours are converted here for 8-bit 4:2:0, which nearly all cameras write (swscale repeats chroma instead of
-interpolating it).
+Colours are converted here for 4:2:0 of 8 bit and of HDR, which nearly all cameras write (swscale repeats chroma instead
+of interpolating it).
 """
 
 from __future__ import annotations
@@ -11,10 +11,11 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import av
 import av.error
+import av.stream
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,7 @@ from PIL import Image
 from eigenfield.capture.arrangement import Arrangement, OpenOptions, require_photographs
 from eigenfield.capture.locate import IMAGES_FOLDER, files_named, photographs_in
 from eigenfield.capture.messages import natural_key
+from eigenfield.capture.photographs.colour import COLOUR_HDR_CURVES, Profile, read_code_points
 from eigenfield.capture.photographs.kinds import VIDEO_EXTENSIONS
 from eigenfield.core.camera_names import name_key
 from eigenfield.core.errors import CaptureError, OptionError
@@ -32,13 +34,33 @@ from eigenfield.runtime.stages import Stages, stage_key
 VIDEO_FOLDER = "videos"
 VIDEO_MIN_FILES = 2  # of a rig
 VIDEO_TIME_PATTERN = re.compile(r"(\d+(?:\.\d*)?|\.\d+)s")
-# red and blue of Y' by AVColorSpace: BT.709, BT.601 (three numbers), BT.2020
-VIDEO_LUMA_WEIGHTS = {1: (0.2126, 0.0722), 4: (0.30, 0.11), 5: (0.299, 0.114), 6: (0.299, 0.114), 9: (0.2627, 0.0593)}
+# red and blue of Y' by AVColorSpace: BT.709, FCC, BT.601 (two numbers), SMPTE 240M, BT.2020; others are not converted
+VIDEO_LUMA_WEIGHTS = {
+    1: (0.2126, 0.0722), 4: (0.30, 0.11), 5: (0.299, 0.114), 6: (0.299, 0.114), 7: (0.212, 0.087), 9: (0.2627, 0.0593)
+}  # fmt: skip
 VIDEO_MAX_PIXELS = 80_000_000  # of a frame
 VIDEO_FULL_RANGE = 2  # AVColorRange
+VIDEO_UNMARKED_MATRICES = (0, 2, 3)  # AVColorSpace: RGB's, which no Y'CbCr has, unspecified and reserved
 VIDEO_MAX_SD_ROWS = 576  # an unmarked video of more rows is BT.709, as players take it
+VIDEO_WIDE_PRIMARIES = (9, 11, 12)  # those of SD are shown as BT.709's by most players, and differ by a few grey levels
+VIDEO_DOLBY_TAGS = ("dvh1", "dvhe", "dav1", "dva1", "dvav")  # sample entries, of colours that only Dolby Vision knows
+VIDEO_420_BITS = {"yuv420p": 8, "yuvj420p": 8, "yuv420p10le": 10}
 
 _temporary: list[Stages] = []  # frames without a work folder: deleted with the process
+
+
+class Shown(NamedTuple):
+    """A decoded frame.
+
+    Attributes:
+        frame: As decoded.
+        damaged: Whether something was made up, in it or in one before it that it may be built on.
+        colours: The profile of its values; None for sRGB, by which SDR video is shown.
+    """
+
+    frame: av.VideoFrame
+    damaged: bool
+    colours: Profile | None
 
 
 def videos_in(folder: Path) -> list[Path]:
@@ -131,21 +153,22 @@ def read_frame(path: Path, frame: int | float) -> NDArray[np.uint8]:
         (H, W, 3) uint8 sRGB-coded.
 
     Raises:
-        CaptureError: `video-unreadable`, `video-short`.
+        CaptureError: `video-unreadable`, `video-short`, `video-colours`.
     """
     last, number = None, -1
     for number, shown in enumerate(decode_video(path, frame)):
         if isinstance(frame, int):
             if number == frame:
-                return to_rgb(shown)
-        elif last is not None and shown.time is not None and shown.time > frame + 1e-9:
-            return to_rgb(last)
+                return _sound_rgb(shown, frame, path)
+        elif last is not None and shown.frame.time is not None and shown.frame.time > frame + 1e-9:
+            return _sound_rgb(last, frame, path)
         last = shown
     if last is None:
         raise CaptureError("video-unreadable", "holds no frame", path=path, remedy="take it out of the folder")
-    end = (last.time or 0.0) + (float(last.duration * last.time_base) if last.duration and last.time_base else 0.0)
+    still = last.frame
+    end = (still.time or 0.0) + (float(still.duration * still.time_base) if still.duration and still.time_base else 0.0)
     if isinstance(frame, float) and frame <= end:
-        return to_rgb(last)
+        return _sound_rgb(last, frame, path)
     length = f"{number + 1} frames" if isinstance(frame, int) else f"{end:.3g} s"
     raise CaptureError(
         "video-short",
@@ -155,10 +178,19 @@ def read_frame(path: Path, frame: int | float) -> NDArray[np.uint8]:
     )
 
 
-def decode_video(path: Path, frame: int | float = 0) -> Iterator[av.VideoFrame]:
+def _sound_rgb(shown: Shown, frame: int | float, path: Path) -> NDArray[np.uint8]:
+    if shown.damaged:
+        what = f"frame {frame}" if isinstance(frame, int) else f"the frame at {frame:g} s"
+        raise CaptureError(
+            "video-unreadable", f"{what} is damaged", path=path, remedy="copy it again, or name another --frame"
+        )
+    return to_rgb(shown)
+
+
+def decode_video(path: Path, frame: int | float = 0) -> Iterator[Shown]:
     """Decoded frames: all of them for an index, from the key frame before it for a time.
 
-    Raises CaptureError: `video-unreadable`, `video-large`.
+    Raises CaptureError: `video-unreadable`, `video-large`, `video-colours`.
     """
     try:
         yield from _decode_frames(path, frame)
@@ -171,11 +203,19 @@ def decode_video(path: Path, frame: int | float = 0) -> Iterator[av.VideoFrame]:
         ) from error
 
 
-def _decode_frames(path: Path, frame: int | float) -> Iterator[av.VideoFrame]:
+def find_film(container: av.container.InputContainer) -> av.VideoStream | None:
+    """The video stream of the most pixels, of equal ones the default or the first: others are previews. An attached
+    picture is none; None where there is none."""
+    picture, default = av.stream.Disposition.attached_pic, av.stream.Disposition.default
+    streams = [stream for stream in container.streams.video if not stream.disposition & picture]
+    return max(streams, key=lambda one: (one.width * one.height, bool(one.disposition & default)), default=None)
+
+
+def _decode_frames(path: Path, frame: int | float) -> Iterator[Shown]:
     with av.open(str(path)) as container:
-        if not container.streams.video:
+        stream = find_film(container)
+        if stream is None:
             return
-        stream = container.streams.video[0]
         size = stream.codec_context
         if size.width * size.height > VIDEO_MAX_PIXELS:
             raise CaptureError(
@@ -192,16 +232,55 @@ def _decode_frames(path: Path, frame: int | float) -> Iterator[av.VideoFrame]:
             except av.error.FFmpegError:  # beyond the end, or no index: from the beginning then
                 container.seek(start, stream=stream)
         offset = start * stream.time_base if stream.time_base else 0
-        for shown in container.decode(stream):
-            if offset and shown.pts is not None:
-                shown.pts -= start
-            yield shown
+        damaged = False
+        for decoded in container.decode(stream):
+            if offset and decoded.pts is not None:
+                decoded.pts -= start
+            damaged = decoded.is_corrupt or (damaged and not decoded.key_frame)
+            yield Shown(decoded, damaged, _mark_colours(decoded, stream.codec_context, path))
 
 
-def to_rgb(frame: av.VideoFrame) -> NDArray[np.uint8]:
+def _mark_colours(frame: av.VideoFrame, context: av.VideoCodecContext, path: Path) -> Profile | None:
+    """Mark an unmarked frame with its matrix, by one rule for all pixel formats; the profile of its values, if any.
+
+    Raises CaptureError `video-colours` for colours that are not converted.
+    """
+    if not frame.format.is_rgb:
+        dolby = context.codec_tag in VIDEO_DOLBY_TAGS and int(context.color_trc) not in COLOUR_HDR_CURVES
+        if int(frame.colorspace) in VIDEO_UNMARKED_MATRICES and not dolby:
+            frame.colorspace = 1 if frame.height > VIDEO_MAX_SD_ROWS else 6
+        elif dolby or int(frame.colorspace) not in VIDEO_LUMA_WEIGHTS:
+            what = "of Dolby Vision alone" if dolby else f"of a matrix (number {int(frame.colorspace)}) of rare use"
+            raise CaptureError(
+                "video-colours",
+                f"has colours {what}, which are not converted",
+                path=path,
+                remedy="convert it to BT.709 with a video editor, or film in SDR",
+            )
+    primaries, transfer = int(context.color_primaries), int(context.color_trc)
+    primaries = primaries if primaries in VIDEO_WIDE_PRIMARIES else 1
+    profile = read_code_points(primaries, transfer if transfer in COLOUR_HDR_CURVES else 1)
+    return None if profile.kind == "none" else profile
+
+
+def to_rgb(shown: Shown) -> NDArray[np.uint8]:
     """A frame as (H, W, 3) uint8 sRGB-coded values, upright."""
-    pixels = _yuv420_to_rgb(frame) if frame.format.name in ("yuv420p", "yuvj420p") else frame.to_ndarray(format="rgb24")
+    frame, bits = shown.frame, VIDEO_420_BITS.get(shown.frame.format.name)
+    if shown.colours is not None:
+        if bits is None:
+            values = frame.to_ndarray(format="rgb48le") / np.float32(65535)
+        else:
+            values = _yuv420_to_rgb(frame, bits) / np.float32(255)
+        pixels = _eight_bit(shown.colours.apply(values) * np.float32(255))
+    elif bits == 8:
+        pixels = _eight_bit(_yuv420_to_rgb(frame, bits))
+    else:
+        pixels = frame.to_ndarray(format="rgb24")
     return np.ascontiguousarray(_upright(pixels, frame))
+
+
+def _eight_bit(values: NDArray[np.float32]) -> NDArray[np.uint8]:
+    return np.clip(np.rint(values), 0, 255).astype(np.uint8)
 
 
 def _upright(pixels: NDArray[np.uint8], frame: av.VideoFrame) -> NDArray[np.uint8]:
@@ -218,24 +297,28 @@ def _upright(pixels: NDArray[np.uint8], frame: av.VideoFrame) -> NDArray[np.uint
     return pixels[:: -1 if d < 0 else 1, :: -1 if a < 0 else 1]
 
 
-def _yuv420_to_rgb(frame: av.VideoFrame) -> NDArray[np.uint8]:
-    """Y'CbCr 4:2:0 to R'G'B'; chroma, level with the left of two columns, between two rows, interpolated cubically."""
-    y, cb, cr = (_plane_array(plane) for plane in frame.planes)
+def _yuv420_to_rgb(frame: av.VideoFrame, bits: int) -> NDArray[np.float32]:
+    """Y'CbCr 4:2:0 to R'G'B' of 0..255; chroma, level with the left of two columns, between two rows, interpolated
+    cubically."""
+    y, cb, cr = (_plane_array(plane, bits) for plane in frame.planes)
     height, width = y.shape
     place = np.array([[0.5, 0, 0], [0, 0.5, -0.25]])  # luma pixel to chroma pixel
     cubic = cv2.INTER_CUBIC | cv2.WARP_INVERSE_MAP
     edges = cv2.BORDER_REPLICATE
     warped = (cv2.warpAffine(c - 128, place, (width, height), flags=cubic, borderMode=edges) for c in (cb, cr))
     cb, cr = (np.asarray(c, np.float32) for c in warped)
-    unmarked = 1 if height > VIDEO_MAX_SD_ROWS else 6
-    red, blue = VIDEO_LUMA_WEIGHTS.get(int(frame.colorspace), VIDEO_LUMA_WEIGHTS[unmarked])
+    red, blue = VIDEO_LUMA_WEIGHTS[int(frame.colorspace)]
     if int(frame.color_range) != VIDEO_FULL_RANGE and frame.format.name != "yuvj420p":
         y, cb, cr = (y - 16) * (255 / 219), cb * (255 / 224), cr * (255 / 224)
+    elif bits > 8:
+        y, cb, cr = (part * np.float32(255 * (1 << bits - 8) / ((1 << bits) - 1)) for part in (y, cb, cr))
     r, b = y + 2 * (1 - red) * cr, y + 2 * (1 - blue) * cb
     g = (y - red * r - blue * b) / (1 - red - blue)
-    return np.clip(np.rint(np.stack([r, g, b], axis=-1)), 0, 255).astype(np.uint8)
+    return np.stack([r, g, b], axis=-1)
 
 
-def _plane_array(plane: av.video.plane.VideoPlane) -> NDArray[np.float32]:
-    rows = np.frombuffer(plane, np.uint8).reshape(plane.height, plane.line_size)
-    return rows[:, : plane.width].astype(np.float32)
+def _plane_array(plane: av.video.plane.VideoPlane, bits: int) -> NDArray[np.float32]:
+    """Values of 0..255, by the most significant eight bits."""
+    samples = np.frombuffer(plane, np.uint8 if bits == 8 else "<u2")
+    rows = samples.reshape(plane.height, plane.line_size // samples.itemsize)[:, : plane.width].astype(np.float32)
+    return rows / np.float32(1 << bits - 8) if bits > 8 else rows

@@ -27,6 +27,7 @@ WALK_DEFAULT_RANGE = (24, 120)  # frames taken by default, one for each WALK_DEF
 WALK_DEFAULT_STEP = 0.05  # of the picture's longer side, by which it moves from frame to frame
 WALK_MIN_WAY = 0.05  # of the longer side: a camera that moves it less stands still
 WALK_MAX_FRAMES = 20_000  # that are looked at
+WALK_DAMAGED_FILE = "damaged"  # beside the frames: how many are left out
 WALK_SHARPNESS_SIDE, WALK_FLOW_SIDE = 640, 320  # pixels of the longer side
 WALK_MAX_CORNERS, WALK_CORNER_QUALITY, WALK_CORNER_DISTANCE = 200, 0.01, 8
 WALK_MIN_CORNERS = 8  # that must be found again; with less the picture counts as not moved
@@ -38,10 +39,12 @@ class _Motion(NamedTuple):
     Attributes:
         way: (n,) the way that the picture has gone up to each frame, in longer sides.
         sharpness: (n,) variance of the Laplacian.
+        damaged: (n,) whether a frame is.
     """
 
     way: NDArray[np.float64]
     sharpness: NDArray[np.float64]
+    damaged: NDArray[np.bool_]
 
 
 def find_walk(folder: Path) -> Path | None:
@@ -62,7 +65,8 @@ def parse_frames(frames: int | None) -> int | None:
 def read_walk(video: Path, options: OpenOptions) -> Arrangement:
     """Frames of a video as PNG, in `options.work` (reused if they are there) or in a temporary folder.
 
-    Raises CaptureError: `names-unknown`, `video-unreadable`, `video-short`, `video-long`, `video-large`, `video-still`.
+    Raises CaptureError: `names-unknown`, `video-unreadable`, `video-short`, `video-long`, `video-large`, `video-still`,
+    `video-colours`.
     """
     found = find_walk(video) if video.is_dir() else video
     if found is None:
@@ -70,23 +74,28 @@ def read_walk(video: Path, options: OpenOptions) -> Arrangement:
     count = parse_frames(options.frames)
 
     def build(place: Path) -> None:
-        chosen = set(_choose(_measure(found), count, found))
-        for number, frame in enumerate(decode_video(found)):
+        motion = _measure(found)
+        chosen = set(_choose(motion, count, found))
+        (place / WALK_DAMAGED_FILE).write_text(str(motion.damaged.sum()))
+        for number, shown in enumerate(decode_video(found)):
             if number in chosen:
-                Image.fromarray(to_rgb(frame)).save(place / f"frame_{number:05d}.png", compress_level=3)
+                Image.fromarray(to_rgb(shown)).save(place / f"frame_{number:05d}.png", compress_level=3)
 
     place = frames_stage(options.work).run("walk", stage_key([video_identity(found), count]), build)
     files = tuple(sorted(place.glob("*.png")))
     fewer = f", of {count} that were asked for" if count is not None and len(files) < count else ""
     line = f"{len(files)} frames of the video are used{fewer}"
-    return Arrangement("walk", files, None, (line if options.frames else f"{line}; --frames says how many",))
+    damaged = int((place / WALK_DAMAGED_FILE).read_text())
+    left_out = [f"{damaged} damaged frames of the video are left out"] if damaged else []
+    said = line if options.frames else f"{line}; --frames says how many"
+    return Arrangement("walk", files, None, (said, *left_out))
 
 
 def _measure(video: Path) -> _Motion:
     """Raises CaptureError as `read_walk` does."""
-    steps, sharpness = [], []
+    steps, sharpness, damaged = [], [], []
     before: NDArray[np.uint8] | None = None
-    for number, (large, small) in enumerate(_small_frames(video)):
+    for number, (large, small, is_damaged) in enumerate(_small_frames(video)):
         if number >= WALK_MAX_FRAMES:
             raise CaptureError(
                 "video-long",
@@ -95,25 +104,27 @@ def _measure(video: Path) -> _Motion:
                 remedy="cut it, or lower its frame rate",
             )
         sharpness.append(float(cv2.Laplacian(large, cv2.CV_32F).var()))
-        steps.append(0.0 if before is None else _picture_motion(before, small))
-        before = small
+        steps.append(0.0 if before is None or is_damaged else _picture_motion(before, small))
+        damaged.append(is_damaged)
+        if not is_damaged:
+            before = small
     low = WALK_FRAMES_RANGE[0]
     if len(steps) < low:
         raise CaptureError(
             "video-short", f"has {len(steps)} frames; {low} are needed", path=video, remedy="film the scene for longer"
         )
-    return _Motion(np.cumsum(steps), np.array(sharpness))
+    return _Motion(np.cumsum(steps), np.array(sharpness), np.array(damaged))
 
 
-def _small_frames(video: Path) -> Iterator[tuple[NDArray[np.uint8], NDArray[np.uint8]]]:
-    """Grey copies of each frame, not turned, for sharpness and for motion."""
-    for frame in decode_video(video):
+def _small_frames(video: Path) -> Iterator[tuple[NDArray[np.uint8], NDArray[np.uint8], bool]]:
+    """Grey copies of each frame, not turned, for sharpness and for motion, and whether it is damaged."""
+    for frame, is_damaged, _ in decode_video(video):
         scale = min(1.0, WALK_SHARPNESS_SIDE / max(frame.width, frame.height))
         width, height = (max(16, round(side * scale)) for side in (frame.width, frame.height))
         large = frame.reformat(width, height, format="gray", interpolation="AREA").to_ndarray()
         scale = min(1.0, WALK_FLOW_SIDE / max(width, height))
         size = max(16, round(width * scale)), max(16, round(height * scale))
-        yield large, np.asarray(cv2.resize(large, size, interpolation=cv2.INTER_AREA), np.uint8)
+        yield large, np.asarray(cv2.resize(large, size, interpolation=cv2.INTER_AREA), np.uint8), is_damaged
 
 
 def _picture_motion(before: NDArray[np.uint8], after: NDArray[np.uint8]) -> float:
@@ -145,7 +156,7 @@ def _choose(motion: _Motion, count: int | None, video: Path) -> list[int]:
     score = motion.sharpness * (1 - np.abs(position - step - 0.5))
     chosen = []
     for number in range(steps):
-        inside = np.flatnonzero(step == number)
+        inside = np.flatnonzero((step == number) & ~motion.damaged)
         if len(inside):
             chosen.append(int(inside[np.argmax(score[inside])]))
     return chosen
