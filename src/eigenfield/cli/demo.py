@@ -101,7 +101,7 @@ def command(output: Path, quiet: bool) -> None:
 
 
 def _summary(path: Path, page: Path, scene: Scene, figures: dict[str, Any], seconds: float) -> str:
-    scene_word = shell_word(path)
+    words = f"{shell_word(path)} {shell_word(path.parent / 'capture')}"
     encoded, held_out = figures["image"]["encoded"], figures["image"]["held_out"]
     return (
         f"{path}: {path.stat().st_size / 1e6:.2f} MB, {scene.appearance.textures} eigen textures, "
@@ -109,6 +109,6 @@ def _summary(path: Path, page: Path, scene: Scene, figures: dict[str, Any], seco
         f"re-drawn photographs {encoded['psnr']:.1f} dB, SSIM {encoded['ssim']:.3f}; "
         f"held out, between the cameras {held_out['psnr']:.1f} dB, SSIM {held_out['ssim']:.3f}\n"
         f"look at {path.parent / 'plots' / 'contact-sheet.png'} and {path.parent / 'flight.mp4'}; {seconds:.0f} s\n"
-        f"look around in it beside the photographs: eigenfield view {scene_word} {shell_word(path.parent / 'capture')}\n"
+        f"look around in it beside the photographs: eigenfield view {words}\n"
         f"or open this in a browser: {page}"
     )

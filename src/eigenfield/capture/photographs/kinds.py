@@ -50,7 +50,8 @@ OPTIONAL_KINDS = (
 ALL_EXTENSIONS = (*PHOTOGRAPH_EXTENSIONS, *(ending for kind in OPTIONAL_KINDS for ending in kind.endings))
 OTHER_KINDS = (
     Kind((".gif", ".bmp", ".dib", ".jp2", ".j2k", ".jpx", ".jxr", ".psd", ".psb", ".xcf", ".ppm", ".pgm", ".pnm",
-          ".tga", ".hdr", ".dpx", ".qoi", ".heics", ".avifs"), "a picture of another format", "convert it to PNG or JPEG"),
+          ".tga", ".hdr", ".dpx", ".qoi", ".heics", ".avifs"),
+         "a picture of another format", "convert it to PNG or JPEG"),
     Kind(OTHER_JPEG_EXTENSIONS, "no picture that is read, whatever its name says", "copy it again"),
     Kind((".jps", ".pns"), "two pictures side by side", "cut it into the two"),
     Kind((".gpr", ".raw", ".mrw", ".x3f", ".kdc", ".dcr", ".erf", ".mef", ".mos", ".srf", ".fff", ".cap", ".eip"),
