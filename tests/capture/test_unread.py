@@ -163,3 +163,68 @@ def test_a_file_without_its_package_is_refused_by_name(tmp_path, monkeypatch, na
     with pytest.raises(CaptureError) as caught:
         decode(tmp_path / name)
     assert caught.value.code == "image-kind" and caught.value.remedy == f"pip install 'eigenfield[{extra}]'"
+
+
+RENAMED = "a.jpe", "b.JFIF", "c.pjpeg", "d.mpo", "e.jpg_large", "f.jpg!d", "g.png?width=1.5", "h"
+
+
+def test_photographs_with_other_endings_are_read_by_content(tmp_path):
+    folder = write(tmp_path / "c", ["x.png"])
+    for seed, name in enumerate(RENAMED):
+        picture(seed).save(folder / name, "PNG" if "png" in name else "JPEG")
+    for name in ("x.jpg_original", "y.thm", "._a.jpg", "z.jpg.bak"):
+        picture(20).save(folder / name, "JPEG")
+    (folder / "README").write_text("notes")
+    opened = open_any(folder)
+    assert opened.names == (*sorted(RENAMED, key=str.casefold), "x.png") and not opened.problems
+    (folder / "b.JFIF").write_bytes(b"GIF89a")
+    picture(21).save(folder / "p.img", "JPEG")
+    lines = "\n".join(open_any(folder).problems)
+    assert "1 file was not read: .img (pictures by their content" in lines and ".jfif (no picture" in lines
+    (tmp_path / "rig").mkdir()
+    for number in range(2):
+        write_video(tmp_path / "rig" / f"{number}.mp4", 2)
+    picture(0).save(tmp_path / "rig" / "poster", "JPEG")
+    assert open_any(tmp_path / "rig", strict=False).format == "video"
+
+
+def test_files_that_are_elsewhere_are_to_be_downloaded(tmp_path):
+    folder = write(tmp_path / "c", ["a.png", "b.png", "c.png"])
+    for name in (
+        ".IMG_7.JPG.icloud",
+        "IMG_8.heic.nextcloud",
+        "IMG_9.jpg.crdownload",
+        ".a.png.icloud",
+        ".notes.txt.icloud",
+    ):
+        (folder / name).write_bytes(b"bplist00")
+    (folder / "lost.jpg").symlink_to(tmp_path / "nowhere")
+    line = "4 files were not read: .crdownload, .icloud, .jpg, .nextcloud (not on this machine: download them first)"
+    assert open_any(folder).problems == (line,)
+    for path in folder.glob("*.png"):
+        path.unlink()
+    assert "download them first" in str(refused("photographs-missing", folder).remedy)
+
+
+def test_folders_inside_are_named_at_any_depth(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write(Path("CARD/DCIM/100APPLE"), ["a.jpg", "b.jpg"])
+    write(Path("CARD/scene 1/images"), ["a.jpg"])
+    (Path("CARD/DCIM/101APPLE")).mkdir()
+    Path("CARD/DCIM/101APPLE/.c.HEIC.icloud").write_bytes(b"bplist00")
+    write(Path("CARD/@eaDir/a.jpg"), ["SYNOPHOTO.jpg"])
+    found = "name CARD/DCIM/100APPLE, CARD/DCIM/101APPLE, 'CARD/scene 1': one, or several if they are one capture"
+    assert refused("photographs-missing", Path("CARD")).remedy == found
+    assert refused("names-unknown", Path("CARD"), format="folder").remedy == found
+
+
+def test_photographs_that_are_named_one_by_one_lead_to_their_folder(tmp_path, monkeypatch, run):
+    monkeypatch.chdir(tmp_path)
+    write(Path("-photos"), ["a.png", "b.png", "c.png"])
+    files = [f"./-photos/{name}.png" for name in "abc"]
+    verbs = ("inspect",), ("encode", "-o", "s.glb"), ("encode", "--proxy", DOCS / "scene.glb", "-o", "s.glb")
+    for verb in (*verbs, ("calibrate",), ("evaluate", DOCS / "scene.glb")):
+        code, _, error = run(*verb, *files)
+        assert code == 2 and "name their folder: ./-photos" in error
+    assert "name the folder of all photographs: ./-photos" in run("inspect", files[0])[2]
+    assert "eigenfield encode ./-photos -o" in run("inspect", "./-photos")[1]

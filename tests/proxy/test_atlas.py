@@ -27,6 +27,7 @@ from eigenfield.proxy import (
     unwrap_mesh,
     write_ply,
 )
+from eigenfield.proxy.meshes.prepare import without_far_vertices
 
 
 def grid(n, uv=True, height=0.0):
@@ -310,3 +311,54 @@ def test_the_cube_gets_an_atlas(data):
     statistics = atlas_statistics(result)
     assert atlas_fault(result) is None
     assert statistics.fill > 0.45 and statistics.stretch < 1.02 and statistics.overlap < 1e-4
+
+
+def look_at(x, y, z):
+    """A camera above the unit square that looks straight down."""
+    return Camera(
+        np.array([[80.0, 0, 32], [0, 80, 32], [0, 0, 1]]), np.diag([1.0, -1, -1]), np.array([-x, y, z]), 64, 64
+    )
+
+
+ABOVE = [look_at(0.5 + 0.2 * i, 0.5, 2.0) for i in (-1, 0, 1)]
+
+
+@pytest.mark.parametrize(
+    ("places", "left"), [([(9e5, 9e5, 9e5)], 1), ([(0, 1e4, 0), (1e5, 0, 3e4)], 3), ([(0, 0, 9)], 0)]
+)
+def test_triangles_of_vertices_far_outside_are_left_out(caplog, places, left):
+    plain = grid(6, uv=False, height=0.1)
+    vertices = plain.vertices.copy()
+    vertices[[0, 6][: len(places)]] = places  # corners, of one and of two triangles
+    with caplog.at_level(logging.WARNING):
+        made = without_far_vertices(Mesh(vertices, plain.faces), ABOVE, None)
+    lines = [record.getMessage() for record in caplog.records if "far outside" in record.getMessage()]
+    dropped = len(plain.faces) - len(made.faces)
+    assert (dropped, len(lines)) == ({0: 0, 1: 2, 3: 3}[left], int(left > 0))
+
+
+def test_ground_that_reaches_far_stays():
+    plain = grid(12, uv=False)
+    flat = plain.vertices - np.float32(0.5)
+    reach = (np.abs(flat).max(axis=1) * 2) ** 8 * 5000 + 1  # gradually, to 2500 times the scene
+    mesh = Mesh((flat * reach[:, None] + 0.5).astype(np.float32), plain.faces)
+    assert without_far_vertices(mesh, ABOVE, None) is mesh
+
+
+@pytest.mark.parametrize("equal", [True, False])
+def test_an_atlas_of_equal_triangles_is_kept_where_triangles_are_alike(caplog, equal):
+    plain = grid(8, uv=False)
+    if not equal:  # most of the square in two triangles
+        x, y = plain.vertices[:, 0], plain.vertices[:, 1]
+        plain.vertices[:, 0], plain.vertices[:, 1] = x**6, y**6
+    count = len(plain.faces)
+    side = int(np.ceil(np.sqrt(count)))
+    at = np.stack(np.divmod(np.arange(count), side), axis=1)[:, None]
+    uv = (at + np.array([[0.1, 0.1], [0.9, 0.1], [0.1, 0.9]])) / side
+    own = Mesh(plain.vertices[plain.faces].reshape(-1, 3), np.arange(3 * count, dtype=np.int32).reshape(-1, 3),
+               uv.reshape(-1, 2).astype(np.float32))  # fmt: skip
+    with caplog.at_level(logging.WARNING):
+        made = unwrap_mesh(own, cameras=ABOVE)
+    assert (made.uv.tobytes() == own.uv.tobytes()) == equal
+    assert any("hardly any texels" in record.getMessage() for record in caplog.records) != equal
+    assert unwrap_mesh(own).uv.tobytes() == own.uv.tobytes()  # without cameras any share will do

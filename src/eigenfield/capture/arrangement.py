@@ -15,7 +15,7 @@ from eigenfield.capture.calibration import Calibration, escape_name
 from eigenfield.capture.layout import GridLayout
 from eigenfield.capture.locate import IMAGES_FOLDER, photographs_in
 from eigenfield.capture.messages import describe, natural_key
-from eigenfield.capture.unread import describe_unread
+from eigenfield.capture.unread import describe_inner, describe_unread
 from eigenfield.core.errors import CaptureError
 
 NAMES_MIN_PHOTOGRAPHS = 3  # photographs that must bear a format's names
@@ -109,7 +109,7 @@ def require_photographs(fitting: Sequence[object], folder: Path, what: str) -> N
             "names-unknown",
             f"holds no photograph named {what}",
             path=folder,
-            remedy="; ".join(unread) or "name the right folder, or another --format",
+            remedy="; ".join(unread) or describe_inner(folder) or "name the right folder, or another --format",
         )
 
 

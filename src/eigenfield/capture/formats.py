@@ -8,8 +8,9 @@ from pathlib import Path
 
 from eigenfield.capture.arrangement import Arrangement, OpenOptions
 from eigenfield.capture.calibration import Calibration, escape_name
+from eigenfield.capture.locate import is_photograph_file
 from eigenfield.capture.messages import list_names
-from eigenfield.capture.photographs.kinds import ALL_EXTENSIONS, MESH_KIND, OTHER_KINDS, VIDEO_EXTENSIONS
+from eigenfield.capture.photographs.kinds import MESH_KIND, OTHER_KINDS, VIDEO_EXTENSIONS
 from eigenfield.capture.readers import colmap, transforms
 from eigenfield.capture.readers.bundler import find_bundler, find_unlisted, read_bundler
 from eigenfield.capture.readers.deepview import DEEPVIEW_FILE, find_deepview, read_deepview
@@ -31,6 +32,7 @@ from eigenfield.capture.readers.walk import find_walk, read_walk
 from eigenfield.coding.limits import EXTENSION
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.recognise import SPLAT, read_head, recognise
+from eigenfield.core.shell import shell_word
 
 # of the formats that claim a folder, the one of lowest rank is read; two of one rank are ambiguous
 RANK_FIRST, RANK_SECOND, RANK_CAMERAS, RANK_NAMES, RANK_ON_REQUEST, RANK_ANY = range(6)
@@ -240,8 +242,9 @@ def _not_a_calibration(path: Path) -> CaptureError:
         "name a transforms.json, a COLMAP model, another that `eigenfield help captures` lists",
     )
     remedy += ", or a folder with one"
-    if lower.endswith(ALL_EXTENSIONS):
-        message, remedy = "is one photograph, and no calibration", "name the folder of all photographs"
+    if is_photograph_file(path):
+        message = "is one photograph, and no calibration"
+        remedy = f"name the folder of all photographs: {shell_word(path.parent)}"
     elif kind is not None:
         head = read_head(path)
         what = recognise(head) or kind.what

@@ -4,15 +4,22 @@ from __future__ import annotations
 
 import os
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path, PurePosixPath
 from typing import TypeVar
 
 from eigenfield.capture.lightfield import View
 from eigenfield.capture.messages import describe
-from eigenfield.capture.photographs.kinds import read_extensions, without_copies
-from eigenfield.capture.photographs.read import decode_mask
+from eigenfield.capture.photographs.kinds import (
+    ALL_EXTENSIONS,
+    VIDEO_EXTENSIONS,
+    may_be_renamed,
+    read_extensions,
+    without_copies,
+)
+from eigenfield.capture.photographs.read import FORMAT_HEAD_BYTES, decode_mask, format_of
 from eigenfield.capture.photoset import Shot
 from eigenfield.core.camera_names import name_key
 from eigenfield.core.errors import CaptureError
@@ -20,6 +27,7 @@ from eigenfield.core.errors import CaptureError
 T = TypeVar("T", View, Shot)
 
 IMAGES_FOLDER = "images"
+RENAMED_FORMATS = ("JPEG", "PNG", "WebP", "AVIF")  # TIFF may be a RAW with a small picture
 SEARCH_MAX_FILES = 1_000_000  # files looked at below images/
 
 
@@ -149,17 +157,53 @@ def _candidate_files(root: Path) -> Iterator[Path]:
 
 
 def photographs_in(folder: Path) -> list[Path]:
-    """The files of one folder that are named like photographs which are read, sorted, each photograph once."""
-    return without_copies(files_named(folder, read_extensions()))
+    """The photographs of one folder that are read, sorted, each once.
+
+    They are named like photographs, or have other endings and are JPEG, PNG, WebP or AVIF by their content. The latter
+    are none beside videos alone, whose posters they may be.
+    """
+    named = files_named(folder, read_extensions())
+    others = [path for path in _files_in(folder, may_be_renamed) if content_format(path) in RENAMED_FORMATS]
+    if others and not named and files_named(folder, VIDEO_EXTENSIONS):
+        others = []
+    return without_copies(sorted(named + others))
+
+
+def is_photograph_file(path: Path) -> bool:
+    """Whether a path is a file that is named like a photograph, or may be one of another name and is by its content."""
+    if not is_file(path):
+        return False
+    return path.name.lower().endswith(ALL_EXTENSIONS) or (
+        may_be_renamed(path.name) and content_format(path) in RENAMED_FORMATS
+    )
 
 
 def files_named(folder: Path, endings: tuple[str, ...]) -> list[Path]:
     """The files of one folder whose names end so, sorted, hidden ones left out; none where it is no folder."""
+    return _files_in(folder, lambda name: name.lower().endswith(endings))
+
+
+def _files_in(folder: Path, fits: Callable[[str], bool]) -> list[Path]:
     if not folder.is_dir():
         return []
     with os.scandir(folder) as entries:
-        fitting = (e for e in entries if e.name.lower().endswith(endings) and not e.name.startswith("."))
+        fitting = (e for e in entries if not e.name.startswith(".") and fits(e.name))
         return sorted(Path(e.path) for e in fitting if e.is_file())
+
+
+def content_format(path: Path) -> str | None:
+    """The format of a photograph by its first bytes; None for other files, and for those that cannot be read."""
+    try:
+        known = path.stat()
+        return _content_format(path, known.st_size, known.st_mtime_ns)
+    except OSError:
+        return None
+
+
+@lru_cache(maxsize=1 << 16)
+def _content_format(path: Path, size: int, modified: int) -> str | None:
+    with path.open("rb") as file:
+        return format_of(path, file.read(FORMAT_HEAD_BYTES))
 
 
 class MaskFinder:

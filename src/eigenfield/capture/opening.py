@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -20,13 +19,14 @@ from eigenfield.capture.pairing import pair_photographs
 from eigenfield.capture.photographs.exr import choose_exposure
 from eigenfield.capture.photographs.kinds import is_linear
 from eigenfield.capture.photoset import Capture, PhotoSet
-from eigenfield.capture.readers.folder import read_folders
+from eigenfield.capture.readers.folder import read_folders, refuse_photograph_files
 from eigenfield.capture.readers.grid_names import compile_pattern
 from eigenfield.capture.readers.video import is_video_rig, read_videos
-from eigenfield.capture.unread import describe_unread
+from eigenfield.capture.unread import describe_inner, describe_unread
 from eigenfield.core.arguments import checked
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.recognise import refuse_address
+from eigenfield.core.shell import shell_word
 from eigenfield.runtime.objects import local_copy
 
 C = TypeVar("C", LightField, PhotoSet, Capture)
@@ -73,6 +73,7 @@ def open_capture(
         OptionError: An option is impossible or would have no effect.
     """
     if also:
+        refuse_photograph_files([Path(one) for one in (path, *also)])
         raise OptionError(
             "folders-cameras", "several folders have no calibration", remedy="name one folder that holds them all"
         )
@@ -166,6 +167,7 @@ def _open_folders(
     paths: Sequence[StrPath], options: OpenOptions, other: StrPath | None, masks: StrPath | None, strict: bool
 ) -> PhotoSet:
     """The photographs of several folders, without any option that is for one."""
+    refuse_photograph_files([Path(path) for path in paths])
     if other is not None or replace(options, work=None) != OpenOptions():
         raise OptionError(
             "folders-options",
@@ -336,7 +338,7 @@ def _no_cameras(path: Path, problems: tuple[str, ...] = ()) -> CaptureError:
     if others:
         remedy = f"it holds {list_names(others)}: name one as the calibration"
     elif path.is_dir() and (photographs_in(path) or photographs_in(path / IMAGES_FOLDER)):
-        words = shlex.quote(str(path))
+        words = shell_word(path)
         remedy = f"`eigenfield encode {words} -o scene.glb` estimates cameras and mesh, `eigenfield calibrate {words}` "
         remedy += "cameras alone; or name one with --calibration"
     else:
@@ -345,13 +347,8 @@ def _no_cameras(path: Path, problems: tuple[str, ...] = ()) -> CaptureError:
 
 
 def _no_photographs(path: Path) -> CaptureError:
-    """The error for a folder in which nothing is found; it names what is there, or folders inside with photographs."""
-    unread = describe_unread((path, path / IMAGES_FOLDER))
-    if unread:
-        message = "holds no photographs that are read"
-        return CaptureError("photographs-missing", message, path=path, remedy="; ".join(unread))
-    inner = [p.name for p in sorted(path.iterdir()) if p.is_dir() and photographs_in(p)] if path.is_dir() else []
-    remedy = f"name one of the folders inside: {list_names(inner)}" if inner else "name a folder of photographs"
-    if len(inner) > 1:
-        remedy += "; or several, if they are one capture"
-    return CaptureError("photographs-missing", "holds no photographs", path=path, remedy=remedy)
+    """The error for a folder in which nothing is found; it names what is there, and folders inside with photographs."""
+    unread, inner = describe_unread((path, path / IMAGES_FOLDER)), describe_inner(path) if path.is_dir() else None
+    message = "holds no photographs that are read" if unread else "holds no photographs"
+    remedy = "; ".join([*unread, *([inner] if inner else [])]) or "name a folder of photographs"
+    return CaptureError("photographs-missing", message, path=path, remedy=remedy)

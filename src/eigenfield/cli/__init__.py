@@ -20,6 +20,7 @@ from click.shell_completion import shell_complete
 
 from eigenfield.cli.completion import COMPLETION_VARIABLE
 from eigenfield.core.errors import EigenfieldError
+from eigenfield.core.shell import shell_word
 from eigenfield.core.version import __version__
 from eigenfield.runtime.children import kill_children
 from eigenfield.runtime.objects import name_address
@@ -153,6 +154,9 @@ def main() -> None:
     except click.exceptions.Exit as error:
         sys.exit(error.exit_code)
     except click.ClickException as error:
+        named = [word for word in sys.argv[1:] if word.startswith("-") and os.path.lexists(word)]
+        if isinstance(error, click.NoSuchOption) and named:
+            error.message += f" For what is called so, say {shell_word(named[0])}."
         error.show()
         sys.exit(2)
     except EigenfieldError as error:

@@ -26,6 +26,15 @@ CALIBRATION_SUFFIX = "-calibration"
 MATCHING_WAYS = ("auto", "exhaustive", "similar", "grid", "positions")
 
 
+def _one_folder(context: click.Context, parameter: click.Parameter, value: tuple[Path, ...]) -> Path:
+    if len(value) > 1:
+        from eigenfield.capture.readers.folder import refuse_photograph_files
+
+        refuse_photograph_files(value)
+        raise click.UsageError(f"Got unexpected extra argument ({value[1]})", context)
+    return value[0]
+
+
 @click.command(
     epilog="""\b
 Examples:
@@ -35,7 +44,7 @@ Examples:
   eigenfield calibrate charts/ --chart checkerboard --board 9x6 --square 25mm
   eigenfield inspect photos/ --calibration photos-calibration/transforms.json"""
 )
-@click.argument("folder", type=PATH)
+@click.argument("folder", type=PATH, nargs=-1, required=True, metavar="FOLDER", callback=_one_folder)
 @click.option(
     "--output",
     "-o",

@@ -13,6 +13,7 @@ import click
 from eigenfield.cli.common import PATH, common_options, note
 from eigenfield.cli.progress import StepProgress, progress_bars
 from eigenfield.core.progress import begin_step
+from eigenfield.core.shell import shell_word
 
 if TYPE_CHECKING:
     from eigenfield.core.scene import Scene
@@ -100,6 +101,7 @@ def command(output: Path, quiet: bool) -> None:
 
 
 def _summary(path: Path, page: Path, scene: Scene, figures: dict[str, Any], seconds: float) -> str:
+    words = f"{shell_word(path)} {shell_word(path.parent / 'capture')}"
     encoded, held_out = figures["image"]["encoded"], figures["image"]["held_out"]
     return (
         f"{path}: {path.stat().st_size / 1e6:.2f} MB, {scene.appearance.textures} eigen textures, "
@@ -107,6 +109,6 @@ def _summary(path: Path, page: Path, scene: Scene, figures: dict[str, Any], seco
         f"re-drawn photographs {encoded['psnr']:.1f} dB, SSIM {encoded['ssim']:.3f}; "
         f"held out, between the cameras {held_out['psnr']:.1f} dB, SSIM {held_out['ssim']:.3f}\n"
         f"look at {path.parent / 'plots' / 'contact-sheet.png'} and {path.parent / 'flight.mp4'}; {seconds:.0f} s\n"
-        f"look around in it beside the photographs: eigenfield view {path} {path.parent / 'capture'}\n"
+        f"look around in it beside the photographs: eigenfield view {words}\n"
         f"or open this in a browser: {page}"
     )

@@ -21,6 +21,7 @@ from eigenfield.cli.common import (
 )
 from eigenfield.cli.progress import progress_bars
 from eigenfield.core.errors import EigenfieldError, OptionError
+from eigenfield.core.shell import shell_word
 
 if TYPE_CHECKING:
     from eigenfield.calibration import NeighbourPair
@@ -91,7 +92,7 @@ def command(
         raise OptionError(
             "proxy-needs-cameras",
             "--proxy is drawn by the capture's cameras, and it has none",
-            remedy=f"run `eigenfield calibrate {shlex.quote(str(capture))}` first",
+            remedy=f"run `eigenfield calibrate {shell_word(capture)}` first",
         )
     mesh = None
     if proxy is not None and opened.light_field is not None:
@@ -243,9 +244,13 @@ def _next_commands(report: dict[str, Any], capture: Path, place: dict[str, Any])
         return []
     grid = None if place["grid"] is None else "x".join(map(str, place["grid"]))
     given = {**place, "grid": grid, "also": None}.items()
-    said = [f"--{name} {shlex.quote(str(value))}" for name, value in given if value is not None]
+    said = [
+        f"--{name} {shell_word(value) if isinstance(value, Path) else shlex.quote(str(value))}"
+        for name, value in given
+        if value is not None
+    ]
     folders = [capture, *(place["also"] or ())]
-    words = " ".join([*(shlex.quote(str(folder)) for folder in folders), *said])
+    words = " ".join([*(shell_word(folder) for folder in folders), *said])
     encode = f"eigenfield encode {words} -o scene.glb"
     return [encode] if report["views"] or place["also"] else [encode, f"eigenfield calibrate {words}"]
 

@@ -13,9 +13,12 @@ from eigenfield.capture.arrangement import (
     photographs_of,
     require_photographs,
 )
+from eigenfield.capture.locate import is_photograph_file
+from eigenfield.capture.messages import list_names
 from eigenfield.capture.readers.grid_names import largest_name_group
 from eigenfield.capture.readers.video import find_videos
 from eigenfield.core.errors import CaptureError, OptionError
+from eigenfield.core.shell import shell_word
 
 FOLDER_WORDS = "like one (.png, .jpg, .webp, .tif, .avif)"
 FOLDER_MIN_SQUARE_SIDE_PHOTOGRAPHS = 5
@@ -50,6 +53,15 @@ def read_folders(folders: Sequence[Path]) -> Arrangement:
     if len({path.resolve() for path in files}) < len(files):
         raise OptionError("folders-twice", "a folder is named twice", remedy="name each once")
     return Arrangement("folder", tuple(files))
+
+
+def refuse_photograph_files(paths: Sequence[Path]) -> None:
+    """Raise CaptureError `capture-missing` where photographs are named one by one, as `photos/*.jpg` does."""
+    files = [path for path in paths if is_photograph_file(path)]
+    if files:
+        folders = [shell_word(folder) for folder in dict.fromkeys(path.parent for path in files)]
+        remedy = f"name their {'folder' if len(folders) == 1 else 'folders'}: {list_names(folders)}"
+        raise CaptureError("capture-missing", "is one photograph, and no folder of them", path=files[0], remedy=remedy)
 
 
 def _suggest_grid(folder: Path) -> list[str]:

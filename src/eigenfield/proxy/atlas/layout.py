@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh, signed_areas, triangle_areas
+from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy.atlas.kernels import count_layers
+from eigenfield.proxy.surface.neighbours import spread_views
 from eigenfield.proxy.topology import face_components
 
 ATLAS_RASTER_TEXELS = 2048  # side of the raster on which overlap and fill are counted
@@ -16,6 +20,10 @@ ATLAS_MARGIN_TEXELS = 0.05  # of that raster: UVs are often printed with six dig
 ATLAS_BORDER_UV = 5e-4  # UVs up to this far outside 0..1 (half a texel at 1024) are clipped
 ATLAS_MAX_OVERLAP_FRACTION = 0.005  # covered texels in more than one triangle
 ATLAS_MAX_FLAT_FRACTION = 0.01  # surface whose UV triangles have no area
+ATLAS_STARVED_VIEWS = 8  # in which pixels of triangles are counted
+ATLAS_STARVED_SIDE_PIXELS = 256  # longest side of these
+ATLAS_STARVED_RATIO = 1 / 8  # of a triangle's texels a pixel to those of all
+ATLAS_MAX_STARVED_FRACTION = 0.2  # of the pixels, in such triangles
 
 
 @dataclass(frozen=True)
@@ -116,11 +124,42 @@ def chart_labels(mesh: Mesh) -> NDArray[np.int32]:
     return face_components(mesh.faces, len(mesh.vertices))
 
 
-def atlas_fault(mesh: Mesh) -> str | None:
+def starved_fraction(mesh: Mesh, cameras: Sequence[Camera]) -> float:
+    """The part of what the cameras see whose triangles have hardly any texels beside the others.
+
+    A triangle's pixels are those of the camera that sees it largest.
+
+    Args:
+        mesh: With UVs.
+        cameras: All cameras.
+    """
+    assert mesh.uv is not None
+    area, shown = np.zeros(len(mesh.faces)), np.zeros(len(mesh.faces))
+    for index in spread_views(cameras, ATLAS_STARVED_VIEWS):
+        scale = ATLAS_STARVED_SIDE_PIXELS / max(cameras[index].width, cameras[index].height)
+        size = (max(1, round(scale * side)) for side in (cameras[index].width, cameras[index].height))
+        camera = cameras[index].resize(*size)
+        seen = rasterise_view(mesh, camera).face
+        faces, pixels = np.unique(seen[seen >= 0], return_counts=True)
+        flat, depth = camera.project(mesh.vertices[mesh.faces[faces]].reshape(-1, 3))
+        whole = (depth.reshape(-1, 3) > 0).all(axis=1)
+        faces, flat = faces[whole], flat.reshape(-1, 3, 2)[whole]
+        area[faces] = np.maximum(area[faces], np.abs(signed_areas(flat)))
+        shown[faces] = np.maximum(shown[faces], pixels[whole])
+    texels = np.abs(signed_areas(mesh.uv[mesh.faces].astype(np.float64)))
+    seen = area > 0
+    if not seen.any():
+        return 0.0
+    starved = texels[seen] / area[seen] < ATLAS_STARVED_RATIO * texels[seen].sum() / area[seen].sum()
+    return float(shown[seen][starved].sum() / shown[seen].sum())
+
+
+def atlas_fault(mesh: Mesh, cameras: Sequence[Camera] | None = None) -> str | None:
     """Why the mesh's own UVs are no atlas, as the end of a sentence; None if they are one.
 
     Args:
         mesh: The mesh.
+        cameras: Whose pictures the texels are for. None: any share of texels will do.
     """
     if mesh.uv is None:
         return "there are none"
@@ -136,4 +175,7 @@ def atlas_fault(mesh: Mesh) -> str | None:
         return f"{statistics.flat:.1%} of the surface has no area in them"
     if statistics.overlap > ATLAS_MAX_OVERLAP_FRACTION:
         return f"{statistics.overlap:.1%} of the covered texels lie in more than one triangle"
+    starved = starved_fraction(mesh, cameras) if cameras else 0.0
+    if starved > ATLAS_MAX_STARVED_FRACTION:
+        return f"{starved:.0%} of what the cameras see has hardly any texels, as where all triangles have equal ones"
     return None

@@ -44,7 +44,8 @@ def unwrap_mesh(
         mesh: With or without UVs.
         triangles: Simplify to at most this many. None keeps a mesh with an atlas as it is, and simplifies others to
             PROXY_DEFAULT_TRIANGLES. A simplified mesh gets new charts.
-        cameras: Give each new chart an area in proportion to their resolution (`chart_scales`). None: all charts alike.
+        cameras: Give each new chart an area in proportion to their resolution (`chart_scales`), and give up an atlas
+            that leaves hardly any texels to what they see. None: all charts alike.
         progress: Called for each step.
 
     Raises:
@@ -55,7 +56,7 @@ def unwrap_mesh(
         raise OptionError(
             "triangles", f"{triangles} triangles were asked for", remedy=f"ask for {UNWRAP_MIN_TRIANGLES} or more"
         )
-    fault = atlas_fault(mesh)
+    fault = atlas_fault(mesh, cameras)
     if fault is None and (triangles is None or len(mesh.faces) <= triangles):
         assert mesh.uv is not None
         return Mesh(mesh.vertices, mesh.faces, np.clip(mesh.uv, 0, 1))

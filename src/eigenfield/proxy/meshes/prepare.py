@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -14,11 +15,18 @@ from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress
 from eigenfield.imaging.raster import rasterise_view
+from eigenfield.proxy.atlas.layout import atlas_fault
 from eigenfield.proxy.atlas.unwrap import unwrap_mesh
 from eigenfield.proxy.meshes.formats import RawMesh
 from eigenfield.proxy.meshes.read import check_mesh, read_mesh
 from eigenfield.proxy.surface.neighbours import project_inside
+from eigenfield.proxy.topology import remove_unused_vertices
 
+log = logging.getLogger("eigenfield.proxy")
+
+FAR_MIN_RATIO = 20.0  # of a vertex's distance from the mesh's middle to the usual one of vertices and cameras
+FAR_SEEN_MIN_RATIO = 1000.0  # likewise, of a vertex that some camera has in its frame
+FAR_MIN_JUMP = 20.0  # of that distance to another corner's: meshes that reach far reach there gradually
 PREPARE_THUMBNAIL_PIXELS = 64  # side of the pictures in which a mesh is searched whose vertices all lie outside
 
 
@@ -46,6 +54,7 @@ def prepare_proxy(
     path = None if isinstance(path_or_mesh, Mesh) else Path(path_or_mesh)
     mesh = _from_memory(path_or_mesh) if isinstance(path_or_mesh, Mesh) else read_mesh(path_or_mesh, origin)
     _check_seen(mesh, cameras, path)
+    mesh = without_far_vertices(mesh, cameras, path)
     try:
         count = triangles(mesh) if callable(triangles) else triangles
         return unwrap_mesh(mesh, triangles=count, cameras=cameras, progress=progress)
@@ -79,6 +88,36 @@ def _check_seen(mesh: Mesh, cameras: Sequence[Camera], path: Path | None) -> Non
         "another reconstruction's coordinates; `eigenfield inspect CAPTURE --proxy MESH --overlay overlay.png` shows "
         "both",
     )
+
+
+def without_far_vertices(mesh: Mesh, cameras: Sequence[Camera], path: Path | None) -> Mesh:
+    """The mesh without the triangles that lead to single vertices far outside, which programs leave behind.
+
+    Charts are as large as their surface, so that such a triangle leaves no texels for the rest. A mesh with an atlas of
+    its own stays as it is.
+    """
+    points = mesh.vertices.astype(np.float64)
+    middle = np.median(points, axis=0)
+    away = np.linalg.norm(points - middle, axis=1)
+    usual = max(float(np.median(away)), float(np.median([np.linalg.norm(c.centre - middle) for c in cameras])))
+    far = away > FAR_MIN_RATIO * usual
+    if not far.any():
+        return mesh
+    seen = np.logical_or.reduce([project_inside(camera, points[far])[2] for camera in cameras])
+    far[far] = ~seen | (away[far] > FAR_SEEN_MIN_RATIO * usual)
+    corners = away[mesh.faces]
+    jumps = corners.min(axis=1) * FAR_MIN_JUMP < corners.max(axis=1)
+    spike = np.zeros(len(points), bool)
+    spike[mesh.faces[jumps]] = True
+    spike &= far
+    left_out = spike[mesh.faces].any(axis=1)
+    if not left_out.any() or left_out.all() or atlas_fault(mesh) is None:
+        return mesh
+    log.warning(
+        "%s: %d of %d triangles are left out, whose corners lie far outside the rest, as at %s",
+        path or "mesh", left_out.sum(), len(mesh.faces), _point(points[np.argmax(np.where(spike, away, 0))]),
+    )  # fmt: skip
+    return remove_unused_vertices(Mesh(mesh.vertices, mesh.faces[~left_out], mesh.uv))
 
 
 def _covers_pixels(mesh: Mesh, camera: Camera) -> bool:
