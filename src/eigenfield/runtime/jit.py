@@ -8,7 +8,9 @@ name therefore carries a digest of all sources of the package.
 from __future__ import annotations
 
 import hashlib
+import os
 import re
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -19,6 +21,7 @@ from typing import Any
 import numba
 import platformdirs
 from numba.core import event
+from numba.core.compiler_lock import global_compiler_lock
 
 Kernel = Callable[..., Any]
 _IMPORTS = re.compile(r"^from eigenfield\.(\S+) import", re.MULTILINE)
@@ -92,6 +95,14 @@ def kernel(*, fastmath: bool | set[str] = False, inline: bool = False) -> Callab
         return compiled
 
     return decorate
+
+
+if sys.platform != "win32":  # no process is forked in the middle of a compilation: its child could compile no more
+    os.register_at_fork(
+        before=global_compiler_lock.acquire,
+        after_in_parent=global_compiler_lock.release,
+        after_in_child=global_compiler_lock.release,
+    )
 
 
 class _Compilations(event.Listener):  # type: ignore[misc]
