@@ -30,6 +30,7 @@ def counts(tmp_path):
         command = [sys.executable, "-B", str(tmp_path / "module.py")]
         done = subprocess.run(command, capture_output=True, text=True, env=environment)
         assert done.returncode == 0, done.stderr
+        assert ("NUMBA_CACHE_DIR" in done.stderr) == str(cache).startswith("/dev/null")
         return tuple(map(int, done.stdout.split()))
 
     return call
@@ -44,8 +45,9 @@ def test_the_second_process_compiles_nothing(counts, tmp_path):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="XDG_CACHE_HOME names the cache on Linux")
-def test_without_a_place_for_a_cache_it_still_runs(counts):
-    counts("/dev/null/nowhere")
+def test_without_a_place_for_a_cache_it_still_runs(counts, tmp_path):
+    assert counts("/dev/null/nowhere") == (0, 1)
+    assert not (tmp_path / "__pycache__").exists()  # where no change of another kernel would be noticed
 
 
 def twice(x):

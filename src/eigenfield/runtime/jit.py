@@ -51,8 +51,16 @@ def _cache_folder() -> str:
     return str(Path(platformdirs.user_cache_dir("eigenfield")) / "kernels" / digest.hexdigest()[:16])
 
 
+class _Place(FunctionCache._impl_class):  # type: ignore[misc]
+    """The folder that numba is told, and none of the others that it would try, such as the one of the source."""
+
+    _locator_classes = FunctionCache._impl_class._locator_classes[:1]
+
+
 class _Cache(FunctionCache):  # type: ignore[misc]
     """numba's cache of one function, which is not needed: its disk may be full, and its files damaged."""
+
+    _impl_class = _Place
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         try:
