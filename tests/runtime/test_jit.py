@@ -30,6 +30,7 @@ def counts(tmp_path):
         command = [sys.executable, "-B", str(tmp_path / "module.py")]
         done = subprocess.run(command, capture_output=True, text=True, env=environment)
         assert done.returncode == 0, done.stderr
+        assert ("NUMBA_CACHE_DIR" in done.stderr) == str(cache).startswith("/dev/null")
         return tuple(map(int, done.stdout.split()))
 
     return call
@@ -44,5 +45,55 @@ def test_the_second_process_compiles_nothing(counts, tmp_path):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="XDG_CACHE_HOME names the cache on Linux")
-def test_without_a_place_for_a_cache_it_still_runs(counts):
-    counts("/dev/null/nowhere")
+def test_without_a_place_for_a_cache_it_still_runs(counts, tmp_path):
+    assert counts("/dev/null/nowhere") == (0, 1)
+    assert not (tmp_path / "__pycache__").exists()  # where no change of another kernel would be noticed
+
+
+def twice(x):
+    return 2 * x
+
+
+@pytest.fixture
+def hits(tmp_path, monkeypatch, caplog):
+    """Make the kernel anew, call it, and say how often its code came from the cache, and how many files that has."""
+    numba = pytest.importorskip("numba")
+    jit = pytest.importorskip("eigenfield.runtime.jit")
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    jit._say_not_kept.cache_clear()
+
+    def call():
+        compiled = jit.kernel()(twice)
+        assert compiled(21) == 42
+        return sum(compiled.stats.cache_hits.values()), len([path for path in tmp_path.rglob("*") if path.is_file()])
+
+    return call
+
+
+@pytest.mark.parametrize("ending", [".nbi", ".nbc"])
+@pytest.mark.parametrize(
+    "damage", [lambda data: b"", lambda data: data[: len(data) // 2], lambda data: bytes(len(data))]
+)
+def test_a_damaged_cache_is_made_anew(hits, tmp_path, ending, damage, caplog):
+    assert hits() == (0, 2)
+    (path,) = tmp_path.rglob(f"*{ending}")
+    path.write_bytes(damage(path.read_bytes()))
+    assert hits() == (0, 2)
+    assert hits() == (1, 2)
+    assert caplog.messages == []
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits on file sizes are POSIX")
+@pytest.mark.parametrize("size", [10, 1000])
+def test_a_cache_on_a_full_disk_is_said_once(hits, caplog, size):
+    """With 1000 bytes the index is written, and the code is not."""
+    resource = pytest.importorskip("resource")
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
+    try:
+        assert hits() == hits() == (0, 0)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    (said,) = caplog.messages
+    assert "NUMBA_CACHE_DIR" in said
+    assert hits() == (0, 2)

@@ -24,7 +24,7 @@ from eigenfield.core.shell import shell_word
 from eigenfield.core.version import __version__
 from eigenfield.runtime.children import kill_children
 from eigenfield.runtime.objects import name_address
-from eigenfield.runtime.signals import STOP_SIGNALS, held
+from eigenfield.runtime.signals import STOP_SIGNALS, end_no_step
 from eigenfield.runtime.temporary import remove_temporaries
 
 VERBS = {
@@ -123,7 +123,7 @@ def _exit_interrupted() -> NoReturn:
     with contextlib.suppress(ValueError):  # not in the main thread
         for number in STOP_SIGNALS:
             signal.signal(number, signal.SIG_IGN)
-    held.acquire()
+    end_no_step()
     kill_children()
     remove_temporaries()
     with contextlib.suppress(OSError):  # the terminal has gone

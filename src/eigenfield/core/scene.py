@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from eigenfield.core import notebook
 from eigenfield.core.appearance import Appearance
 from eigenfield.core.errors import OptionError
+from eigenfield.core.forks import renew_in_child
 from eigenfield.core.payloads import Payloads
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
@@ -21,6 +22,12 @@ from eigenfield.core.rig import Rig
 T = TypeVar("T")
 
 _lock = threading.RLock()  # of what is derived from any scene
+
+
+@renew_in_child
+def _renew_lock() -> None:
+    global _lock
+    _lock = threading.RLock()
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,6 +10,7 @@ import threading
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from eigenfield.core.forks import renew_in_child
 from eigenfield.runtime.signals import hold_signals
 
 # On Linux the kernel kills the child when this process ends, however it ends. The request survives `exec`, and is made
@@ -24,6 +25,13 @@ _LAUNCHER = (
 _running: set[subprocess.Popen[bytes]] = set()
 _gate = threading.RLock()  # a signal handler may come while its own thread holds it
 _stopped = False
+
+
+@renew_in_child
+def _leave_to_parent() -> None:
+    global _gate
+    _gate = threading.RLock()
+    _running.clear()
 
 
 @contextlib.contextmanager
@@ -47,8 +55,9 @@ def child_process(command: Sequence[str], **options: Any) -> Iterator[subprocess
     try:
         yield process
     except BaseException:
-        process.kill()
-        process.communicate()
+        if process in _running:  # else it is of the parent of this process
+            process.kill()
+            process.communicate()
         raise
     finally:
         _running.discard(process)

@@ -7,11 +7,15 @@ name therefore carries a digest of all sources of the package.
 
 from __future__ import annotations
 
+import glob
 import hashlib
+import logging
+import os
 import re
+import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -19,6 +23,10 @@ from typing import Any
 import numba
 import platformdirs
 from numba.core import event
+from numba.core.caching import FunctionCache
+from numba.core.compiler_lock import global_compiler_lock
+
+log = logging.getLogger("eigenfield.kernels")
 
 Kernel = Callable[..., Any]
 _IMPORTS = re.compile(r"^from eigenfield\.(\S+) import", re.MULTILINE)
@@ -43,15 +51,58 @@ def _cache_folder() -> str:
     return str(Path(platformdirs.user_cache_dir("eigenfield")) / "kernels" / digest.hexdigest()[:16])
 
 
+class _Place(FunctionCache._impl_class):  # type: ignore[misc]
+    """The folder that numba is told, and none of the others that it would try, such as the one of the source."""
+
+    _locator_classes = FunctionCache._impl_class._locator_classes[:1]
+
+
+class _Cache(FunctionCache):  # type: ignore[misc]
+    """numba's cache of one function, which is not needed: its disk may be full, and its files damaged."""
+
+    _impl_class = _Place
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        try:
+            return super().load_overload(sig, target_context)
+        except Exception:  # unpickling what is damaged may raise anything
+            self._remove()
+            return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        try:
+            super().save_overload(sig, data)
+        except OSError:
+            self._remove()  # the index may name a file that was not written, or an older one
+            _say_not_kept()
+
+    def _remove(self) -> None:
+        for path in Path(self.cache_path).glob(f"{glob.escape(self._impl.filename_base)}.*"):
+            with suppress(OSError):
+                path.unlink()
+
+
+@cache
+def _say_not_kept() -> None:
+    """Once in a process."""
+    log.warning(
+        "%s: compiled kernels cannot be kept there, so each run compiles them again; make room, or name another folder "
+        "as NUMBA_CACHE_DIR",
+        numba.config.CACHE_DIR or _cache_folder(),
+    )
+
+
 def _compiled(function: Kernel, folder: str, options: dict[str, Any]) -> Any:
     """numba's dispatcher of a function, with a cache where one can be written."""
+    dispatcher = numba.njit(**options)(function)
     theirs, numba.config.CACHE_DIR = numba.config.CACHE_DIR, folder
     try:
-        return numba.njit(cache=True, **options)(function)
-    except (RuntimeError, OSError):  # nowhere to write a cache
-        return numba.njit(**options)(function)
+        dispatcher._cache = _Cache(function)
+    except (RuntimeError, OSError):  # RuntimeError: numba has tried to write there
+        _say_not_kept()
     finally:
         numba.config.CACHE_DIR = theirs
+    return dispatcher
 
 
 def _share_calls(compiled: Any, function: Kernel, folder: str, options: dict[str, Any]) -> None:
@@ -92,6 +143,14 @@ def kernel(*, fastmath: bool | set[str] = False, inline: bool = False) -> Callab
         return compiled
 
     return decorate
+
+
+if sys.platform != "win32":  # no process is forked in the middle of a compilation: its child could compile no more
+    os.register_at_fork(
+        before=global_compiler_lock.acquire,
+        after_in_parent=global_compiler_lock.release,
+        after_in_child=global_compiler_lock.release,
+    )
 
 
 class _Compilations(event.Listener):  # type: ignore[misc]

@@ -17,7 +17,8 @@ from queue import SimpleQueue
 from typing import Any, TypeVar
 
 from eigenfield.core.arguments import checked
-from eigenfield.core.errors import OptionError
+from eigenfield.core.errors import OptionError, WorkerError
+from eigenfield.core.forks import renew_in_child
 from eigenfield.core.progress import Progress, track
 
 A = TypeVar("A")
@@ -35,6 +36,7 @@ class _Pool:
     def __init__(self, count: int) -> None:
         self._work: SimpleQueue[tuple[Future[Any], Callable[[Any], Any], Any] | None] = SimpleQueue()
         self._count = count
+        self.is_forked = False  # its threads are those of the parent of this process
         self._open = True
         self._gate = threading.Lock()
         for number in range(count):
@@ -60,6 +62,17 @@ class _Pool:
         future.set_result(function(item))  # another thread has closed it: no one is left to take the work
         return future
 
+    def result(self, future: Future[B]) -> B:
+        """What a task returns or raises.
+
+        Raises:
+            WorkerError: `forked`: this process was forked while its parent worked, and is to go on with that work.
+        """
+        if self.is_forked:
+            message = "this process was forked in the middle of the work, whose threads stayed with its parent"
+            raise WorkerError("forked", message, remedy='start processes by the method "spawn"')
+        return future.result()
+
     def close(self) -> None:
         """Let the threads end once the queue is empty."""
         with self._gate:
@@ -72,6 +85,14 @@ _lock = threading.Lock()
 _thread_state = threading.local()
 _threads: int | None = None
 _pool: _Pool | None = None
+
+
+@renew_in_child
+def _forget_pool() -> None:
+    global _lock, _thread_state, _pool
+    if _pool is not None:
+        _pool.is_forked = True
+    _lock, _thread_state, _pool = threading.Lock(), threading.local(), None
 
 
 def threads() -> int:
@@ -126,10 +147,12 @@ def parallel_stream(function: Callable[[A], B], items: Iterable[A]) -> Iterator[
         for item in items:
             pending.append(pool.submit(function, item))
             if len(pending) > threads() + 2:
-                yield pending.pop(0).result()
+                yield pool.result(pending.pop(0))
         while pending:
-            yield pending.pop(0).result()
+            yield pool.result(pending.pop(0))
     finally:
+        if pool.is_forked:  # nobody works on them in this process
+            pending.clear()
         for future in pending:
             future.cancel()
         for future in pending:  # whoever uses the same buffers next must not meet a straggler

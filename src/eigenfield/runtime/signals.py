@@ -8,12 +8,24 @@ import threading
 from collections.abc import Iterator
 from typing import Any
 
+from eigenfield.core.forks import renew_in_child
+
 # those that ask a process to stop. Windows has no SIGHUP, but SIGBREAK, which comes when its console is closed
 _STOP_NAMES = "SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK"
 STOP_SIGNALS = tuple(getattr(signal, name) for name in _STOP_NAMES if hasattr(signal, name))
 
+_held = threading.RLock()
 
-held = threading.RLock()  # whoever ends the process takes it first
+
+@renew_in_child
+def _renew_lock() -> None:
+    global _held
+    _held = threading.RLock()
+
+
+def end_no_step() -> None:
+    """Wait until no step runs that holds signals, and let none begin: for whoever is about to end the process."""
+    _held.acquire()
 
 
 @contextlib.contextmanager
@@ -26,7 +38,7 @@ def hold_signals() -> Iterator[None]:
             for number in STOP_SIGNALS:
                 if signal.getsignal(number) is not None:
                     handlers[number] = signal.signal(number, lambda number, _: caught.append(number))
-        with held:
+        with _held:
             yield
     finally:
         for number, handler in handlers.items():

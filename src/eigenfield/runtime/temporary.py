@@ -18,6 +18,8 @@ import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+from eigenfield.core.forks import renew_in_child
+
 try:
     import fcntl
 except ImportError:  # Windows, where what a killed process left stays
@@ -32,6 +34,13 @@ _made: set[Path] = set()
 _searched: set[tuple[Path, str]] = set()
 _gate = threading.RLock()  # a signal handler may come while its own thread holds it
 _stopped = False
+
+
+@renew_in_child
+def _leave_to_parent() -> None:
+    global _gate
+    _gate = threading.RLock()
+    _made.clear()
 
 
 @contextlib.contextmanager
@@ -92,8 +101,9 @@ def _temporary(prefix: str, folder: Path | None, make: Callable[[Path], None]) -
                 if handle is not None:
                     os.close(handle)
         finally:
-            _remove(path)
-            _made.discard(path)
+            if path in _made:  # else it is of the parent of this process
+                _remove(path)
+                _made.discard(path)
         return
 
 

@@ -12,6 +12,7 @@ import contextlib
 import errno
 import ipaddress
 import logging
+import os
 import socket
 import threading
 import time
@@ -79,6 +80,7 @@ class Server(ThreadingHTTPServer):
         self.socket.close()
         self.socket = listener
         self.manifest = manifest
+        self._process = os.getpid()
         self.host = host
         self.port: int = listener.getsockname()[1]
         self._connections: set[socket.socket] = set()
@@ -99,6 +101,9 @@ class Server(ThreadingHTTPServer):
 
     def close(self) -> None:
         """Free the port and end every connection; what is being sent is cut off."""
+        if os.getpid() != self._process:  # a forked child: thread and connections are its parent's
+            self.socket.close()
+            return
         if self._acceptor.ident is not None:
             self.shutdown()
         self.server_close()

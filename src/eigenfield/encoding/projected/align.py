@@ -18,7 +18,7 @@ from eigenfield.runtime.parallel import tracked_map
 
 def _flow(reference: NDArray[np.uint8], moving: NDArray[np.uint8]) -> NDArray[np.float32]:
     """Dense inverse search (Kroeger et al., ECCV 2016)."""
-    cv2.setNumThreads(1)  # its stripes, and so its result, follow the number of threads
+    cv2.setNumThreads(0)  # serial: its stripes, and so its result, follow the number of threads
     method = cv2.DISOpticalFlow.create(cv2.DISOPTICAL_FLOW_PRESET_MEDIUM)
     flow = np.zeros((*reference.shape, 2), np.float32)
     return np.asarray(method.calc(reference, moving, flow), np.float32)
