@@ -41,12 +41,24 @@ def test_only_our_own_names_are_answered(running):
         with Client(port) as client:
             assert client.request("/", host=host).status == 200
     for host in (
-        "evil.example", f"evil.example:{port}", "127.0.0.1", "localhost", f"127.0.0.1:{port + 1}", f"127.0.0.2:{port}",
-        f"localhost.evil.example:{port}", f"127.0.0.1:{port}@evil.example", f"0.0.0.0:{port}", "::1", "\xe9",
+        "evil.example", f"evil.example:{port}", f"localhost.evil.example:{port}", f"evillocalhost:{port}",
+        f"127.0.0.1.evil.example:{port}", f"127.0.0.1:{port}@evil.example", f"evil.example@localhost:{port}",
+        f"0.0.0.0:{port}", f"10.0.0.1:{port}", f"[::2]:{port}", "::1", "localhost:", "\xe9",
     ):  # fmt: skip
         with Client(port) as client:
             answer = client.request("/scene.glb", host=host)
             assert answer.status == 421 and b"glTF" not in answer.body, host
+            assert b"--host NAME" in answer.body and answer.body.count(b"\n") == 1
+
+
+@pytest.mark.parametrize("listens", ["127.0.0.1", "0.0.0.0"])
+def test_a_forwarded_port_may_have_another_number(manifest, listens):
+    with Server(manifest, listens) as started:
+        for host in ("localhost:9000", "localhost", "127.0.0.1:1", "127.0.0.2:9000", "[::1]:9000", "a.localhost:9000"):
+            with Client(started.port) as client:
+                assert client.request("/", host=host).status == 200, host
+                foreign = {"Sec_Fetch_Site": "same-site", "Sec_Fetch_Mode": "cors"}  # a page at another port
+                assert client.request("/scene.glb", host=host, **foreign).status == 403
 
 
 def test_other_sites_may_link_to_it_and_no_more(client):
@@ -74,6 +86,15 @@ def test_a_public_server_answers_to_the_address_that_was_reached(manifest):
                 assert client.request("/", host=host).status == status
     with Server(manifest) as started:
         assert not started.is_public
+
+
+@pytest.mark.skipif(not socket.has_dualstack_ipv6(), reason="needs IPv6")
+def test_all_addresses_of_ipv6_are_those_of_ipv4_too(manifest):
+    with Server(manifest, "::") as started:
+        assert started.is_public and started.address == f"http://[::1]:{started.port}/"
+        with Client(started.port) as client:  # at 127.0.0.1
+            assert client.request("/").status == 200
+            assert client.request("/", host=f"evil.example:{started.port}").status == 421
 
 
 def test_hosts_and_ports_that_cannot_be(manifest):

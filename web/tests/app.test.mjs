@@ -2,7 +2,7 @@
 // without a network.
 
 import assert from "node:assert/strict";
-import { mkdtempSync, rmSync } from "node:fs";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
@@ -86,6 +86,25 @@ test("the network is cut: the page, a file and a sample that was seen are there,
   await page.waitForSelector(".message:not([hidden])");
   assert.match(await page.locator(".message").innerText(), /cannot be fetched; check its address and the connection/);
   await close();
+});
+
+test("the first visit keeps its scene, also one beside the page's folder, without asking for it twice", async () => {
+  const server = await serve({ folders: [folder] });
+  writeFileSync(join(folder, "beside.glb"), sceneBytes("four.glb"));
+  for (const scene of ["samples/scene.glb", "../beside.glb"]) {
+    const { page, close } = await openPage(browser, `${server.url}/open/?load=${scene}`, { allowed: /ERR_/ });
+    await kept(page);
+    const online = await picture(page);
+    await page.waitForFunction(async (url) => caches.match(url), scene);
+    assert.equal(server.requests.filter((path) => path === new URL(scene, "http://a/open/").pathname).length, 1);
+    await page.context().setOffline(true);
+    await page.reload();
+    await page.waitForFunction(() => window.eigenfield);
+    assert.equal((await state(page)).status, "ready");
+    assert.equal(apart(online, await picture(page)), 0);
+    await close();
+  }
+  await server.close();
 });
 
 test("a browser finds nothing that keeps it from installing the page", async () => {

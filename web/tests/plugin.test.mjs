@@ -660,3 +660,31 @@ test("three.js' own loader shows the mean without the plug-in, and a plain file 
   assert.ok(mean < 3, `the mean from three.js itself is off by ${mean}`);
   await close();
 });
+
+test("graphics that draw no half-floats: the load rejects where it knows them, else an event says so", async () => {
+  const { page, close } = await lab.open();
+  const found = await page.evaluate(async () => {
+    const { prototype } = WebGL2RenderingContext;
+    const { getExtension } = prototype;
+    prototype.getExtension = function (name) {
+      return /color_buffer/.test(name) ? null : getExtension.call(this, name);
+    };
+    const { loadEigenfield, plainLoad, renderer, show, draw } = window.lab;
+    const caught = [];
+    await loadEigenfield("scene.glb", { renderer }).catch((error) => caught.push(error));
+    await plainLoad("scene.glb", true, { renderer }).catch((error) => caught.push(error));
+    const gltf = await plainLoad("scene.glb", true);
+    const { eigenfield: field } = gltf.userData;
+    field.addEventListener("error", ({ error }) => caught.push(error));
+    show(gltf);
+    for (let i = 0; i < 3; i++) draw();
+    await field.complete.catch((error) => caught.push(error));
+    return caught.map(({ code, message }) => [code, message]);
+  });
+  assert.equal(found.length, 4, "one event, whatever is drawn");
+  for (const [code, message] of found) {
+    assert.equal(code, "unsupported");
+    assert.match(message, /draw no half-floats.*acceleration on\.$/);
+  }
+  await close();
+});

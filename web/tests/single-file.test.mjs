@@ -97,6 +97,33 @@ test("a plain page: offline with its poster, a laboratory one click away, and em
   }
 });
 
+test("where scripts are forbidden, words say so; where they run, nobody sees the words", async () => {
+  const path = join(folder, "forbidden.html");
+  eigenfield("export", scenePath("scene.glb"), "-o", path, "--plain");
+  for (const policy of ["default-src 'self'", "script-src 'self'", "sandbox", ""]) {
+    const headers = { "Content-Security-Policy": policy };
+    const server = await serve({ routes: { "/": { body: readFileSync(path), type: "text/html", headers } } });
+    const init = () => { // whether the words were ever to be seen
+      const look = () => {
+        window.seen ||= document.querySelector(".unscripted")?.checkVisibility({ visibilityProperty: true });
+        requestAnimationFrame(look);
+      };
+      look();
+    };
+    const { page, close } = await openPage(browser, server.url, { allowed: /Content Security|sandbox/, init });
+    const words = page.locator(".unscripted");
+    if (policy === "") {
+      await page.waitForFunction(() => window.eigenfield);
+      assert.deepEqual([(await state(page)).loaded, await words.count(), await page.evaluate(() => window.seen ?? false)], [6, 0, false]);
+    } else {
+      await words.waitFor({ timeout: 5000 });
+      assert.match(await words.innerText(), /^The script of this page does not run here\. Download.*\n+Das Skript/);
+    }
+    await close();
+    await server.close();
+  }
+});
+
 test("in a notebook: a frame of its own that draws, moves and saves, and begins with its panel folded", async () => {
   const frame = join(folder, "frame.html");
   const show = "import sys, eigenfield; open(sys.argv[2], 'w').write(eigenfield.load(sys.argv[1])._repr_html_())";

@@ -152,3 +152,30 @@ test("no WebGL 2: a sentence", async () => {
   assert.match(await page.locator("[role=alert]").innerText(), /needs WebGL 2/);
   await close();
 });
+
+const without = (pattern) => `
+  const { prototype } = WebGL2RenderingContext, { getExtension } = prototype;
+  prototype.getExtension = function (name) { return ${pattern}.test(name) ? null : getExtension.call(this, name); };`;
+
+test("graphics that draw no floats: a sentence; those that draw halves alone: the scene", async () => {
+  for (const scene of ["scene.glb", "sheets.glb"]) {
+    const init = { content: without(/color_buffer/) };
+    const { page, close } = await openViewer(browser, scene, { init, query: "?lang=de" });
+    const { status, message } = await state(page);
+    assert.deepEqual([status, message.code], ["failed", "unsupported"]);
+    assert.match(message.detail, /draw no half-floats/);
+    assert.ok(await page.locator(".message").isVisible());
+    await close();
+  }
+  const options = { init: { content: without(/color_buffer_float/) }, allowed: /EXT_color_buffer_float/ };
+  const { page, close } = await openViewer(browser, "scene.glb", options);
+  assert.equal((await state(page)).message, null);
+  await close();
+});
+
+test("what goes wrong with textures before anyone listens is said, too", async () => {
+  const init = { content: "WebGL2RenderingContext.prototype.texStorage3D = () => { throw new Error('nothing left'); };" };
+  const { page, close } = await openViewer(browser, "scene.glb", { init });
+  assert.match((await state(page)).message.text, /nothing left/);
+  await close();
+});

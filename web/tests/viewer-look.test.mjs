@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, before, test } from "node:test";
 import { decodePng, difference, launch, scenePath } from "./harness.mjs";
-import { apart, near, openViewer, picture, set, state } from "./viewer-page.mjs";
+import { apart, near, openViewer, picture, set, settled, state } from "./viewer-page.mjs";
 
 let browser;
 before(async () => {
@@ -171,3 +171,34 @@ test("the panel describes the file; help and panel open by keys; a screenshot is
   await close();
 });
 
+
+test("a window that is drawn with other pixels: the picture and the map have theirs", async () => {
+  const { page, close } = await openViewer(browser, "scene.glb");
+  await settled(page);
+  const session = await page.context().newCDPSession(page);
+  for (const [ratio, drawn] of [[2, 2], [1.1, 1.1], [3, 2], [1, 1]]) { // no finer than 2
+    const metrics = { width: 480, height: 360, deviceScaleFactor: ratio, mobile: false };
+    await session.send("Emulation.setDeviceMetricsOverride", metrics);
+    await page.waitForFunction(
+      (finer) => [...document.querySelectorAll(".stage canvas")].every(
+        (canvas) => Math.abs(canvas.width - finer * canvas.clientWidth) <= 1,
+      ), drawn,
+    );
+    await settled(page);
+    const { width, height } = await page.evaluate(() => window.eigenfield.pixels());
+    assert.deepEqual([width, height], [480, 360].map((side) => Math.floor(side * drawn)));
+  }
+  await close();
+});
+
+test("textures of a part of the atlas are said to have its size", async () => {
+  const { page, close } = await openViewer(browser, "layered.glb", { width: 900, height: 700 });
+  await state(page);
+  await page.locator("summary", { hasText: "About this file" }).click();
+  const planes = await page.evaluate(() => window.eigenfield.field.info.planes);
+  const parts = planes.flatMap(({ bases }) => bases).filter(({ size, grid }) => size.join() !== grid.join());
+  assert.ok(parts.length > 0);
+  const text = await page.locator(".facts").innerText();
+  for (const { textures, size } of parts) assert.ok(text.includes(`${textures} eigen textures of ${size.join(" × ")}`), text);
+  await close();
+});

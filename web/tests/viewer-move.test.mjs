@@ -68,6 +68,63 @@ test("keys: arrows and letters move, held ones go on, Q and E change the size", 
   await close();
 });
 
+test("keys of other layouts: brackets under AltGr and Option, letters by what is printed or else by their place", async () => {
+  const { page, close } = await openViewer(browser, "scene.glb");
+  await state(page);
+  const press = (code, key, more = {}) =>
+    page.evaluate((pressed) => {
+      const event = new KeyboardEvent("keydown", { ...pressed, bubbles: true, cancelable: true });
+      document.body.dispatchEvent(event);
+      document.body.dispatchEvent(new KeyboardEvent("keyup", pressed));
+      return event.defaultPrevented; // it did something
+    }, { code, key, ...more });
+  const altGr = { ctrlKey: true, altKey: true, modifierAltGraph: true }; // as Windows says it
+  const option = { altKey: true };
+  const mode = async () => (await state(page)).mode;
+  for (const [code, key, modifiers] of [
+    ["Digit9", "]", altGr], ["Digit6", "]", option], ["Minus", "]", { ...option, shiftKey: true }], // German, French
+    ["BracketRight", "]", altGr], ["BracketRight", "]", option], // Spanish
+    ["BracketRight", "\u044a", {}], // Russian
+  ]) {
+    const before = (await state(page)).camera;
+    assert.ok(await press(code, key, modifiers));
+    assert.notEqual((await state(page)).camera, before, `${code} ${key}`);
+  }
+  await press("Escape", "Escape");
+  for (const [code, key] of [
+    ["KeyO", "\u0449"], ["KeyO", "\u03bf"], ["KeyO", "\u05dd"], ["KeyO", "\u0429"], ["KeyO", "o"], ["KeyS", "o"], // the last: Dvorak
+  ]) {
+    const before = await mode();
+    assert.ok(await press(code, key));
+    assert.notEqual(await mode(), before, `${code} ${key}`);
+  }
+  for (const [code, key, view] of [["Digit2", "\u00e9", "mean"], ["Digit1", "&", "picture"], ["Digit2", "\u06f2", "mean"]]) {
+    assert.ok(await press(code, key)); // French twice, Persian
+    assert.equal((await state(page)).view, view, `${code} ${key}`);
+  }
+  assert.ok(await press("Semicolon", "m")); // French
+  assert.equal((await state(page)).wireframe, true);
+  assert.ok(await press("KeyI", "\u0131")); // Turkish
+  assert.ok(await press("KeyH", "\u0440"));
+  assert.ok(await page.locator("dialog").isVisible());
+  await page.evaluate(() => {
+    const pressed = { code: "KeyH", key: "\u0440", bubbles: true };
+    document.querySelector("dialog").dispatchEvent(new KeyboardEvent("keydown", pressed));
+  });
+  assert.ok(await page.locator("dialog").isHidden());
+  const before = await state(page);
+  for (const [code, key, modifiers] of [
+    ["BracketRight", "]", { ctrlKey: true }], ["BracketLeft", "[", { metaKey: true }], ["KeyO", "o", { altKey: true }],
+    ["KeyP", "p", { ctrlKey: true }], ["Digit1", "1", { ctrlKey: true }], ["Digit0", "0", { metaKey: true }],
+    ["KeyH", "\u0440", { ctrlKey: true }], ["ArrowLeft", "ArrowLeft", { altKey: true }], ["KeyO", "\u00f6", {}],
+    ["KeyM", ",", {}], ["Digit1", "!", { shiftKey: true }], ["Digit2", "~", { modifierAltGraph: true }],
+  ]) {
+    assert.ok(!(await press(code, key, modifiers)), `${code} ${key} ${JSON.stringify(modifiers)}`);
+  }
+  assert.deepEqual({ ...(await state(page)), frames: 0 }, { ...before, frames: 0 });
+  await close();
+});
+
 test("the wheel makes larger, with Shift goes forward, each within limits", async () => {
   const { page, close } = await openViewer(browser, "scene.glb");
   await settled(page);

@@ -1,9 +1,9 @@
 """The viewer's server: HTTP/1.1 for one browser on this machine, out of a manifest, from the standard library alone.
 
-What it guards against: other sites that reach for a server on this machine (the Host must be ours, so that a name
-which someone points at 127.0.0.1 is refused; no answer may be read by or embedded in another origin), paths to other
-files (there are none: exact matches in a table), and clients that are slow, greedy or broken (limits of time, size and
-number).
+What it guards against: other sites that reach for a server on this machine (the Host must be ours or a name of the
+loopback, so that a name which someone points at 127.0.0.1 is refused; no answer may be read by or embedded in another
+origin), paths to other files (there are none: exact matches in a table), and clients that are slow, greedy or broken
+(limits of time, size and number).
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import errno
 import ipaddress
 import logging
 import os
+import re
 import socket
 import threading
 import time
@@ -30,6 +31,11 @@ LOOPBACK = "127.0.0.1"
 SERVER_MAX_CONNECTIONS = 64  # at a time; a browser opens six
 SERVER_CLOSE_SECONDS = 2.0  # for the threads of open connections to end
 SERVER_POLL_SECONDS = 0.1  # between two checks whether the server is to close
+HOST_HEADER = re.compile(r"(?:\[([0-9a-f:.]+)\]|([^\s:@/\[\]]+))(?::([0-9]{1,5}))?")  # address of IPv6, or name; port
+REACHED_OTHERWISE = (
+    "through a forwarded port open localhost; for another name start it with --host NAME, and use the same port on "
+    "both sides"
+)
 CONTENT_SECURITY_POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self' blob:; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
@@ -125,21 +131,28 @@ class Server(ThreadingHTTPServer):
     @property
     def is_public(self) -> bool:
         """Whether other machines can reach it."""
-        return not ipaddress.ip_address(self.socket.getsockname()[0].partition("%")[0]).is_loopback
+        return not _is_loopback(_plain(self.socket.getsockname()[0]))
 
-    def authorities(self, reached: str) -> set[str]:
-        """The authorities that a request may name as its Host.
+    def is_named(self, host: str, reached: str) -> bool:
+        """Whether a request may name `host`, in small letters, as its Host.
 
-        The address that a client reached is safe, being no name: anyone may let a name resolve to this machine.
+        Anyone may let a name resolve to this machine, but not a name of the loopback: those are answered at any port,
+        since a port that is forwarded to this one may have another number. The address that a client reached is safe,
+        too, being no name.
 
         Args:
+            host: Name or address, and a port unless it is 80.
             reached: Address of this end of the connection.
         """
-        places = {LOOPBACK, "localhost", "::1", self.host, reached.partition("%")[0]}
+        if (match := HOST_HEADER.fullmatch(host)) is None:
+            return False
+        place, port = match[1] or match[2], int(match[3] or 80)
+        if _is_loopback(place):
+            return True
+        places = {self.host.lower(), _plain(reached)}
         if self.is_public:
-            places.add(socket.gethostname())
-        hosts = {_authority(place, self.port).lower() for place in places}
-        return hosts | {host.removesuffix(":80") for host in hosts} if self.port == 80 else hosts
+            places.add(socket.gethostname().lower())
+        return port == self.port and place in places
 
     def get_request(self) -> tuple[socket.socket, Any]:
         try:
@@ -174,8 +187,8 @@ class _Answers(StrictHandler):
     server: Server
 
     def answer(self) -> None:
-        if self.host is not None and self.host not in self.server.authorities(self.connection.getsockname()[0]):
-            raise RefusedError(421, f"this server is {self.server.address}")
+        if self.host is not None and not self.server.is_named(self.host, self.connection.getsockname()[0]):
+            raise RefusedError(421, f"this server is {self.server.address}: {REACHED_OTHERWISE}")
         headers = {name.lower(): value for name, value in self.headers.items()}
         if _is_foreign(headers):
             raise RefusedError(403, "another site asked for this")
@@ -241,7 +254,8 @@ def _listen(host: str, port: int) -> socket.socket:
             remedy="leave it out, or name one of this machine",
         ) from error
     try:
-        listener = socket.create_server(place, family=family, backlog=SERVER_MAX_CONNECTIONS)
+        both = place[0] == "::" and socket.has_dualstack_ipv6()
+        listener = socket.create_server(place, family=family, backlog=SERVER_MAX_CONNECTIONS, dualstack_ipv6=both)
     except OSError as error:
         if error.errno == errno.EADDRINUSE:
             raise OptionError(
@@ -254,6 +268,21 @@ def _listen(host: str, port: int) -> socket.socket:
         ) from error
     listener.setblocking(False)  # a client that goes away again before it is accepted blocks nobody
     return listener
+
+
+def _is_loopback(place: str) -> bool:
+    """Whether a name or address is this machine's own wherever it is looked up."""
+    try:
+        return ipaddress.ip_address(place).is_loopback
+    except ValueError:
+        return place == "localhost" or place.endswith(".localhost")
+
+
+def _plain(address: str) -> str:
+    """An address of a socket without its scope; of IPv4 where IPv6 carries it."""
+    address = address.partition("%")[0]
+    mapped = getattr(ipaddress.ip_address(address), "ipv4_mapped", None)
+    return str(mapped or address)
 
 
 def _authority(place: str, port: int) -> str:

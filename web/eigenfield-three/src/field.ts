@@ -351,8 +351,9 @@ export class EigenField extends EventDispatcher<FieldEvents> {
   private fail(reason: unknown): void {
     if (isAbort(reason)) return;
     const error = asSceneError(reason);
-    const drawn = `The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`;
-    this.dispatchEvent({ type: "error", error: new SceneError(error.code, `${error.message} ${drawn}`, error.where) });
+    const drawn = `${error.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`;
+    const message = this.textures.hasMeans ? drawn : error.message;
+    this.dispatchEvent({ type: "error", error: new SceneError(error.code, message, error.where) });
   }
 }
 

@@ -1,9 +1,23 @@
 // Textures made by WebGL itself: pictures go to the GPU one at a time, without a copy that stays in memory. What
 // three.js believes to be bound is put back after each call.
 
+import type { WebGLRenderer } from "three";
+import { SceneError } from "./errors.js";
 import type { DeviceLimits } from "./memory.js";
 
 type GL = WebGL2RenderingContext;
+
+/** The context of a renderer that can draw eigen textures; a SceneError says what another lacks. */
+export function contextOf(renderer: WebGLRenderer): GL {
+  const gl = renderer.getContext();
+  if (!(gl instanceof WebGL2RenderingContext)) {
+    throw new SceneError("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
+  }
+  const halves = gl.getExtension("EXT_color_buffer_float") ?? gl.getExtension("EXT_color_buffer_half_float");
+  if (halves || gl.isContextLost()) return gl; // a lost context has no extensions
+  const message = "These graphics draw no half-floats; use a newer device or browser, or switch graphics acceleration on.";
+  throw new SceneError("unsupported", message);
+}
 
 export function deviceLimits(gl: GL, memory: number): DeviceLimits {
   return {

@@ -4,6 +4,7 @@ import type { ViewBytes } from "./accessors.js";
 import { isScene, readDocument, stillsOf, type SceneDocument } from "./document.js";
 import { cutOff, damaged } from "./errors.js";
 import { EigenField } from "./field.js";
+import { contextOf } from "./gpu.js";
 import { planeCoordinates, readCameras, readTriangles, readWeights, sceneInfo } from "./info.js";
 import { EXTENSION } from "./limits.js";
 import { decodeMean, type Mean } from "./means.js";
@@ -34,6 +35,7 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
 
   async beforeRoot(): Promise<void> {
     if (!this.ours) return;
+    if (this.options.renderer) contextOf(this.options.renderer);
     const { json } = this.parser;
     Object.assign(json, await unpacked(json, (offset, length) => this.read(offset, length)));
     this.scene = readDocument(json);

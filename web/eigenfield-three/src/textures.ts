@@ -100,16 +100,12 @@ export class Textures {
   /** Loads everything for a renderer, again if it was there. What can be drawn at once is there on return. */
   attach(renderer: WebGLRenderer): void {
     if (this.disposed) return;
-    const gl = renderer.getContext();
-    if (!(gl instanceof WebGL2RenderingContext)) {
-      throw new SceneError("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
-    }
     this.detach();
     this.renderer = renderer;
     renderer.domElement.addEventListener("webglcontextlost", this.onLost);
     renderer.domElement.addEventListener("webglcontextrestored", this.onRestored);
     const turn = this.turn;
-    this.load(gl, turn).catch((reason: unknown) => {
+    this.load(renderer, turn).catch((reason: unknown) => {
       if (turn === this.turn) this.onError(reason);
     });
   }
@@ -149,10 +145,9 @@ export class Textures {
     if (this.renderer) this.attach(this.renderer);
   };
 
-  private async load(gl: WebGL2RenderingContext, turn: number): Promise<void> {
-    if (!gl.getExtension("EXT_color_buffer_float") && !gl.getExtension("EXT_color_buffer_half_float")) {
-      throw new SceneError("unsupported", "These graphics draw no half-floats; use a newer device or browser.");
-    }
+  private async load(renderer: WebGLRenderer, turn: number): Promise<void> {
+    const gl = gpu.contextOf(renderer);
+    if (gl.isContextLost()) return; // `onRestored` begins anew
     const { packer, plan } = this.makeRoom(gl);
     this.plan = plan;
     this.packer = packer;

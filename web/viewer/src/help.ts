@@ -1,6 +1,7 @@
 // All controls in one dialogue.
 
 import { element } from "./dom";
+import { keyOf } from "./keys";
 import { words } from "./language";
 
 /** Keys and hands, what they do, and how the same is done where there is only touch. */
@@ -54,7 +55,7 @@ export function createHelp(version: string | null): Help {
     if (event.target === root) root.close(); // beside the sheet
   });
   root.addEventListener("keydown", (event) => {
-    if (!root.open || !["h", "?"].includes(event.key.toLowerCase())) return; // closed, it keeps the focus for a moment
+    if (!root.open || !["h", "?"].includes(keyOf(event))) return; // closed, it keeps the focus for a moment
     event.stopPropagation(); // the page would open it again
     root.close();
   });

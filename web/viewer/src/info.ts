@@ -117,9 +117,9 @@ function facts(info: SceneInfo): Rows {
 
 /** Channels of a plane, and where its mean and eigen textures have other sizes than the atlas. */
 function plane({ channels, mean, bases }: SceneInfo["planes"][number], index: number): [string, string] {
-  const size = ([width, height]: readonly [number, number]): string => `${width} × ${height}`;
-  const kinds = bases.map(({ textures, grid }) => words("texturesOf", { count: textures, size: size(grid) }));
-  const parts = [words("channels", { count: channels }), words("meanOf", { size: size(mean) }), ...kinds];
+  const sides = ([width, height]: readonly [number, number]): string => `${width} × ${height}`;
+  const kinds = bases.map(({ textures, size }) => words("texturesOf", { count: textures, size: sides(size) }));
+  const parts = [words("channels", { count: channels }), words("meanOf", { size: sides(mean) }), ...kinds];
   return [words("plane", { number: index + 1 }), parts.join(", ")];
 }
 

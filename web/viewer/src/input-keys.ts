@@ -1,5 +1,6 @@
 // The keyboard. Keys that are held move; the others act once.
 
+import { keyOf } from "./keys";
 import type { Push } from "./mode";
 import type { Options } from "./options";
 import type { Viewer } from "./viewer";
@@ -64,20 +65,20 @@ export function listenToKeys(viewer: Viewer, actions: Actions): Keys {
       h: actions.help,
       "?": actions.help,
     };
-    return table[key.toLowerCase()];
+    return table[key];
   };
 
   addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey || taken(event)) return;
-    if (HELD[event.code]) {
+    const key = keyOf(event);
+    if (key === "" || taken(event)) return;
+    const act = actions.plain() && !PLAIN.includes(key) ? undefined : once(key);
+    if (!act && HELD[event.code]) { // a letter that acts and is printed there comes first
       event.preventDefault();
       held.add(event.code);
       viewer.request();
       return;
     }
-    if (event.repeat && !["[", "]", "-", "+", "="].includes(event.key)) return;
-    const act = once(event.key);
-    if (!act || (actions.plain() && !PLAIN.includes(event.key.toLowerCase()))) return;
+    if (!act || (event.repeat && !["[", "]", "-", "+", "="].includes(key))) return;
     event.preventDefault();
     act();
   });

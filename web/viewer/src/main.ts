@@ -12,6 +12,7 @@ import { listenToPointers } from "./input-pointer";
 import { createTilt } from "./input-tilt";
 import { createFullscreen } from "./fullscreen";
 import { LANGUAGE, words } from "./language";
+import { keepOffline } from "./offline";
 import { createOverlays } from "./overlays";
 import { createPanel } from "./panel";
 import { takePoster } from "./poster";
@@ -22,8 +23,10 @@ import { createViewer, type Viewer } from "./viewer";
 import { createHeadset } from "./xr";
 
 const SMALL = "(max-width: 720px), (max-height: 500px)"; // the panel would leave little of the picture
+const RATIO_MS = 500; // between two looks at the device pixels a CSS pixel
 
 function start(): void {
+  document.querySelector(".unscripted")?.remove();
   document.documentElement.lang = LANGUAGE;
   const address = new URL(location.href);
   const config = readConfig(document, address);
@@ -125,18 +128,24 @@ function start(): void {
   gamepads = listenToGamepads(viewer);
   keepAddress(viewer);
   showUi(ui);
-  new ResizeObserver(() => {
+  let ratio = devicePixelRatio; // that the canvas was made for
+  const fit = (): void => {
     if (headset.presenting()) return; // the headset has its own size
+    ratio = devicePixelRatio;
     viewer.stage.resize(stageArea.clientWidth, stageArea.clientHeight);
     viewer.drawNow(); // at once: a canvas that was resized is empty
     viewer.request();
-  }).observe(stageArea);
+  };
+  new ResizeObserver(fit).observe(stageArea);
+  setInterval(() => { // another monitor has other pixels, of which no event tells in every browser
+    if (devicePixelRatio !== ratio) fit();
+  }, RATIO_MS);
   window.eigenfield = createApi(viewer);
 
   update();
   const source = namedSource(config, document, address);
-  if (source) void viewer.open(source);
-  if (config.worker !== null) void navigator.serviceWorker?.register(config.worker).catch(() => undefined); // no https
+  const opened = source && viewer.open(source);
+  if (config.worker !== null) keepOffline(config.worker, opened?.then(() => viewer.scene()?.source.from));
 }
 
 start();

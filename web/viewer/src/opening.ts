@@ -59,11 +59,12 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
     session.arriving = true;
     field.addEventListener("texture", changed);
     field.addEventListener("limited", changed);
-    field.addEventListener("error", ({ error }) => {
+    const failed = (error: unknown): void => {
       session.message = described(error, null);
       changed();
-    });
-    await field.complete.catch(() => undefined); // the `error` event has reported it
+    };
+    field.addEventListener("error", ({ error }) => failed(error));
+    await field.complete.catch(failed); // which may have been before anyone listened
   };
 
   const open = async (source: Source): Promise<void> => {

@@ -48,6 +48,7 @@ function play(on) {
 slider.addEventListener("input", () => show(Number(slider.value)));
 button.addEventListener("click", () => play(!playing));
 addEventListener("keydown", (event) => {
+  if (event.ctrlKey || event.metaKey || event.altKey) return; // Alt and left is the browser's way back
   const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
   if (step) show(Number(slider.value) + step);
   else if (event.key === " " && event.target !== button) play(!playing);
