@@ -1,10 +1,12 @@
 import { MeshBasicMaterial, type Material, type Mesh, type Object3D } from "three";
 import type { GLTF, GLTFLoaderPlugin, GLTFParser } from "three/addons/loaders/GLTFLoader.js";
+import { checkAddresses } from "./addresses.js";
 import type { ViewBytes } from "./accessors.js";
 import { isScene, readDocument, stillsOf, type SceneDocument } from "./document.js";
 import { cutOff, damaged } from "./errors.js";
 import { EigenField } from "./field.js";
 import { planeCoordinates, readCameras, readTriangles, readWeights, sceneInfo } from "./info.js";
+import type { Json } from "./json.js";
 import { EXTENSION } from "./limits.js";
 import { decodeMean, type Mean } from "./means.js";
 import type { EigenfieldOptions } from "./options.js";
@@ -35,6 +37,7 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
   async beforeRoot(): Promise<void> {
     if (!this.ours) return;
     const { json } = this.parser;
+    checkAddresses(json as Json);
     Object.assign(json, await unpacked(json, (offset, length) => this.read(offset, length)));
     this.scene = readDocument(json);
     if (!this.scene.shown) showEmptyMesh(json);
