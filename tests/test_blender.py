@@ -120,3 +120,4 @@ def test_what_is_encoded_is_drawn_in_blender_as_it_was_rendered(folder):
     )
     assert -10 * np.log10(np.square(rendered - drawn).mean()) > 30
     assert "broken.glb" in (folder / "refused.txt").read_text()
+    assert "names '../drawn.png', which is not in its folder" in (folder / "outside.txt").read_text()

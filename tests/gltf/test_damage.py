@@ -149,6 +149,32 @@ def test_each_damage_has_its_code(tmp_path, good, name):
 
 
 @pytest.mark.parametrize(
+    "address", ["http://host/a.png", "//host/a", "file:///a", "blob:a", "../a", "a.png", "", 7, None]
+)
+@pytest.mark.parametrize("place", [("images", 0), ("buffers", 0), ("materials", 0, "extensions", "MAKER_holograms")])
+def test_a_file_that_names_another_is_refused(tmp_path, good, place, address):
+    def away(gltf, extension, binary):
+        gltf["materials"][0].setdefault("extensions", {})["MAKER_holograms"] = {}
+        setting(*place, "uri", value=address)(gltf, extension, binary)
+
+    path = tmp_path / "a.glb"
+    path.write_bytes(glb_surgery.changed(good["webp"], away))
+    code = "buffer" if place == ("buffers", 0) else "address"
+    for read in (scene_format.load, scene_format.outline, scene_format.describe):
+        with pytest.raises(FormatError, match=re.escape(json.dumps(address))) as caught:
+            read(path)
+        assert (caught.value.code, caught.value.path) == (code, str(path))
+    assert "address" in {finding.code for finding in scene_format.validate(path)}
+
+
+def test_data_uris_and_what_is_in_extras_stay(tmp_path, good):
+    def more(gltf, extension, binary):
+        gltf["images"].append({"uri": "DATA:,", "extras": {"uri": "http://host/a"}})
+
+    assert outcome(tmp_path / "a.glb", glb_surgery.changed(good["webp"], more)) is None
+
+
+@pytest.mark.parametrize(
     ("data", "code"),
     [
         (b"", "not-glb"),

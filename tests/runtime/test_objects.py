@@ -15,6 +15,7 @@ from eigenfield.runtime.stages import Stages
 from support.captures import write_array, write_capture
 
 fsspec = pytest.importorskip("fsspec", reason="pip install 'eigenfield[s3]'")
+MemoryFile = pytest.importorskip("fsspec.implementations.memory").MemoryFile
 
 
 @pytest.fixture
@@ -61,6 +62,16 @@ def test_a_path_is_no_address():
     for path in ("photos", "/data/photos", "C:\\photos", Path("s3"), "https://example.com/a", "file:///a", "s3"):
         assert find_objects(path) is None
     assert find_objects(Path("memory://lab/photos")).address == "memory://lab/photos"
+
+
+@pytest.mark.parametrize("name", ["../evil.txt", "..", "a/../../evil.txt", "a\\b", "a\0b", "../evil/a.txt"])
+def test_an_object_is_copied_to_its_own_folder_alone(store, name):
+    """Whatever the names in a bucket are, and where one of them is taken for a capture."""
+    store.store[f"/lab/captures/{name}"] = MemoryFile(store, f"/lab/captures/{name}", b"evil")
+    for address in ("memory://lab/captures", "memory://lab/captures/.."):
+        with pytest.raises(OutputError, match=r"which is no name of a file") as caught:
+            local_copy(address)
+        assert caught.value.code == "object-name"
 
 
 def test_a_stage_is_its_objects_and_a_last_one_with_their_digests(store):

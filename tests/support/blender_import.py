@@ -3,6 +3,8 @@
 python blender_import.py ADDON.zip FOLDER PROGRAM, where FOLDER has scene.glb and PROGRAM is eigenfield.
 """
 
+import json
+import shutil
 import sys
 from pathlib import Path
 
@@ -47,3 +49,15 @@ try:
     bpy.ops.eigenfield.import_scene(filepath=str(folder / "broken.glb"))
 except RuntimeError as error:
     (folder / "refused.txt").write_text(str(error))
+stranger = folder / "stranger.textures"
+shutil.copytree(folder / "scene.textures", stranger)
+(stranger / "mesh.mtl").write_text("newmtl mean\nmap_Kd ../drawn.png\n")
+before = {image.filepath for image in bpy.data.images}
+assert bpy.ops.eigenfield.import_scene(filepath=str(stranger / "eigenfield.json")) == {"FINISHED"}
+assert {image.filepath for image in bpy.data.images} == before, "a material's picture was read"
+listing = json.loads((stranger / "eigenfield.json").read_text())
+(stranger / "eigenfield.json").write_text(json.dumps({**listing, "mean": "../drawn.png"}))
+try:
+    bpy.ops.eigenfield.import_scene(filepath=str(stranger / "eigenfield.json"))
+except RuntimeError as error:
+    (folder / "outside.txt").write_text(str(error))

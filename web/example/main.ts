@@ -3,7 +3,7 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
-import { EigenfieldPlugin, type EigenField } from "eigenfield-three"; // 1
+import { EigenfieldPlugin, refuseAddresses, type EigenField } from "eigenfield-three"; // 1
 
 const renderer = new THREE.WebGLRenderer({ antialias: true });
 document.body.append(renderer.domElement);
@@ -13,6 +13,7 @@ const controls = new OrbitControls(camera, renderer.domElement);
 
 const loader = new GLTFLoader();
 loader.register((parser) => new EigenfieldPlugin(parser)); // 2
+loader.register(refuseAddresses); // for files of strangers: nothing but the scene is fetched
 const gltf = await loader.loadAsync(new URLSearchParams(location.search).get("scene") ?? "scene.glb");
 scene.add(gltf.scene);
 const field = gltf.userData["eigenfield"] as EigenField | undefined; // 3, to know when there is more to draw

@@ -6,6 +6,7 @@ import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
+import { askers } from "./askers.mjs";
 import { eigenfield } from "./command.mjs";
 import { launch, openPage, sceneBytes, scenePath, serve } from "./harness.mjs";
 import { apart, drop, picture, state } from "./viewer-page.mjs";
@@ -135,18 +136,57 @@ test("a file that is opened with the installed page", async () => {
   await close();
 });
 
+test("a file that names another host is refused by name, and nobody is asked: by ?load=, chosen and dropped", async () => {
+  const elsewhere = await serve();
+  const files = askers(elsewhere.url);
+  const headers = { "Access-Control-Allow-Origin": "*" };
+  const routes = Object.entries(files).map(([name, body]) => [`/${name}.glb`, { body, headers }]);
+  const typed = await serve({ routes: Object.fromEntries(routes) });
+  const { page, server, close } = await open("", { allowed: /Content Security Policy|ERR_|Failed to fetch/ });
+  const refused = async (name) => {
+    await page.waitForFunction(() => window.eigenfield?.state().message?.code === "address");
+    assert.match(await page.locator(".message").innerText(), /names another one \(\/.*uri: ".*"\), which is not fetched/, name);
+  };
+  await kept(page);
+  await page.waitForLoadState("networkidle");
+  const before = server.requests.length;
+  for (const [name, buffer] of Object.entries(files)) {
+    await page.setInputFiles("input[type=file]", { name: `${name}.glb`, mimeType: "model/gltf-binary", buffer });
+    await refused(name);
+    await drop(page, `${name}.glb`, buffer);
+    await refused(name);
+  }
+  assert.deepEqual(server.requests.slice(before), [], "nor its own server");
+  for (const name of ["plain image", "scene image"]) {
+    await page.goto(`${server.url}/?load=${encodeURIComponent(`${typed.url}/${name}.glb`)}`);
+    await refused(name);
+    const answer = (url) => page.evaluate((one) => fetch(one).then(() => "answered", () => "forbidden"), url);
+    assert.deepEqual([await answer(elsewhere.url), await answer(server.url)], ["forbidden", "answered"], "by the policy too");
+  }
+  assert.deepEqual(elsewhere.requests, []);
+  await close();
+  await typed.close();
+  await elsewhere.close();
+});
+
 test("?load= from another site: drawn where it allows that, else plain words", async () => {
   const body = sceneBytes("line.glb");
+  const allowing = { "Access-Control-Allow-Origin": "*" };
+  const further = await serve({ routes: { "/open.glb": { body, headers: allowing } } });
   const other = await serve({
     routes: {
-      "/open.glb": { body, headers: { "Access-Control-Allow-Origin": "*" } }, "/closed.glb": { body },
-      "/gone.glb": { body: "", status: 404, headers: { "Access-Control-Allow-Origin": "*" } },
+      "/moved.glb": { body: "", status: 302, headers: { ...allowing, Location: `${further.url}/open.glb` } },
+      "/open.glb": { body, headers: allowing }, "/closed.glb": { body },
+      "/gone.glb": { body: "", status: 404, headers: allowing },
     },
   });
   const load = (name) => `?load=${encodeURIComponent(`${other.url}/${name}`)}`;
-  const drawn = await open(load("open.glb"));
-  assert.equal((await state(drawn.page)).title, "open");
-  await drawn.close();
+  for (const name of ["open", "moved"]) {
+    const drawn = await open(load(`${name}.glb`));
+    const { title, status } = await state(drawn.page);
+    assert.deepEqual([title, status], [name, "ready"]);
+    await drawn.close();
+  }
   for (const [name, words] of [["closed.glb", /from 127\.0\.0\.1:\d+.*\(CORS\)\. Download/], ["gone.glb", /answered 404/]]) {
     const { page, close } = await open(load(name), { allowed: /CORS|ERR_FAILED|404/ });
     await page.waitForSelector(".message:not([hidden])");
@@ -155,4 +195,5 @@ test("?load= from another site: drawn where it allows that, else plain words", a
     await close();
   }
   await other.close();
+  await further.close();
 });

@@ -6,6 +6,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { build } from "vite";
+import { askers } from "./askers.mjs";
 import { WEB, buildPage, canvasPixels, difference, launch, openPage, scenePath, serve } from "./harness.mjs";
 
 let browser;
@@ -42,6 +43,24 @@ test("the example draws a scene with its own renderer and controls", async () =>
   await close();
   await server.close();
   await built.close();
+});
+
+test("the example fetches nothing but the scene, whatever that names", async () => {
+  const built = await buildPage("example");
+  const elsewhere = await serve();
+  const files = askers(elsewhere.url);
+  const routes = Object.fromEntries(Object.entries(files).map(([name, body]) => [`/${name}.glb`, { body }]));
+  const server = await serve({ folders: [built.folder], routes });
+  const { page, close } = await openPage(browser, null, { allowed: /names another one/ });
+  for (const name of Object.keys(files)) {
+    const refused = page.waitForEvent("pageerror");
+    await page.goto(`${server.url}/?scene=${name}.glb`);
+    assert.match((await refused).message, /names another one .* is not fetched/);
+    assert.equal(server.requests.at(-1), `/${name}.glb`);
+  }
+  assert.deepEqual(elsewhere.requests, []);
+  await close();
+  for (const each of [server, elsewhere, built]) await each.close();
 });
 
 const PAGE = `<!doctype html>

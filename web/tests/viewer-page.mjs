@@ -89,9 +89,9 @@ export function apart(a, b) {
 
 export const near = (a, b, slack) => assert.ok(Math.abs(a - b) <= slack, `${a} is not ${b} to ${slack}`);
 
-/** Drops a file of the test scenes on the page. */
-export async function drop(page, name) {
-  const data = sceneBytes(name).toString("base64");
+/** Drops a file of the test scenes, or one of these bytes, on the page. */
+export async function drop(page, name, bytes = sceneBytes(name)) {
+  const data = bytes.toString("base64");
   await page.evaluate(
     ([text, file]) => {
       const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));

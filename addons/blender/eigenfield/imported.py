@@ -7,6 +7,7 @@ eigenfield writes mean, eigen textures and weights as plain files (`eigenfield e
 import json
 import shutil
 import subprocess
+import tempfile
 from math import tan
 from pathlib import Path
 
@@ -35,9 +36,9 @@ class Field:
 
     def __init__(self, folder):
         self.listing = json.loads((folder / LISTING).read_text(encoding="utf-8"))
-        mean, self.size = read_pixels(folder / self.listing["mean"])
+        mean, self.size = read_pixels(inside(folder, self.listing["mean"]))
         self.mean = mean.reshape(-1, 4)
-        self.codes = [codes_of(folder / entry["file"]) for entry in self.listing["textures"]]
+        self.codes = [codes_of(inside(folder, entry["file"])) for entry in self.listing["textures"]]
         self.weights = np.array(list(self.listing["weights"].values()), np.float32)
         self.places = np.array(self.listing["places"], float)
         self.triangles = np.array(self.listing["triangles"], int).reshape(-1, 3)
@@ -94,6 +95,14 @@ def between(place, places, triangles):
     return segments[nearest], np.array([1 - part[nearest], part[nearest]])
 
 
+def inside(folder, name):
+    """A file that a listing names: nobody has another one read by giving a folder away."""
+    path = (folder / name).resolve()
+    if not path.is_relative_to(folder.resolve()):
+        raise RefusalError(f"{folder / LISTING} names {name!r}, which is not in its folder")
+    return path
+
+
 def read_pixels(path):
     """(4 H W,) float32 from 0 to 1, and (width, height)."""
     image = bpy.data.images.load(str(path))
@@ -138,7 +147,11 @@ def import_field(context, folder, name, upright):
         )
     field = fields[str(folder)] = Field(folder)
     before = set(bpy.data.objects)
-    bpy.ops.wm.obj_import(filepath=str(folder / "mesh.obj"), forward_axis="Y", up_axis="Z", validate_meshes=False)
+    lines = inside(folder, "mesh.obj").read_bytes().split(b"\n")
+    with tempfile.TemporaryDirectory() as own:  # without its material, which may name pictures anywhere
+        plain = Path(own, "mesh.obj")
+        plain.write_bytes(b"\n".join(line for line in lines if not line.lstrip().startswith(b"mtllib")))
+        bpy.ops.wm.obj_import(filepath=str(plain), forward_axis="Y", up_axis="Z", validate_meshes=False)
     (mesh,) = set(bpy.data.objects) - before
     turn = UPRIGHT if upright else Matrix(field.listing["toCapture"]).to_4x4()
     mesh.name, mesh.matrix_world, mesh[MARK] = name, turn, str(folder)

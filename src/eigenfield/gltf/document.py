@@ -56,10 +56,22 @@ class Document:
         """The one buffer must be the binary chunk: `buffer`."""
         buffers = list(self.root["buffers"].items(1, 1))
         if buffers[0].has("uri"):
-            buffers[0].fail("buffer", "the buffer lies in another file")
+            buffers[0].fail("buffer", f"the buffer lies in another file, {quote(buffers[0]['uri'].value)}")
         length = buffers[0]["byteLength"].integer(1, limits.MAX_FILE)
         if not 0 <= self._length - length < 4:
             buffers[0].fail("buffer", f"{length} bytes, but the binary chunk has {self._length}")
+
+    def check_addresses(self) -> None:
+        """No part of the file lies in another one: every `uri` outside of `extras` is a data URI. `address`."""
+        waiting: list[tuple[str, Any]] = [("", self.glb.json)]
+        while waiting:
+            where, value = waiting.pop()
+            for key, item in value.items() if isinstance(value, dict) else enumerate(value):
+                if key == "uri" and not (isinstance(item, str) and item[:5].lower() == "data:"):
+                    message, remedy = f"the file names another one, {quote(item)}", "export all of it as one .glb"
+                    raise FormatError("address", message, where=f"{where}/uri", remedy=remedy)
+                if key != "extras" and isinstance(item, dict | list):
+                    waiting.append((f"{where}/{key}", item))
 
     def check_end(self, extension: Value) -> None:
         """A file may end within its eigen textures or its residual, and nowhere else: `truncated`. (What lies behind

@@ -146,6 +146,7 @@ def read_layout(document: Document, findings: Findings) -> FileLayout | None:
     settings = attempt(lambda: extension["settings"].mapping() if extension.has("settings") else {}) or {}
     scores = attempt(lambda: extension["scores"].mapping() if extension.has("scores") else {}) or {}
     generator = attempt(lambda: extension["generator"].text() if extension.has("generator") else "") or ""
+    attempt(document.check_addresses)
     return FileLayout(
         version, mesh, mesh_payload, sheets, planes, cameras, view_plane, triangles, reference, to_rgb, residual,
         settings, scores, generator, times,

@@ -6,6 +6,7 @@ export type SceneErrorCode =
   | "needs"
   | "unsupported"
   | "network"
+  | "address" // a file that names another one
   | "codec" // a codec that the browser lacks
   | "codec-unknown"; // one that this viewer does not know
 

@@ -4,6 +4,7 @@
 //   const gltf = await loader.loadAsync("scene.glb");
 //   scene.add(gltf.scene); // draws itself; gltf.userData.eigenfield is its EigenField
 
+export { refuseAddresses } from "./addresses.js";
 export { novelCamera, placeCamera, type Frame } from "./cameras.js";
 export { SceneError, type SceneErrorCode } from "./errors.js";
 export { EigenField, type FieldEvents } from "./field.js";

@@ -1,4 +1,5 @@
 import { GLTFLoader, type GLTF } from "three/addons/loaders/GLTFLoader.js";
+import { refuseAddresses } from "./addresses.js";
 import { Arrival } from "./arrival.js";
 import { openContainer, type Container } from "./container.js";
 import { isScene } from "./document.js";
@@ -68,8 +69,11 @@ async function parsePlain(arrival: Arrival, container: Container, fetching: Prom
   await fetching;
   const bytes = await arrival.read(0, container.length);
   try {
-    return await new GLTFLoader().parseAsync(bytes, "");
+    const loader = new GLTFLoader();
+    loader.register(refuseAddresses);
+    return await loader.parseAsync(bytes, "");
   } catch (reason) {
+    if (reason instanceof SceneError) throw reason;
     const text = asSceneError(reason).message;
     throw new SceneError("unsupported", `${text} It has no eigen textures either.`, "", { cause: reason });
   }

@@ -1,11 +1,13 @@
 import { MeshBasicMaterial, type Material, type Mesh, type Object3D } from "three";
 import type { GLTF, GLTFLoaderPlugin, GLTFParser } from "three/addons/loaders/GLTFLoader.js";
+import { checkAddresses } from "./addresses.js";
 import type { ViewBytes } from "./accessors.js";
 import { isScene, readDocument, stillsOf, type SceneDocument } from "./document.js";
 import { cutOff, damaged } from "./errors.js";
 import { EigenField } from "./field.js";
 import { contextOf } from "./gpu.js";
 import { planeCoordinates, readCameras, readTriangles, readWeights, sceneInfo } from "./info.js";
+import type { Json } from "./json.js";
 import { EXTENSION } from "./limits.js";
 import { decodeMean, type Mean } from "./means.js";
 import type { EigenfieldOptions } from "./options.js";
@@ -37,6 +39,7 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
     if (!this.ours) return;
     if (this.options.renderer) contextOf(this.options.renderer);
     const { json } = this.parser;
+    checkAddresses(json as Json);
     Object.assign(json, await unpacked(json, (offset, length) => this.read(offset, length)));
     this.scene = readDocument(json);
     if (!this.scene.shown) showEmptyMesh(json);

@@ -6,7 +6,7 @@
 //   goToCamera(name)     through a captured camera; false if there is none of that name
 //   set({...})           any of State's options: view, eigen (from 0), count, weights, mixing, filter, wireframe,
 //                        background; also mode ("plane", "orbit") and photograph (boolean)
-//   open(file)           another scene: a Blob or a URL
+//   open(file)           another scene: a Blob or a URL (of its own server alone in what `export` writes: confine.ts)
 //   settled()            when everything is loaded, drawn in full, and still
 //   pixels()             the picture now, in full: width, height, and RGBA rows from the top
 //   eyes()               where the eye is, or in a headset both are: x, y, z in the capture's world

@@ -3,6 +3,7 @@
 import { createApi } from "./api";
 import { createCameraMap } from "./camera-map";
 import { readConfig, type Ui } from "./config";
+import { confine, leadElsewhere } from "./confine";
 import { button, element, ICONS } from "./dom";
 import { takeFiles } from "./files";
 import { createHelp } from "./help";
@@ -30,6 +31,7 @@ function start(): void {
   document.documentElement.lang = LANGUAGE;
   const address = new URL(location.href);
   const config = readConfig(document, address);
+  if (!leadElsewhere([config.scene, address.searchParams.get("load"), config.poster])) confine(document);
   const name = (title: string): void => {
     document.title = config.ui === "full" ? `${title} – eigenfield` : title; // other pages are their owners'
   };

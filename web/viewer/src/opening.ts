@@ -4,6 +4,7 @@ import { Vector2, Vector3 } from "three";
 import type { GLTF } from "three/addons/loaders/GLTFLoader.js";
 import { type EigenField, loadEigenfield, SceneError } from "eigenfield-three";
 import type { Config } from "./config";
+import { confine } from "./confine";
 import { pluginWords, words } from "./language";
 import { createOrbitMode, type Surroundings } from "./orbit-mode";
 import { createPlaneMode } from "./plane-mode";
@@ -81,6 +82,7 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
         signal: mine.signal,
         memory: config.memory ?? undefined,
         onBytes: (loaded, total) => {
+          confine(document); // the answer has come, and nothing of the file is read yet
           if (!latest()) return;
           session.progress = { loaded, total: total ?? source.bytes };
           changed();

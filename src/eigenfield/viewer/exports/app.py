@@ -19,7 +19,7 @@ from eigenfield.viewer.page import page_html, static_file
 
 APP_FILES = ("viewer.js", "viewer.css", "worker.js", "icon.svg", "icon-192.png", "icon-512.png")
 APP_COLOUR = "#15171a"  # the page's ground
-APP_POLICY = (  # files and posters may come from anywhere that allows it
+APP_POLICY = (  # `?load=` and `?poster=` may name any host; web/viewer/src/confine.ts narrows it before a scene is read
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src * blob: data:; connect-src * blob: data:; "
     "manifest-src 'self'; worker-src 'self'; base-uri 'none'; form-action 'none'"
 )
