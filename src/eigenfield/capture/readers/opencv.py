@@ -136,6 +136,18 @@ def _find_storages(folder: Path) -> list[Path]:
     return [path for path in paths if is_storage(path)]
 
 
+def opencv_content(path: Path) -> str | None:
+    """ "poses" where a file holds cameras with poses, "intrinsics" where it holds camera matrices alone; else None."""
+    if path.suffix.lower() not in STORAGE_EXTENSIONS:
+        return None
+    try:
+        cameras = _load_cameras(path).values()
+    except CaptureError:
+        return None
+    known = [found for found in cameras if _has_matrix(found)]
+    return ("poses" if any(map(_has_pose, known)) else "intrinsics") if known else None
+
+
 def read_opencv(path: Path, photographs: Path | None = None) -> Calibration:
     """Every camera with a pose as an entry, named by its ending or mapping; without a name, as its file.
 
@@ -302,7 +314,7 @@ def _with_shared(top: Values, known: dict[str, Values]) -> dict[str, Values]:
 
 
 def _is_same(one: Any, other: Any) -> bool:
-    return np.array_equal(_as_array(one), _as_array(other)) if isinstance(one, (list, np.ndarray)) else one == other
+    return _as_numbers(one) == _as_numbers(other)
 
 
 def _walk_mappings(
@@ -490,14 +502,12 @@ def _read_intrinsics(found: Values, label: str, path: Path) -> tuple[Intrinsics,
     return Intrinsics.of_matrix(K, *size), lens or skewed
 
 
-def _read_named(found: Values) -> tuple[tuple[float, ...], tuple[float | None, ...]]:
+def _read_named(found: Values) -> tuple[tuple[Any, Any], tuple[float | None, ...]]:
     """Focal lengths, and the principal point, None where it is not stated."""
-    both = _as_array(found["focal"]) if isinstance(found.get("focal"), (list, np.ndarray)) else found.get("focal")
-    fx, fy = np.broadcast_to(both, 2).tolist() if both is not None else (None, None)
-    middle = _as_array(found["principal"]) if "principal" in found else None
-    cx, cy = middle.reshape(2).tolist() if middle is not None else (None, None)
-    fx, fy = found.get("fx", fx), found.get("fy", found.get("fx", fy))
-    return (fx, fy), (found.get("cx", cx), found.get("cy", cy))
+    both, middle = _as_numbers(found.get("focal")), _as_numbers(found.get("principal"))
+    focal = found.get("fx", both[0] if both else None), found.get("fy", both[-1] if both else found.get("fx"))
+    cx, cy = middle if middle else (None, None)
+    return focal, (found.get("cx", cx), found.get("cy", cy))
 
 
 def _read_size(values: Values, label: str, path: Path) -> tuple[int | None, int | None]:
