@@ -10,6 +10,7 @@ are written as a quotation mark. Points are passed over.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -61,7 +62,7 @@ def read_nvm(path: Path, photographs: Path | None = None) -> Calibration:
     count = _read_count(lines, path)
     if not count:
         raise CaptureError("calibration-empty", "lists no camera", path=path, remedy="name another calibration")
-    cameras = [line for line, _ in zip(lines, range(count), strict=False)]
+    cameras = list(islice(lines, count))
     if len(cameras) < count:
         raise damaged_error(path, f"ends after {len(cameras)} of {count} cameras")
     finder = PhotographFinder(path.parent if photographs is None else photographs, path.parent, False)

@@ -82,6 +82,8 @@ OPENCV_PARTS = {
     "intrinsics", "intrinsic", "extrinsics", "extrinsic", "pose", "distortion", "lens", "calibration", "parameters",
     "params",
 }  # fmt: skip
+OPENCV_LENS_PARTS = ("coefficients", "coeffs", "coefs", "params", "parameters", "values")  # keys in its mapping
+OPENCV_MIN_FOCAL = 10.0  # pixels, of four numbers that are a camera matrix and no lens
 OPENCV_ANGLES_KEY = re.compile(r"euler|rpy$|(rot|rvec|angle).*deg|ypr$|(yaw|pitch|roll)(deg|degrees)?$")
 OPENCV_NAME_BEGINNINGS = ("cam_", "cam", "camera_", "camera", "port_")  # where a file numbers its cameras
 OPENCV_STEREO_PAIRS = ({"1", "2"}, {"0", "1"}, {"left", "right"}, {"l", "r"})
@@ -266,7 +268,7 @@ def _cameras_by_name(tree: Tree) -> dict[str, Values]:
     owners: dict[str, str] = {}  # of a camera that an ending names, the mapping that it stands in
     for name, mapping, lens in _walk_mappings(tree, ""):
         for key, value in mapping.items():
-            role, ending = _match_role(key, value)
+            role, ending = _match_role(key, value, lens is not None)
             place = f"{name}_{ending}" if name and ending else name or ending
             values = cameras.setdefault(place, {})
             owners[place] = name
@@ -278,7 +280,7 @@ def _cameras_by_name(tree: Tree) -> dict[str, Values]:
             elif role in OPENCV_LENS_ROLES and role in values and not _is_same(values[role], value):
                 values.setdefault("unread", key)
             else:
-                values.setdefault(role, value)
+                values.setdefault(role, key if role == "angles" else value)
                 if role in OPENCV_LENS_ROLES:
                     values.setdefault("lens_key", key)
     for found in cameras.values():
@@ -334,13 +336,17 @@ def _walk_mappings(
             yield from _walk_mappings(value, f"{i}", lens, depth + 1)
 
 
-def _match_role(key: str, value: Any) -> tuple[str | None, str]:
+def _match_role(key: str, value: Any, inside_lens: bool = False) -> tuple[str | None, str]:
     """The role of a name, and the camera that its ending names; None where name or value do not fit."""
     low = key.lower().replace("-", "_").replace(" ", "_")
     if low.replace("_", "") in OPENCV_COEFFICIENTS and isinstance(value, float):
         return low.replace("_", ""), ""
     if OPENCV_ANGLES_KEY.search(low.replace("_", "")) and has_numbers(value):
         return "angles", ""
+    if inside_lens and low in OPENCV_LENS_PARTS and _as_numbers(value):
+        return "distortion", ""
+    if inside_lens and low in ("model", "type") and isinstance(value, str):
+        return "model", ""
     for word, role in OPENCV_WORDS:
         ending = key[len(word) :]
         if not low.startswith(word) or not (not ending or ending[0] in "_- " or ending.isdigit()):
@@ -386,8 +392,8 @@ def _as_array(value: Any) -> NDArray[np.float64] | None:
 
 
 def _has_role_shape(role: str, array: NDArray[np.float64], word: str) -> bool:
-    if role == "matrix" and word.startswith("intrinsic") and array.shape == (4,):  # fx, fy, cx, cy, as of Kalibr
-        return bool(0 < array[1] <= 2 * array[0] <= 4 * array[1])
+    if role == "matrix" and word in ("intrinsics", "intrinsic", "k") and array.shape == (4,):  # fx, fy, cx, cy
+        return bool(OPENCV_MIN_FOCAL < array[1] <= 2 * array[0] <= 4 * array[1])
     if role in ("matrix", "plain_matrix"):
         return array.shape == (3, 3) or array.size == 9
     if role == "rotation":
