@@ -60,6 +60,16 @@ def test_other_texts_are_not(tmp_path, name, text):
     assert not open_any(tmp_path).problems
 
 
+def test_the_remedy_of_a_line_reads_the_cameras(tmp_path):
+    write.photographs(tmp_path / "images")
+    (tmp_path / "rig.json").write_text(FOREIGN["rig.json"])
+    assert open_any(tmp_path).problems[0].endswith("(in OpenCV's terms): name it with --calibration")
+    opened = open_any(tmp_path, calibration=tmp_path / "rig.json")
+    assert opened.format == "opencv" and len(opened) == 4 and not opened.problems
+    (tmp_path / "rig.json").write_text('{"a": [1, 2]}')
+    refused("calibration-json", tmp_path, calibration=tmp_path / "rig.json")
+
+
 # what is read
 
 

@@ -111,7 +111,7 @@ FORMAT_NOTES = {
         "cx, cy count from the middle; p1 and p2 are exchanged against OpenCV's",
     ),
     "opencv": FormatNotes(
-        "YAML, TOML, or OpenCV's XML *with poses*; JSON if it is named with `--format opencv`",
+        "YAML, TOML, or OpenCV's XML *with poses*; JSON if it is named",
         "yes",
         "OpenCV, EasyMocap, CMU Panoptic, Caliscope, Anipose, ROS and others",
         "K or `fx` `fy` `cx` `cy`; 1, 2, 4, 5, 8, 12 or 14 coefficients, or `k1` `k2` `p1` ... by name; fisheye; one "

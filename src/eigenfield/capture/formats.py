@@ -22,7 +22,7 @@ from eigenfield.capture.readers.metashape import find_metashape, read_metashape
 from eigenfield.capture.readers.middlebury import find_middlebury, read_middlebury
 from eigenfield.capture.readers.numbered import read_numbered
 from eigenfield.capture.readers.nvm import find_nvm, read_nvm
-from eigenfield.capture.readers.opencv import find_opencv, read_opencv
+from eigenfield.capture.readers.opencv import find_opencv, opencv_content, read_opencv
 from eigenfield.capture.readers.positions import find_positions, read_positions
 from eigenfield.capture.readers.projections import find_projections, read_projections
 from eigenfield.capture.readers.realitycapture import find_realitycapture, read_realitycapture
@@ -221,7 +221,8 @@ def claim_of_file(path: Path, formats: tuple[Format, ...]) -> Claim:
     if len(formats) > 1 and path.name == DEEPVIEW_FILE and find_deepview(path.parent) == path:
         return Claim(FORMATS_BY_NAME["deepview"], path)
     if len(formats) > 1 and path.suffix.lower() == ".json":
-        return Claim(FORMATS_BY_NAME["transforms"], path)
+        in_opencvs_terms = not transforms.is_transforms(path) and opencv_content(path) == "poses"
+        return Claim(FORMATS_BY_NAME["opencv" if in_opencvs_terms else "transforms"], path)
     if FORMATS_BY_NAME["colmap"] in formats and path.stem in ("cameras", "images") and colmap.is_model(path.parent):
         return Claim(FORMATS_BY_NAME["colmap"], path.parent)
     if len(formats) == 1:

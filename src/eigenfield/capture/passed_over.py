@@ -15,6 +15,7 @@ from pathlib import Path
 from eigenfield.capture.messages import list_names
 from eigenfield.capture.readers.opencv import OPENCV_FOLDERS, opencv_content
 from eigenfield.capture.readers.text import files_in, read_head
+from eigenfield.capture.readers.transforms import is_transforms
 
 PASSED_OVER_FOLDERS = (*OPENCV_FOLDERS, "cams", "pose", "poses", "images")
 PASSED_OVER_MAX_FILES = 200  # of a folder that are looked into
@@ -105,11 +106,11 @@ def _recognise(path: Path) -> str | None:
     for kind in FOREIGN_CALIBRATIONS:
         if lower.endswith(kind.endings) and all(re.search(mark, head) for mark in kind.marks):
             return f"{kind.what}): {kind.remedy}"
-    if lower.endswith(".json") and '"frames"' in head and '"transform_matrix"' in head:
+    if lower.endswith(".json") and is_transforms(path):
         return "a transforms.json): name {it} with --calibration"
     content = opencv_content(path)
     if content == "poses":
-        return "in OpenCV's terms): name {it} with --calibration and --format opencv"
+        return "in OpenCV's terms): name {it} with --calibration"
     if content == "intrinsics":
         return "intrinsics without poses): name {it} with --intrinsics of `eigenfield calibrate`"
     flags = re.IGNORECASE | re.MULTILINE

@@ -54,9 +54,13 @@ def find_transforms(folder: Path) -> Path | None:
     return folder if _split_files(folder) else None
 
 
+def is_transforms(path: Path) -> bool:
+    """Whether a file begins as a transforms.json with poses."""
+    return b'"transform_matrix"' in read_head(path, TRANSFORMS_HEAD_BYTES)
+
+
 def _split_files(folder: Path) -> list[Path]:
-    paths = (folder / name for name in TRANSFORMS_SPLIT_FILES)
-    return [path for path in paths if b'"transform_matrix"' in read_head(path, TRANSFORMS_HEAD_BYTES)]
+    return [folder / name for name in TRANSFORMS_SPLIT_FILES if is_transforms(folder / name)]
 
 
 def read_transforms(path: Path) -> Calibration:
