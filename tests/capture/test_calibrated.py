@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from eigenfield.capture import open_capture
+from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.readers.llff import find_llff, read_llff
 from eigenfield.capture.readers.middlebury import find_middlebury, read_middlebury
 from eigenfield.capture.readers.opencv import read_opencv, read_opencv_intrinsics
@@ -105,7 +106,7 @@ def test_real_captures_are_found_and_told_apart(data, name):
 
 OTHERS = (
     "tarot_17x17_512", "hci_boxes_9x9", "shop_9x9", "cube_colmap_mesh", "fox_transforms_half", "opencv_stereo_chart",
-    "caliscope_charuco_rig4", "jellybeans_17x17_768x384",
+    "jellybeans_17x17_768x384",
 )  # fmt: skip
 
 
@@ -158,6 +159,15 @@ def test_real_photographs_agree_with_their_cameras(data, name):
 def test_fountain_keeps_the_scale_of_its_file(data):
     centres = np.array([entry.centre for entry in read_strecha(find_strecha(data / "fountain_P11_half")).entries])
     assert 10 < np.ptp(centres, axis=0).max() < 20
+
+
+def test_caliscopes_toml_is_that_of_its_videos(data):
+    rig = open_capture(data / "caliscope_charuco_rig4")
+    assert rig.format == "opencv" and rig.names == ("cam_0.png", "cam_1.png", "cam_2.png", "cam_3.png")
+    assert rig.views[0].lens == Lens("brown", (-0.3383569013465177, 0.09672714756989992, -0.0013512226751077358,
+                                               0.003155760325647937, -0.0037489346582201062))  # fmt: skip
+    assert np.allclose(rig.cameras[0].t, [-0.6425176710599999, 0.2628680995431283, 1.4515383168392715], atol=1e-9)
+    assert rig.cameras[0].K[0, 2] == pytest.approx(624.011791468827 + 0.5)
 
 
 def test_the_stereo_chart_gives_intrinsics(data):

@@ -299,7 +299,6 @@ REAL = {
     "tarot_5x4_1024": ("stanford", (4, 5), False, False),
     "hci_antinous_9x9": ("hci", (9, 9), False, True),
     "temple_ring16/images": ("folder", None, None, None),
-    "caliscope_charuco_rig4": ("video", None, None, None),
 }
 
 
@@ -318,9 +317,10 @@ def test_what_real_photographs_say_of_themselves(data, name):
 
 
 def test_frames_of_the_rig(data):
-    photo_set = open_any(data / "caliscope_charuco_rig4", frame="4s")
+    photo_set = open_any(data / "caliscope_charuco_rig4", format="video", frame="4s")
+    assert isinstance(photo_set, PhotoSet) and photo_set.format == "video"
     assert photo_set.names == ("cam_0.png", "cam_1.png", "cam_2.png", "cam_3.png")
-    by_index = open_any(data / "caliscope_charuco_rig4", frame=24)  # 6 frames a second
+    by_index = open_any(data / "caliscope_charuco_rig4", format="video", frame=24)  # 6 frames a second
     for index in range(4):
         pixels = photo_set.photograph(index).pixels
         assert pixels.shape == (720, 1280, 3) and np.array_equal(pixels, by_index.photograph(index).pixels)

@@ -166,7 +166,10 @@ def test_opencv_intrinsics_only_is_no_calibration(tmp_path):
         "a: " + "[" * 1000 + "]" * 1000,
         "\n".join(" " * i + "a:" for i in range(1000)),
         'a: "no end\n',
-        "a: &name [ 1 ]\nb: *name\n",
+        "b: *name\na: &name [ 1 ]\n",
+        "a: &name [ *name ]\n",
+        "a: &a [1, 1, 1, 1, 1, 1, 1, 1]\n"
+        + "".join(f"{k}: &{k} [{', '.join([f'*{chr(ord(k) - 1)}'] * 8)}]\n" for k in "bcdefghijk"),
         "? [ 1 ]\n: 2\n",
         "",
         "\0\0\0",

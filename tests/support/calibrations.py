@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import yaml
 from PIL import Image
 
 WIDTH, HEIGHT = 96, 64
@@ -137,6 +138,37 @@ def bundler_pixels(s: Station, lens, points):
     return np.stack([WIDTH / 2 + p[:, 0], HEIGHT / 2 - p[:, 1]], axis=1)
 
 
+def quaternion(rows) -> np.ndarray:
+    """w x y z of a rotation, by its trace and the differences across its diagonal."""
+    R = np.array(rows)
+    w = np.sqrt(max(1 + np.trace(R), 1e-12)) / 2
+    return np.array([w, *(np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]]) / (4 * w))])
+
+
+def nvm(folder: Path, all_stations, radial=0.0, fixed="", more="") -> Path:
+    """Names with their blanks as quotation marks; points whose lines are long."""
+    lines = [f"NVM_V3 {fixed}".strip(), "", str(len(all_stations))]
+    for s in all_stations:
+        rows, _ = world_to_camera(s)
+        name = f"images/{s.name}".replace(" ", '"')
+        lines.append(f"{name}\t{s.fx!r} {words(quaternion(rows))} {words(s.eye)} {radial!r} 0 ")
+    lines += ["", "2", *["1 2 3 255 0 0 700 " + "0 12 3.5 -2.5 " * 700] * 2, more or "0", "", "#the last part"]
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / "model.nvm"
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return path
+
+
+def nvm_pixels(s: Station, radial, points):
+    """The measured point whose m (1 + r |m|^2) is the ideal one, by fixed-point iteration."""
+    x, y, z = s.along(points).T
+    ideal = np.stack([x / z, y / z], axis=1)
+    m = ideal
+    for _ in range(200):
+        m = ideal / (1 + radial * (m**2).sum(axis=1, keepdims=True))
+    return np.array([WIDTH / 2, HEIGHT / 2]) + s.fx * m
+
+
 METASHAPE_LENS = {
     "k1": -0.05, "k2": 0.03, "k3": -0.01, "k4": 0.004, "p1": 0.002, "p2": -0.003, "b1": 1.5, "b2": 0.75
 }  # fmt: skip
@@ -257,6 +289,40 @@ def opencv_files(folder: Path, all_stations, lens=(0.0,) * 5, kind="yml") -> Pat
             )
         (folder / f"{s.name.removesuffix('.png')}.{kind}").write_text(body, encoding="utf-8")
     return folder
+
+
+def opencv_mapping(s: Station, lens=(0.0,) * 5) -> dict:
+    K, _, R, T = opencv_numbers(s, lens)
+    return {
+        "size": [WIDTH, HEIGHT], "matrix": np.array(K).tolist(), "distortions": list(lens),
+        "rotation": np.array(R).tolist(), "translation": np.ravel(T).tolist(),
+    }  # fmt: skip
+
+
+def plain_yaml(folder: Path, all_stations) -> Path:
+    """As PyYAML writes a dict: no head, and lists that are shared as aliases."""
+    size, lens = [WIDTH, HEIGHT], [0.0] * 5
+    cameras = {s.name[:-4]: opencv_mapping(s) | {"size": size, "distortions": lens} for s in all_stations}
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / "rig.yaml"
+    path.write_text(yaml.safe_dump(cameras))
+    assert "*id001" in path.read_text()
+    return path
+
+
+def toml(folder: Path, all_stations) -> Path:
+    """As Caliscope and Anipose write it: numbers, and names where there are any; rotations as vectors."""
+    lines = []
+    for i, s in enumerate(all_stations):
+        values = opencv_mapping(s) | {
+            "name": s.name[:-4],
+            "rotation": axis_angle(world_to_camera(s)[0]).ravel().tolist(),
+        }
+        lines += [f"[cam_{i}]", *(f"{key} = {json.dumps(value)}" for key, value in values.items()), ""]
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / "calibration.toml"
+    path.write_text("\n".join([*lines, "[metadata]", "adjusted = false", "error = 0.57"]))
+    return path
 
 
 def easymocap(folder: Path, all_stations) -> Path:

@@ -13,6 +13,7 @@ from eigenfield.capture.readers.deepview import read_deepview
 from eigenfield.capture.readers.llff import read_llff
 from eigenfield.capture.readers.metashape import read_metashape
 from eigenfield.capture.readers.middlebury import read_middlebury
+from eigenfield.capture.readers.nvm import read_nvm
 from eigenfield.capture.readers.opencv import read_opencv
 from eigenfield.capture.readers.projections import read_projections
 from eigenfield.capture.readers.realitycapture import read_realitycapture
@@ -44,10 +45,13 @@ WRITERS = {
     "opencv": (lambda folder: write.opencv_files(folder / "calib", stations()), read_opencv),
     "opencv-xml": (lambda folder: write.opencv_files(folder / "calib", stations(), kind="xml"), read_opencv),
     "easymocap": (lambda folder: write.easymocap(folder, stations()), read_opencv),
+    "plain-yaml": (lambda folder: write.plain_yaml(folder, stations()), read_opencv),
+    "toml": (lambda folder: write.toml(folder, stations()), read_opencv),
+    "nvm": (lambda folder: write.nvm(folder, stations(True, True)), read_nvm),
     "projections": (lambda folder: write.projections(folder, stations()), read_projections),
 }
-CENTRED = ("llff", "bundler", "realitycapture")  # without a principal point here, and with square pixels
-FORMATS = {"opencv-xml": "opencv", "easymocap": "opencv"}
+CENTRED = ("llff", "bundler", "nvm", "realitycapture")  # without a principal point here, and with square pixels
+FORMATS = dict.fromkeys(("opencv-xml", "easymocap", "plain-yaml", "toml"), "opencv")
 
 
 def stem(entry) -> str:

@@ -41,7 +41,7 @@ def _codes(words: Iterable[str]) -> str:
 
 FORMAT_NOTES = {
     "transforms": FormatNotes(
-        "`transforms.json`, or any other `.json` that is named",
+        "`transforms.json`; else `transforms_train.json`, `_val` and `_test` together; any other `.json` that is named",
         "yes",
         "nerfstudio, instant-ngp (its fox), the original NeRF, eigenfield",
         f"models {', '.join((*transforms.TRANSFORMS_PERSPECTIVE_MODELS, *transforms.TRANSFORMS_FISHEYE_MODELS))}; "
@@ -93,6 +93,14 @@ FORMAT_NOTES = {
         "cameras that were not registered; a list of another length",
         "y up, looking along -z; the principal point is the middle; f = 0 is a camera that was not registered",
     ),
+    "nvm": FormatNotes(
+        "`*.nvm` that begins with NVM_V3",
+        "yes",
+        "VisualSFM (its description)",
+        "f, pose, the radial coefficient; `FixedK`; the first model, with a line about others",
+        "other heads; a radial coefficient whose inverse misses a photograph's corner by a quarter of a pixel",
+        "the radial coefficient is of the measured point, not of the ideal one; the principal point is the middle",
+    ),
     "metashape": FormatNotes(
         "an Agisoft Metashape or PhotoScan `*.xml`",
         "yes",
@@ -103,12 +111,15 @@ FORMAT_NOTES = {
         "cx, cy count from the middle; p1 and p2 are exchanged against OpenCV's",
     ),
     "opencv": FormatNotes(
-        "YAML, XML or JSON of OpenCV's FileStorage *with poses*",
+        "YAML, TOML, or OpenCV's XML *with poses*; JSON if it is named",
         "yes",
-        "OpenCV, EasyMocap, Caliscope and others",
-        "4, 5, 8, 12 or 14 coefficients, fisheye; one file a camera or one for all",
-        "other lens models",
-        "pixel centres count from 0 (half a pixel is added); key names are not fixed: those in common use are known",
+        "OpenCV, EasyMocap, CMU Panoptic, Caliscope, Anipose, ROS and others",
+        "K or `fx` `fy` `cx` `cy`; 1, 2, 4, 5, 8, 12 or 14 coefficients, or `k1` `k2` `p1` ... by name; fisheye; one "
+        "file a camera or one for all; aliases of YAML",
+        "other lens models; keys that look like a lens and are not known; rotations in degrees; 3 or 6 coefficients, "
+        "whose order is not certain",
+        "pixel centres count from 0 (half a pixel is added); key names are not fixed: those in common use are known; a "
+        "file that numbers its cameras means `cam_0`, `camera_0` or `port_0`",
     ),
     "realitycapture": FormatNotes(
         "a `*.csv` with the columns `#name` ... `heading` `pitch` `roll` `f`",
@@ -123,7 +134,7 @@ FORMAT_NOTES = {
         "yes",
         "DeepView's light-field videos (the example of their description)",
         "fisheye and perspective, up to four and three radial coefficients",
-        "other projections",
+        "other projections; rotations in degrees",
         "names are those of the videos; the position of pixel centres is not documented",
     ),
     "projections": FormatNotes(

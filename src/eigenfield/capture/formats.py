@@ -10,7 +10,8 @@ from eigenfield.capture.arrangement import Arrangement, OpenOptions
 from eigenfield.capture.calibration import Calibration, escape_name
 from eigenfield.capture.locate import is_photograph_file
 from eigenfield.capture.messages import list_names
-from eigenfield.capture.photographs.kinds import MESH_KIND, OTHER_KINDS, VIDEO_EXTENSIONS
+from eigenfield.capture.passed_over import describe_passed_over
+from eigenfield.capture.photographs.kinds import ALL_EXTENSIONS, MESH_KIND, OTHER_KINDS, VIDEO_EXTENSIONS
 from eigenfield.capture.readers import colmap, transforms
 from eigenfield.capture.readers.bundler import find_bundler, find_unlisted, read_bundler
 from eigenfield.capture.readers.deepview import DEEPVIEW_FILE, find_deepview, read_deepview
@@ -21,7 +22,8 @@ from eigenfield.capture.readers.llff import find_llff, read_llff
 from eigenfield.capture.readers.metashape import find_metashape, read_metashape
 from eigenfield.capture.readers.middlebury import find_middlebury, read_middlebury
 from eigenfield.capture.readers.numbered import read_numbered
-from eigenfield.capture.readers.opencv import find_opencv, read_opencv
+from eigenfield.capture.readers.nvm import find_nvm, read_nvm
+from eigenfield.capture.readers.opencv import find_opencv, opencv_content, read_opencv
 from eigenfield.capture.readers.positions import find_positions, read_positions
 from eigenfield.capture.readers.projections import find_projections, read_projections
 from eigenfield.capture.readers.realitycapture import find_realitycapture, read_realitycapture
@@ -101,6 +103,7 @@ FORMATS = (
     _camera_format("middlebury", "Middlebury *_par.txt", find_middlebury, _ignore_root(read_middlebury), "_par.txt"),
     _camera_format("strecha", "Strecha *.camera", find_strecha, _ignore_root(read_strecha), ".camera"),
     _camera_format("bundler", "Bundler bundle.out", find_bundler, _ignore_root(read_bundler), ".out"),
+    _camera_format("nvm", "VisualSFM NVM", find_nvm, read_nvm, ".nvm"),
     _camera_format("metashape", "Agisoft Metashape XML", find_metashape, _ignore_root(read_metashape), ".xml"),
     _camera_format("opencv", "OpenCV YAML, XML, JSON or TOML", find_opencv, read_opencv, ".yml", ".yaml", ".toml",
                    ".xml"),
@@ -121,8 +124,9 @@ FORMATS = (
 )  # fmt: skip
 # files that a folder does not hold by chance: if no reader claims one of these, it is damaged or incomplete
 CALIBRATION_PATTERNS = (
-    "transforms.json", "poses_bounds.npy", "*_par.txt", "*.camera", "bundle.out", "bundle/bundle.out", "cameras.xml",
-    "sparse/[0-9]*/images.*", "sparse/[0-9]*/cameras.*", "sparse/images.*", "sparse/cameras.*", "*_P.txt",
+    "transforms.json", "poses_bounds.npy", "*_par.txt", "*.camera", "bundle.out", "bundle/bundle.out", "*.nvm",
+    "cameras.xml", "sparse/[0-9]*/images.*", "sparse/[0-9]*/cameras.*", "sparse/images.*", "sparse/cameras.*",
+    "*_P.txt",
 )  # fmt: skip
 FORMATS_BY_NAME = {row.name: row for row in FORMATS}
 
@@ -193,7 +197,7 @@ def _describe_unread(folder: Path) -> list[str]:
         lines.append(
             f"{name}: a Bundler file without the list of its photographs, and not read; put list.txt beside it"
         )
-    return lines
+    return lines + describe_passed_over(folder, {*paths, unlisted})
 
 
 def _find_claims(folder: Path, formats: tuple[Format, ...]) -> list[Claim]:
@@ -219,7 +223,8 @@ def claim_of_file(path: Path, formats: tuple[Format, ...]) -> Claim:
     if len(formats) > 1 and path.name == DEEPVIEW_FILE and find_deepview(path.parent) == path:
         return Claim(FORMATS_BY_NAME["deepview"], path)
     if len(formats) > 1 and path.suffix.lower() == ".json":
-        return Claim(FORMATS_BY_NAME["transforms"], path)
+        in_opencvs_terms = not transforms.is_transforms(path) and opencv_content(path) == "poses"
+        return Claim(FORMATS_BY_NAME["opencv" if in_opencvs_terms else "transforms"], path)
     if FORMATS_BY_NAME["colmap"] in formats and path.stem in ("cameras", "images") and colmap.is_model(path.parent):
         return Claim(FORMATS_BY_NAME["colmap"], path.parent)
     if len(formats) == 1:

@@ -41,7 +41,7 @@ def photograph_root(path: Path, found: Path) -> Path:
             path = path.parent
         if path.name == "sparse":
             path = path.parent
-    if found.is_dir() and found.resolve() == path.resolve() and not _holds_photographs(path):
+    if found.is_dir() and found.resolve() == path.resolve() and not _holds_any(path):
         above = path.resolve().parent
         path = above if _holds_photographs(above) else path
     return path
@@ -49,6 +49,14 @@ def photograph_root(path: Path, found: Path) -> Path:
 
 def _holds_photographs(folder: Path) -> bool:
     return bool(photographs_in(folder) or photographs_in(folder / IMAGES_FOLDER))
+
+
+def _holds_any(folder: Path) -> bool:
+    """Whether a folder, or one directly in it (`train/`, `val/`), holds photographs."""
+    if _holds_photographs(folder):
+        return True
+    with os.scandir(folder) as entries:
+        return any(entry.is_dir() and bool(photographs_in(Path(entry.path))) for entry in entries)
 
 
 def is_file(path: Path) -> bool:

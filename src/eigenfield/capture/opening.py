@@ -10,6 +10,7 @@ from typing import TypeVar
 
 from eigenfield.capture.archive import is_zip, unpack
 from eigenfield.capture.arrangement import Arrangement, OpenOptions
+from eigenfield.capture.calibration import Calibration, Entry
 from eigenfield.capture.formats import FORMATS, Claim, Format, claim_of_file, detect_format, format_by_name
 from eigenfield.capture.inspect_photographs import common_focal_length, make_photo_set
 from eigenfield.capture.lightfield import LightField
@@ -17,13 +18,14 @@ from eigenfield.capture.locate import IMAGES_FOLDER, photograph_root, photograph
 from eigenfield.capture.messages import count_phrase, list_names
 from eigenfield.capture.pairing import pair_photographs
 from eigenfield.capture.photographs.exr import choose_exposure
-from eigenfield.capture.photographs.kinds import is_linear
+from eigenfield.capture.photographs.kinds import VIDEO_EXTENSIONS, is_linear
 from eigenfield.capture.photoset import Capture, PhotoSet
 from eigenfield.capture.readers.folder import read_folders, refuse_photograph_files
 from eigenfield.capture.readers.grid_names import compile_pattern
 from eigenfield.capture.readers.video import is_video_rig, read_videos
 from eigenfield.capture.unread import describe_inner, describe_unread
 from eigenfield.core.arguments import checked
+from eigenfield.core.camera_names import name_key
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.recognise import refuse_address
 from eigenfield.core.shell import shell_word
@@ -318,6 +320,8 @@ def _open_source(source: _Source, masks: StrPath | None, strict: bool) -> Captur
             root, lines = frames.files[0].parent, (*lines, *frames.problems)
         read = row.read_cameras(source.claim.found, root)
         read = replace(read, problems=(*lines, *read.problems))
+        if source.videos:
+            read = _of_frames(read, {name_key(file.stem) for file in frames.files})
         return pair_photographs(read, root, apart=source.apart, masks=folder, strict=strict)
     arrangement = _read_arrangement(source)
     if arrangement.calibration is None:
@@ -329,6 +333,23 @@ def _open_source(source: _Source, masks: StrPath | None, strict: bool) -> Captur
     layout = arrangement.layout.subset([index[view.path.name] for view in light_field.views])
     focal = common_focal_length([float(camera.K[0, 0]) for camera in light_field.cameras])
     return replace(light_field, layout=replace(layout, focal=focal))
+
+
+def _of_frames(read: Calibration, stems: set[str]) -> Calibration:
+    """A calibration whose entries name videos, as one of the frames that were taken out of them under their names.
+
+    Args:
+        read: The calibration.
+        stems: Of the frames' names, by `name_key`.
+    """
+
+    def rename(entry: Entry) -> Entry:
+        if not entry.file.lower().endswith(VIDEO_EXTENSIONS):
+            return entry
+        whole = name_key(entry.file.rsplit("/", 1)[-1]) in stems  # of two videos that differ by their ending alone
+        return replace(entry, file=f"{entry.file}.png" if whole else entry.file[: entry.file.rindex(".")])
+
+    return replace(read, entries=tuple(map(rename, read.entries)))
 
 
 def _no_cameras(path: Path, problems: tuple[str, ...] = ()) -> CaptureError:

@@ -117,7 +117,7 @@ _place_options = together(
     masks_option,
     click.option("--format", metavar="NAME",
                  help="What the capture is, where it may be read in several ways: "
-                      "transforms, colmap, llff, middlebury, strecha, bundler, metashape, opencv, "
+                      "transforms, colmap, llff, middlebury, strecha, bundler, nvm, metashape, opencv, "
                       "realitycapture, deepview, projections, positions, hci, stanford, grid, numbered, video, "
                       "walk or folder."),
     grid_options,

@@ -339,7 +339,7 @@ def _read_cameras_text(path: Path) -> dict[int, _ListedCamera]:
             continue
         words = line.split()
         try:
-            camera, model = int(words[0]), words[1]
+            camera, model = int(words[0]), words[1].upper()
             if model not in COLMAP_MODELS:
                 cameras[camera] = excerpt(model)
                 continue

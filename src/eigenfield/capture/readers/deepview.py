@@ -63,7 +63,7 @@ def read_deepview(path: Path) -> Calibration:
         ) from error
     if not isinstance(cameras, list) or not cameras:
         raise CaptureError("calibration-empty", "lists no camera", path=path, remedy="name another calibration")
-    turns = (camera.get("orientation") for camera in cameras if isinstance(camera, dict))
+    turns: list[Any] = [camera.get("orientation") for camera in cameras if isinstance(camera, dict)]
     longest = longest_vector(turn for turn in turns if _are_numbers(turn))
     entries, errors = read_each(lambda item: _make_entry(item[1], item[0], longest, path), enumerate(cameras))
     return Calibration(path, "deepview", entries, errors)

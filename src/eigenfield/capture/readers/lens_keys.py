@@ -18,11 +18,11 @@ from eigenfield.core.errors import CaptureError
 
 # of keys in lower case, without what is no letter and no digit
 LENS_KEY = re.compile(
-    r"dist(?!ance|ribut|rict|inct|to|from)|(?!.*undist).*distort|.*(lens|radial|tangential|decenter|fisheye|ftheta)"
+    r"(cam|camera|opencv|image|img|intrinsics?)?dist(?!ance|ribut|rict|inct|to|from)|(?!.*undist).*distort|.*(lens|radial|tangential|decenter|fisheye|ftheta)"
     r"|.*coef|thinprism|latlong|equirect|orthographic"
 )
 LENS_COEFFICIENT_KEY = re.compile(r"(k|p|s|sx|sy|kappa)\d{1,2}|tau[xy]|omega|xi")  # of one number
-LENS_LIST_KEY = re.compile(r"d|kc")  # of coefficients in a row
+LENS_LIST_KEY = re.compile(r"d|k|kc")  # of coefficients in a row
 LENS_PROJECTION_KEY = re.compile(r".*(fisheye|latlong|equirect|orthographic)")  # of a flag
 # what is written beside a lens, by how it ends
 LENS_OTHER_KEY = re.compile(
@@ -33,7 +33,8 @@ LENS_MODEL_WORD = re.compile(
     r"(opencv|simple|radial|thinprism)*"
     r"(fish|equidist|equisolid|kannala|omni|eucm|division|fov|stereog|equirect|panoram|spheric)"
 )
-LENS_MAX_COEFFICIENTS = 14  # of OpenCV's
+LENS_COUNTS = range(1, 9)  # of coefficients that stand in a row; nine are a matrix
+LENS_MAX_FIRST = 100  # of the first one: beyond, it is a focal length in pixels
 LENS_MAX_DEPTH = 8
 
 
@@ -92,8 +93,11 @@ def is_lens(key: str, value: Any) -> bool:
     if one:
         return len(numbers) == 1
     if row:
-        return not isinstance(value, (int, float)) and len(numbers) <= LENS_MAX_COEFFICIENTS
-    return key != "lens" or len(numbers) > 1 or abs(numbers[0]) < 1  # beyond, Blender's focal length in millimetres
+        flat = isinstance(value, list) and not any(isinstance(one, list) for one in value)
+        return flat and len(numbers) in LENS_COUNTS and not abs(numbers[0]) > LENS_MAX_FIRST  # true for NaN
+    return (
+        key != "lens" or len(numbers) > 1 or bool(abs(numbers[0]) < 1)
+    )  # beyond, Blender's focal length in millimetres
 
 
 def has_numbers(value: Any) -> bool:

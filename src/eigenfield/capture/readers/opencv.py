@@ -82,6 +82,8 @@ OPENCV_PARTS = {
     "intrinsics", "intrinsic", "extrinsics", "extrinsic", "pose", "distortion", "lens", "calibration", "parameters",
     "params",
 }  # fmt: skip
+OPENCV_LENS_PARTS = ("coefficients", "coeffs", "coefs", "params", "parameters", "values")  # keys in its mapping
+OPENCV_MIN_FOCAL = 10.0  # pixels, of four numbers that are a camera matrix and no lens
 OPENCV_ANGLES_KEY = re.compile(r"euler|rpy$|(rot|rvec|angle).*deg|ypr$|(yaw|pitch|roll)(deg|degrees)?$")
 OPENCV_NAME_BEGINNINGS = ("cam_", "cam", "camera_", "camera", "port_")  # where a file numbers its cameras
 OPENCV_STEREO_PAIRS = ({"1", "2"}, {"0", "1"}, {"left", "right"}, {"l", "r"})
@@ -134,6 +136,18 @@ def find_opencv(folder: Path) -> Path | None:
 def _find_storages(folder: Path) -> list[Path]:
     paths = [path for path in files_in(folder) if path.suffix.lower() in STORAGE_EXTENSIONS][:OPENCV_MAX_FILES]
     return [path for path in paths if is_storage(path)]
+
+
+def opencv_content(path: Path) -> str | None:
+    """ "poses" where a file holds cameras with poses, "intrinsics" where it holds camera matrices alone; else None."""
+    if path.suffix.lower() not in STORAGE_EXTENSIONS:
+        return None
+    try:
+        cameras = _load_cameras(path).values()
+    except CaptureError:
+        return None
+    known = [found for found in cameras if _has_matrix(found)]
+    return ("poses" if any(map(_has_pose, known)) else "intrinsics") if known else None
 
 
 def read_opencv(path: Path, photographs: Path | None = None) -> Calibration:
@@ -254,7 +268,7 @@ def _cameras_by_name(tree: Tree) -> dict[str, Values]:
     owners: dict[str, str] = {}  # of a camera that an ending names, the mapping that it stands in
     for name, mapping, lens in _walk_mappings(tree, ""):
         for key, value in mapping.items():
-            role, ending = _match_role(key, value)
+            role, ending = _match_role(key, value, lens is not None)
             place = f"{name}_{ending}" if name and ending else name or ending
             values = cameras.setdefault(place, {})
             owners[place] = name
@@ -266,7 +280,7 @@ def _cameras_by_name(tree: Tree) -> dict[str, Values]:
             elif role in OPENCV_LENS_ROLES and role in values and not _is_same(values[role], value):
                 values.setdefault("unread", key)
             else:
-                values.setdefault(role, value)
+                values.setdefault(role, key if role == "angles" else value)
                 if role in OPENCV_LENS_ROLES:
                     values.setdefault("lens_key", key)
     for found in cameras.values():
@@ -302,7 +316,7 @@ def _with_shared(top: Values, known: dict[str, Values]) -> dict[str, Values]:
 
 
 def _is_same(one: Any, other: Any) -> bool:
-    return np.array_equal(_as_array(one), _as_array(other)) if isinstance(one, (list, np.ndarray)) else one == other
+    return _as_numbers(one) == _as_numbers(other)
 
 
 def _walk_mappings(
@@ -322,13 +336,17 @@ def _walk_mappings(
             yield from _walk_mappings(value, f"{i}", lens, depth + 1)
 
 
-def _match_role(key: str, value: Any) -> tuple[str | None, str]:
+def _match_role(key: str, value: Any, inside_lens: bool = False) -> tuple[str | None, str]:
     """The role of a name, and the camera that its ending names; None where name or value do not fit."""
     low = key.lower().replace("-", "_").replace(" ", "_")
     if low.replace("_", "") in OPENCV_COEFFICIENTS and isinstance(value, float):
         return low.replace("_", ""), ""
     if OPENCV_ANGLES_KEY.search(low.replace("_", "")) and has_numbers(value):
         return "angles", ""
+    if inside_lens and low in OPENCV_LENS_PARTS and _as_numbers(value):
+        return "distortion", ""
+    if inside_lens and low in ("model", "type") and isinstance(value, str):
+        return "model", ""
     for word, role in OPENCV_WORDS:
         ending = key[len(word) :]
         if not low.startswith(word) or not (not ending or ending[0] in "_- " or ending.isdigit()):
@@ -374,8 +392,8 @@ def _as_array(value: Any) -> NDArray[np.float64] | None:
 
 
 def _has_role_shape(role: str, array: NDArray[np.float64], word: str) -> bool:
-    if role == "matrix" and word.startswith("intrinsic") and array.shape == (4,):  # fx, fy, cx, cy, as of Kalibr
-        return bool(0 < array[1] <= 2 * array[0] <= 4 * array[1])
+    if role == "matrix" and word in ("intrinsics", "intrinsic", "k") and array.shape == (4,):  # fx, fy, cx, cy
+        return bool(OPENCV_MIN_FOCAL < array[1] <= 2 * array[0] <= 4 * array[1])
     if role in ("matrix", "plain_matrix"):
         return array.shape == (3, 3) or array.size == 9
     if role == "rotation":
@@ -490,14 +508,12 @@ def _read_intrinsics(found: Values, label: str, path: Path) -> tuple[Intrinsics,
     return Intrinsics.of_matrix(K, *size), lens or skewed
 
 
-def _read_named(found: Values) -> tuple[tuple[float, ...], tuple[float | None, ...]]:
+def _read_named(found: Values) -> tuple[tuple[Any, Any], tuple[float | None, ...]]:
     """Focal lengths, and the principal point, None where it is not stated."""
-    both = _as_array(found["focal"]) if isinstance(found.get("focal"), (list, np.ndarray)) else found.get("focal")
-    fx, fy = np.broadcast_to(both, 2).tolist() if both is not None else (None, None)
-    middle = _as_array(found["principal"]) if "principal" in found else None
-    cx, cy = middle.reshape(2).tolist() if middle is not None else (None, None)
-    fx, fy = found.get("fx", fx), found.get("fy", found.get("fx", fy))
-    return (fx, fy), (found.get("cx", cx), found.get("cy", cy))
+    both, middle = _as_numbers(found.get("focal")), _as_numbers(found.get("principal"))
+    focal = found.get("fx", both[0] if both else None), found.get("fy", both[-1] if both else found.get("fx"))
+    cx, cy = middle if middle else (None, None)
+    return focal, (found.get("cx", cx), found.get("cy", cy))
 
 
 def _read_size(values: Values, label: str, path: Path) -> tuple[int | None, int | None]:

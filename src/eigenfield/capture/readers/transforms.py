@@ -21,10 +21,12 @@ from numpy.typing import NDArray
 from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name, read_each
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.readers.lens_keys import lens_keys
-from eigenfield.capture.readers.text import CALIBRATION_MAX_SIDE_PIXELS, excerpt, read_contents
+from eigenfield.capture.readers.text import CALIBRATION_MAX_SIDE_PIXELS, excerpt, read_contents, read_head
 from eigenfield.core.errors import CaptureError
 
 TRANSFORMS_FILE = "transforms.json"
+TRANSFORMS_SPLIT_FILES = tuple(f"transforms_{split}.json" for split in ("train", "val", "test"))  # of NeRF's sets
+TRANSFORMS_HEAD_BYTES = 64 * 1024  # in which the first pose must stand
 TRANSFORMS_MAX_BYTES = 256 * 2**20
 TRANSFORMS_RATIONAL_MODEL = "FULL_OPENCV"
 TRANSFORMS_PERSPECTIVE_MODELS = (
@@ -46,16 +48,30 @@ OPENGL_TO_OPENCV_AXES = np.diag([1.0, -1.0, -1.0])  # OpenGL axes to OpenCV axes
 
 
 def find_transforms(folder: Path) -> Path | None:
-    """The transforms.json of a folder, if it has one."""
-    return folder / TRANSFORMS_FILE if (folder / TRANSFORMS_FILE).is_file() else None
+    """The transforms.json of a folder; the folder itself where it has the files of NeRF's splits instead."""
+    if (folder / TRANSFORMS_FILE).is_file():
+        return folder / TRANSFORMS_FILE
+    return folder if _split_files(folder) else None
+
+
+def is_transforms(path: Path) -> bool:
+    """Whether a file begins as a transforms.json with poses."""
+    return b'"transform_matrix"' in read_head(path, TRANSFORMS_HEAD_BYTES)
+
+
+def _split_files(folder: Path) -> list[Path]:
+    return [folder / name for name in TRANSFORMS_SPLIT_FILES if is_transforms(folder / name)]
 
 
 def read_transforms(path: Path) -> Calibration:
-    """Every frame of a transforms.json as an entry; frames that cannot be used become errors of their own.
+    """Every frame of a transforms.json as an entry; frames that cannot be used become errors of their own. Of a folder,
+    the frames of all its splits, each photograph once.
 
     Raises CaptureError (`calibration-missing`, `calibration-too-large`, `calibration-json`, `calibration-empty`,
     `applied-transform`) where the file as a whole cannot be used.
     """
+    if path.is_dir():
+        return _read_splits(path)
     top = _load_object(path)
     frames = top.get("frames")
     if not isinstance(frames, list):
@@ -78,6 +94,19 @@ def read_transforms(path: Path) -> Calibration:
 
     entries, errors = read_each(make, enumerate(frames))
     return Calibration(path, "transforms", entries, errors)
+
+
+def _read_splits(folder: Path) -> Calibration:
+    files = _split_files(folder)
+    read = [read_transforms(path) for path in files]
+    entries: dict[str, Entry] = {}
+    for calibration in read:
+        for entry in calibration.entries:
+            entries.setdefault(entry.file, entry)
+    errors = tuple(error for calibration in read for error in calibration.errors)
+    names = ", ".join(path.name for path in files)
+    lines = (f"{names} are read together; name one of them to read it alone",) if len(files) > 1 else ()
+    return Calibration(folder, "transforms", tuple(entries.values()), errors, lines)
 
 
 def _load_object(path: Path) -> dict[str, Any]:
