@@ -253,7 +253,10 @@ def test_matrix_profile_at_16_bit_keeps_neighbouring_values_apart(tmp_path):
 
 def test_srgb_profiles_change_nothing(tmp_path):
     for number, profile in enumerate(
-        (ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes(), profile_bytes(COLOUR_SRGB_TO_XYZ, SRGB_PARA))
+        (
+            ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes(),
+            profile_bytes(COLOUR_SRGB_TO_XYZ, SRGB_PARA),
+        )
     ):
         assert read_profile(profile).kind == "none"
         path = save(tmp_path / f"{number}.png", Image.fromarray(EIGHT), icc_profile=profile)

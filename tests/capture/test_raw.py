@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from eigenfield.capture import open_any
 from eigenfield.capture.photographs import header as headers
-from eigenfield.capture.photographs.exif import read_focal_length
 from eigenfield.capture.photographs.colour import encode_srgb
+from eigenfield.capture.photographs.exif import read_focal_length
 from eigenfield.capture.photographs.read import decode, read_header
 from eigenfield.core.errors import CaptureError
 from support.named import picture

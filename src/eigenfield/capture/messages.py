@@ -13,6 +13,12 @@ from eigenfield.capture.calibration import escape_name
 MESSAGE_MAX_NAMES = 5  # names that a problem line lists
 
 
+class Note(str):
+    """A line among the problems of a capture that says what is done, and is no problem."""
+
+    __slots__ = ()
+
+
 def count_phrase(items: Sequence[object], one: str, many: str) -> str:
     """ "1 photograph has" or "3 photographs have"."""
     return f"{len(items)} {one if len(items) == 1 else many}"

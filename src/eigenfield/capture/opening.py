@@ -195,7 +195,7 @@ def _finish(opened: C) -> C:
         exposure = choose_exposure(linear)
         opened = opened.with_exposure(exposure)
         which = count_phrase(linear, "photograph has", "photographs have")
-        lines.append(f"{which} linear values (OpenEXR): taken times {exposure:.4g}, then by the sRGB curve")
+        lines.append(Note(f"{which} linear values (OpenEXR): taken times {exposure:.4g}, then by the sRGB curve"))
     return replace(opened, problems=(*opened.problems, *lines))
 
 

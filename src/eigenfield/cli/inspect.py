@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 SCHEMA = "eigenfield.inspect/1"
 NEIGHBOUR_MIN_OVERLAP = 0.6  # of a photograph
 NEIGHBOUR_MAX_STOPS = 0.3  # of exposure
+SIZES_MAX_SPREAD = 0.02  # of the greatest, up to which sizes differ by what a program cut off
+MORE_VIEWS = {"walk": "ask for more --frames, or walk more slowly there", "video": "put another camera there"}
 
 
 @click.command(
@@ -83,8 +85,6 @@ def command(
 
     from eigenfield.calibration import measure_neighbours
     from eigenfield.capture import open_any
-    from eigenfield.capture.archive import is_zip
-    from eigenfield.capture.photographs.kinds import VIDEO_EXTENSIONS
     from eigenfield.capture.survey import decode_all
 
     opened = open_any(capture, strict=False, **place)
@@ -106,7 +106,7 @@ def command(
         pairs = measure_neighbours(opened, sound, progress)
     refusal = _refusal(capture, place, opened, damaged, proxy)
     report = describe(opened, damaged)
-    if is_zip(capture) or capture.suffix.lower() in VIDEO_EXTENSIONS:  # read from a temporary folder
+    if not place["also"] and capture.exists() and not _lies_in(opened.root, capture):  # unpacked into another folder
         report["root"] = str(capture)
     report["refused"] = None if refusal is None else _error(refusal)
     report["next"] = _next_commands(report, capture, {**place, "proxy": proxy})
@@ -142,20 +142,29 @@ def _refusal(
     return damaged[0] if damaged else None
 
 
+def _lies_in(root: Path, capture: Path) -> bool:
+    return root.resolve().is_relative_to((capture if capture.is_dir() else capture.parent).resolve())
+
+
 def _error(error: CaptureError) -> dict[str, Any]:
     return {"file": error.path, "code": error.code, "message": error.message, "remedy": error.remedy}
 
 
 def describe(capture: Capture, damaged: list[CaptureError]) -> dict[str, Any]:
     """The report, as `--json` prints it; `docs/captures.md` documents the keys."""
-    from eigenfield.capture.messages import count_phrase
+    import numpy as np
+
+    from eigenfield.capture.messages import Note, count_phrase
     from eigenfield.capture.survey import file_kinds, in_one_place, measure_array
 
     views = () if capture.light_field is None else capture.light_field.views
     sizes = Counter(capture.sizes)
-    problems = list(capture.problems)
+    notes = [line for line in capture.problems if isinstance(line, Note)]
+    problems = [line for line in capture.problems if not isinstance(line, Note)]
     if len(sizes) > 1:
-        problems.append(f"the photographs have {len(sizes)} different sizes")
+        low, high = np.min(list(sizes), axis=0), np.max(list(sizes), axis=0)
+        alike = bool(((high - low) <= SIZES_MAX_SPREAD * high).all())
+        (notes if alike else problems).append(f"the photographs have {len(sizes)} different sizes")
     if len(capture) < 3:
         bare = count_phrase(capture.sources, "photograph is", "photographs are")
         what = f"{len(views)} photographs with a camera are" if capture.light_field is not None else bare
@@ -174,6 +183,7 @@ def describe(capture: Capture, damaged: list[CaptureError]) -> dict[str, Any]:
         "distorted": sum(source.lens is not None for source in capture.sources),
         "masks": sum(source.mask is not None for source in capture.sources),
         "array": None if array is None else _array(array),
+        "notes": notes,
         "problems": problems + [str(error) for error in damaged],
         "damaged": [{"file": error.path, "code": error.code, "message": error.message} for error in damaged],
         "origin": [0.0, 0.0, 0.0] if capture.light_field is None else capture.light_field.origin.tolist(),
@@ -321,7 +331,9 @@ def report_lines(report: dict[str, Any]) -> list[str]:
         f"{f['format']} {f['depth']} bit{' with alpha' if f['alpha'] else ''} ({f['views']})" for f in report["files"]
     )
     bare = len(report["photographs"])
-    lenses = f"  lenses     {report['distorted']} of {report['views']} views are undistorted on reading"
+    lenses = "  lenses     none: the views are pinholes"
+    if report["distorted"]:
+        lenses = f"  lenses     {report['distorted']} of {report['views']} views are undistorted on reading"
     what = f"{bare} photographs without cameras" if bare else f"{report['views']} views"
     lines = [
         f"{report['root']}: {what} from {report['format']}",
@@ -335,11 +347,12 @@ def report_lines(report: dict[str, Any]) -> list[str]:
     if report["array"] is not None:
         lines += _array_lines(report["array"])
     if report["neighbours"] is not None:
-        lines += _neighbour_lines(report["neighbours"])
+        lines += _neighbour_lines(report["neighbours"], MORE_VIEWS.get(report["format"], "take more photographs there"))
     if report["blurred"]:
         lines.append(f"  blurred    {first_names(report['blurred'], 5)}: take them again, or leave them out")
     if report["proxy"] is not None:
         lines += _proxy_lines(report["proxy"])
+    lines += [f"  note       {note}" for note in report["notes"]]
     lines.append(f"  problems   {len(report['problems']) or 'none'}")
     lines += [f"    - {problem}" for problem in report["problems"]]
     lines.append(f"  encode     {'would run' if report['refused'] is None else _refusal_text(report['refused'])}")
@@ -389,13 +402,13 @@ def _array_lines(array: dict[str, Any]) -> list[str]:
     return [*lines, f"  cone       {array['cone']:.1f} degrees about ({place}), {array['distance']:.4g} away"]
 
 
-def _neighbour_lines(neighbours: dict[str, Any]) -> list[str]:
+def _neighbour_lines(neighbours: dict[str, Any], remedy: str) -> list[str]:
     parallax, limit, widest = neighbours["parallax"], neighbours["parallax_limit"], neighbours["widest"]
     names = " and ".join(widest["photographs"])
     fine = f"up to about {limit:.0f} px is drawn well between"
     lines = [f"  parallax   neighbours are {parallax:.3g} px apart (median); {fine}"]
     if widest["parallax"] > limit:
-        lines.append(f"             widest: {widest['parallax']:.3g} px, between {names}; take more photographs there")
+        lines.append(f"             widest: {widest['parallax']:.3g} px, between {names}; {remedy}")
     overlap, stops = neighbours["overlap"], neighbours["exposure"]
     shared = "" if overlap >= NEIGHBOUR_MIN_OVERLAP else ": too little, take them nearer to each other"
     lines.append(f"  overlap    neighbours show at least {overlap:.0%} of the same{shared}")

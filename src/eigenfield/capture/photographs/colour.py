@@ -46,6 +46,7 @@ COLOUR_PRIMARIES = {
 COLOUR_UNSPECIFIED = 2, 2  # primaries and transfer characteristics
 COLOUR_ADOBE_RGB = ((0.640, 0.330), (0.210, 0.710), (0.150, 0.060), _D65)  # Adobe RGB (1998)
 COLOUR_ADOBE_GAMMA = 563 / 256
+COLOUR_GAMMA_TOLERANCE = 0.05  # of 2.2, in which libpng takes a power for the curve of sRGB
 COLOUR_HDR_CURVES = {16: "PQ", 18: "HLG"}
 COLOUR_PQ_WHITE, COLOUR_HLG_WHITE = 203.0, 0.75  # the reference white: cd/m2, and of full scale
 
@@ -91,6 +92,7 @@ def encode_srgb(linear: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def skip_if_srgb(profile: Profile) -> Profile:
+    """The profile, of the kind "none" where it is sRGB but for COLOUR_SRGB_TOLERANCE."""
     steps = np.linspace(0, 1, 9, dtype=np.float32)
     grid = np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), axis=-1)
     if profile.kind == "grey":
@@ -98,7 +100,6 @@ def skip_if_srgb(profile: Profile) -> Profile:
     if np.abs(profile.apply(grid) - grid).max() > COLOUR_SRGB_TOLERANCE:
         return profile
     return Profile("none", profile.space, profile.curves[:, :0], profile.matrix)
-
 
 
 def make_profile(primaries: Sequence[Sequence[float]], curves: NDArray[np.float64]) -> Profile:
@@ -142,6 +143,18 @@ def srgb_curve() -> NDArray[np.float64]:
 def read_adobe_rgb() -> Profile:
     """The profile of Adobe RGB (1998)."""
     return make_profile(COLOUR_ADOBE_RGB, gamma_curve(COLOUR_ADOBE_GAMMA))
+
+
+@lru_cache(maxsize=8)
+def read_gamma(primaries: tuple[tuple[float, float], ...], gamma: float | None) -> Profile:
+    """The profile of chromaticities and a power; None for the curve of sRGB, which 1/2.2 with its primaries means, too.
+
+    Raises ValueError as `make_profile`.
+    """
+    profile = make_profile(primaries, srgb_curve())
+    if gamma is None or (profile.kind == "none" and abs(gamma / 2.2 - 1) < COLOUR_GAMMA_TOLERANCE):
+        return profile
+    return make_profile(primaries, gamma_curve(gamma))
 
 
 @lru_cache(maxsize=8)

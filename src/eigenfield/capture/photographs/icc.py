@@ -26,6 +26,7 @@ from eigenfield.capture.photographs.colour import (
 ICC_MAX_TAGS = 200
 ICC_CURVE_PARAMETERS = (1, 3, 4, 5, 7)  # of parametric curves, by type
 
+
 class BrokenProfileError(ValueError):
     """Bytes that are no ICC profile; who reads photographs warns and goes on without."""
 

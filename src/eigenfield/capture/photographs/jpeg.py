@@ -1,6 +1,7 @@
 """JPEG (ISO/IEC 10918-1), decoded by libjpeg-turbo with its warnings, which Pillow does not pass on.
 
-A file that draws a warning of damage is refused; one that draws another is left to Pillow, which finds what is cut short.
+A file that draws a warning of damage is refused. One that draws another is left to Pillow, which finds what is cut
+short.
 """
 
 from __future__ import annotations
@@ -16,7 +17,11 @@ from numpy.typing import NDArray
 from eigenfield.capture.photographs.header import unreadable_error
 
 JPEG_SPACES = {"L": "GRAY", "RGB": "RGB", "CMYK": "CMYK"}  # of Pillow's modes
-JPEG_DAMAGE = ("Corrupt JPEG data", "Inconsistent progression sequence")  # libjpeg's words of its warnings
+# what libjpeg says of damage, which Pillow does not see once it has all rows
+JPEG_DAMAGE = (
+    "Corrupt JPEG data", "Inconsistent progression sequence", "Unsupported marker type", "Unsupported JPEG process",
+    "Bogus",
+)  # fmt: skip
 JPEG_EXTRANEOUS = re.compile(r"Corrupt JPEG data: (\d+) extraneous bytes before marker 0x([0-9a-f]{2})")
 JPEG_MAX_PADDING = 64  # bytes of one value before a marker, as some encoders leave to end on a multiple
 JPEG_MARKER = re.compile(rb"\xff+([^\0\xff])")

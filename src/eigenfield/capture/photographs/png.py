@@ -14,17 +14,14 @@ from eigenfield.capture.photographs.colour import (
     COLOUR_PRIMARIES,
     COLOUR_UNSPECIFIED,
     Profile,
-    gamma_curve,
-    make_profile,
     read_code_points,
-    srgb_curve,
+    read_gamma,
 )
 from eigenfield.capture.photographs.header import EXIF_ORIENTATION_TAG, read_at
 
 PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
 PNG_MAX_EXIF_BYTES = 64 * 1024
 PNG_TEXT = (b"tEXt", b"zTXt", b"iTXt")  # no pixel depends on them
-PNG_GAMMA_TOLERANCE = 0.05  # of 1/2.2, within which a gamma alone means the curve of sRGB, as in libpng
 
 
 class _Chunk(NamedTuple):
@@ -90,11 +87,8 @@ def read_png_colours(data: bytes, info: dict[Any, Any]) -> tuple[Profile | None,
     gamma, chromaticity = info.get("gamma"), info.get("chromaticity")
     if info.get("icc_profile") or "srgb" in info or (gamma is None and chromaticity is None):
         return None, False
-    corners = COLOUR_PRIMARIES[1]
+    corners: tuple[tuple[float, float], ...] = COLOUR_PRIMARIES[1]
     if chromaticity is not None:
         white, red, green, blue = zip(chromaticity[::2], chromaticity[1::2], strict=True)
         corners = red, green, blue, white
-    profile = make_profile(corners, srgb_curve())
-    if gamma and (profile.kind != "none" or abs(gamma * 2.2 - 1) > PNG_GAMMA_TOLERANCE):
-        profile = make_profile(corners, gamma_curve(1 / gamma))
-    return profile, False
+    return read_gamma(corners, 1 / gamma if gamma else None), False

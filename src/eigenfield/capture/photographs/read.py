@@ -296,8 +296,8 @@ def _avif_depth(head: bytes) -> int:
 
 
 def _decode_values(path: Path, upright: bool) -> tuple[NDArray[np.float32], bytes | Profile | None, bool]:
-    """(H, W, 1 | 2 | 3 | 4) values as the file has them, the profile (ICC's bytes, or what else it states) that is still
-    to be applied, and whether they are linear; others are in 0..1."""
+    """(H, W, 1 | 2 | 3 | 4) values as the file has them, the profile that is still to be applied (ICC's bytes, or one
+    stated otherwise), and whether they are linear; others are in 0..1."""
     try:
         data = path.read_bytes()
     except OSError as error:
@@ -335,7 +335,8 @@ def _decode_values(path: Path, upright: bool) -> tuple[NDArray[np.float32], byte
     if values.ndim == 2:
         values = values[..., None]
     if narrow:
-        values = (values * np.float32(255) - np.float32(16)) / np.float32(219)  # of 16 bit, too, but for 1/257
+        colours = values[..., : 1 if values.shape[2] < 3 else 3]
+        colours[...] = (colours * 255 - 16) / 219  # of 16 bit, too, but for 1/257 of a grey level
     # TIFF comes turned already, from both decoders
     wanted = header.orientation if upright else 1
     if name == "TIFF":
@@ -389,7 +390,7 @@ def _decode_over_8bit(data: bytes, header: Header, image: Image.Image, path: Pat
     return values
 
 
-def _name_low_values(stored: NDArray[np.uint16], path: Path) -> None:
+def _name_low_values(stored: NDArray[Any], path: Path) -> None:
     """Say that 16 bit hold values of fewer, as cameras of machines store them, which viewers show as black."""
     top = int(stored[..., :3].max() if stored.ndim == 3 else stored.max())
     bits = next((bits for bits in LOW_DEPTHS if 0 < top < 1 << bits), 14 if top == (1 << 14) - 1 else None)

@@ -23,7 +23,7 @@ from PIL import Image
 
 from eigenfield.capture.arrangement import Arrangement, OpenOptions, require_photographs
 from eigenfield.capture.locate import IMAGES_FOLDER, files_named, photographs_in
-from eigenfield.capture.messages import natural_key
+from eigenfield.capture.messages import Note, natural_key
 from eigenfield.capture.photographs.colour import COLOUR_HDR_CURVES, Profile, read_code_points
 from eigenfield.capture.photographs.kinds import VIDEO_EXTENSIONS
 from eigenfield.core.camera_names import name_key
@@ -124,7 +124,7 @@ def read_videos(folder: Path, options: OpenOptions) -> Arrangement:
 
     place = frames_stage(options.work).run("frames", stage_key([described, frame]), build)
     shown = f"{frame:g} s" if isinstance(frame, float) else f"frame {frame}"
-    problems = [] if options.frame is not None else [f"{shown} of each video is used; --frame names another"]
+    problems = [] if options.frame is not None else [Note(f"{shown} of each video is used; --frame names another")]
     return Arrangement("video", tuple(place / name for name in names), None, tuple(problems))
 
 

@@ -18,6 +18,7 @@ from PIL import Image
 
 from eigenfield.capture.arrangement import Arrangement, OpenOptions
 from eigenfield.capture.locate import IMAGES_FOLDER, photographs_in
+from eigenfield.capture.messages import Note
 from eigenfield.capture.readers.video import decode_video, frames_stage, to_rgb, video_identity, videos_in
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.runtime.stages import stage_key
@@ -87,7 +88,7 @@ def read_walk(video: Path, options: OpenOptions) -> Arrangement:
     line = f"{len(files)} frames of the video are used{fewer}"
     damaged = int((place / WALK_DAMAGED_FILE).read_text())
     left_out = [f"{damaged} damaged frames of the video are left out"] if damaged else []
-    said = line if options.frames else f"{line}; --frames says how many"
+    said = Note(line if options.frames else f"{line}; --frames says how many")
     return Arrangement("walk", files, None, (said, *left_out))
 
 
