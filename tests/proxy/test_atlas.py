@@ -350,7 +350,7 @@ def test_an_atlas_of_equal_triangles_is_kept_where_triangles_are_alike(caplog, e
     plain = grid(8, uv=False)
     if not equal:  # most of the square in two triangles
         x, y = plain.vertices[:, 0], plain.vertices[:, 1]
-        plain.vertices[:, 0], plain.vertices[:, 1] = x**6, y**6
+        plain.vertices[:, 0], plain.vertices[:, 1] = x**12, y**12
     count = len(plain.faces)
     side = int(np.ceil(np.sqrt(count)))
     at = np.stack(np.divmod(np.arange(count), side), axis=1)[:, None]

@@ -114,6 +114,10 @@ def command(
     report["neighbours"] = _neighbours(opened, pairs) if pairs else None
     if mesh is not None and opened.light_field is not None:
         report["proxy"] = _proxy(mesh, opened, damaged, overlay, overwrite)
+        from eigenfield.proxy.placement import describe_placement
+
+        seen = opened.light_field.subset(sound)
+        report["problems"] += describe_placement(mesh, seen.cameras, seen, seen.origin, proxy) if sound else []
         if overlay is not None:
             note(f"overlay written to {overlay}", quiet)
     if as_json:

@@ -35,6 +35,7 @@ from eigenfield.encoding.projected.atlas import atlas_side, texels_per_pixel
 from eigenfield.encoding.views import CaptureViews, grid_of, select_views, usual_reference
 from eigenfield.gltf.fallback import with_fallback
 from eigenfield.proxy import prepare_proxy
+from eigenfield.proxy.placement import describe_placement
 from eigenfield.proxy.relief.find_lattice import relief_lattice, relief_proxy
 
 log = logging.getLogger("eigenfield.encode")
@@ -102,7 +103,7 @@ class EncodePlan:
         """The same plan with the mesh and the atlas that it has at another quality of the fit, 0 to 100."""
         asked = replace(self.asked, quality=quality, target=None)
         if self.prepared.by_quality:
-            return plan_encoding(self.views.capture, self.prepared.given, asked, work, progress)
+            return plan_encoding(self.views.capture, self.prepared.given, asked, work, progress, warn=False)
         return _at_its_quality(self.prepared, asked)
 
     def scene(
@@ -161,6 +162,7 @@ def plan_encoding(
     asked: EncodeOptions,
     work: Path | None = None,
     progress: Progress | None = None,
+    warn: bool = True,
 ) -> EncodePlan:
     """Cameras and proxy as a file keeps them: for a fit, the surface fitted to the photographs, and both as coded.
 
@@ -172,13 +174,14 @@ def plan_encoding(
         asked: The options; a target is planned for at its preset's quality.
         work: Folder for scratch files.
         progress: Reports each stage.
+        warn: Whether a mesh that does not lie where the photographs say is named in a warning.
 
     Raises:
         CaptureError, ProxyError, OptionError, OutputError: As `encode`.
     """
     begin_step(progress, "mesh")
     views, options = select_views(capture, asked), _for_one_quality(asked)
-    return _at_its_quality(_prepare(proxy, views, options, work, progress), asked)
+    return _at_its_quality(_prepare(proxy, views, options, work, progress, warn), asked)
 
 
 def _for_one_quality(asked: EncodeOptions) -> EncodeOptions:
@@ -197,6 +200,7 @@ def _prepare(
     options: EncodeOptions,
     work: Path | None,
     progress: Progress | None,
+    warn: bool,
 ) -> PreparedProxy:
     """The proxy with an atlas and as many triangles as asked for; for a fit, moved to where the photographs agree."""
     cameras, given = views.rig.cameras, proxy
@@ -207,6 +211,11 @@ def _prepare(
     triangles = _triangles_by_pictures(views, options) if _simplifies(options) else options.triangles
     mesh = prepare_proxy(proxy, cameras, origin=views.capture.origin, triangles=triangles, progress=progress)
     _warn_of_rounding(views.capture.cameras, cameras, mesh)
+    if warn and not isinstance(given, Proxy):
+        path = None if isinstance(given, Mesh) else Path(given)
+        encoded = views.rig.encoded_cameras, views.observations
+        for line in describe_placement(mesh, *encoded, views.capture.origin, path):
+            log.warning("%s", line)
     views = _at_usual_reference(views, options, mesh)
     if options.fit == "none":
         return PreparedProxy(given, Proxy(mesh), views, by_quality=False)
