@@ -51,9 +51,14 @@ def test_no_output_is_lost_with_a_stream(tmp_path, monkeypatch, streams, code, o
         status = 1
         try:
             for number, name in enumerate(NAMES):
-                os.close(number)
-                if streams.get(name) != CLOSED:
-                    os.open(places[name], os.O_RDWR | os.O_CREAT)
+                if streams.get(name) == CLOSED:
+                    continue
+                handle = os.open(places[name], os.O_RDWR | os.O_CREAT)
+                os.dup2(handle, number)
+                os.close(handle)
+            for number, name in enumerate(NAMES):
+                if streams.get(name) == CLOSED:
+                    os.close(number)
             for number, name in enumerate(NAMES):  # as Python does at its start
                 closed = streams.get(name) == CLOSED
                 setattr(sys, name, None if closed else os.fdopen(number, "r" if number == 0 else "w", closefd=False))
