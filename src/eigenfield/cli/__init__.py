@@ -6,7 +6,6 @@ import _thread
 import contextlib
 import difflib
 import importlib
-import io
 import logging
 import os
 import signal
@@ -19,6 +18,8 @@ import click
 from click.shell_completion import shell_complete
 
 from eigenfield.cli.completion import COMPLETION_VARIABLE
+from eigenfield.cli.limits import limit_of
+from eigenfield.cli.streams import prepare_streams
 from eigenfield.core.errors import EigenfieldError
 from eigenfield.core.shell import shell_word
 from eigenfield.core.version import __version__
@@ -135,9 +136,7 @@ def _exit_interrupted() -> NoReturn:
 def main() -> None:
     """Entry point: exit code 0, 2 for an error that a person can correct, 130 when interrupted; a bug keeps its
     traceback and exits with 1."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):  # names that its encoding does not have are written as escapes
-            stream.reconfigure(errors="backslashreplace")
+    prepare_streams()
     asked = os.environ.get(COMPLETION_VARIABLE)
     if asked is not None:  # by the script of `eigenfield completion`
         sys.exit(shell_complete(group, {}, "eigenfield", COMPLETION_VARIABLE, asked))
@@ -173,7 +172,11 @@ def main() -> None:
             _exit_interrupted()
         sys.stderr.close()
         sys.exit(141)
-    except Exception:
-        if not _signals:
+    except Exception as error:
+        if _signals:
+            _exit_interrupted()
+        limit = limit_of(error)
+        if limit is None or context.get("traceback"):
             raise
-        _exit_interrupted()
+        click.echo(f"eigenfield: {limit[0]}; {limit[1]}", err=True)
+        sys.exit(2)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from eigenfield.core.errors import ProxyError
 from eigenfield.runtime.children import child_process
+from eigenfield.runtime.files import output_errors
 
 CHILD_POLL_SECONDS = 0.2  # between two calls of `on_wait`
 
@@ -41,13 +42,15 @@ def run_child(
 
     Raises:
         ProxyError: `code`: the child failed.
+        OutputError: There is no room for the arrays in the system's temporary folder.
     """
     command = [sys.executable, "-P", str(script), *words]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
     with tempfile.TemporaryFile() as message:  # `communicate` would leave a pipe half sent at its timeout
-        for array in arrays:
-            np.save(message, array, allow_pickle=False)
-        message.seek(0)
+        with output_errors(tempfile.gettempdir()):
+            for array in arrays:
+                np.save(message, array, allow_pickle=False)
+            message.seek(0)
         pipes: dict[str, Any] = {"stdin": message, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
         with child_process(command, **pipes, env=environment) as process:
             while True:
