@@ -15,8 +15,8 @@ export function contextOf(renderer: WebGLRenderer): GL {
   }
   const halves = gl.getExtension("EXT_color_buffer_float") ?? gl.getExtension("EXT_color_buffer_half_float");
   if (halves || gl.isContextLost()) return gl; // a lost context has no extensions
-  const message = "These graphics draw no half-floats; use a newer device or browser, or switch graphics acceleration on.";
-  throw new SceneError("unsupported", message);
+  const remedy = "use a newer device or browser, or switch graphics acceleration on.";
+  throw new SceneError("unsupported", `The graphics of this device draw no half-floats; ${remedy}`);
 }
 
 export function deviceLimits(gl: GL, memory: number): DeviceLimits {
