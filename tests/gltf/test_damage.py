@@ -158,6 +158,7 @@ def test_each_damage_has_its_code(tmp_path, good, name):
         (b'{"asset": {}}', "not-glb"),
         (glb(), "glb-chunk"),
         (glb(chunk(b"JSON", b"{}  "), version=1), "glb-version"),
+        (glb(chunk(b"JSON", b"{}  "), version=3), "glb-version"),
         (glb(chunk(b"JSON", b"{}  ")), "json-missing"),
         (glb(chunk(b"JSON", b"{}  ")) + b"x", "glb-length"),
         (glb(chunk(b"JSON", b"{} ")), "glb-chunk"),

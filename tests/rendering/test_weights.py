@@ -96,7 +96,15 @@ def test_exact_at_the_cameras(mode):
     for index, at in enumerate(places):
         weights = dense_weights(scene, at, mode)
         assert weights[index] == pytest.approx(1, abs=1e-9)
-        np.testing.assert_array_equal(camera_weights(scene, index, mode).dense(16), np.eye(16)[index])
+        own = camera_weights(scene, index, mode)
+        assert own.rows.tolist() == [index] and own.values.tolist() == [1]
+
+
+def test_a_camera_without_an_observation_has_the_weights_of_its_place():
+    scene, places = scene_at([[0, 0], [1, 0], [4, 0], [0, 1], [4, 1]], held_out=(1,))
+    held_out = camera_weights(scene, 1)
+    np.testing.assert_allclose(held_out.dense(4), view_weights(scene, places[1]).dense(4))
+    np.testing.assert_allclose(held_out.dense(4), [0.75, 0.25, 0, 0], atol=1e-6)
 
 
 @settings(max_examples=20, deadline=None)

@@ -116,6 +116,6 @@ def _fit_grid(points: NDArray[np.float64], rows: int, columns: int) -> Grid | No
     jitter = (np.abs(placed[..., 0] - x).max(), np.abs(placed[..., 1] - y[:, None]).max())
     if (rows == 1 and np.ptp(points[:, 1]) > 0) or (columns == 1 and np.ptp(points[:, 0]) > 0):
         return None
-    if min(step) <= 0 or any(j > s / 4 for j, s in zip(jitter, step, strict=True) if np.isfinite(s)):
+    if min(step) <= 0 or any(j > s / 4 for j, s in zip(jitter, step, strict=True)):
         return None
     return Grid(rows, columns, index.astype(np.int64))
