@@ -100,6 +100,12 @@ def test_exact_at_the_cameras(mode):
         assert own.rows.tolist() == [index] and own.values.tolist() == [1]
 
 
+def test_a_cameras_own_observation_has_no_rounding_of_its_place():
+    scene, _ = scene_at(np.roll(jittered(3, 3, seed=1), 3, axis=0))  # the place of the first has a second of 2e-16
+    for index in range(9):
+        assert camera_weights(scene, index).rows.tolist() == [index]
+
+
 def test_a_camera_without_an_observation_has_the_weights_of_its_place():
     scene, places = scene_at([[0, 0], [1, 0], [4, 0], [0, 1], [4, 1]], held_out=(1,))
     held_out = camera_weights(scene, 1)
