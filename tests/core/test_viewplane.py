@@ -41,6 +41,26 @@ def test_coordinates_follow_the_cameras_whatever_the_world(seed):
     np.testing.assert_allclose(plane.extent, [2, 1.05])
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_the_coordinates_of_any_array_reach_one_at_all_edges(seed):
+    """Also where the cameras look slantwise through their plane and most stand in one corner of it."""
+    random = np.random.default_rng(seed)
+    centres = np.concatenate([random.exponential(size=(12, 2)), np.zeros((12, 1))], axis=1) - [0, 0, 3]
+    R = Rotation.from_euler("xyz", random.uniform(-40, 40, 3), degrees=True).as_matrix()
+    plane = fit_view_plane(cameras_at(centres, R))
+    coordinates = plane.coordinates(centres)
+    np.testing.assert_allclose([coordinates.min(axis=0), coordinates.max(axis=0)], [[-1, -1], [1, 1]])
+    normal = np.cross(plane.right, -plane.up)
+    np.testing.assert_allclose(normal, [0, 0, 1], atol=1e-12)
+    assert np.linalg.norm(plane.right) == pytest.approx(1)
+    np.testing.assert_allclose(plane.right @ np.cross(normal, R[0]), 0, atol=1e-12)
+
+
+def test_one_camera_is_a_line_of_no_length():
+    plane = fit_view_plane(cameras_at([[1, 2, 3]]))
+    assert plane.is_line and plane.extent.tolist() == [0, 0] and plane.origin.tolist() == [1, 2, 3]
+
+
 def test_cameras_on_a_line_have_no_second_coordinate():
     plane = fit_view_plane(cameras_at([[i, 0.001 * (-1) ** i, 0] for i in range(6)]))
     assert plane.is_line

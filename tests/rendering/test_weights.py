@@ -106,13 +106,6 @@ def test_a_cameras_own_observation_has_no_rounding_of_its_place():
         assert camera_weights(scene, index).rows.tolist() == [index]
 
 
-def test_a_camera_without_an_observation_has_the_weights_of_its_place():
-    scene, places = scene_at([[0, 0], [1, 0], [4, 0], [0, 1], [4, 1]], held_out=(1,))
-    held_out = camera_weights(scene, 1)
-    np.testing.assert_allclose(held_out.dense(4), view_weights(scene, places[1]).dense(4))
-    np.testing.assert_allclose(held_out.dense(4), [0.75, 0.25, 0, 0], atol=1e-6)
-
-
 @settings(max_examples=20, deadline=None)
 @given(seed=st.integers(0, 1000))
 def test_nearest3_is_equation_7(seed):
