@@ -33,6 +33,7 @@ import sys
 import tempfile
 import threading
 import time
+import warnings
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -219,7 +220,7 @@ class Room:
                 continue
             tree.kernels = result["kernels"]
             for module in result["modules"]:  # the next processes have them from the start
-                with contextlib.suppress(Exception):
+                with contextlib.suppress(Exception), warnings.catch_warnings(action="ignore"):
                     importlib.import_module(module)
             say(f"{file}: {len(result['tests'])} tests")
             for test, ran in result["tests"].items():
