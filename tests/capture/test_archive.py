@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import stat
 import zipfile
@@ -11,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from eigenfield.capture import archive, open_any, open_capture, open_photographs
+from eigenfield.core.errors import CaptureError
 from support.captures import write_capture
 from support.named import picture, refused, write
 
@@ -99,6 +101,46 @@ def test_bombs_are_refused_before_they_are_unpacked(tmp_path, monkeypatch):
     refused("zip-damaged", path, work=tmp_path / "work")
     monkeypatch.setattr(archive, "ZIP_MAX_FILES", 2)
     refused("zip-large", zipped(path, photographs(tmp_path)))
+
+
+@pytest.mark.parametrize(
+    ("limits", "fits"),
+    [
+        ({"ZIP_MAX_BYTES": 3000, "ZIP_FREE_BYTES": 3000}, True),
+        ({"ZIP_MAX_BYTES": 2999, "ZIP_FREE_BYTES": 3000}, False),
+        ({"ZIP_FREE_BYTES": 3000, "ZIP_MAX_RATIO": 0}, True),
+        ({"ZIP_FREE_BYTES": 2999, "ZIP_MAX_RATIO": 0}, False),
+        ({"ZIP_FREE_BYTES": 0, "ZIP_MAX_RATIO": 10}, True),
+        ({"ZIP_FREE_BYTES": 0, "ZIP_MAX_RATIO": 9.99}, False),
+    ],
+)
+def test_a_zip_may_become_as_large_as_each_limit_says(tmp_path, monkeypatch, limits, fits):
+    """3000 bytes in a zip of 300, counted as its list of files counts them."""
+    for name, value in limits.items():
+        monkeypatch.setattr(archive, name, value)
+    path = zipped(tmp_path / "a.zip", {"a.png": bytes(1000), "b.png": bytes(2000)})
+    with zipfile.ZipFile(path, "a") as file:
+        file.comment = bytes(300 - path.stat().st_size)
+    assert path.stat().st_size == 300
+    with zipfile.ZipFile(path) as file:
+        if fits:
+            assert len(archive._check(file, path)) == 2
+        else:
+            with pytest.raises(CaptureError) as caught:
+                archive._check(file, path)
+            assert caught.value.code == "zip-large"
+
+
+def test_files_that_share_their_bytes_are_refused(tmp_path):
+    """A list that names the same bytes twice sums up to more than the zip."""
+    path = zipped(tmp_path / "a.zip", {"a.png": os.urandom(1000), "b.png": os.urandom(1000)})
+    with zipfile.ZipFile(path) as file:
+        for entry in file.infolist():
+            entry.compress_size = path.stat().st_size // 2
+        assert len(archive._check(file, path)) == 2
+        file.infolist()[0].compress_size += 2
+        with pytest.raises(CaptureError, match="times its size"):
+            archive._check(file, path)
 
 
 def test_damaged_zips(tmp_path):

@@ -91,6 +91,16 @@ def test_decoding_reads_zeros_behind_the_end_and_says_so():
     assert caught.value.code == "coded-truncated" and caught.value.where == "weights"
 
 
+def test_four_bytes_behind_the_end_may_be_read():
+    """What is coded in no byte at all is whole; one byte more is cut off."""
+    assert range_coder.coded_bytes(lambda coder: None, 1, 1, room=8) == b""
+    coder = range_coder.decoder(b"", 1, 1)
+    range_coder.check_end(coder, "here")
+    code_raw(coder, np.int64(0), 8)
+    with pytest.raises(FormatError, match="cut off"):
+        range_coder.check_end(coder, "here")
+
+
 @settings(deadline=None, max_examples=40)
 @given(st.binary(max_size=300))
 def test_any_bytes_decode_to_numbers_in_range(data):

@@ -41,6 +41,26 @@ def test_coordinates_follow_the_cameras_whatever_the_world(seed):
     np.testing.assert_allclose(plane.extent, [2, 1.05])
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_the_coordinates_of_any_array_reach_one_at_all_edges(seed):
+    """Also where the cameras look slantwise through their plane and most stand in one corner of it."""
+    random = np.random.default_rng(seed)
+    centres = np.concatenate([random.exponential(size=(12, 2)), np.zeros((12, 1))], axis=1) - [0, 0, 3]
+    R = Rotation.from_euler("xyz", random.uniform(-40, 40, 3), degrees=True).as_matrix()
+    plane = fit_view_plane(cameras_at(centres, R))
+    coordinates = plane.coordinates(centres)
+    np.testing.assert_allclose([coordinates.min(axis=0), coordinates.max(axis=0)], [[-1, -1], [1, 1]])
+    normal = np.cross(plane.right, -plane.up)
+    np.testing.assert_allclose(normal, [0, 0, 1], atol=1e-12)
+    assert np.linalg.norm(plane.right) == pytest.approx(1)
+    np.testing.assert_allclose(plane.right @ np.cross(normal, R[0]), 0, atol=1e-12)
+
+
+def test_one_camera_is_a_line_of_no_length():
+    plane = fit_view_plane(cameras_at([[1, 2, 3]]))
+    assert plane.is_line and plane.extent.tolist() == [0, 0] and plane.origin.tolist() == [1, 2, 3]
+
+
 def test_cameras_on_a_line_have_no_second_coordinate():
     plane = fit_view_plane(cameras_at([[i, 0.001 * (-1) ** i, 0] for i in range(6)]))
     assert plane.is_line
@@ -49,10 +69,15 @@ def test_cameras_on_a_line_have_no_second_coordinate():
     assert (coordinates[:, 1] == 0).all()
 
 
-def test_a_vertical_line_runs_along_x_too():
-    plane = fit_view_plane(cameras_at([[0, i, 0] for i in range(4)]))
-    assert plane.is_line and plane.extent[0] == pytest.approx(1.5)
-    assert abs(plane.right @ plane.up) < 1e-12
+@pytest.mark.parametrize("direction", [[1, 0, 0], [0, 1, 0], [0, -1, 0], [3, 4, 0], [1, 0, 2]])
+def test_the_axes_of_a_line_are_those_of_a_picture(direction):
+    """Right, down and forward are a right-handed system, also where the line is the cameras' own vertical."""
+    direction = np.array(direction) / np.linalg.norm(direction)
+    plane = fit_view_plane(cameras_at([3 * i * direction for i in range(4)]))
+    assert plane.is_line and plane.extent == pytest.approx([4.5, 0])
+    np.testing.assert_allclose(np.abs(plane.right), np.abs(direction), atol=1e-12)
+    forward = np.array([0, 0, 1]) - direction[2] * direction
+    np.testing.assert_allclose(np.cross(plane.right, -plane.up), forward / np.linalg.norm(forward), atol=1e-12)
 
 
 @pytest.mark.parametrize(("rows", "columns"), [(17, 17), (4, 5), (5, 4), (3, 9), (2, 3)])
@@ -68,6 +93,19 @@ def test_a_jittering_grid_is_found(rows, columns):
 def test_scattered_cameras_are_no_grid():
     assert find_grid(np.random.default_rng(1).random((24, 2))) is None
     assert find_grid(np.random.default_rng(1).random((13, 2))) is None
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize(("share", "found"), [(0.22, True), (0.28, False)])
+def test_a_camera_may_stand_a_quarter_of_the_spacing_beside_its_node(axis, share, found):
+    points = grid_points(20, 20, 0.3, 0.2)[:, :2]
+    points[210, axis] += share * (0.3, 0.2)[axis]
+    assert (find_grid(points) is not None) == found
+
+
+def test_cameras_in_one_place_are_no_grid():
+    assert find_grid([[0, 0], [0, 0], [1, 0], [1, 0]]) is None
+    assert find_grid(np.repeat(grid_points(2, 3)[:, :2], 2, axis=0)) is None
 
 
 def test_a_line_is_a_grid_of_one_row():

@@ -184,6 +184,7 @@ def test_data_uris_and_what_is_in_extras_stay(tmp_path, good):
         (b'{"asset": {}}', "not-glb"),
         (glb(), "glb-chunk"),
         (glb(chunk(b"JSON", b"{}  "), version=1), "glb-version"),
+        (glb(chunk(b"JSON", b"{}  "), version=3), "glb-version"),
         (glb(chunk(b"JSON", b"{}  ")), "json-missing"),
         (glb(chunk(b"JSON", b"{}  ")) + b"x", "glb-length"),
         (glb(chunk(b"JSON", b"{} ")), "glb-chunk"),

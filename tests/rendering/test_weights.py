@@ -96,7 +96,14 @@ def test_exact_at_the_cameras(mode):
     for index, at in enumerate(places):
         weights = dense_weights(scene, at, mode)
         assert weights[index] == pytest.approx(1, abs=1e-9)
-        np.testing.assert_array_equal(camera_weights(scene, index, mode).dense(16), np.eye(16)[index])
+        own = camera_weights(scene, index, mode)
+        assert own.rows.tolist() == [index] and own.values.tolist() == [1]
+
+
+def test_a_cameras_own_observation_has_no_rounding_of_its_place():
+    scene, _ = scene_at(np.roll(jittered(3, 3, seed=1), 3, axis=0))  # the place of the first has a second of 2e-16
+    for index in range(9):
+        assert camera_weights(scene, index).rows.tolist() == [index]
 
 
 @settings(max_examples=20, deadline=None)

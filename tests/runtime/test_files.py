@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from eigenfield.core.errors import EigenfieldError, OptionError, OutputError
+from eigenfield.runtime import files
 from eigenfield.runtime.files import atomic_writer, refuse_existing, scratch_array, scratch_rows, write_bytes
 from eigenfield.runtime.parallel import parallel_map, parallel_stream, set_threads
 
@@ -54,6 +55,24 @@ def test_a_full_disk_is_said(tmp_path, monkeypatch):
         write_bytes(tmp_path / "a", b"abc")
     assert caught.value.code == "disk-full"
     assert list(tmp_path.iterdir()) == []
+
+
+def test_of_files_that_appear_together_none_stays_if_one_cannot(tmp_path, monkeypatch):
+    """Files that were there are as before, files that were not are gone."""
+    targets = [tmp_path / name for name in ("old", "new", "last", "never")]
+    for target in (targets[0], targets[3]):
+        target.write_text("before")
+
+    def rename(place, target):
+        if target.name == "last":
+            raise OSError(errno.ENOSPC, "No space left on device")
+        place.replace(target)
+
+    monkeypatch.setattr(files, "rename", rename)
+    with pytest.raises(OutputError), files.atomic_files(targets, overwrite=True) as places:
+        for place in places:
+            place.write_text("after")
+    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"old": "before", "never": "before"}
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="limits on file sizes are POSIX")
@@ -100,6 +119,18 @@ def test_scratch_rows_grow(tmp_path):
     assert list(tmp_path.iterdir()) == []
     with pytest.raises(OutputError), scratch_rows((3,), np.float32, tmp_path / "no"):
         pass
+
+
+@pytest.mark.skipif(not hasattr(os, "posix_fallocate"), reason="where the system cannot, free space is checked")
+def test_a_scratch_arrays_room_is_taken_at_once(tmp_path, monkeypatch):
+    def allocate(descriptor, offset, length):
+        assert (os.fstat(descriptor).st_size, offset, length) == (0, 0, 80)
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "posix_fallocate", allocate)
+    with pytest.raises(OutputError) as caught, scratch_array((4, 5), np.float32, tmp_path):
+        pass
+    assert caught.value.code == "disk-full"
 
 
 def test_scratch_arrays_leave_nothing(tmp_path):

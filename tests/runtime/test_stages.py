@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -11,6 +12,7 @@ import time
 import pytest
 
 from eigenfield.core.errors import OutputError
+from eigenfield.runtime import stages
 from eigenfield.runtime.stages import PACKAGE_FOLDER, STAGE_ROOMS, Stages, code_version, file_digest, stage_key
 
 
@@ -34,9 +36,8 @@ def test_a_failed_stage_leaves_nothing(tmp_path):
         (folder / "half.txt").write_text("half")
         raise ValueError("no")
 
-    stages = Stages(tmp_path)
     with pytest.raises(ValueError, match="no"):
-        stages.run("depth", "k", build)
+        Stages(tmp_path).run("depth", "k", build)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -55,6 +56,28 @@ def test_keys_know_the_files_bytes_and_the_options(tmp_path):
     assert first != stage_key([file_digest(file), {"refine": False}])
     file.write_bytes(b"two")
     assert first != stage_key([file_digest(file), {"refine": True}])
+
+
+def test_keys_do_not_know_the_order_of_options_and_know_the_program(tmp_path, monkeypatch):
+    key = stage_key([{"a": 1, "b": tmp_path}, 2])
+    assert key == stage_key([{"b": str(tmp_path), "a": 1}, 2]) and re.fullmatch("[0-9a-f]{16}", key)
+    monkeypatch.setattr(stages, "code_version", lambda: "another")
+    assert key != stage_key([{"a": 1, "b": tmp_path}, 2])
+
+
+def test_a_stage_that_another_run_finishes_first_is_taken_as_it_is(tmp_path):
+    def build(folder):
+        (folder / "who").write_text("we")
+        (tmp_path / "depth-k").mkdir()
+        (tmp_path / "depth-k" / "who").write_text("they")
+
+    place = Stages(tmp_path).run("depth", "k", build)
+    assert (place / "who").read_text() == "they" and list(tmp_path.iterdir()) == [place]
+
+
+def test_a_stage_that_cannot_appear_is_said(tmp_path):
+    with pytest.raises(OutputError):
+        Stages(tmp_path).run("depth", "k", lambda folder: (tmp_path / "depth-k").write_text("a file") and None)
 
 
 def test_the_fingerprint_is_that_of_the_rooms_that_make_stages(tmp_path):

@@ -54,8 +54,7 @@ def fit_view_plane(cameras: Sequence[Camera]) -> ViewPlane:
     axes = np.mean([camera.R for camera in cameras], axis=0)  # rows: x right, y down, z forward
     middle = centres.mean(axis=0)
     _, spread, directions = np.linalg.svd(centres - middle, full_matrices=True)
-    spread = np.append(spread, np.zeros(3 - len(spread)))
-    line = spread[1] <= VIEW_PLANE_LINE_RATIO * spread[0]
+    line = len(spread) < 2 or spread[1] <= VIEW_PLANE_LINE_RATIO * spread[0]
     if line:
         right = directions[0] if directions[0] @ axes[0] >= 0 else -directions[0]
         down = axes[1] - (axes[1] @ right) * right
@@ -116,6 +115,6 @@ def _fit_grid(points: NDArray[np.float64], rows: int, columns: int) -> Grid | No
     jitter = (np.abs(placed[..., 0] - x).max(), np.abs(placed[..., 1] - y[:, None]).max())
     if (rows == 1 and np.ptp(points[:, 1]) > 0) or (columns == 1 and np.ptp(points[:, 0]) > 0):
         return None
-    if min(step) <= 0 or any(j > s / 4 for j, s in zip(jitter, step, strict=True) if np.isfinite(s)):
+    if min(step) <= 0 or any(j > s / 4 for j, s in zip(jitter, step, strict=True)):
         return None
     return Grid(rows, columns, index.astype(np.int64))

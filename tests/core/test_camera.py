@@ -1,0 +1,22 @@
+"""A camera and the rasters that it is drawn on."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eigenfield.core.camera import Camera
+
+K = np.array([[90.0, 1, 52], [0, 100, 38], [0, 0, 1]])
+CAMERA = Camera(K, np.eye(3), np.zeros(3), 100, 80)
+
+
+@pytest.mark.parametrize(("width", "height", "scale"), [(200, 160, 2), (50, 20, 0.5), (30, 80, 1), (400, 80, 4)])
+def test_a_resized_view_covers_its_raster_just_so(width, height, scale):
+    """The smallest even scale at which the picture reaches all edges; what it has too much is cut on both sides."""
+    ray = np.linalg.inv(K) @ np.array([[0, 0, 1], [100, 80, 1], [50, 40, 1], [25, 60, 1]]).T
+    (left, top), (right, bottom), middle, point = CAMERA.resize(width, height).project(3 * ray.T)[0]
+    assert middle == pytest.approx([width / 2, height / 2])
+    assert right - left == pytest.approx(100 * scale) and bottom - top == pytest.approx(80 * scale)
+    assert point - middle == pytest.approx([-25 * scale, 20 * scale])
+    assert max(left, top) == pytest.approx(0, abs=1e-9) and min(right - width, bottom - height) == pytest.approx(0)
