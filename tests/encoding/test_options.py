@@ -21,7 +21,7 @@ from eigenfield.gltf import encode_scene, save
 from support.captures import write_capture
 
 FOR_MAPS = [{"align": True}, {"uv_ssim": 0.9}, {"harmonise": "gain"}, {"keep_maps": "maps"},
-            {"codec": "png"}]  # fmt: skip
+            {"codec": "png"}, {"max_angle": 90}]  # fmt: skip
 
 
 @pytest.fixture(scope="module")

@@ -217,17 +217,40 @@ def test_depths_are_fitted_but_for_those_of_kept_vertices():
     assert mesh.uv is not None
     lattice = plane_lattice(cameras)
     distortion = depth_distortion(mesh, lattice, cameras, greys(photographs))
-    true = lattice.coordinates(mesh.vertices)[:, 2]
-    rough = true + np.random.default_rng(2).normal(0, 1, len(true))
-    kept = np.arange(0, len(true), 40)
-    found = _fitted_depths(distortion, distortion.places(mesh.uv), rough, mesh.faces, kept)
+    exact = lattice.coordinates(mesh.vertices)
+    true = exact[:, 2].copy()
+    exact[:, 2] += np.random.default_rng(2).normal(0, 1, len(true))
+    rough, kept = exact[:, 2], np.arange(0, len(true), 40)
+    found = _fitted_depths(distortion, distortion.places(mesh.uv), exact, mesh.faces, kept)
     np.testing.assert_array_equal(found[kept], rough[kept])
     free = np.setdiff1d(np.arange(len(true)), kept)
     assert np.sqrt(np.square(found - true)[free].mean()) < 0.8 * np.sqrt(np.square(rough - true)[free].mean())
     everything = np.arange(len(true))
     np.testing.assert_array_equal(
-        _fitted_depths(distortion, distortion.places(mesh.uv), rough, mesh.faces, everything), rough
+        _fitted_depths(distortion, distortion.places(mesh.uv), exact, mesh.faces, everything), rough
     )
+
+
+@pytest.mark.parametrize("kept", [[], [20]], ids=["free", "kept on one side"])
+def test_charts_that_meet_stay_together(kept):
+    """A plane in two charts, the right half's texture elsewhere and flat: depths fitted to either alone differ."""
+    mesh, cameras, photographs = photographed_plane()
+    lattice, seam = plane_lattice(cameras), 32
+    right = mesh.faces.min(axis=1) % 65 >= seam
+    doubled = np.unique(mesh.faces[right])
+    faces = mesh.faces.copy()
+    faces[right] = len(mesh.vertices) + np.searchsorted(doubled, faces[right])
+    exact = lattice.coordinates(mesh.vertices)
+    exact[:, 2] += np.random.default_rng(2).normal(0, 1, len(exact))
+    exact = np.concatenate([exact, exact[doubled]])
+    uv = np.concatenate([mesh.uv, mesh.uv[doubled] + np.float32([0.1, 0])])
+    cut = Mesh(lattice.points(exact).astype(np.float32), faces, uv)
+    some = np.array([65 * row + seam for row in kept], np.int64)
+    distortion = depth_distortion(cut, lattice, cameras, greys(photographs))
+    found = _fitted_depths(distortion, distortion.places(uv), exact, faces, some)
+    np.testing.assert_array_equal(found[doubled], found[len(mesh.vertices) :])
+    assert (found != exact[:, 2])[np.unique(faces)].mean() > 0.5
+    assert not kept or (found[some] == exact[some, 2]).all()
 
 
 def test_flat_photographs_do_not_mind():

@@ -135,15 +135,15 @@ def test_outside_the_photograph_and_behind_the_camera_are_not_seen():
 
 
 def test_grazing_texels_are_not_seen():
-    """At 3 degrees above a plane nothing counts, at 10 degrees all of it does."""
+    """At 3 degrees above a plane nothing counts unless it is asked for, at 10 degrees all of it does."""
     atlas = make_atlas(PLANE, SIZE, SIZE)
-    for degrees, expected in ((3, False), (10, True)):
+    for degrees, asked, expected in ((3, {}, False), (3, {"max_angle": 90}, True), (10, {}, True)):
         a = np.radians(degrees)
         forward = np.array([0, -np.cos(a), np.sin(a)])
         down = np.array([0, np.sin(a), np.cos(a)])
         R = np.stack([[1.0, 0, 0], down, forward])
         eye = Camera(np.array([[20.0, 0, 16], [0, 20, 16], [0, 0, 1]]), R, -R @ (-20 * forward), SIZE, SIZE)
-        assert (texture_map(atlas, eye, photograph())[1].mean() > 0.9) == expected
+        assert (texture_map(atlas, eye, photograph(), **asked)[1].mean() > 0.9) == expected
 
 
 def test_masks_hide_and_do_not_bleed():

@@ -59,7 +59,9 @@ GROUPS = {  # of options in the help, the common ones first; what is named in no
     "Quality and size": (
         "quality", "target_psnr", "target_ssim", "textures", "density", "atlas", "residual", "fit", "fallback",
     ),
-    "Texture maps, as the paper makes them (--fit none)": ("uv_ssim", "align", "harmonise", "codec", "keep_maps"),
+    "Texture maps, as the paper makes them (--fit none)": (
+        "uv_ssim", "align", "max_angle", "harmonise", "codec", "keep_maps",
+    ),
     "Other options": (),
 }  # fmt: skip
 

@@ -18,12 +18,13 @@ T = TypeVar("T")
 
 DEFAULT_TEXTURES = 15  # without a fit, as in the paper
 DEFAULT_DENSITY = 1.5  # without a fit
+DEFAULT_MAX_ANGLE = 85  # degrees, without a fit
 DEFAULT_PRESET = "balanced"
 ATLAS_MAX_SIDE_TEXELS = 16384
 DENSITY_LIMITS = 0.01, 100.0  # atlas texels per photograph pixel along one axis
 FIT_MAX_DENSITY = 1.5  # likewise, with a fit
 SUBSAMPLE_MIN_OBSERVATIONS = 50  # from which every second pixel each way is enough for weights, and for chroma
-MAP_OPTIONS = ("align", "uv_ssim", "harmonise", "keep_maps", "codec")  # options that a fit has no use for
+MAP_OPTIONS = ("align", "max_angle", "uv_ssim", "harmonise", "keep_maps", "codec")  # options that a fit has no use for
 FIT_OPTIONS = ("target", "preset", "fallback")  # options that the paper's way has no use for
 UNKNOWN_CHOICE_TEXTS = {
     "fit": "no fit is called",
@@ -104,6 +105,12 @@ class EncodeOptions(Options):
         metavar="N",
     )
     align: bool | None = option("Align the maps to the reference camera by optical flow.")
+    max_angle: int | None = option(
+        "Degrees between a surface's normal and the ray to a camera from which on the camera's texture map leaves the "
+        "surface out; 90 leaves out nothing, as in the paper.  [default: 85]",
+        limits=(1, 90),
+        metavar="DEG",
+    )
     harmonise: str | None = option(
         "Take the cameras' differences of exposure and white balance out of the textures; affine fits offsets too. "
         "Captured views are drawn with their own exposure again.",
@@ -130,8 +137,8 @@ class EncodeOptions(Options):
     )
     fit: str | None = option(
         "photographs: fit the textures until the drawn pictures match the photographs. none: project the photographs "
-        "into the textures, as the paper does; faster, larger, less sharp. --align, --uv-ssim, --harmonise, "
-        "--codec and --keep-maps are about texture maps, which a fit does not make.  [default: "
+        "into the textures, as the paper does; faster, larger, less sharp. --align, --max-angle, --uv-ssim, "
+        "--harmonise, --codec and --keep-maps are about texture maps, which a fit does not make.  [default: "
         "photographs, unless one of these is given]",
         choices=("none", "photographs"),
     )
@@ -177,6 +184,7 @@ class EncodeOptions(Options):
                 fit="none",
                 textures=DEFAULT_TEXTURES if self.textures is None and self.uv_ssim is None else self.textures,
                 density=DEFAULT_DENSITY if self.density is None else self.density,
+                max_angle=DEFAULT_MAX_ANGLE if self.max_angle is None else self.max_angle,
             )
         preset, quality, density = self.preset or DEFAULT_PRESET, self.quality, self.density
         if quality is None and self.target is None:
@@ -249,6 +257,10 @@ class EncodeOptions(Options):
         if self.textures is not None and self.textures < 0:
             raise OptionError("textures", f"{self.textures} eigen textures were asked for", remedy="ask for 0 or more")
         check_scale(self.metres_per_unit)
+        if self.max_angle is not None and not 1 <= self.max_angle <= 90:
+            raise OptionError(
+                "max-angle", f"an angle of {self.max_angle} was asked for", remedy="ask for 1 to 90 degrees"
+            )
         if self.uv_ssim is not None and not 0 < self.uv_ssim <= 1:
             raise OptionError("uv-ssim", f"an SSIM of {self.uv_ssim:g} was asked for", remedy="ask for one in (0, 1]")
         low, high = DENSITY_LIMITS

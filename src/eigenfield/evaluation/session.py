@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from eigenfield.capture import LightField, Photograph, match_photographs
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.scene import Scene
+from eigenfield.encoding.options import DEFAULT_MAX_ANGLE
 from eigenfield.encoding.projected.align import align_map
 from eigenfield.encoding.projected.atlas import Atlas, make_atlas
 from eigenfield.encoding.projected.harmonise import harmonised_map
@@ -59,6 +60,7 @@ class Session:
         filter: "bicubic" or "bilinear", for drawing.
         weights: Kind of view weights of held-out cameras.
         atlas: Of the texture maps; None if none are measured.
+        max_angle: Of the texture maps, degrees (`EncodeOptions`).
         reference: The texture map and visibility that maps are aligned to; None: they are not aligned.
         circles: Excluded circles by camera, if any.
         packed: Indices of cameras whose filled maps are packed as PNG.
@@ -74,6 +76,7 @@ class Session:
     filter: str
     weights: str
     atlas: Atlas | None
+    max_angle: int
     reference: tuple[NDArray[np.float32], NDArray[np.uint8]] | None
     circles: Mapping[str, ExcludedCircle] | None
     packed: frozenset[int]
@@ -126,7 +129,9 @@ class Session:
             photograph: Its photograph.
         """
         assert self.atlas is not None
-        values, seen = texture_map(self.atlas, self.scene.rig.cameras[index], photograph.pixels, photograph.mask)
+        values, seen = texture_map(
+            self.atlas, self.scene.rig.cameras[index], photograph.pixels, photograph.mask, self.max_angle
+        )
         colour = camera_colour(self.scene, index)
         if colour is not None:
             values = harmonised_map(values, seen, colour)
@@ -220,7 +225,7 @@ def start_session(
             remedy="evaluate those that are",
         )
     photographs = match_photographs(scene, capture)
-    align = _is_aligned(scene)
+    align, max_angle = _map_settings(scene)
     one_plane = len(scene.appearance.planes) == 1 and scene.appearance.to_rgb is None
     maps = one_plane and "fitted" not in scene.settings  # a fit makes none
     if curve != "none" and not maps:
@@ -254,6 +259,7 @@ def start_session(
         filter=filter,
         weights=weights,
         atlas=make_atlas(scene.proxy.mesh, width, height) if encoded else None,
+        max_angle=max_angle,
         reference=None,
         circles=circles,
         packed=frozenset(some[png_maps]),
@@ -265,16 +271,19 @@ def start_session(
     return session
 
 
-def _is_aligned(scene: Scene) -> bool:
-    """Whether the texture maps were aligned, by the scene's settings."""
+def _map_settings(scene: Scene) -> tuple[bool, int]:
+    """Whether the texture maps were aligned, and their `max_angle`, by the scene's settings."""
     resampling, align = scene.settings.get("resampling", RESAMPLING), scene.settings.get("align")
-    if resampling != RESAMPLING or align not in [None, "dis"]:  # a file may hold anything here
+    max_angle = scene.settings.get("maxAngle", DEFAULT_MAX_ANGLE)
+    known = resampling == RESAMPLING and align in [None, "dis"] and max_angle in list(range(1, 91))
+    if not known:  # a file may hold anything here
         raise OptionError(
             "settings-unknown",
-            f"the scene was made with resampling {resampling!r} and alignment {align!r}, which this version has not",
+            f"the scene was made with resampling {resampling!r}, alignment {align!r} and angles up to {max_angle!r}, "
+            "which this version has not",
             remedy="evaluate with the version that encoded it",
         )
-    return align is not None
+    return align is not None, max_angle
 
 
 def sample_evenly(indices: Sequence[int], count: int) -> list[int]:

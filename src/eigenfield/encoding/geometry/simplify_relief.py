@@ -159,7 +159,7 @@ def _collapsed_mesh(
     faces = collapsed_faces(mesh.faces, collapses)
     left = faces_left(sheets, faces[:, 0] >= 0)
     faces = np.ascontiguousarray(faces[faces[:, 0] >= 0])
-    depth = _fitted_depths(distortion, distortion.places(mesh.uv), exact[:, 2], faces, kept)
+    depth = _fitted_depths(distortion, distortion.places(mesh.uv), exact, faces, kept)
     used, faces = np.unique(faces, return_inverse=True)
     vertices = lattice.points(np.column_stack([exact[used, :2], depth[used]])).astype(np.float32)
     return Mesh(vertices, faces.reshape(-1, 3).astype(np.int32), mesh.uv[used]), left
@@ -225,13 +225,16 @@ def _coded_relief(
 def _fitted_depths(
     distortion: DistortionMap,
     places: NDArray[np.int64],
-    depth: NDArray[np.float64],
+    exact: NDArray[np.float64],
     faces: NDArray[np.int32],
     kept: NDArray[np.int64],
 ) -> NDArray[np.float64]:
     """(n,) depths of the vertices by robust least squares: the pictures then lose least. Those of `kept` are what they
-    were: a camera sees past a rim that moves."""
-    cost_map = distortion.cost_map
+    were: a camera sees past a rim that moves. Vertices at one point, where two charts meet, stay at one point: a camera
+    would see between them. exact: (n, 3) lattice coordinates."""
+    cost_map, depth = distortion.cost_map, exact[:, 2]
+    _, first, same = np.unique(exact, axis=0, return_index=True, return_inverse=True)
+    point = first[same.reshape(-1)]  # the first vertex there
     owners = np.zeros(cost_map.depth.shape, np.int32)
     draw_owners(places, faces, owners)
     owners[cost_map.given == 0] = -1
@@ -240,14 +243,14 @@ def _fitted_depths(
     off = cost_map.depth[there] - np.einsum("tk,tk->t", weights, depth[corners])
     curve, most = cost_map.curve[there].astype(np.float64), np.maximum(cost_map.most[there], 1e-12).astype(np.float64)
     counts = curve * np.square(most / (most + curve * np.square(off)))
-    free = np.setdiff1d(np.arange(len(depth)), kept)
-    rows = np.repeat(np.arange(len(off)), 3)
-    A = coo_array((weights.reshape(-1), (rows, corners.reshape(-1))), shape=(len(off), len(depth))).tocsc()[:, free]
+    free = np.setdiff1d(point, point[kept])
+    rows, columns = np.repeat(np.arange(len(off)), 3), point[corners.reshape(-1)]
+    A = coo_array((weights.reshape(-1), (rows, columns)), shape=(len(off), len(depth))).tocsc()[:, free]
     normal = A.T @ diags_array(counts) @ A
     diagonal = normal.diagonal()
     ridge = DEPTH_RIDGE_RATIO * float(np.median(diagonal[diagonal > 0])) if (diagonal > 0).any() else 1.0
     normal = normal + ridge * diags_array(np.ones(len(free)))
     change, _ = cg(normal, A.T @ (counts * off), rtol=1e-4, maxiter=200, M=diags_array(1 / normal.diagonal()))
-    found = depth.copy()
-    found[free] += change
-    return found
+    moved = np.zeros(len(depth))
+    moved[free] = change
+    return depth + moved[point]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.progress import Progress, begin_step
 from eigenfield.core.scene import EncodedScene
-from eigenfield.encoding.options import resolved_value
+from eigenfield.encoding.options import DEFAULT_MAX_ANGLE, resolved_value
 from eigenfield.encoding.plan import EncodePlan
 from eigenfield.encoding.projected.agreement import disagreement_of
 from eigenfield.encoding.projected.align import align_maps
@@ -48,11 +48,14 @@ def encode_projected(
     begin_step(progress, "maps")
     options, views = plan.options, plan.views
     own = {"uvSsim": options.uv_ssim, "align": "dis" if options.align else None, "resampling": RESAMPLING}
+    max_angle = resolved_value(options.max_angle)
+    if max_angle != DEFAULT_MAX_ANGLE:
+        own["maxAngle"] = max_angle
     colours, made = None, None
     given = make_atlas(plan.mesh, *plan.atlas), views.rig.encoded_cameras, views.observations
     if workers is not None:
-        made = maps_on_workers(workers, *given, work, progress)
-    with texture_maps(*given, made=made, work=work, progress=progress) as maps:
+        made = maps_on_workers(workers, *given, work, max_angle, progress)
+    with texture_maps(*given, max_angle=max_angle, made=made, work=work, progress=progress) as maps:
         if options.harmonise is not None:
             own["harmonise"] = options.harmonise
             colours = _for_all_cameras(harmonise_maps(maps, options.harmonise, progress), views)

@@ -10,7 +10,6 @@ from eigenfield.runtime.jit import kernel
 
 RADIUS_PX = 2.0  # of the filter
 MAX_FOOTPRINT_PX = 16.0  # that a texel may average over, each way
-GRAZING_COSINE = 0.0872  # cosine of 85 degrees
 
 
 @kernel(inline=True)
@@ -61,12 +60,12 @@ def _is_hidden(x, y, q, inverse_depth, bias):
 
 @kernel()
 def project_texels(
-    position, face, normal, along, down, matrix, centre, photograph, mask, inverse_depth, bias, values, seen
+    position, face, normal, along, down, matrix, centre, photograph, mask, inverse_depth, bias, grazing, values, seen
 ):  # fmt: skip
     """All texels: values (n, C) and seen (n,) out. mask: (0, 0) for none.
 
     A texel at X projects to (x, y) at depth z = (P X)_3. It is seen if it is in front, inside the photograph, not
-    hidden (see `_is_hidden`), |n . v| > GRAZING_COSINE, and, with a mask, most of its filter lies where the mask
+    hidden (see `_is_hidden`), |n . v| > grazing, and, with a mask, most of its filter lies where the mask
     counts. Its footprint per axis is the length of the row of d(x, y)/d(column, row); where it exceeds one pixel the
     filter is stretched to it, so that the texel averages what it covers. With a mask, taps are weighted by it.
     """
@@ -89,7 +88,7 @@ def project_texels(
         f = face[n]
         vx, vy, vz = centre[0] - px, centre[1] - py, centre[2] - pz
         cosine = abs(normal[f, 0] * vx + normal[f, 1] * vy + normal[f, 2] * vz)
-        if cosine <= GRAZING_COSINE * np.sqrt(vx * vx + vy * vy + vz * vz):
+        if cosine <= grazing * np.sqrt(vx * vx + vy * vy + vz * vz):
             continue
         if _is_hidden(x, y, 1.0 / z, inverse_depth, bias):
             continue

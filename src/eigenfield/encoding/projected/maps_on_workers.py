@@ -37,17 +37,19 @@ class MapsJob:
         size: (width, height) of the atlas.
         cameras: Of the observations.
         observations: Paths of photographs, no pixels.
+        max_angle: As of `EncodeOptions`.
     """
 
     mesh: Mesh
     size: tuple[int, int]
     cameras: Sequence[Camera]
     observations: Observations
+    max_angle: int
 
 
 def maps_on_workers(
     workers: Workers, atlas: Atlas, cameras: Sequence[Camera], observations: Observations, work: Path | None,
-    progress: Progress | None,
+    max_angle: int, progress: Progress | None,
 ) -> Iterator[tuple[NDArray[np.float32], NDArray[np.uint8]]]:  # fmt: skip
     """The texture map of each observation in order, as `texture_map` makes it.
 
@@ -57,6 +59,7 @@ def maps_on_workers(
         cameras: Of the observations.
         observations: That are projected.
         work: Folder for files of a few maps; None: the system's temporary folder.
+        max_angle: As of `EncodeOptions`.
         progress: Called for each group of maps.
 
     Raises:
@@ -67,7 +70,7 @@ def maps_on_workers(
     refuse_unshared(workers, folder)
     groups = pieces(len(observations), MAPS_A_TASK)
     with temporary_folder("eigenfield-maps", folder) as place:
-        job = MapsJob(atlas.mesh, (atlas.width, atlas.height), cameras, observations)
+        job = MapsJob(atlas.mesh, (atlas.width, atlas.height), cameras, observations, max_angle)
         (place / JOB_FILE).write_bytes(pickle.dumps(job))
         made = spread(workers, ((make_maps, place, *group) for group in groups))
         for file in track(made, "texture maps", len(groups), progress):
@@ -88,7 +91,7 @@ def make_maps(place: Path, first: int, last: int) -> Path:
 
     def project(index: int) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
         photograph, camera = job.observations.photograph(index), job.cameras[job.observations.camera_of(index)]
-        return texture_map(atlas, camera, photograph.pixels, photograph.mask)
+        return texture_map(atlas, camera, photograph.pixels, photograph.mask, job.max_angle)
 
     values, seen = zip(*parallel_stream(project, range(first, last)), strict=True)
     file = place / f"{first}.npz"

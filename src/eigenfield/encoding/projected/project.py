@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from eigenfield.core.camera import Camera
 from eigenfield.core.observations import Observations
 from eigenfield.core.progress import Progress
+from eigenfield.encoding.options import DEFAULT_MAX_ANGLE
 from eigenfield.encoding.projected import kernels
 from eigenfield.encoding.projected.atlas import Atlas
 from eigenfield.imaging.raster import rasterise_view
@@ -53,6 +55,7 @@ def texture_map(
     camera: Camera,
     pixels: NDArray[np.float32],
     mask: NDArray[np.float32] | None = None,
+    max_angle: int = DEFAULT_MAX_ANGLE,
 ) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
     """Project one photograph into the atlas, by a bicubic filter that is stretched where the photograph is denser.
 
@@ -61,6 +64,7 @@ def texture_map(
         camera: Of the photograph.
         pixels: (H, W, C) float32.
         mask: (H, W) 0..1; what it hides is not seen.
+        max_angle: As of `EncodeOptions`.
 
     Returns:
         (n, C) float32 values, which may overshoot the photograph's range, and (n,) uint8
@@ -69,12 +73,13 @@ def texture_map(
     depth = rasterise_view(atlas.mesh, camera).inverse_depth
     covered = depth[depth > 0]
     bias = DEPTH_BIAS_RATIO * float(np.ptp(covered)) + 1e-6 * float(covered.max()) if len(covered) else 0.0
+    grazing = round(math.cos(math.radians(max_angle)), 4)
     values = np.empty((atlas.count, pixels.shape[2]), np.float32)
     seen = np.empty(atlas.count, np.uint8)
     kernels.project_texels(
         atlas.position, atlas.face, atlas.normal, atlas.along, atlas.down, camera.matrix, camera.centre,
         np.ascontiguousarray(pixels), np.zeros((0, 0), np.float32) if mask is None else np.ascontiguousarray(mask),
-        depth, bias, values, seen,
+        depth, bias, grazing, values, seen,
     )  # fmt: skip
     return values, seen
 
@@ -86,6 +91,7 @@ def texture_maps(
     observations: Observations,
     channels: int = 3,
     *,
+    max_angle: int = DEFAULT_MAX_ANGLE,
     made: Iterable[tuple[NDArray[np.float32], NDArray[np.uint8]]] | None = None,
     work: Path | None = None,
     progress: Progress | None = None,
@@ -99,6 +105,7 @@ def texture_maps(
         cameras: Of the observations.
         observations: Each is decoded once, from several threads.
         channels: Of a photograph.
+        max_angle: As of `EncodeOptions`.
         made: The maps in order, where something else makes them (`maps_on_workers`).
         work: Folder for the scratch file.
         progress: Reports the maps that are made.
@@ -111,7 +118,7 @@ def texture_maps(
 
         def project(index: int) -> None:
             photograph, camera = observations.photograph(index), cameras[observations.camera_of(index)]
-            values[index], seen[index] = texture_map(atlas, camera, photograph.pixels, photograph.mask)
+            values[index], seen[index] = texture_map(atlas, camera, photograph.pixels, photograph.mask, max_angle)
 
         if made is None:
             tracked_map(project, range(total), "texture maps", progress)

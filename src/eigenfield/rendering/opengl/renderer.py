@@ -33,13 +33,21 @@ void main() {
 """
 SURFACE_FRAGMENT_GLSL = "in vec2 uv;\nout vec4 colour;\nvoid main() { colour = vec4(surfaceColour(uv), 1.0); }\n"
 SHEET_FRAGMENT_GLSL = "in vec2 uv;\nout vec4 colour;\nvoid main() { colour = sheetColour(uv); }\n"
+WHOLE_VERTEX_GLSL = """#version 330 core
+void main() { gl_Position = vec4(4 * (gl_VertexID & 1) - 1, 2 * (gl_VertexID & 2) - 1, 0, 1); }
+"""
+OVER_FRAGMENT_GLSL = """#version 330 core
+uniform sampler2D sheet;
+out vec4 colour;
+void main() { colour = texelFetch(sheet, ivec2(gl_FragCoord.xy), 0); }
+"""
 
 
 class OpenGLRenderer:
     """Draws a scene with OpenGL; used from the thread that made it, and closed (it is a context manager).
 
-    Each viewpoint's texture is composed and then drawn (decision 15). Sheets are drawn back to front. Of each the depth
-    is drawn first: what it shows is what is nearest, blended once over the sheets behind.
+    Each viewpoint's texture is composed and then drawn (decision 15). Sheets are drawn back to front, each into a
+    picture of its own: what is nearest there is blended once over the sheets behind, also where a sheet is folded.
 
     Attributes:
         context: The moderngl context; None: the renderer is closed.
@@ -75,7 +83,7 @@ class OpenGLRenderer:
         self._multisample = multisample
         self._dtype = "f1" if scene.proxy.sheets is None else "f2"  # 8 bits are too few to blend sheets in
         self._owned = context is None
-        self._kept: tuple[tuple[int, int], Any, Any] | None = None
+        self._kept: tuple[tuple[int, int], Any, Any, Any] | None = None
         self.context: Any = make_context() if context is None else context
         try:
             self._set_up(filter, weights)
@@ -162,7 +170,7 @@ class OpenGLRenderer:
         assert self._composer is not None, "the renderer is closed"
         largest = max((basis.count for plane in self._scene.appearance.planes for basis in plane.bases), default=0)
         self._composer.compose(largest if textures is None else min(textures, largest), weights, camera.centre)
-        drawn, resolved = self._frames(camera.width, camera.height)
+        drawn, resolved, alone = self._frames(camera.width, camera.height)
         gain, offset = (np.ones(3), np.zeros(3)) if colour is None else np.asarray(colour, np.float64)
         clip = _clip_matrix(camera, self._middle, self._radius)
         set_uniforms(self._program, toClip=clip.T, exposureScale=1 / gain, exposureBias=-offset / gain)
@@ -173,24 +181,27 @@ class OpenGLRenderer:
             self.context.enable_only(self.context.DEPTH_TEST)
             self._array.render()
         else:
-            self._draw_sheets(drawn, self._scene.proxy.sheets)
+            self._draw_sheets(drawn, alone, self._scene.proxy.sheets)
         if resolved is not drawn:
             self.context.copy_framebuffer(resolved, drawn)
         return resolved
 
-    def _draw_sheets(self, drawn: Any, sheets: Sheets) -> None:
+    def _draw_sheets(self, drawn: Any, alone: Any, sheets: Sheets) -> None:
+        """Draw sheets over `drawn`, each into `alone` first."""
         context, first = self.context, 0
-        context.enable_only(context.DEPTH_TEST | context.BLEND)
         context.blend_func = context.ONE, context.ONE_MINUS_SRC_ALPHA
+        assert self._composer is not None
         for faces in sheets.faces:
-            for shown, nearest in ((False, "<"), (True, "<=")):
-                drawn.color_mask, context.depth_func = (shown,) * 4, nearest
-                drawn.use()  # the mask takes effect
-                if not shown:
-                    drawn.clear(depth=1.0)
-                self._array.render(vertices=3 * faces, first=3 * first)
+            alone.use()
+            alone.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
+            context.enable_only(context.DEPTH_TEST)
+            self._composer.texture.use(0)
+            self._array.render(vertices=3 * faces, first=3 * first)
+            drawn.use()
+            context.enable_only(context.BLEND)
+            alone.color_attachments[0].use(0)
+            self._over.render(context.TRIANGLES, vertices=3)
             first += faces
-        context.depth_func = "<"
 
     def _set_up(self, filter: str, weights: str) -> None:
         context, scene, mesh = self.context, self._scene, self._scene.proxy.mesh
@@ -209,22 +220,28 @@ class OpenGLRenderer:
         faces = keep(context.buffer(np.ascontiguousarray(mesh.faces, np.int32).tobytes()))
         layout = [(vertices, "3f 2f", "position", "coordinate")]
         self._array = keep(context.vertex_array(self._program, layout, index_buffer=faces))
+        over = keep(context.program(vertex_shader=WHOLE_VERTEX_GLSL, fragment_shader=OVER_FRAGMENT_GLSL))
+        self._over = keep(context.vertex_array(over, []))
         detail = median_footprint(make_surface(mesh, *scene.appearance.atlas), scene.rig.cameras[scene.rig.reference])
         set_uniforms(self._program, composed=np.int32(0), finest=RENDER_ONE_SAMPLE_PX * max(detail, 1.0))
 
-    def _frames(self, width: int, height: int) -> tuple[Any, Any]:
-        """The framebuffer to draw into and the one to read, of a size; kept until another is asked for."""
+    def _frames(self, width: int, height: int) -> tuple[Any, Any, Any]:
+        """The framebuffer to draw into, the one to read, and, if there are sheets, that of one of them, of a size; kept
+        until another is asked for."""
         if self._kept is None or self._kept[0] != (width, height):
             self._release_frames()
             context, size = self.context, (width, height)
             values = context.renderbuffer(size, 4, dtype=self._dtype)
-            drawn = resolved = context.framebuffer([values], context.depth_renderbuffer(size))
-            if self._multisample and self._dtype == "f1":
+            drawn = resolved = alone = context.framebuffer([values], context.depth_renderbuffer(size))
+            if self._dtype == "f2":
+                sheet = context.texture(size, 4, dtype=self._dtype)
+                alone = context.framebuffer([sheet], context.depth_renderbuffer(size))
+            elif self._multisample:
                 samples = min(self._multisample, context.max_samples)
                 depth = context.depth_renderbuffer(size, samples=samples)
                 drawn = context.framebuffer([context.renderbuffer(size, 4, samples=samples)], depth)
-            self._kept = (size, drawn, resolved)
-        return self._kept[1], self._kept[2]
+            self._kept = (size, drawn, resolved, alone)
+        return self._kept[1:]
 
     def _release_frames(self) -> None:
         if self._kept is not None:
