@@ -11,7 +11,7 @@ from eigenfield.capture.calibration import Calibration, escape_name
 from eigenfield.capture.locate import is_photograph_file
 from eigenfield.capture.messages import list_names
 from eigenfield.capture.passed_over import describe_passed_over
-from eigenfield.capture.photographs.kinds import ALL_EXTENSIONS, MESH_KIND, OTHER_KINDS, VIDEO_EXTENSIONS
+from eigenfield.capture.photographs.kinds import MESH_KIND, OTHER_KINDS, VIDEO_EXTENSIONS
 from eigenfield.capture.readers import colmap, transforms
 from eigenfield.capture.readers.bundler import find_bundler, find_unlisted, read_bundler
 from eigenfield.capture.readers.deepview import DEEPVIEW_FILE, find_deepview, read_deepview
