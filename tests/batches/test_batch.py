@@ -254,13 +254,13 @@ def test_a_list_says_sizes_as_the_command_line_does(tmp_path):
 
 
 def test_a_folder_of_captures(tmp_path):
-    for name in ("b10", "b9", ".hidden", "b-scenes"):
+    for name in ("b10", "b9", ".hidden", "b-scenes", "²"):
         (tmp_path / name).mkdir()
     (tmp_path / "walk.mp4").touch()
     (tmp_path / "notes.txt").touch()
-    assert [path.name for path in captures_in(tmp_path)] == ["b9", "b10", "walk.mp4"]
+    assert [path.name for path in captures_in(tmp_path)] == ["b9", "b10", "walk.mp4", "²"]
     jobs = read_jobs(tmp_path, {"preset": "small", "grid": (3, 3)})
-    assert [job.name for job in jobs] == ["b9", "b10", "walk"]
+    assert [job.name for job in jobs] == ["b9", "b10", "walk", "²"]
     assert jobs[0].options.preset == "small" and jobs[0].place == {"grid": (3, 3)}
     assert {"hold_out", "surface", "calibration", "target_size"} <= set(ALL_KEYS)
 

@@ -130,7 +130,7 @@ def captures_in(folder: Path) -> list[Path]:
 
 
 def _by_number(name: str) -> list[Any]:
-    return [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", name)]
+    return [int(part) if part.isdecimal() else part for part in re.split(r"(\d+)", name)]
 
 
 def _read_toml(path: Path) -> tuple[list[dict[str, Any]], dict[str, Any]]:
@@ -138,11 +138,8 @@ def _read_toml(path: Path) -> tuple[list[dict[str, Any]], dict[str, Any]]:
         document = tomllib.loads(local_copy(path).read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise _file_error(path, str(error.strerror), "name a TOML file with [[capture]] tables") from None
-    except (
-        ValueError,
-        RecursionError,
-    ) as error:  # numbers of thousands of digits and deep lists are no TOMLDecodeError
-        words = f"is no TOML: {error}"[:ERROR_MAX_CHARACTERS]
+    except (ValueError, RecursionError) as error:  # also numbers of thousands of digits, and lists without end
+        words = f"is no TOML: {error}".split(";")[0][:ERROR_MAX_CHARACTERS]
         raise _file_error(path, words, "name a TOML file with [[capture]] tables") from None
     rows, shared = document.pop("capture", []), document.pop("options", {})
     if (
