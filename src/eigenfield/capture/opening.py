@@ -15,7 +15,7 @@ from eigenfield.capture.formats import FORMATS, Claim, Format, claim_of_file, de
 from eigenfield.capture.inspect_photographs import common_focal_length, make_photo_set
 from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.locate import IMAGES_FOLDER, photograph_root, photographs_in
-from eigenfield.capture.messages import count_phrase, list_names
+from eigenfield.capture.messages import Note, count_phrase, list_names
 from eigenfield.capture.pairing import pair_photographs
 from eigenfield.capture.photographs.exr import choose_exposure
 from eigenfield.capture.photographs.kinds import is_linear
