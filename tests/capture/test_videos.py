@@ -155,10 +155,14 @@ def test_hdr_and_wide_colours_become_srgb_as_those_of_photographs(tmp_path, pixe
 
 
 def test_colours_that_are_not_converted_are_refused(tmp_path):
-    write_picture(tmp_path / "a.mkv", PICTURE, "yuv444p", BT2020, colorspace=14)  # ICtCp
-    with pytest.raises(CaptureError, match="colours") as caught:
-        read_frame(tmp_path / "a.mkv", 0)
-    assert caught.value.code == "video-colours" and caught.value.remedy
+    matrix, dolby = tmp_path / "a.mkv", tmp_path / "b.mp4"
+    write_picture(matrix, PICTURE, "yuv444p", BT2020, colorspace=14)  # ICtCp
+    write_picture(dolby, PICTURE, "yuv420p", BT2020, "libx265", options={"x265-params": "log-level=none"})
+    dolby.write_bytes(dolby.read_bytes().replace(b"hev1\0", b"dvhe\0"))
+    for path, said in ((matrix, "number 14"), (dolby, "Dolby Vision")):
+        with pytest.raises(CaptureError, match=said) as caught:
+            read_frame(path, 0)
+        assert caught.value.code == "video-colours" and caught.value.remedy
 
 
 def test_the_film_is_read_and_not_its_preview(tmp_path):
