@@ -301,7 +301,107 @@ def test_damaged_profiles_never_raise_anything_else(data):
     assert np.isfinite(values).all() and values.min() >= 0 and values.max() <= 1
 
 
+# kinds that are named, and what is low
+
+
+@pytest.mark.parametrize(
+    ("picture", "said"),
+    [(EIGHT.astype(np.float32), "floating point"), (EIGHT.astype(np.float16), "floating point"),
+     (EIGHT[..., 0].astype(np.float64), "floating point"), (EIGHT.astype(np.uint32), "32 bit"),
+     (EIGHT.astype(np.int16), "signed"), (SIXTEEN >> 4, "12 bit")],
+)  # fmt: skip
+def test_numbers_that_are_not_read_are_named(tmp_path, picture, said):
+    data = bytearray(tiff(picture, photometric="rgb" if picture.ndim == 3 else "minisblack"))
+    if "12" in said:  # packed, as far as the tag goes: tifffile writes none
+        at = data.index(struct.pack("<HHI", 258, 3, 3))
+        (place,) = struct.unpack_from("<I", data, at + 8)
+        data[place : place + 6] = struct.pack("<3H", 12, 12, 12)
+    path = save(tmp_path / "a.tif", bytes(data))
+    error = refused(path)
+    assert error.code == "image-kind" and said in str(error) and "damaged" not in str(error)
+    with pytest.raises(CaptureError, match=said):
+        read_header(path)
+
+
+@pytest.mark.parametrize(("bits", "times"), [(8, 256), (10, 64), (12, 16), (14, 4), (16, None)])
+def test_values_of_fewer_bits_than_16_are_named(tmp_path, caplog, bits, times):
+    picture = SIXTEEN >> (16 - bits)
+    picture[0, 0] = (1 << bits) - 1
+    for name, data in (("a.png", png16(picture)), ("a.tif", tiff(picture, photometric="rgb"))):
+        caplog.clear()
+        decode(save(tmp_path / name, data))
+        assert (f"{name}: its greatest value" in caplog.text) == (times is not None)
+        assert times is None or f"times {times} " in caplog.text
+
+
 # damage
+
+
+def chunk_at(data: bytes, kind: bytes) -> int:
+    return data.index(kind) + 4
+
+
+@pytest.mark.parametrize("late", [False, True])
+@pytest.mark.parametrize("deep", [False, True])
+def test_damage_of_a_png_counts_only_where_it_is_critical(tmp_path, deep, late):
+    """A wrong sum of a text, of a gamma; a text that cannot be unpacked: the picture is whole."""
+    data, whole = (png16(SIXTEEN), SIXTEEN / 65535) if deep else (png16(EIGHT), EIGHT / 255)
+    end = chunk_at(data, b"IEND") - 8 if late else 33
+    texts = [b"tEXt" + b"Comment\0hello", b"zTXt" + b"Comment\0\0rubbish", b"gAMA" + struct.pack(">I", 100000)]
+    for number, body in enumerate(texts):
+        sum_ = zlib.crc32(body) ^ (number != 1)
+        chunk = struct.pack(">I", len(body) - 4) + body + struct.pack(">I", sum_)
+        path = save(tmp_path / "a.png", data[:end] + chunk + data[end:])
+        assert read_header(path).depth == (16 if deep else 8)
+        assert np.allclose(decode(path)[0], whole, atol=1e-6)
+    broken = bytearray(data)
+    broken[chunk_at(data, b"IHDR") + 13] ^= 1
+    assert refused(save(tmp_path / "a.png", bytes(broken))).code == "image-unreadable"
+
+
+PHOTOGRAPH = cv2.resize(RANDOM.integers(0, 256, (14, 18, 3), np.uint8), (288, 216), interpolation=cv2.INTER_CUBIC)
+
+
+def jpeg(mode: str = "RGB", kind: str = "JPEG", **options) -> bytes:
+    buffer = io.BytesIO()
+    Image.fromarray(PHOTOGRAPH).convert(mode).save(buffer, kind, quality=90, **options)
+    return buffer.getvalue()
+
+
+JPEGS = {
+    "baseline": jpeg(), "progressive": jpeg(progressive=True), "4:4:4": jpeg(subsampling=0), "grey": jpeg("L"),
+    "CMYK": jpeg("CMYK"), "restart markers": jpeg(restart_marker_rows=2), "TIFF": jpeg(kind="TIFF", compression="jpeg"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", JPEGS)
+def test_damage_inside_a_jpeg_is_named(tmp_path, kind):
+    """Blocks of zeros, as a bad card or a failed copy leaves them; libjpeg decodes something else then, to the end."""
+    data = JPEGS[kind]
+    decode(save(tmp_path / "a.jpg", data))
+    for part in (0.3, 0.5, 0.7):
+        at = int(part * len(data))
+        assert refused(save(tmp_path / "a.jpg", data[:at] + bytes(512) + data[at + 512 :])).code == "image-unreadable"
+
+
+@pytest.mark.parametrize("kind", [kind for kind in JPEGS if kind != "TIFF"])
+def test_what_is_no_damage_of_a_jpeg_changes_nothing(tmp_path, kind):
+    data = JPEGS[kind]
+    with Image.open(io.BytesIO(data)) as image:
+        expected = np.asarray(image.convert("RGB")) / 255
+    end, start = data.rindex(b"\xff\xd9"), data.index(b"\xff\xdb")
+    sound = {
+        "as it is": data,
+        "padding before the end": data[:end] + bytes(7) + data[end:],
+        "fill bytes": data[:end] + b"\xff" * 20 + data[end:],
+        "another picture behind": data + jpeg(),
+        "a film behind": data + b"\0\0\0\x18ftypmp42" + bytes(range(256)) * 9,
+        "rubbish between segments": data[:start] + b"rubbish" + data[start:],
+    }
+    for name, changed in sound.items():
+        assert np.abs(decode(save(tmp_path / "a.jpg", changed))[0] - expected).max() < 1e-6, name
+    rubbish = bytes(range(1, 200))
+    assert refused(save(tmp_path / "a.jpg", data[:end] + rubbish + data[end:])).code == "image-unreadable"
 
 
 def refused(path: Path) -> CaptureError:

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import shutil
+from fractions import Fraction
+from pathlib import Path
 
+import av
+import cv2
 import numpy as np
 import pytest
 
 from eigenfield.capture import open_any, open_photographs
+from eigenfield.capture.photographs.colour import read_code_points
 from eigenfield.capture.readers.video import parse_frame, read_frame
-from eigenfield.core.errors import OptionError
+from eigenfield.core.errors import CaptureError, OptionError
 from support.named import refused, write_video
 
 # videos
@@ -93,3 +98,113 @@ def test_frames_without_a_work_folder_are_taken_out_once_a_process(tmp_path):
     assert other.shots[0].path != first.shots[0].path and first.shots[0].path.exists()
     shutil.rmtree(first.shots[0].path.parents[1])  # by what clears the system's temporary folder
     assert open_any(tmp_path).shots[0].path.exists()
+
+
+# colours
+
+PICTURE = cv2.resize(
+    np.random.default_rng(0).integers(0, 256, (6, 8, 3), np.uint8), (96, 72), interpolation=cv2.INTER_CUBIC
+)
+BT709, BT601, BT2020 = 1, 5, 9  # AVColorSpace
+
+
+def add_stream(container, codec: str, pixels: str, size: tuple[int, int], **tags):
+    stream = container.add_stream(codec, rate=Fraction(10))
+    (stream.width, stream.height), stream.pix_fmt = size, pixels
+    for name, value in tags.items():
+        setattr(stream.codec_context, name, value)
+    return stream
+
+
+def write_picture(path: Path, picture: np.ndarray, pixels: str, matrix: int, codec: str = "ffv1", **tags) -> None:
+    """Three frames of one picture (uint8 or uint16), in a pixel format, by a matrix that `tags` may state."""
+    depth = "rgb24" if picture.dtype == np.uint8 else "rgb48le"
+    with av.open(str(path), "w") as container:
+        stream = add_stream(container, codec, pixels, picture.shape[1::-1], **tags)
+        for _ in range(3):
+            frame = av.VideoFrame.from_ndarray(picture, format=depth)
+            frame = frame.reformat(format=pixels, dst_colorspace=matrix)
+            frame.pts = None
+            container.mux(stream.encode(frame))
+        container.mux(stream.encode(None))
+
+
+@pytest.mark.parametrize("rows", [576, 720])
+@pytest.mark.parametrize("pixels", ["yuv420p", "yuv420p10le", "yuv422p", "yuv422p10le", "yuv444p", "yuv444p10le"])
+def test_unmarked_videos_have_the_matrix_of_their_size(tmp_path, pixels, rows):
+    picture = cv2.resize(PICTURE, (96, rows), interpolation=cv2.INTER_CUBIC)
+    write_picture(tmp_path / "a.mkv", picture, pixels, BT709 if rows > 576 else BT601)
+    assert np.abs(read_frame(tmp_path / "a.mkv", 1).astype(float) - picture).mean() < 4  # 10 by the other one
+
+
+@pytest.mark.parametrize("matrix", [BT709, BT601, BT2020])
+def test_a_matrix_that_is_stated_counts(tmp_path, matrix):
+    write_picture(tmp_path / "a.mkv", PICTURE, "yuv444p", matrix, colorspace=matrix)
+    assert np.abs(read_frame(tmp_path / "a.mkv", 1).astype(float) - PICTURE).mean() < 1.5
+
+
+@pytest.mark.parametrize(("primaries", "transfer"), [(9, 18), (9, 16), (12, 13), (9, 14), (12, 18)])
+@pytest.mark.parametrize("pixels", ["yuv420p10le", "yuv444p10le", "yuv422p10le"])
+def test_hdr_and_wide_colours_become_srgb_as_those_of_photographs(tmp_path, pixels, primaries, transfer):
+    picture = (PICTURE.astype(np.uint16) + 64) * 150  # neither black nor full
+    tags = {"colorspace": BT2020, "color_primaries": primaries, "color_trc": transfer, "color_range": 1}
+    write_picture(tmp_path / "a.mkv", picture, pixels, BT2020, **tags)
+    expected = read_code_points(primaries, transfer).apply(picture / np.float32(65535))
+    assert np.abs(read_frame(tmp_path / "a.mkv", 1) - 255 * expected).mean() < 6
+    assert np.abs(picture / 257 - 255 * expected).mean() > 6
+
+
+def test_colours_that_are_not_converted_are_refused(tmp_path):
+    matrix, dolby = tmp_path / "a.mkv", tmp_path / "b.mp4"
+    write_picture(matrix, PICTURE, "yuv444p", BT2020, colorspace=14)  # ICtCp
+    write_picture(dolby, PICTURE, "yuv420p", BT2020, "libx265", options={"x265-params": "log-level=none"})
+    dolby.write_bytes(dolby.read_bytes().replace(b"hev1\0", b"dvhe\0"))
+    for path, said in ((matrix, "number 14"), (dolby, "Dolby Vision")):
+        with pytest.raises(CaptureError, match=said) as caught:
+            read_frame(path, 0)
+        assert caught.value.code == "video-colours" and caught.value.remedy
+
+
+def test_the_film_is_read_and_not_its_preview(tmp_path):
+    with av.open(str(tmp_path / "a.mkv"), "w") as container:
+        small, large = np.zeros((24, 32, 3), np.uint8), PICTURE
+        streams = [
+            add_stream(container, "mjpeg", "yuvj420p", (32, 24)),
+            add_stream(container, "ffv1", "yuv444p", (96, 72)),
+        ]
+        for stream, picture in zip(streams, (small, large), strict=True):
+            for number in range(3):
+                frame = av.VideoFrame.from_ndarray(picture, format="rgb24").reformat(format=stream.pix_fmt)
+                frame.pts, frame.time_base = number, Fraction(1, 10)
+                container.mux(stream.encode(frame))
+            container.mux(stream.encode(None))
+    assert np.abs(read_frame(tmp_path / "a.mkv", 0).astype(float) - PICTURE).mean() < 2
+
+
+def test_frames_that_the_decoder_made_up_are_named(tmp_path):
+    path = tmp_path / "a.mp4"
+    wall = np.random.default_rng(1).integers(0, 256, (60, 110, 3), np.uint8).repeat(4, axis=0).repeat(4, axis=1)
+    with av.open(str(path), "w") as container:
+        stream = add_stream(container, "libx264", "yuv420p", (320, 240))
+        stream.options = {"g": "5", "bf": "0"}
+        for number in range(15):
+            shown = np.ascontiguousarray(wall[:, 8 * number : 8 * number + 320])
+            container.mux(stream.encode(av.VideoFrame.from_ndarray(shown, format="rgb24")))
+        container.mux(stream.encode(None))
+    sound = {number: read_frame(path, number) for number in (4, 10)}
+    with av.open(str(path)) as container:
+        packet = list(container.demux(video=0))[5]  # a key frame
+        at = packet.pos + packet.size // 2
+    data = bytearray(path.read_bytes())
+    data[at : at + 20] = b"\xff" * 20
+    path.write_bytes(data)
+    for number in (4, 5, 9, 10):
+        if 5 <= number < 10:
+            with pytest.raises(CaptureError, match=f"frame {number} is damaged") as caught:
+                read_frame(path, number)
+            assert caught.value.code == "video-unreadable" and "--frame" in caught.value.remedy
+        else:
+            assert np.array_equal(read_frame(path, number), sound[number])
+    opened = open_any(path, frames=15)  # a walk does without them
+    assert opened.problems[1] == "5 damaged frames of the video are left out"
+    assert not {f"frame_{number:05d}.png" for number in range(5, 10)} & set(opened.names)

@@ -22,6 +22,7 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.proxy import write_ply
 from support import inspected
 from support.captures import write_capture
+from support.named import picture, write_video
 from support.scenes import bumpy_square, row_grid
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "captures.md"
@@ -311,3 +312,22 @@ def test_real_captures(data, tmp_path, name, proxy, grid, coverage, inspect):
 def test_reports_of_real_captures_keep_to_the_schema(data, name, inspect):
     report = json.loads(inspect(data / name, "--json", "--quiet"))
     assert report["views"] or report["photographs"]
+
+
+def test_what_is_done_is_no_problem(tmp_path, inspect):
+    """The frame of videos with cameras, and sizes that differ by a pixel; the page is headed by the folder."""
+    for camera in range(3):
+        write_video(tmp_path / "rig" / f"cam_{camera}.mp4", 2, camera=camera)
+    frames = [
+        {"file_path": f"cam_{i}", "transform_matrix": [[1, 0, 0, 0.1 * i], *np.eye(4)[1:].tolist()]} for i in range(3)
+    ]
+    (tmp_path / "rig" / "transforms.json").write_text(json.dumps({"fl_x": 64, "w": 64, "h": 48, "frames": frames}))
+    report = json.loads(inspect(tmp_path / "rig", "--json"))
+    assert report["root"] == str(tmp_path / "rig") and not report["problems"]
+    assert report["notes"] == ["frame 0 of each video is used; --frame names another"]
+    assert "  lenses     none: the views are pinholes" in inspect(tmp_path / "rig")
+    (tmp_path / "odd").mkdir()
+    for number, width in enumerate((200, 201, 200, 200)):
+        picture(number, width, 150).save(tmp_path / "odd" / f"{number}.png")
+    report = json.loads(inspect(tmp_path / "odd", "--json"))
+    assert report["notes"] == ["the photographs have 2 different sizes"] and not report["problems"]

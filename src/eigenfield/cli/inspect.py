@@ -163,7 +163,7 @@ def describe(capture: Capture, damaged: list[CaptureError]) -> dict[str, Any]:
 
     views = () if capture.light_field is None else capture.light_field.views
     sizes = Counter(capture.sizes)
-    notes: list[str] = [line for line in capture.problems if isinstance(line, Note)]
+    notes = [str(line) for line in capture.problems if isinstance(line, Note)]
     problems = [line for line in capture.problems if not isinstance(line, Note)]
     if len(sizes) > 1:
         low, high = np.min(list(sizes), axis=0), np.max(list(sizes), axis=0)

@@ -1,7 +1,7 @@
 """Photographs from files of every kind, at their full depth, turned upright, in sRGB.
 
-8 bit is decoded by Pillow; deeper PNG, TIFF and AVIF, which Pillow would cut to 8, by OpenCV from the same bytes.
-Pillow's plug-ins for HEIC and JPEG XL are wheels of their own.
+8 bit is decoded by Pillow, and JPEG by simplejpeg; deeper PNG, TIFF and AVIF, which Pillow would cut to 8, by OpenCV
+from the same bytes. Pillow's plug-ins for HEIC and JPEG XL are wheels of their own.
 """
 
 from __future__ import annotations

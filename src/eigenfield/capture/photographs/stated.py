@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 from pathlib import Path
 
@@ -64,9 +65,9 @@ def _read_colours(kind: str, data: bytes, image: Image.Image, depth: int) -> Pro
 
 
 def _says_adobe_rgb(image: Image.Image) -> bool:
-    exif = image.getexif()
-    space = exif.get_ifd(EXIF_PHOTO_IFD).get(EXIF_COLOUR_SPACE_TAG)
-    if space != EXIF_UNCALIBRATED:
-        return bool(space == EXIF_ADOBE_RGB)
-    index = exif.get_ifd(EXIF_INTEROP_IFD).get(EXIF_INTEROP_INDEX_TAG)
-    return str(index).strip("\0 ") == EXIF_ADOBE_INDEX
+    with contextlib.suppress(*DECODER_ERRORS):  # of EXIF alone
+        exif = image.getexif()
+        space = exif.get_ifd(EXIF_PHOTO_IFD).get(EXIF_COLOUR_SPACE_TAG)
+        index = exif.get_ifd(EXIF_INTEROP_IFD).get(EXIF_INTEROP_INDEX_TAG) if space == EXIF_UNCALIBRATED else None
+        return space == EXIF_ADOBE_RGB or str(index).strip("\0 ") == EXIF_ADOBE_INDEX
+    return False

@@ -55,11 +55,13 @@ class Shown(NamedTuple):
     Attributes:
         frame: As decoded.
         damaged: Whether something was made up, in it or in one before it that it may be built on.
+        matrix: The AVColorSpace of its values, of an unmarked one by the rule.
         colours: The profile of its values; None for sRGB, by which SDR video is shown.
     """
 
     frame: av.VideoFrame
     damaged: bool
+    matrix: int
     colours: Profile | None
 
 
@@ -237,20 +239,21 @@ def _decode_frames(path: Path, frame: int | float) -> Iterator[Shown]:
             if offset and decoded.pts is not None:
                 decoded.pts -= start
             damaged = decoded.is_corrupt or (damaged and not decoded.key_frame)
-            yield Shown(decoded, damaged, _mark_colours(decoded, stream.codec_context, path))
+            yield Shown(decoded, damaged, *_colours_of(decoded, stream.codec_context, path))
 
 
-def _mark_colours(frame: av.VideoFrame, context: av.VideoCodecContext, path: Path) -> Profile | None:
-    """Mark an unmarked frame with its matrix, by one rule for all pixel formats; the profile of its values, if any.
+def _colours_of(frame: av.VideoFrame, context: av.VideoCodecContext, path: Path) -> tuple[int, Profile | None]:
+    """The matrix of a frame, by one rule for all pixel formats where it is unmarked, and the profile of its values.
 
     Raises CaptureError `video-colours` for colours that are not converted.
     """
+    matrix = int(frame.colorspace)
     if not frame.format.is_rgb:
         dolby = context.codec_tag in VIDEO_DOLBY_TAGS and int(context.color_trc) not in COLOUR_HDR_CURVES
-        if int(frame.colorspace) in VIDEO_UNMARKED_MATRICES and not dolby:
-            frame.colorspace = 1 if frame.height > VIDEO_MAX_SD_ROWS else 6
-        elif dolby or int(frame.colorspace) not in VIDEO_LUMA_WEIGHTS:
-            what = "of Dolby Vision alone" if dolby else f"of a matrix (number {int(frame.colorspace)}) of rare use"
+        if matrix in VIDEO_UNMARKED_MATRICES and not dolby:
+            matrix = 1 if frame.height > VIDEO_MAX_SD_ROWS else 6
+        elif dolby or matrix not in VIDEO_LUMA_WEIGHTS:
+            what = "of Dolby Vision alone" if dolby else f"of a matrix (number {matrix}) of rare use"
             raise CaptureError(
                 "video-colours",
                 f"has colours {what}, which are not converted",
@@ -260,12 +263,13 @@ def _mark_colours(frame: av.VideoFrame, context: av.VideoCodecContext, path: Pat
     primaries, transfer = int(context.color_primaries), int(context.color_trc)
     primaries = primaries if primaries in VIDEO_WIDE_PRIMARIES else 1
     profile = read_code_points(primaries, transfer if transfer in COLOUR_HDR_CURVES else 1)
-    return None if profile.kind == "none" else profile
+    return matrix, None if profile.kind == "none" else profile
 
 
 def to_rgb(shown: Shown) -> NDArray[np.uint8]:
     """A frame as (H, W, 3) uint8 sRGB-coded values, upright."""
     frame, bits = shown.frame, VIDEO_420_BITS.get(shown.frame.format.name)
+    frame.colorspace = shown.matrix
     if shown.colours is not None:
         if bits is None:
             values = frame.to_ndarray(format="rgb48le") / np.float32(65535)

@@ -119,7 +119,7 @@ def _measure(video: Path) -> _Motion:
 
 def _small_frames(video: Path) -> Iterator[tuple[NDArray[np.uint8], NDArray[np.uint8], bool]]:
     """Grey copies of each frame, not turned, for sharpness and for motion, and whether it is damaged."""
-    for frame, is_damaged, _ in decode_video(video):
+    for frame, is_damaged, *_ in decode_video(video):
         scale = min(1.0, WALK_SHARPNESS_SIDE / max(frame.width, frame.height))
         width, height = (max(16, round(side * scale)) for side in (frame.width, frame.height))
         large = frame.reformat(width, height, format="gray", interpolation="AREA").to_ndarray()
