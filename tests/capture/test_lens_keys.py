@@ -9,6 +9,7 @@ import pytest
 import yaml
 
 from eigenfield.capture.photographs.lens import Lens
+from eigenfield.capture.readers.colmap import read_colmap
 from eigenfield.capture.readers.deepview import read_deepview
 from eigenfield.capture.readers.lens_keys import is_lens
 from eigenfield.capture.readers.metashape import read_metashape
@@ -177,3 +178,11 @@ def test_deepview_metashape_and_realitycapture(tmp_path):
 ])  # fmt: skip
 def test_what_looks_like_a_lens(key, value, wanted):
     assert is_lens(key, value) is wanted
+
+
+def test_colmaps_model_in_any_case(tmp_path):
+    (tmp_path / "cameras.txt").write_text("1 simple_Radial 96 64 90 48 32 0.1\n2 fov 96 64 90 90 48 32 0.1\n")
+    (tmp_path / "images.txt").write_text("1 1 0 0 0 0 0 0 1 a.png\n\n2 1 0 0 0 1 0 0 2 b.png\n\n")
+    read = read_colmap(tmp_path)
+    assert [entry.lens for entry in read.entries] == [Lens("brown", (0.1, 0, 0, 0, 0))]
+    assert [error.code for error in read.errors] == ["camera-model"]

@@ -80,6 +80,8 @@ def test_what_is_read_is_used(tmp_path, writer, format):
     writer(tmp_path, stations(True, True))
     opened = open_any(tmp_path)
     assert isinstance(opened, LightField) and opened.format == format and not opened.problems and len(opened) == 4
+    for one, station in zip(opened.cameras, stations(True, True), strict=True):
+        assert np.abs(one.project(write.CUBE)[0] - station.pixels(write.CUBE)).max() < 1e-6
 
 
 def test_a_file_that_numbers_its_cameras(tmp_path):

@@ -18,8 +18,8 @@ from eigenfield.core.errors import CaptureError
 
 # of keys in lower case, without what is no letter and no digit
 LENS_KEY = re.compile(
-    r"(cam|camera|opencv|image|img|intrinsics?)?dist(?!ance|ribut|rict|inct|to|from)|(?!.*undist).*distort|.*(lens|radial|tangential|decenter|fisheye|ftheta)"
-    r"|.*coef|thinprism|latlong|equirect|orthographic"
+    r"(cam|camera|opencv|image|img|intrinsics?)?dist(?!ance|ribut|rict|inct|to|from)|(?!.*undist).*distort"
+    r"|.*(lens|radial|tangential|decenter|fisheye|ftheta|coef)|thinprism|latlong|equirect|orthographic"
 )
 LENS_COEFFICIENT_KEY = re.compile(r"(k|p|s|sx|sy|kappa)\d{1,2}|tau[xy]|omega|xi")  # of one number
 LENS_LIST_KEY = re.compile(r"d|k|kc")  # of coefficients in a row
