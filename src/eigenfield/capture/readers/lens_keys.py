@@ -73,14 +73,15 @@ def lens_keys(values: Mapping[str, Any], read: Container[str] = (), depth: int =
             yield from lens_keys(value, (), depth + 1)
 
 
-def _plain(word: str) -> str:
+def letters(word: str) -> str:
+    """A word as names are compared that differ in case and separators alone: its letters and digits."""
     return re.sub(r"[\W_]+", "", word).lower()
 
 
 def is_lens(key: str, value: Any) -> bool:
     """Whether a key looks like a lens, and its value says something of one."""
-    key = _plain(key)
-    if isinstance(value, str) and LENS_MODEL_WORD.match(_plain(value)):
+    key = letters(key)
+    if isinstance(value, str) and LENS_MODEL_WORD.match(letters(value)):
         return LENS_MODEL_KEY.fullmatch(key) is not None
     one, row, other = (pattern.fullmatch(key) for pattern in (LENS_COEFFICIENT_KEY, LENS_LIST_KEY, LENS_OTHER_KEY))
     if not (one or row or LENS_KEY.match(key)):

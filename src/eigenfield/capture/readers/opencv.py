@@ -25,7 +25,7 @@ from eigenfield.capture.messages import describe
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.readers.by_order import photographs_in_order
 from eigenfield.capture.readers.filestorage import STORAGE_EXTENSIONS, Tree, is_storage, load_storage
-from eigenfield.capture.readers.lens_keys import has_numbers, is_lens, refuse_lens_key
+from eigenfield.capture.readers.lens_keys import has_numbers, is_lens, letters, refuse_lens_key
 from eigenfield.capture.readers.skew import remove_skew
 from eigenfield.capture.readers.text import (
     camera_centre,
@@ -599,10 +599,10 @@ def _is_rational(found: Values) -> bool:
 def _is_fisheye(model: Any, label: str, path: Path) -> bool:
     if model is None or isinstance(model, (float, bool)):
         return bool(model)
-    word = re.sub(r"[\s-]+", "_", str(model).strip().lower())
-    if word in OPENCV_FISHEYE_MODELS:
+    word = letters(str(model))
+    if word in map(letters, OPENCV_FISHEYE_MODELS):
         return True
-    if word not in OPENCV_BROWN_MODELS:
+    if word not in ("", "none", *map(letters, OPENCV_BROWN_MODELS)):
         raise CaptureError(
             "camera-model",
             f"{label} has the distortion model {excerpt(model)!r}, which is not read",
