@@ -205,8 +205,10 @@ def _read_frame(transform: Element, label: str, path: Path) -> _Frame:
     check_finite([linear, shift], f"the transform of {label}", path)
     with np.errstate(all="ignore"):
         rotation, grown = split_scale(linear / scale)
-        fits = grown == 1 and 0 < scale < CALIBRATION_MAX_MAGNITUDE and np.allclose(
-            rotation @ rotation.T, np.eye(3), atol=METASHAPE_ROTATION_TOLERANCE
+        fits = (
+            grown == 1
+            and 0 < scale < CALIBRATION_MAX_MAGNITUDE
+            and np.allclose(rotation @ rotation.T, np.eye(3), atol=METASHAPE_ROTATION_TOLERANCE)
         )
     if not fits:
         message = f"the transform of {label} is not a rotation, a shift and a positive scale"
