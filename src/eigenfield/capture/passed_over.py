@@ -69,11 +69,14 @@ FOREIGN_CALIBRATIONS = (
     ForeignCalibration("RealityCapture's metadata of a photograph", "export Internal/External camera parameters as CSV",
                        (".xmp",), (r"xcr:",)),
 )  # fmt: skip
-KEY = r"""(?:^|[\s"'{{,\[-])({words})["']?\s*[:=]"""
-INTRINSICS_KEY = KEY.format(words=r"K|camera_?matrix|intrinsics?\w*|f[xy]|fl_[xy]|focal\w*|camera_angle_\w+|\w*fov\w*")
-POSE_KEY = KEY.format(
-    words=r"R|rvecs?|rot\w*|extrinsics?\w*|transform\w*|cam\w*world|c2w|w2c|world\w*cam\w*|poses?\w*|tvecs?|trans\w*|"
-    r"position|quat\w*|q[wxyz]|T_\w+"
+# words of a bounded length, so that a search takes no more than its text
+KEY, W = r"""(?:^|[\s"'{,\[-])(%s)["']?\s{0,9}[:=]""", r"\w{0,24}"
+INTRINSICS_KEY = KEY % (
+    rf"k|k_{W}|k\d|m\d|mtx{W}|{W}matrix{W}|intrinsic{W}|f[xy]|fl_[xy]|focal{W}|camera_angle_{W}|{W}fov{W}"
+)
+POSE_KEY = KEY % (
+    rf"r|rvecs?|rot{W}|extrinsic{W}|transform{W}|cam{W}world|c2w|w2c|world{W}cam{W}|pose{W}|tvecs?|trans{W}|position|"
+    rf"quat{W}|q[wxyz]|t_{W}"
 )
 
 
@@ -127,12 +130,12 @@ def _recognise(path: Path) -> str | None:
         return f"{kind.what}): {kind.remedy}"
     if lower.endswith(".json") and is_transforms(path):
         return "a transforms.json): name {it} with --calibration"
+    flags = re.IGNORECASE | re.MULTILINE
+    if not lower.endswith(PASSED_OVER_TEXTS) or not re.search(INTRINSICS_KEY, head, flags):
+        return None
     content = opencv_content(path)
     if content == "poses":
         return "in OpenCV's terms): name {it} with --calibration"
     if content == "intrinsics":
         return "intrinsics without poses): name {it} with --intrinsics of `eigenfield calibrate`"
-    flags = re.IGNORECASE | re.MULTILINE
-    if lower.endswith(PASSED_OVER_TEXTS) and all(re.search(key, head, flags) for key in (INTRINSICS_KEY, POSE_KEY)):
-        return f"of no known program): {WRITE_TRANSFORMS}"
-    return None
+    return f"of no known program): {WRITE_TRANSFORMS}" if re.search(POSE_KEY, head, flags) else None

@@ -35,6 +35,7 @@ LENS_MODEL_WORD = re.compile(
 )
 LENS_COUNTS = range(1, 9)  # of coefficients that stand in a row; nine are a matrix
 LENS_MAX_FIRST = 100  # of the first one: beyond, it is a focal length in pixels
+LENS_MAX_KEY_CHARACTERS = 100  # of a key that are looked at
 LENS_MAX_DEPTH = 8
 
 
@@ -80,7 +81,7 @@ def letters(word: str) -> str:
 
 def is_lens(key: str, value: Any) -> bool:
     """Whether a key looks like a lens, and its value says something of one."""
-    key = letters(key)
+    key = letters(key[:LENS_MAX_KEY_CHARACTERS])
     if isinstance(value, str) and LENS_MODEL_WORD.match(letters(value)):
         return LENS_MODEL_KEY.fullmatch(key) is not None
     one, row, other = (pattern.fullmatch(key) for pattern in (LENS_COEFFICIENT_KEY, LENS_LIST_KEY, LENS_OTHER_KEY))

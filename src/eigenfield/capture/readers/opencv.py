@@ -25,7 +25,13 @@ from eigenfield.capture.messages import describe
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.readers.by_order import photographs_in_order
 from eigenfield.capture.readers.filestorage import STORAGE_EXTENSIONS, Tree, is_storage, load_storage
-from eigenfield.capture.readers.lens_keys import has_numbers, is_lens, letters, refuse_lens_key
+from eigenfield.capture.readers.lens_keys import (
+    LENS_MAX_KEY_CHARACTERS,
+    has_numbers,
+    is_lens,
+    letters,
+    refuse_lens_key,
+)
 from eigenfield.capture.readers.skew import remove_skew
 from eigenfield.capture.readers.text import (
     camera_centre,
@@ -341,7 +347,7 @@ def _match_role(key: str, value: Any, inside_lens: bool = False) -> tuple[str | 
     low = key.lower().replace("-", "_").replace(" ", "_")
     if low.replace("_", "") in OPENCV_COEFFICIENTS and isinstance(value, float):
         return low.replace("_", ""), ""
-    if OPENCV_ANGLES_KEY.search(low.replace("_", "")) and has_numbers(value):
+    if OPENCV_ANGLES_KEY.search(letters(low[:LENS_MAX_KEY_CHARACTERS])) and has_numbers(value):
         return "angles", ""
     if inside_lens and low in OPENCV_LENS_PARTS and _as_numbers(value):
         return "distortion", ""
