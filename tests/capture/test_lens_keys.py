@@ -9,6 +9,7 @@ import pytest
 import yaml
 
 from eigenfield.capture.photographs.lens import Lens
+from eigenfield.capture.readers.colmap import read_colmap
 from eigenfield.capture.readers.deepview import read_deepview
 from eigenfield.capture.readers.lens_keys import is_lens
 from eigenfield.capture.readers.metashape import read_metashape
@@ -56,6 +57,8 @@ def read(folder, keys, ending="json"):
     ({"distortion": {"K1": 0.3, "k_2": 0.05, "p1": 0.01, "p2": -0.02, "k3": 0.03, "model": "radtan"}}, BROWN),
     ({"distortion": {"coeffs": FIVE, "type": "brown"}}, BROWN),
     ({"lens": {"params": [0.3, 0.05], "model": "fisheye"}}, Lens("fisheye", (0.3, 0.05, 0, 0))),
+    ({"dist": FIVE, "distortion_model": "PlumbBob"}, BROWN),
+    ({"dist": [0.3, 0.05], "camera_model": "KannalaBrandt4"}, Lens("fisheye", (0.3, 0.05, 0, 0))),
     ({"k1": 0.3, "k4": 0.05, "k6": 0.1}, Lens("rational", (0.3, 0, 0, 0, 0, 0.05, 0, 0.1))),
     ({"lens_offset": [0, 0.0], "K1": 0, "distance": 3.5, "lens": "EF 24mm", "distortion_model": None}, None),
 ])  # fmt: skip
@@ -142,7 +145,7 @@ def test_transforms_names_what_it_does_not_read(tmp_path, extra):
 
 @pytest.mark.parametrize(("model", "code"), [
     ("pinhole", None), ("Simple Pinhole", None), ("opencv", None), (None, None), ("", None), ("opencv-fisheye", None),
-    ("fisheye624", "camera-model"), (3, "camera-model"),
+    ("SimplePinhole", None),    ("fisheye624", "camera-model"), (3, "camera-model"),
 ])  # fmt: skip
 def test_a_camera_model_in_any_case(tmp_path, model, code):
     path = tmp_path / "transforms.json"
@@ -177,3 +180,11 @@ def test_deepview_metashape_and_realitycapture(tmp_path):
 ])  # fmt: skip
 def test_what_looks_like_a_lens(key, value, wanted):
     assert is_lens(key, value) is wanted
+
+
+def test_colmaps_model_in_any_case(tmp_path):
+    (tmp_path / "cameras.txt").write_text("1 simple_Radial 96 64 90 48 32 0.1\n2 fov 96 64 90 90 48 32 0.1\n")
+    (tmp_path / "images.txt").write_text("1 1 0 0 0 0 0 0 1 a.png\n\n2 1 0 0 0 1 0 0 2 b.png\n\n")
+    read = read_colmap(tmp_path)
+    assert [entry.lens for entry in read.entries] == [Lens("brown", (0.1, 0, 0, 0, 0))]
+    assert [error.code for error in read.errors] == ["camera-model"]

@@ -195,6 +195,16 @@ def test_long_lines_take_no_more_than_their_length(tmp_path, line):
         load_storage(path)
 
 
+@pytest.mark.parametrize("body", [
+    "a = 9", "a = [" * 5000, "a." * 5000 + "a = 1", "1." * 5000 + "1 = 1", '","."' * 5000, "a = " + "9" * 5000,
+])  # fmt: skip
+def test_damaged_toml_is_named(tmp_path, body):
+    path = tmp_path / "a.toml"
+    path.write_text(body + "\n")
+    with contextlib.suppress(CaptureError):
+        assert list(load_storage(path)) == ["a"]
+
+
 def test_storage_reads_what_opencv_writes(tmp_path):
     matrix = np.arange(12.0).reshape(3, 4) / 7
     for suffix in ("yml", "xml", "json"):

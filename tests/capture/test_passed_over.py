@@ -47,6 +47,7 @@ def test_what_is_not_read_is_named(tmp_path, name):
     (line,) = opened.problems
     assert isinstance(opened, PhotoSet) and line.startswith(f"{name} looks like a calibration and is not read (")
     assert not open_any(tmp_path, format="folder").problems
+    assert line.split(": ")[1] in refused("calibration-missing", tmp_path).remedy
 
 
 @pytest.mark.parametrize(("name", "text"), [
@@ -66,6 +67,9 @@ def test_the_remedy_of_a_line_reads_the_cameras(tmp_path):
     assert open_any(tmp_path).problems[0].endswith("(in OpenCV's terms): name it with --calibration")
     opened = open_any(tmp_path, calibration=tmp_path / "rig.json")
     assert opened.format == "opencv" and len(opened) == 4 and not opened.problems
+    for name in ("cameras.json", "camchain.yaml", "meta_data.json", "trajectory.log"):
+        (tmp_path / name).write_text(FOREIGN[name])
+        refused("calibration-foreign", tmp_path, calibration=tmp_path / name)
     (tmp_path / "rig.json").write_text('{"a": [1, 2]}')
     refused("calibration-json", tmp_path, calibration=tmp_path / "rig.json")
 
@@ -80,6 +84,8 @@ def test_what_is_read_is_used(tmp_path, writer, format):
     writer(tmp_path, stations(True, True))
     opened = open_any(tmp_path)
     assert isinstance(opened, LightField) and opened.format == format and not opened.problems and len(opened) == 4
+    for one, station in zip(opened.cameras, stations(True, True), strict=True):
+        assert np.abs(one.project(write.CUBE)[0] - station.pixels(write.CUBE)).max() < 1e-6
 
 
 def test_a_file_that_numbers_its_cameras(tmp_path):

@@ -152,7 +152,7 @@ def nvm(folder: Path, all_stations, radial=0.0, fixed="", more="") -> Path:
         rows, _ = world_to_camera(s)
         name = f"images/{s.name}".replace(" ", '"')
         lines.append(f"{name}\t{s.fx!r} {words(quaternion(rows))} {words(s.eye)} {radial!r} 0 ")
-    lines += ["", "2", *["1 2 3 255 0 0 700 " + "0 12 3.5 -2.5 " * 700] * 2, more or "0", "", "#the last part"]
+    lines += ["", "2", *["1 2 3 255 0 0 700 " + "0 12 3.5 -2.5 " * 300] * 2, more or "0", "", "#the last part"]
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / "model.nvm"
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")

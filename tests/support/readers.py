@@ -45,13 +45,12 @@ WRITERS = {
     "opencv": (lambda folder: write.opencv_files(folder / "calib", stations()), read_opencv),
     "opencv-xml": (lambda folder: write.opencv_files(folder / "calib", stations(), kind="xml"), read_opencv),
     "easymocap": (lambda folder: write.easymocap(folder, stations()), read_opencv),
-    "plain-yaml": (lambda folder: write.plain_yaml(folder, stations()), read_opencv),
     "toml": (lambda folder: write.toml(folder, stations()), read_opencv),
     "nvm": (lambda folder: write.nvm(folder, stations(True, True)), read_nvm),
     "projections": (lambda folder: write.projections(folder, stations()), read_projections),
 }
 CENTRED = ("llff", "bundler", "nvm", "realitycapture")  # without a principal point here, and with square pixels
-FORMATS = dict.fromkeys(("opencv-xml", "easymocap", "plain-yaml", "toml"), "opencv")
+FORMATS = dict.fromkeys(("opencv-xml", "easymocap", "toml"), "opencv")
 
 
 def stem(entry) -> str:

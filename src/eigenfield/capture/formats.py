@@ -10,7 +10,7 @@ from eigenfield.capture.arrangement import Arrangement, OpenOptions
 from eigenfield.capture.calibration import Calibration, escape_name
 from eigenfield.capture.locate import is_photograph_file
 from eigenfield.capture.messages import list_names
-from eigenfield.capture.passed_over import describe_passed_over
+from eigenfield.capture.passed_over import describe_passed_over, refuse_foreign
 from eigenfield.capture.photographs.kinds import MESH_KIND, OTHER_KINDS, VIDEO_EXTENSIONS
 from eigenfield.capture.readers import colmap, transforms
 from eigenfield.capture.readers.bundler import find_bundler, find_unlisted, read_bundler
@@ -216,12 +216,14 @@ def _relative_name(found: Path, folder: Path) -> str:
 def claim_of_file(path: Path, formats: tuple[Format, ...]) -> Claim:
     """The format of a file that is named: a calibration, or the video of a walk.
 
-    Raises CaptureError: `calibration-unknown`, `format-ambiguous`.
+    Raises CaptureError: `calibration-unknown`, `calibration-foreign`, `format-ambiguous`.
     """
     if FORMATS_BY_NAME["walk"] in formats and path.name.lower().endswith(VIDEO_EXTENSIONS):
         return Claim(FORMATS_BY_NAME["walk"], path)
     if len(formats) > 1 and path.name == DEEPVIEW_FILE and find_deepview(path.parent) == path:
         return Claim(FORMATS_BY_NAME["deepview"], path)
+    if len(formats) > 1:
+        refuse_foreign(path)
     if len(formats) > 1 and path.suffix.lower() == ".json":
         in_opencvs_terms = not transforms.is_transforms(path) and opencv_content(path) == "poses"
         return Claim(FORMATS_BY_NAME["opencv" if in_opencvs_terms else "transforms"], path)

@@ -17,6 +17,7 @@ from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.locate import IMAGES_FOLDER, photograph_root, photographs_in
 from eigenfield.capture.messages import Note, count_phrase, list_names
 from eigenfield.capture.pairing import pair_photographs
+from eigenfield.capture.passed_over import describe_passed_over
 from eigenfield.capture.photographs.exr import choose_exposure
 from eigenfield.capture.photographs.kinds import VIDEO_EXTENSIONS, is_linear
 from eigenfield.capture.photoset import Capture, PhotoSet
@@ -356,7 +357,9 @@ def _no_cameras(path: Path, problems: tuple[str, ...] = ()) -> CaptureError:
     why = next((problem for problem in problems if "cannot be used" in problem), None)
     message = "has no calibration (transforms.json, COLMAP model or another that `eigenfield help captures` lists)"
     others = sorted(p.name for p in path.glob("*.json"))
-    if others:
+    if unread := describe_passed_over(path):
+        remedy = "; ".join(unread)
+    elif others:
         remedy = f"it holds {list_names(others)}: name one as the calibration"
     elif path.is_dir() and (photographs_in(path) or photographs_in(path / IMAGES_FOLDER)):
         words = shell_word(path)

@@ -16,11 +16,13 @@ from eigenfield.capture.messages import list_names
 from eigenfield.capture.readers.opencv import OPENCV_FOLDERS, opencv_content
 from eigenfield.capture.readers.text import files_in, read_head
 from eigenfield.capture.readers.transforms import is_transforms
+from eigenfield.core.errors import CaptureError
 
 PASSED_OVER_FOLDERS = (*OPENCV_FOLDERS, "cams", "pose", "poses", "images")
 PASSED_OVER_MAX_FILES = 200  # of a folder that are looked into
 PASSED_OVER_HEAD_BYTES = 64 * 1024
 PASSED_OVER_TEXTS = (".json", ".yml", ".yaml", ".toml")
+PASSED_OVER_NAMED = (".json", ".yml", ".yaml", ".npz", ".xmp", ".log")  # by which a file of no reader may be named
 PASSED_OVER_ENDINGS = (*PASSED_OVER_TEXTS, ".xml", ".txt", ".log", ".npz", ".xmp", ".tum")
 
 
@@ -67,11 +69,14 @@ FOREIGN_CALIBRATIONS = (
     ForeignCalibration("RealityCapture's metadata of a photograph", "export Internal/External camera parameters as CSV",
                        (".xmp",), (r"xcr:",)),
 )  # fmt: skip
-KEY = r"""(?:^|[\s"'{{,\[-])({words})["']?\s*[:=]"""
-INTRINSICS_KEY = KEY.format(words=r"K|camera_?matrix|intrinsics?\w*|f[xy]|fl_[xy]|focal\w*|camera_angle_\w+|\w*fov\w*")
-POSE_KEY = KEY.format(
-    words=r"R|rvecs?|rot\w*|extrinsics?\w*|transform\w*|cam\w*world|c2w|w2c|world\w*cam\w*|poses?\w*|tvecs?|trans\w*|"
-    r"position|quat\w*|q[wxyz]|T_\w+"
+# words of a bounded length, so that a search takes no more than its text
+KEY, W = r"""(?:^|[\s"'{,\[-])(%s)["']?\s{0,9}[:=]""", r"\w{0,24}"
+INTRINSICS_KEY = KEY % (
+    rf"k|k_{W}|k\d|m\d|mtx{W}|{W}matrix{W}|intrinsic{W}|f[xy]|fl_[xy]|focal{W}|camera_angle_{W}|{W}fov{W}"
+)
+POSE_KEY = KEY % (
+    rf"r|rvecs?|rot{W}|extrinsic{W}|transform{W}|cam{W}world|c2w|w2c|world{W}cam{W}|pose{W}|tvecs?|trans{W}|position|"
+    rf"quat{W}|q[wxyz]|t_{W}"
 )
 
 
@@ -95,25 +100,42 @@ def describe_passed_over(folder: Path, named: Collection[Path | None] = ()) -> l
     ]
 
 
+def refuse_foreign(path: Path) -> None:
+    """CaptureError `calibration-foreign` for a calibration that is named, of a program whose files are not read."""
+    if path.suffix.lower() in PASSED_OVER_NAMED and not is_transforms(path) and opencv_content(path) != "poses":
+        kind = _foreign_kind(path, _head(path))
+        if kind is not None:
+            remedy = kind.remedy.format(it="it")
+            raise CaptureError("calibration-foreign", f"is {kind.what}, which is not read", path=path, remedy=remedy)
+
+
 def _looks(names: list[str]) -> str:
     return "looks like a calibration and is not read" if len(names) == 1 else "look like calibrations and are not read"
 
 
+def _head(path: Path) -> str:
+    return read_head(path, PASSED_OVER_HEAD_BYTES).decode("latin-1")
+
+
+def _foreign_kind(path: Path, head: str) -> ForeignCalibration | None:
+    kinds = (kind for kind in FOREIGN_CALIBRATIONS if path.name.lower().endswith(kind.endings))
+    return next((kind for kind in kinds if all(re.search(mark, head) for mark in kind.marks)), None)
+
+
 def _recognise(path: Path) -> str | None:
     """What a calibration is, and the remedy; None for another file."""
-    head = read_head(path, PASSED_OVER_HEAD_BYTES).decode("latin-1")
-    lower = path.name.lower()
-    for kind in FOREIGN_CALIBRATIONS:
-        if lower.endswith(kind.endings) and all(re.search(mark, head) for mark in kind.marks):
-            return f"{kind.what}): {kind.remedy}"
+    head, lower = _head(path), path.name.lower()
+    kind = _foreign_kind(path, head)
+    if kind is not None:
+        return f"{kind.what}): {kind.remedy}"
     if lower.endswith(".json") and is_transforms(path):
         return "a transforms.json): name {it} with --calibration"
+    flags = re.IGNORECASE | re.MULTILINE
+    if not lower.endswith(PASSED_OVER_TEXTS) or not re.search(INTRINSICS_KEY, head, flags):
+        return None
     content = opencv_content(path)
     if content == "poses":
         return "in OpenCV's terms): name {it} with --calibration"
     if content == "intrinsics":
         return "intrinsics without poses): name {it} with --intrinsics of `eigenfield calibrate`"
-    flags = re.IGNORECASE | re.MULTILINE
-    if lower.endswith(PASSED_OVER_TEXTS) and all(re.search(key, head, flags) for key in (INTRINSICS_KEY, POSE_KEY)):
-        return f"of no known program): {WRITE_TRANSFORMS}"
-    return None
+    return f"of no known program): {WRITE_TRANSFORMS}" if re.search(POSE_KEY, head, flags) else None

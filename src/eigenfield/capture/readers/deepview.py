@@ -23,7 +23,7 @@ from eigenfield.capture.calibration import (
     read_each,
 )
 from eigenfield.capture.photographs.lens import Lens
-from eigenfield.capture.readers.lens_keys import refuse_lens_keys
+from eigenfield.capture.readers.lens_keys import letters, refuse_lens_keys
 from eigenfield.capture.readers.text import (
     check_finite,
     check_lens,
@@ -107,7 +107,7 @@ def _make_entry(camera: Any, number: int, longest: float, path: Path) -> Entry:
 
 def _make_lens(kind: Any, radial: list[float], label: str, path: Path) -> Lens | None:
     k1, k2, k3, k4 = (*radial, 0.0, 0.0, 0.0, 0.0)[:4]
-    word = kind.strip().lower() if isinstance(kind, str) else ""
+    word = letters(kind) if isinstance(kind, str) else ""
     if word == "fisheye":
         return Lens("fisheye", (k1, k2, k3, k4))
     lens = Lens("brown", (k1, k2, 0.0, 0.0, k3))

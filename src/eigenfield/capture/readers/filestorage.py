@@ -29,6 +29,9 @@ STORAGE_EXTENSIONS = (*STORAGE_PLAIN_EXTENSIONS, ".xml", ".json")
 STORAGE_MAX_NODES = 2**20  # of a YAML with aliases, what they repeat counted each time
 STORAGE_MAX_DEPTH = 32
 STORAGE_MAX_BYTES = 8 * 2**20  # the points of a thousand charts fit
+# dots between the parts of a key, and not in a number: tomllib takes the square of their number
+STORAGE_KEY_DOT = re.compile(r"(?<![0-9])\.|\.(?![0-9eE\s,\]])|\.[\d_-]+\s*\.")
+STORAGE_MAX_KEY_DOTS = 100
 STORAGE_MAX_INTEGER = 2**1000  # beyond, it may be no float
 STORAGE_YAML_HEAD = re.compile(r"\A%YAML[^\n]*")  # OpenCV writes %YAML:1.0, which is no directive of YAML
 STORAGE_FLOW_KEY = re.compile(r"(?<=[{,])(\s*\w+:)(?=\S)")
@@ -117,6 +120,8 @@ def _from_json(source: str, path: Path) -> Any:
 
 
 def _from_toml(source: str, path: Path) -> Any:
+    if any(len(STORAGE_KEY_DOT.findall(line)) > STORAGE_MAX_KEY_DOTS for line in source.split("\n")):
+        raise _BadStorageError(f"a line with more than {STORAGE_MAX_KEY_DOTS} dots of a key")
     try:
         return _with_floats(tomllib.loads(source), 0)
     except (ValueError, RecursionError) as error:

@@ -18,8 +18,8 @@ from eigenfield.core.errors import CaptureError
 
 # of keys in lower case, without what is no letter and no digit
 LENS_KEY = re.compile(
-    r"(cam|camera|opencv|image|img|intrinsics?)?dist(?!ance|ribut|rict|inct|to|from)|(?!.*undist).*distort|.*(lens|radial|tangential|decenter|fisheye|ftheta)"
-    r"|.*coef|thinprism|latlong|equirect|orthographic"
+    r"(cam|camera|opencv|image|img|intrinsics?)?dist(?!ance|ribut|rict|inct|to|from)|(?!.*undist).*distort"
+    r"|.*(lens|radial|tangential|decenter|fisheye|ftheta|coef)|thinprism|latlong|equirect|orthographic"
 )
 LENS_COEFFICIENT_KEY = re.compile(r"(k|p|s|sx|sy|kappa)\d{1,2}|tau[xy]|omega|xi")  # of one number
 LENS_LIST_KEY = re.compile(r"d|k|kc")  # of coefficients in a row
@@ -35,6 +35,7 @@ LENS_MODEL_WORD = re.compile(
 )
 LENS_COUNTS = range(1, 9)  # of coefficients that stand in a row; nine are a matrix
 LENS_MAX_FIRST = 100  # of the first one: beyond, it is a focal length in pixels
+LENS_MAX_KEY_CHARACTERS = 100  # of a key that are looked at
 LENS_MAX_DEPTH = 8
 
 
@@ -73,14 +74,15 @@ def lens_keys(values: Mapping[str, Any], read: Container[str] = (), depth: int =
             yield from lens_keys(value, (), depth + 1)
 
 
-def _plain(word: str) -> str:
+def letters(word: str) -> str:
+    """A word as names are compared that differ in case and separators alone: its letters and digits."""
     return re.sub(r"[\W_]+", "", word).lower()
 
 
 def is_lens(key: str, value: Any) -> bool:
     """Whether a key looks like a lens, and its value says something of one."""
-    key = _plain(key)
-    if isinstance(value, str) and LENS_MODEL_WORD.match(_plain(value)):
+    key = letters(key[:LENS_MAX_KEY_CHARACTERS])
+    if isinstance(value, str) and LENS_MODEL_WORD.match(letters(value)):
         return LENS_MODEL_KEY.fullmatch(key) is not None
     one, row, other = (pattern.fullmatch(key) for pattern in (LENS_COEFFICIENT_KEY, LENS_LIST_KEY, LENS_OTHER_KEY))
     if not (one or row or LENS_KEY.match(key)):

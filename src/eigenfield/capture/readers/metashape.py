@@ -30,6 +30,7 @@ from eigenfield.capture.calibration import (
     escape_name,
     or_error,
     read_each,
+    split_scale,
 )
 from eigenfield.capture.messages import describe
 from eigenfield.capture.photographs.lens import Lens
@@ -203,9 +204,11 @@ def _read_frame(transform: Element, label: str, path: Path) -> _Frame:
             linear = linear * scale
     check_finite([linear, shift], f"the transform of {label}", path)
     with np.errstate(all="ignore"):
-        rotation = linear / scale
-        fits = 0 < scale < CALIBRATION_MAX_MAGNITUDE and np.allclose(
-            rotation @ rotation.T, np.eye(3), atol=METASHAPE_ROTATION_TOLERANCE
+        rotation, grown = split_scale(linear / scale)
+        fits = (
+            grown == 1
+            and 0 < scale < CALIBRATION_MAX_MAGNITUDE
+            and np.allclose(rotation @ rotation.T, np.eye(3), atol=METASHAPE_ROTATION_TOLERANCE)
         )
     if not fits:
         message = f"the transform of {label} is not a rotation, a shift and a positive scale"
@@ -234,11 +237,13 @@ def _read_offset(sensor: Element | None, label: str, path: Path) -> NDArray[np.f
             remedy="make its cameras single ones in Metashape before exporting, or export another format",
         )
     offset = np.eye(4)
-    offset[:3, :3] = parse_numbers(rotation.split(), 9, f"the rotation of the sensor of {label}", path).reshape(3, 3)
+    turn = parse_numbers(rotation.split(), 9, f"the rotation of the sensor of {label}", path).reshape(3, 3)
+    offset[:3, :3], grown = split_scale(turn)
     if shift is not None:
         offset[:3, 3] = parse_numbers(shift.split(), 3, f"the translation of the sensor of {label}", path)
     check_finite([offset], label, path)
-    if not np.allclose(offset[:3, :3] @ offset[:3, :3].T, np.eye(3), atol=METASHAPE_ROTATION_TOLERANCE):
+    straight = np.allclose(offset[:3, :3] @ offset[:3, :3].T, np.eye(3), atol=METASHAPE_ROTATION_TOLERANCE)
+    if grown != 1 or not straight:
         raise damaged_error(path, f"the rotation of the sensor of {label} is none", "export the cameras again")
     return offset
 

@@ -25,7 +25,13 @@ from eigenfield.capture.messages import describe
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.readers.by_order import photographs_in_order
 from eigenfield.capture.readers.filestorage import STORAGE_EXTENSIONS, Tree, is_storage, load_storage
-from eigenfield.capture.readers.lens_keys import has_numbers, is_lens, refuse_lens_key
+from eigenfield.capture.readers.lens_keys import (
+    LENS_MAX_KEY_CHARACTERS,
+    has_numbers,
+    is_lens,
+    letters,
+    refuse_lens_key,
+)
 from eigenfield.capture.readers.skew import remove_skew
 from eigenfield.capture.readers.text import (
     camera_centre,
@@ -341,7 +347,7 @@ def _match_role(key: str, value: Any, inside_lens: bool = False) -> tuple[str | 
     low = key.lower().replace("-", "_").replace(" ", "_")
     if low.replace("_", "") in OPENCV_COEFFICIENTS and isinstance(value, float):
         return low.replace("_", ""), ""
-    if OPENCV_ANGLES_KEY.search(low.replace("_", "")) and has_numbers(value):
+    if OPENCV_ANGLES_KEY.search(letters(low[:LENS_MAX_KEY_CHARACTERS])) and has_numbers(value):
         return "angles", ""
     if inside_lens and low in OPENCV_LENS_PARTS and _as_numbers(value):
         return "distortion", ""
@@ -599,10 +605,10 @@ def _is_rational(found: Values) -> bool:
 def _is_fisheye(model: Any, label: str, path: Path) -> bool:
     if model is None or isinstance(model, (float, bool)):
         return bool(model)
-    word = re.sub(r"[\s-]+", "_", str(model).strip().lower())
-    if word in OPENCV_FISHEYE_MODELS:
+    word = letters(str(model))
+    if word in map(letters, OPENCV_FISHEYE_MODELS):
         return True
-    if word not in OPENCV_BROWN_MODELS:
+    if word not in ("", "none", *map(letters, OPENCV_BROWN_MODELS)):
         raise CaptureError(
             "camera-model",
             f"{label} has the distortion model {excerpt(model)!r}, which is not read",

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import math
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -20,7 +19,7 @@ from numpy.typing import NDArray
 
 from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name, read_each
 from eigenfield.capture.photographs.lens import Lens
-from eigenfield.capture.readers.lens_keys import lens_keys
+from eigenfield.capture.readers.lens_keys import lens_keys, letters
 from eigenfield.capture.readers.text import CALIBRATION_MAX_SIDE_PIXELS, excerpt, read_contents, read_head
 from eigenfield.core.errors import CaptureError
 
@@ -39,6 +38,10 @@ TRANSFORMS_READ_LENS_KEYS = {
 }  # fmt: skip
 # a lens that no other reader of this format knows: they refuse the name, as they should
 TRANSFORMS_OWN_MODEL = "EIGENFIELD"
+TRANSFORMS_MODELS_BY_LETTERS = {
+    letters(model): model
+    for model in (*TRANSFORMS_PERSPECTIVE_MODELS, *TRANSFORMS_FISHEYE_MODELS, TRANSFORMS_OWN_MODEL)
+}
 TRANSFORMS_OWN_COEFFICIENTS = {
     "rational": (8, 12, 14), "metashape": (9,), "metashape-equidistant": (9,), "metashape-equisolid": (9,)
 }  # fmt: skip
@@ -269,7 +272,7 @@ def _read_angle(owner: _Frame, required: bool) -> tuple[float, float | None] | N
 
 def _read_lens(frame: _Frame) -> Lens | None:
     given = frame.own.get("camera_model") or frame.top.get("camera_model") or "OPENCV"  # null is no model
-    model = re.sub(r"[\s-]+", "_", given.strip().upper()) if isinstance(given, str) else None
+    model = TRANSFORMS_MODELS_BY_LETTERS.get(letters(given)) if isinstance(given, str) else None
     if model == TRANSFORMS_OWN_MODEL:
         return _read_own_lens(frame)
     fisheye = model in TRANSFORMS_FISHEYE_MODELS or bool(frame.get("is_fisheye", False))
