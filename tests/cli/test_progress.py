@@ -49,7 +49,7 @@ def test_steps_are_numbered_and_the_rest_follows_this_machines_pace(monkeypatch:
     told.begin("array")
     clock.now = 200  # twice as long as was expected
     told.begin("mesh")  # no trial was needed
-    assert told.headings == ["step 1 of 4: depth, about 17 min left", "step 3 of 4: mesh, about 18 min left"]
+    assert told.headings == ["step 1 of 4: depth, about 17 min left", "step 2 of 3: mesh, about 18 min left"]
     clock.now = 260
     assert told.left() == "about 17 min left"
     told.begin("mesh")  # the same once more is no new step
@@ -68,11 +68,12 @@ def test_layers_change_what_is_to_come(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_steps_that_were_not_foreseen_take_the_places_of_those_that_were(monkeypatch: pytest.MonkeyPatch) -> None:
     Clock(monkeypatch)
     told = Told()
-    told.plan({"motion": 100, "array": 100, "relief": 100, "mesh": 100}, {"proxy": "atlas"})
+    planned = "motion", "array", "relief", "trial", "layers", "mesh"
+    told.plan(dict.fromkeys(planned, 100), {"proxy": "atlas"})
     for step in ("motion", "surface", "proxy", "mesh"):
         told.begin(step)
     steps = [heading.partition(",")[0] for heading in told.headings]
-    assert steps == ["step 1 of 4: motion", "step 2 of 4: surface", "step 3 of 4: atlas", "step 4 of 4: mesh"]
+    assert steps == ["step 1 of 6: motion", "step 2 of 6: surface", "step 3 of 6: atlas", "step 4 of 4: mesh"]
 
 
 def test_time_of_compilation_says_nothing_about_the_pace(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -18,7 +18,7 @@ def hills() -> Mesh:
     """A square of hills that no axis change maps to itself."""
     side = 24
     y, x = np.mgrid[0:side, 0:side] / (side - 1) * 2 - 1
-    z = 0.3 * np.sin(3 * x) + 0.25 * np.cos(4 * y) * x + 0.2 * y
+    z = 0.3 * np.sin(3 * x) + 0.25 * np.cos(4 * y) * x + 0.2 * y + 0.3 * x**2
     corner = (np.arange(side - 1)[:, None] * side + np.arange(side - 1)).reshape(-1)
     faces = np.concatenate([corner[:, None] + np.array(c) for c in ((0, 1, side + 1), (0, side + 1, side))])
     return Mesh(np.stack([x, y, z], axis=-1).reshape(-1, 3).astype(np.float32), faces.astype(np.int32))
@@ -93,7 +93,7 @@ def test_axes_of_another_program_are_named(photographs, words):
 
 @pytest.mark.parametrize(
     ("matrix", "shift", "words"),
-    [(np.eye(3) * 2, (0, 0, 0), "0.513 times as large"), (np.eye(3) * 0.9, (0, 0, 0), "1.1 times as large"),
+    [(np.eye(3) * 2, (0, 0, 0), "0.513 times as large"), (np.eye(3) * 0.75, (0, 0, 0), "1.33 times as large"),
      (np.eye(3), (0.5, 0, 0), "along x"), (np.eye(3), (0, 0, -0.5), "along z")],
 )  # fmt: skip
 def test_another_size_and_place_are_named(photographs, matrix, shift, words):

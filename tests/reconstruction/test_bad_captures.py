@@ -239,6 +239,7 @@ def test_too_few_photographs(array, tmp_path, number):
     [
         ["--density", "0"], ["--hold-out", "every:1"], ["--hold-out", "nobody.png"], ["--reference", "nobody.png"],
         ["--triangles", "0"], ["--atlas", "0"], ["--uv-ssim", "2"], ["-n", "-1"], ["--blind"],
+        ["--layers", "0"], ["--layers", "0", "--fit", "none"], ["--blind", "--hold-out", "odd", "--surface", "poisson"],
         ["--fit-sphere", "nobody.png:1,2,3,4"], ["--primitive", "sphere:0,0,0,-1"],
         ["--codec", "webp", "--quality", "3"],
         ["--reference", "view_00_01.png", "--hold-out", "odd"],

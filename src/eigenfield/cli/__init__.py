@@ -153,10 +153,10 @@ def main() -> None:
     except click.exceptions.Exit as error:
         sys.exit(error.exit_code)
     except click.ClickException as error:
+        error.show()
         named = [word for word in sys.argv[1:] if word.startswith("-") and os.path.lexists(word)]
         if isinstance(error, click.NoSuchOption) and named:
-            error.message += f" For what is called so, say {shell_word(named[0])}."
-        error.show()
+            click.echo(f"To name what is called so, say {shell_word(named[0])}", err=True)
         sys.exit(2)
     except EigenfieldError as error:
         if _signals:  # a library has caught the KeyboardInterrupt and failed later

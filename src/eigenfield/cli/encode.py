@@ -144,6 +144,7 @@ def command(
     from eigenfield.encoding.views import check_selection
     from eigenfield.gltf import parts, refuse_output, save
     from eigenfield.proxy import refuse_no_mesh
+    from eigenfield.reconstruction import ReconstructionSettings, check_settings
     from eigenfield.runtime.objects import find_objects
 
     started = time.monotonic()
@@ -169,6 +170,7 @@ def command(
 
             def check(opened: Capture) -> None:
                 check_selection(opened, options)
+                check_settings(opened, ReconstructionSettings.of_arguments(settings))
                 announce(opened, options, settings, progress)
 
             made = reconstruct_capture(capture, place, scratch, progress, quiet, check, workers=reached, **settings)

@@ -335,9 +335,10 @@ def report_lines(report: dict[str, Any]) -> list[str]:
         f"{f['format']} {f['depth']} bit{' with alpha' if f['alpha'] else ''} ({f['views']})" for f in report["files"]
     )
     bare = len(report["photographs"])
-    lenses = "  lenses     none: the views are pinholes"
-    if report["distorted"]:
-        lenses = f"  lenses     {report['distorted']} of {report['views']} views are undistorted on reading"
+    bent = (
+        "distortion is taken out of {distorted} of {views} views" if report["distorted"] else "no distortion is stated"
+    )
+    lenses = f"  lenses     {bent.format(**report)}"
     what = f"{bare} photographs without cameras" if bare else f"{report['views']} views"
     lines = [
         f"{report['root']}: {what} from {report['format']}",

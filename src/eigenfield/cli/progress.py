@@ -63,14 +63,18 @@ class StepProgress:
         self.planned, self._words, self._layered = dict(seconds), dict(words), dict(layered or {})
 
     def begin(self, step: str) -> None:
-        """A step begins, and the one before has ended. Steps between them were not needed. A step that was not foreseen
-        takes the place of the next: cameras all around give a surface, where depth from one side was foreseen."""
+        """A step begins, and the one before has ended. Steps between them were not needed and count no longer. One that
+        was not foreseen takes the place of the next: cameras all around give a surface, where depth from one side was
+        foreseen."""
         if step == self._step:
             return
         names = list(self.planned)
         if self._step in names[:-1] and step not in names:
             names[names.index(self._step) + 1] = step
             self.planned = dict(zip(names, self.planned.values(), strict=True))
+        if self._step in names and step in self.planned:
+            for needless in list(self.planned)[names.index(self._step) + 1 : list(self.planned).index(step)]:
+                del self.planned[needless]
         now = time.monotonic()
         if self._step in self.planned:
             self._spent += now - self._step_started - self._compiled

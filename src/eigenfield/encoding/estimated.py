@@ -17,7 +17,7 @@ from eigenfield.core.proxy import Proxy
 from eigenfield.encoding.options import EncodeOptions
 from eigenfield.encoding.views import check_selection
 from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES, refuse_no_mesh
-from eigenfield.reconstruction import reconstruct
+from eigenfield.reconstruction import ReconstructionSettings, reconstruct
 from eigenfield.runtime.tasks import Workers
 
 log = logging.getLogger("eigenfield.encode")
@@ -34,7 +34,7 @@ def reconstruction_settings(options: EncodeOptions, own: Mapping[str, Any], blin
         blind: Whether held-out photographs take no part in cameras and proxy.
 
     Raises:
-        OptionError: `blind`, `sheets`.
+        OptionError: `blind`, `sheets`, and those of `ReconstructionSettings`.
     """
     if blind and options.hold_out is None:
         raise OptionError("blind", "--blind is about held-out photographs", remedy="say which with --hold-out")
@@ -44,6 +44,7 @@ def reconstruction_settings(options: EncodeOptions, own: Mapping[str, Any], blin
         "blind": options.hold_out if blind else None,
         "hold_out": options.hold_out,
     }
+    ReconstructionSettings.of_arguments(settings)
     if options.resolved().fit == "none":  # texture maps know one opaque surface
         if own["surface"] == "layers" or (own["layers"] or 1) > 1:
             message = "texture maps of several layers, which only a fit can make"

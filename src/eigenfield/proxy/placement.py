@@ -25,7 +25,7 @@ from eigenfield.runtime.parallel import parallel_map
 
 PLACEMENT_VIEWS = 4  # spread over the array, and the nearest one of each
 PLACEMENT_SIDE_PIXELS = 128  # longest side of the copies
-PLACEMENT_POINTS = 2000, 16_000  # of the surface, for every placement and for the best ones
+PLACEMENT_POINTS = 3000, 24_000  # of the surface, for every placement and for the best ones
 PLACEMENT_CELLS = 24, 48  # along the longest side of a picture, in which the nearest points hide others, likewise
 PLACEMENT_DEPTH_TOLERANCE = 0.05  # of the nearest depth of a cell, up to which points of it are seen
 PLACEMENT_MIN_SAMPLES = 200  # colours of points that two views see: with less nothing is known
@@ -210,17 +210,19 @@ def _placements(mesh: Mesh, cameras: Sequence[Camera]) -> list[Placement]:
 
 
 def _surface_points(mesh: Mesh, count: int) -> NDArray[np.float64]:
-    """About `count` points of the surface: three quarters evenly over its area, the rest at vertices, which are many
-    where there is detail."""
+    """At most `count` points of the surface: half of them evenly over its area, but fewer far outside, the rest at
+    vertices, which are many where there is detail."""
     corners = mesh.vertices[mesh.faces].astype(np.float64)
-    area = np.cumsum(triangle_areas(corners))
-    number = np.arange(3 * count // 4)
+    away = mesh.vertices - np.median(mesh.vertices.astype(np.float64), axis=0)
+    reach = (away**2).sum(axis=1)
+    area = np.cumsum(triangle_areas(corners) / (reach[mesh.faces].min(axis=1) + np.median(reach)))
+    number = np.arange(count // 2)
     face = np.searchsorted(area, (number + 0.5) / len(number) * area[-1])
     a, b = (number * step % 1 for step in (0.7548776662466927, 0.5698402909980532))  # Roberts's R2 sequence
     a, b = np.where(a + b > 1, 1 - a, a), np.where(a + b > 1, 1 - b, b)
     chosen = corners[np.minimum(face, len(corners) - 1)]
     inside = chosen[:, 0] + a[:, None] * (chosen[:, 1] - chosen[:, 0]) + b[:, None] * (chosen[:, 2] - chosen[:, 0])
-    return np.concatenate([inside, mesh.vertices[:: max(1, 4 * len(mesh.vertices) // count)].astype(np.float64)])
+    return np.concatenate([inside, mesh.vertices[:: -(-2 * len(mesh.vertices) // count)].astype(np.float64)])
 
 
 def _agreement(points: NDArray[np.float64], copies: Sequence[_Copy], cells: int) -> Agreement:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import shutil
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -44,7 +44,7 @@ class ReconstructionSettings:
         hold_out: Rule of the views that sheets are not made from; None: those of `blind`.
 
     Raises:
-        OptionError: `surface`, `layers`, `triangles`, `primitive` or `fit-sphere`.
+        OptionError: `surface`, `layers`, `triangles`, `blind`, `primitive` or `fit-sphere`.
     """
 
     surface: str = "auto"
@@ -69,10 +69,19 @@ class ReconstructionSettings:
                 f"{self.triangles} triangles were asked for",
                 remedy=f"ask for {UNWRAP_MIN_TRIANGLES} or more",
             )
+        if self.surface == "poisson" and self.blind is not None:
+            message = "a surface from all sides cannot be made blind, only arrays that look one way"
+            raise OptionError("blind", message, remedy="leave out --blind or --surface")
         for text in self.primitives:
             parse_primitive(text)
         for text in self.fit_spheres:
             parse_region(text)
+
+    @staticmethod
+    def of_arguments(arguments: Mapping[str, Any]) -> ReconstructionSettings:
+        """Those of the arguments of `reconstruct`. Raises OptionError."""
+        texts = {name: tuple(arguments[name] or ()) for name in ("primitives", "fit_spheres")}
+        return ReconstructionSettings(**{**arguments, **texts})
 
     @property
     def by_hand(self) -> str | None:

@@ -130,11 +130,9 @@ def reconstruct(
     settings = ReconstructionSettings(
         surface, layers, refine, triangles, background, tuple(primitives), tuple(fit_spheres), blind, hold_out
     )
-    for text in fit_spheres:  # before the long stages
-        find_view(parse_region(text), capture.names)
-    refuse_one_place(capture)
-    if surface == "layers":
-        check_capture(capture)
+    check_settings(capture, settings)
+    if blind is not None and capture.light_field is None and capture.layout is None:
+        log.warning("--blind is for cameras that look one way: if these turn out not to, this ends once they are known")
     with Stages(work) as stages:
         run = StageRunner(stages, settings, capture_identity(capture), progress, {}, workers)
         points = calibration = array = None
@@ -148,11 +146,7 @@ def reconstruct(
         else:
             assert capture.light_field is not None
             light_field = capture.light_field
-            if settings.blind is not None:
-                raise OptionError(
-                    "blind", "only arrays that look one way can be reconstructed blind",
-                    remedy="leave out --blind: held-out views then help to find cameras and proxy",
-                )  # fmt: skip
+            _refuse_blind(settings)
         source = SheetSource(capture, light_field, array, points, settings.hold_out or settings.blind)
         if settings.surface == "layers":
             proxy, error = sheets_of_capture(run, source, asked_count(run, source)), None
@@ -164,6 +158,30 @@ def reconstruct(
                 proxy, error = sheets_of_capture(run, source, count), None
         report = measure_proxy(proxy.mesh, light_field.cameras, error)
         return Reconstruction(light_field, proxy, calibration if work is not None else None, run.seconds, report)
+
+
+def check_settings(capture: Capture, settings: ReconstructionSettings) -> None:
+    """Before the long stages: refuse settings that do not fit what is known of a capture.
+
+    Raises:
+        CaptureError, OptionError: As `reconstruct`.
+    """
+    for text in settings.fit_spheres:
+        find_view(parse_region(text), capture.names)
+    refuse_one_place(capture)
+    if settings.surface == "layers":
+        check_capture(capture)
+    if (capture.light_field is not None or capture.layout is not None) and not _is_array(capture, settings):
+        _refuse_blind(settings)
+
+
+def _refuse_blind(settings: ReconstructionSettings) -> None:
+    """Raise OptionError `blind` for cameras all around."""
+    if settings.blind is not None:
+        raise OptionError(
+            "blind", "only arrays that look one way can be reconstructed blind",
+            remedy="leave out --blind: held-out views then help to find cameras and proxy",
+        )  # fmt: skip
 
 
 def _opaque_surface(run: StageRunner, source: SheetSource) -> tuple[Mesh, SurfaceError | None]:

@@ -147,11 +147,11 @@ def starved_fraction(mesh: Mesh, cameras: Sequence[Camera]) -> float:
         area[faces] = np.maximum(area[faces], np.abs(signed_areas(flat)))
         shown[faces] = np.maximum(shown[faces], pixels[whole])
     texels = np.abs(signed_areas(mesh.uv[mesh.faces].astype(np.float64)))
-    seen = area > 0
-    if not seen.any():
+    texels, area, shown = (values[area > 0] for values in (texels, area, shown))
+    if len(area) == 0:
         return 0.0
-    starved = texels[seen] / area[seen] < ATLAS_STARVED_RATIO * texels[seen].sum() / area[seen].sum()
-    return float(shown[seen][starved].sum() / shown[seen].sum())
+    starved = texels / area < ATLAS_STARVED_RATIO * texels.sum() / area.sum()
+    return float(shown[starved].sum() / shown.sum())
 
 
 def atlas_fault(mesh: Mesh, cameras: Sequence[Camera] | None = None) -> str | None:
