@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import unicodedata
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,7 +13,7 @@ from numpy.typing import NDArray
 
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.core.camera import Camera
-from eigenfield.core.errors import CaptureError
+from eigenfield.core.errors import CaptureError, one_line
 
 T = TypeVar("T")
 Made = TypeVar("Made")
@@ -25,9 +24,8 @@ CALIBRATION_FOCAL_TOLERANCE = 0.02  # by which a focal length and an angle of vi
 
 
 def escape_name(text: str) -> str:
-    """A name from a file as one line that every terminal and JSON can hold: control characters and lone surrogates
-    (bytes that are no UTF-8) are written as escapes."""
-    return "".join(c.encode("unicode_escape").decode() if unicodedata.category(c) in ("Cc", "Cs") else c for c in text)
+    """A name from a file as one line."""
+    return one_line(text)
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from click.shell_completion import shell_complete
 from eigenfield.cli.completion import COMPLETION_VARIABLE
 from eigenfield.cli.limits import limit_of
 from eigenfield.cli.streams import prepare_streams
-from eigenfield.core.errors import EigenfieldError
+from eigenfield.core.errors import EigenfieldError, one_line
 from eigenfield.core.version import __version__
 from eigenfield.runtime.children import kill_children
 from eigenfield.runtime.objects import name_address
@@ -174,5 +174,5 @@ def main() -> None:
         limit = limit_of(error)
         if limit is None or context.get("traceback"):
             raise
-        click.echo(f"eigenfield: {limit[0]}; {limit[1]}", err=True)
+        click.echo(f"eigenfield: {one_line(limit[0])}; {limit[1]}", err=True)
         sys.exit(2)

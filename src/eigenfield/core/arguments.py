@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import functools
 import inspect
 import types
@@ -13,12 +14,14 @@ from eigenfield.core.errors import OptionError
 
 P = ParamSpec("P")
 R = TypeVar("R")
+_BAD_NAMES = errno.ENAMETOOLONG, errno.ELOOP  # which even asking whether there is such a file raises
 _NUMBERS = {int: Integral, float: Real}  # NumPy's numbers too
 _WORDS = {int: "a whole number", float: "a number", str: "a text", bool: "True or False", type(None): "None"}
 
 
 def checked(function: Callable[P, R]) -> Callable[P, R]:
-    """The function, which raises OptionError `argument` for arguments of another type than it says, and unknown ones.
+    """The function, which raises OptionError `argument` for arguments of another type than it says, and unknown ones,
+    and `path` for a path that no file can have.
 
     A NumPy array or a list stands for a tuple, and a whole number for a number.
 
@@ -47,7 +50,12 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
             if kind is not inspect.Parameter.VAR_KEYWORD and not matches(value, hint(name)):
                 message = f"{name} of {function.__name__} is {_shown(value)}"
                 raise OptionError("argument", message, remedy=f"give {in_words(hint(name))}")
-        return function(*args, **named)
+        try:
+            return function(*args, **named)
+        except OSError as error:
+            if error.errno not in _BAD_NAMES:
+                raise
+            raise OptionError("path", error.strerror, path=error.filename, remedy="name another") from error
 
     return call
 
