@@ -108,7 +108,8 @@ def _stop(number: int, frame: FrameType | None) -> None:
     kill_children()  # a thread may wait for one
     late = threading.Timer(STOP_SECONDS, _exit_interrupted)  # others compute in a library for long
     late.daemon = True
-    late.start()
+    with contextlib.suppress(RuntimeError):  # the system has no more threads
+        late.start()
     raise KeyboardInterrupt
 
 

@@ -30,7 +30,7 @@ from eigenfield.runtime.stages import Stages, stage_key
 
 VIDEO_FOLDER = "videos"
 VIDEO_MIN_FILES = 2  # of a rig
-VIDEO_TIME_PATTERN = re.compile(r"(\d+(?:\.\d*)?|\.\d+)s")
+VIDEO_TIME_PATTERN = re.compile(r"(\d{1,9}(?:\.\d*)?|\.\d+)s")
 # red and blue of Y' by AVColorSpace: BT.709, BT.601 (three numbers), BT.2020
 VIDEO_LUMA_WEIGHTS = {1: (0.2126, 0.0722), 4: (0.30, 0.11), 5: (0.299, 0.114), 6: (0.299, 0.114), 9: (0.2627, 0.0593)}
 VIDEO_MAX_PIXELS = 80_000_000  # of a frame
