@@ -20,6 +20,7 @@ from click.shell_completion import shell_complete
 from eigenfield.cli.completion import COMPLETION_VARIABLE
 from eigenfield.cli.limits import limit_of
 from eigenfield.cli.streams import prepare_streams
+from eigenfield.core.arguments import on_command_line
 from eigenfield.core.errors import EigenfieldError, one_line
 from eigenfield.core.version import __version__
 from eigenfield.runtime.children import kill_children
@@ -147,7 +148,7 @@ def main() -> None:
                 signal.signal(number, _stop)
     context: dict[str, object] = {}
     try:
-        with group.make_context("eigenfield", sys.argv[1:]) as root:
+        with on_command_line(), group.make_context("eigenfield", sys.argv[1:]) as root:
             context = root.meta
             group.invoke(root)
     except click.exceptions.Exit as error:
