@@ -20,7 +20,7 @@ from eigenfield.core.errors import EigenfieldError, OptionError
 
 P = ParamSpec("P")
 R = TypeVar("R")
-_OPTION = re.compile(r"`[^`]*`|(?<![\w-])--(?P<no>no-)?(?P<option>[a-z][a-z0-9]*(-[a-z0-9]+)*)")
+_OPTION = re.compile(r"`[^`]*`|(?<![\w-])--(?P<no>no-)?(?P<option>[a-z][a-z0-9]*(-[a-z0-9]+)*)(?P<value> [\w.]+)?")
 _ARGUMENTS = {"as": "kind", "primitive": "primitives", "fit-sphere": "fit_spheres", "fill-background": "background"}
 _on_command_line: ContextVar[bool] = ContextVar("on_command_line", default=False)
 _BAD_NAMES = errno.ENAMETOOLONG, errno.ELOOP  # which even asking whether there is such a file raises
@@ -84,7 +84,8 @@ def on_command_line() -> Iterator[None]:
 
 
 def _name_arguments(error: EigenfieldError, signature: inspect.Signature) -> None:
-    """Write `overwrite=True` for --overwrite, and `hold_out` for --hold-out, if the function has such an argument."""
+    """Write overwrite=True for --overwrite, fit="none" for "say --fit none", and hold_out for other uses of --hold-out,
+    where the function has such an argument."""
     parameters = signature.parameters
     takes_more = any(parameter.kind is inspect.Parameter.VAR_KEYWORD for parameter in parameters.values())
 
@@ -94,8 +95,11 @@ def _name_arguments(error: EigenfieldError, signature: inspect.Signature) -> Non
         name = _ARGUMENTS.get(found["option"], found["option"].replace("-", "_"))
         if name not in parameters and not takes_more:
             return found[0]
-        is_switch = name in parameters and "bool" in str(parameters[name].annotation)
-        return f"{name}={not found['no']}" if is_switch or found["no"] else name
+        value = found["value"] or ""
+        if found["no"] or (name in parameters and "bool" in str(parameters[name].annotation)):
+            return f"{name}={not found['no']}{value}"
+        is_said = found.string[: found.start()].endswith(("say ", "or ")) and value not in ("", " or", " and")
+        return f'{name}="{value[1:]}"' if is_said else f"{name}{value}"
 
     error.message = _OPTION.sub(argument, error.message)
     error.remedy = None if error.remedy is None else _OPTION.sub(argument, error.remedy)
