@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import io
 import shutil
 import sys
@@ -89,7 +90,7 @@ def test_a_scene_is_exported_and_viewed(tmp_path):
         assert written == tmp_path / "a.html" and what.endswith(" MB")
     assert ef.export(scene, tmp_path / "%d.png", path="grid", frames=2, samples=1)[1] == "2 pictures"
     assert "use one of html, mp4" in error(ef.export, scene, tmp_path / "b", "pdf")
-    assert "--title is not for maps" in error(ef.export, scene, tmp_path / "b", "maps", title="B")
+    assert "title is not for maps" in error(ef.export, scene, tmp_path / "b", "maps", title="B")
     for given in (scene, tmp_path / "a.glb"):
         with ef.view(given, browser=False) as server, urllib.request.urlopen(server.address, timeout=20) as answer:
             assert b"<html" in answer.read()
@@ -191,12 +192,12 @@ def test_a_notebook_shows_progress_unless_told_otherwise(nine, monkeypatch):
         ("set_threads", ["all"], {}, "count of set_threads is 'all'"),
         ("validate", [None], {}, "path of validate"),
         ("calibrate", [3], {}, "photographs of calibrate is 3"),
-        ("calibrate", ["a"], {"board": "9x6"}, "--board describes a chart"),
+        ("calibrate", ["a"], {"board": "9x6"}, "board describes a chart"),
         ("calibrate", ["a"], {"chart": "paper"}, "no chart is called paper; use checkerboard or charuco"),
-        ("calibrate", ["a"], {"chart": "charuco", "masks": "b"}, "--masks means nothing to charts"),
+        ("calibrate", ["a"], {"chart": "charuco", "masks": "b"}, "masks means nothing to charts"),
         ("calibrate", ["a"], {"griid": (3, 3)}, "unexpected keyword argument 'griid'"),
         ("view", [3], {}, "scene of view is 3"),
-        ("view", [tiny_scene()], {"grid": (3, 3)}, "--grid is for a capture"),
+        ("view", [tiny_scene()], {"grid": (3, 3)}, "grid is for a capture"),
         ("export", [3, "a.html"], {}, "scene of export is 3"),
         ("encode", [3], {}, "makes no proxy"),
         ("encode", ["a", 3], {}, "is no proxy"),
@@ -240,3 +241,30 @@ def test_annotations_say_what_is_taken():
     assert "b of function is 2.5; give a whole number or None" in error(function, (), 2.5)
     assert "c of function is 1; give True or False" in error(function, (), c=1)
     assert "missing a required argument: 'a'; it takes a, b, c" in error(function)
+
+
+def test_errors_name_arguments_to_whoever_calls_and_options_on_the_command_line(tmp_path, run):
+    scene = tmp_path / "scene.glb"
+    ef.save(tiny_scene(3, 3, cameras=6), scene)
+    with pytest.raises(ef.OutputError, match="use overwrite=True or another") as caught:
+        ef.save(tiny_scene(3, 3, cameras=6), scene)
+    assert caught.value.remedy == caught.value.remedy.replace("--", "")
+    with pytest.raises(ef.OptionError, match='say kind="html", '):
+        ef.export(scene, tmp_path / "scene.unknown")
+    assert "say --as html" in run("export", scene, "-o", tmp_path / "scene.unknown").err
+    assert "use --overwrite" in run("export", scene, "--as", "glb", "-o", scene).err
+
+
+def test_weights_of_an_unknown_kind_are_refused_wherever_the_eye_is():
+    scene = tiny_scene(3, 3, cameras=6)
+    for place in ({}, {"at": (0, 0)}, {"camera": scene.rig.names[0]}):
+        with pytest.raises(ef.OptionError) as caught:
+            ef.render(scene, weights="foo", **place)
+        assert caught.value.code == "weights-mode"
+
+
+def test_every_parameter_of_a_public_function_is_documented():
+    for name in ("open", "save", "export", "encode", "reconstruct", "calibrate", "render", "view", "evaluate", "batch"):
+        function = getattr(ef, name)
+        for parameter in inspect.signature(function).parameters:
+            assert f"\n        {parameter}: " in function.__doc__, (name, parameter)

@@ -23,7 +23,7 @@ import eigenfield as ef
 from eigenfield.batches.jobs import ALL_KEYS, captures_in, read_jobs
 from eigenfield.batches.sheet import sheet_html
 from eigenfield.batches.table import as_csv, as_markdown
-from eigenfield.core.errors import escape_name
+from eigenfield.core.errors import one_line
 from eigenfield.demo import draw_demo_capture
 from eigenfield.runtime import executor
 from support import tasks
@@ -307,7 +307,7 @@ def test_a_table_shows_text_and_runs_nothing():
         cell.lstrip().startswith(("=", "+", "-", "@", "＝")) for row in written for cell in row
     )
     rows = list(csv.DictReader(io.StringIO(as_csv(records))))
-    assert [row["name"].replace("'", "") for row in rows] == [escape_name(text) for text in texts]
+    assert [row["name"].replace("'", "") for row in rows] == [one_line(text) for text in texts]
     assert {row["psnr"] for row in rows} == {"-1.5"}
     lines = as_markdown(records).splitlines()
     assert len(lines) == 2 + len(texts) and "<" not in "".join(lines)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import logging
 import os
@@ -25,7 +26,8 @@ def work(place: Path) -> None:
     click.echo("a note", err=True)
     logging.getLogger("eigenfield").warning("a warning")
     with (place / "output").open("wb") as file:
-        os.write(2, b"of a library")
+        with contextlib.suppress(OSError):
+            os.write(2, b"of a library")
         file.write(b"output")
     click.echo("a result")
 
@@ -87,6 +89,8 @@ def raised(error: Exception, cause: Exception | None = None) -> Exception:
         (OSError(errno.ENOMEM, "Cannot allocate memory"), "memory"),
         (ImportError("libav.so: failed to map segment from shared object"), "memory"),
         (raised(ImportError("numpy could not be imported"), ImportError("x.so: cannot allocate memory")), "memory"),
+        (raised(OSError("no libllvmlite.so"), OSError("x.so: failed to map segment")), "memory"),
+        (OSError(errno.ELOOP, "Too many levels of symbolic links", "x.glb"), "x.glb"),
         (OSError(errno.EMFILE, "Too many open files"), "ulimit -n"),
         (RuntimeError("can't start new thread"), "thread"),
         (BlockingIOError(errno.EAGAIN, "Resource temporarily unavailable"), "thread"),

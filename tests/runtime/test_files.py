@@ -100,6 +100,9 @@ def test_a_missing_folder_and_a_folder_as_output_are_said(tmp_path):
         refuse_existing(tmp_path, True)
     with pytest.raises(OutputError), scratch_array((3,), np.float32, tmp_path / "no"):
         pass
+    with pytest.raises(OutputError, match=r"too long|cannot"):
+        refuse_existing(tmp_path / ("a" * 256), False)
+    write_bytes(tmp_path / ("a" * 255), b"abc")  # the temporary name beside it is shorter
 
 
 def test_an_error_inside_a_scratch_arrays_block_stays_what_it_is(tmp_path):
@@ -145,7 +148,8 @@ def test_scratch_arrays_leave_nothing(tmp_path):
 def test_errors_are_one_line_with_file_and_remedy():
     error = EigenfieldError("code", "is broken", path="a.png", remedy="mend it")
     assert str(error) == "a.png: is broken; mend it"
-    assert "\n" not in str(error)
+    error = EigenfieldError("code", "is broken", path="a\nb\x1b[2J\udcff.png")
+    assert str(error) == r"a\nb\x1b[2J\udcff.png: is broken"
 
 
 @pytest.mark.parametrize("count", [1, 2, 5])

@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from eigenfield.core.errors import escape_name
+from eigenfield.core.errors import one_line
 
 Records = Sequence[Mapping[str, Any]]
 
@@ -40,7 +40,7 @@ def as_markdown(records: Records) -> str:
 
 
 def _markdown_text(cell: str) -> str:
-    return re.sub(r"([\\`|\[\]])", r"\\\1", escape_name(cell)).replace("<", "&lt;")
+    return re.sub(r"([\\`|\[\]])", r"\\\1", one_line(cell)).replace("<", "&lt;")
 
 
 def as_csv(records: Records) -> str:
@@ -54,7 +54,7 @@ def as_csv(records: Records) -> str:
 
 def _csv_value(value: Any) -> Any:
     """A number as it is, and a text with an apostrophe where a spreadsheet would begin a formula."""
-    return FORMULA.sub(r"\1'", escape_name(value)) if isinstance(value, str) else value
+    return FORMULA.sub(r"\1'", one_line(value)) if isinstance(value, str) else value
 
 
 def as_json(records: Records) -> str:

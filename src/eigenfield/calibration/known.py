@@ -9,7 +9,7 @@ import numpy as np
 
 from eigenfield.calibration.lenses import KnownLens
 from eigenfield.capture.arrangement import OpenOptions
-from eigenfield.capture.calibration import Intrinsics, escape_name
+from eigenfield.capture.calibration import Intrinsics
 from eigenfield.capture.formats import FORMATS, claim_of_file, detect_format
 from eigenfield.capture.pairing import is_same_picture, scale_camera
 from eigenfield.capture.photographs.lens import Lens
@@ -18,7 +18,7 @@ from eigenfield.capture.readers.filestorage import is_storage
 from eigenfield.capture.readers.opencv import read_opencv_intrinsics
 from eigenfield.core.camera import Camera
 from eigenfield.core.camera_names import name_key
-from eigenfield.core.errors import CaptureError
+from eigenfield.core.errors import CaptureError, one_line
 
 LensEntry = tuple[Intrinsics, Lens | None]
 KNOWN_MAX_MATRIX_BYTES = 4096  # of a text with nothing but a camera matrix
@@ -51,7 +51,7 @@ def read_known_lenses(path: Path, photos: PhotoSet) -> list[KnownLens]:
         if entry is None:
             raise CaptureError(
                 "intrinsics-missing",
-                f"has {len(distinct)} cameras, none of them named {escape_name(shot.name)}",
+                f"has {len(distinct)} cameras, none of them named {one_line(shot.name)}",
                 path=path,
                 remedy="name its cameras as the photographs, or give a file of one camera",
             )

@@ -11,9 +11,8 @@ import zipfile
 import zlib
 from pathlib import Path, PurePosixPath
 
-from eigenfield.capture.calibration import escape_name
 from eigenfield.capture.readers.video import frames_stage, video_identity
-from eigenfield.core.errors import CaptureError, OutputError
+from eigenfield.core.errors import CaptureError, OutputError, one_line
 from eigenfield.runtime.stages import stage_key
 
 ZIP_EXTENSION = ".zip"
@@ -87,7 +86,7 @@ def _check(archive: zipfile.ZipFile, path: Path) -> dict[PurePosixPath, zipfile.
         if name is None or any(ZIP_IGNORED.fullmatch(part) for part in name.parts):
             continue
         if name in files:
-            raise _error("damaged", f"holds {escape_name(str(name))} twice", path)
+            raise _error("damaged", f"holds {one_line(str(name))} twice", path)
         if info.flag_bits & ZIP_ENCRYPTED_FLAG:
             raise _error("encrypted", "is encrypted", path)
         files[name] = info
@@ -105,7 +104,7 @@ def _check(archive: zipfile.ZipFile, path: Path) -> dict[PurePosixPath, zipfile.
 def _safe_path(info: zipfile.ZipInfo, path: Path) -> PurePosixPath | None:
     """Where a file goes below the folder; None for a folder."""
     name = info.orig_filename.replace("\\", "/")  # some programs write these
-    shown = escape_name(info.orig_filename[:80])
+    shown = one_line(info.orig_filename[:80])
     kind = stat.S_IFMT(info.external_attr >> 16)
     if kind not in (0, stat.S_IFREG, stat.S_IFDIR):
         raise _error("path", f"holds a link or device ({shown})", path)
@@ -125,7 +124,7 @@ def _write(archive: zipfile.ZipFile, info: zipfile.ZipInfo, target: Path) -> Non
     try:
         out = target.open("xb")
     except FileExistsError as error:  # on Windows and macOS, where case does not count
-        shown = escape_name(target.name)
+        shown = one_line(target.name)
         raise _error(
             "path", f"holds two names that are one file here ({shown})", Path(str(archive.filename))
         ) from error

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.calibration import Calibration, escape_name
+from eigenfield.capture.calibration import Calibration
 from eigenfield.capture.layout import GridLayout
 from eigenfield.capture.locate import IMAGES_FOLDER, photographs_in
 from eigenfield.capture.messages import describe, natural_key
 from eigenfield.capture.unread import describe_inner, describe_unread
-from eigenfield.core.errors import CaptureError
+from eigenfield.core.errors import CaptureError, one_line
 
 NAMES_MIN_PHOTOGRAPHS = 3  # photographs that must bear a format's names
 NAMES_MIN_FRACTION = 0.5  # of a folder's photographs, likewise
@@ -134,7 +134,7 @@ def make_grid_layout(
     owner: dict[tuple[int, int], Path] = {}
     for path, node in zip(files, zip(rows, columns, strict=True), strict=True):
         if node in owner:
-            one, other = escape_name(owner[node].name), escape_name(path.name)
+            one, other = one_line(owner[node].name), one_line(path.name)
             raise CaptureError(
                 "node-twice",
                 f"{one} and {other} are both row {node[0]}, column {node[1]}",

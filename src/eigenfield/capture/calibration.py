@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.core.camera import CAMERA_ROTATION_TOLERANCE, Camera
 from eigenfield.core.errors import CaptureError
-from eigenfield.core.errors import escape_name as escape_name  # which readers take from here
 
 T = TypeVar("T")
 Made = TypeVar("Made")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from eigenfield.capture.arrangement import Arrangement, OpenOptions
-from eigenfield.capture.calibration import Calibration, escape_name
+from eigenfield.capture.calibration import Calibration
 from eigenfield.capture.locate import is_photograph_file
 from eigenfield.capture.messages import list_names
 from eigenfield.capture.passed_over import describe_passed_over, refuse_foreign
@@ -32,7 +32,7 @@ from eigenfield.capture.readers.strecha import find_strecha, read_strecha
 from eigenfield.capture.readers.video import find_videos, read_videos
 from eigenfield.capture.readers.walk import find_walk, read_walk
 from eigenfield.coding.limits import EXTENSION
-from eigenfield.core.errors import CaptureError, OptionError
+from eigenfield.core.errors import CaptureError, OptionError, one_line
 from eigenfield.core.recognise import SPLAT, read_head, recognise
 from eigenfield.core.shell import shell_word
 
@@ -210,7 +210,7 @@ def _find_claims(folder: Path, formats: tuple[Format, ...]) -> list[Claim]:
 
 
 def _relative_name(found: Path, folder: Path) -> str:
-    return escape_name(found.relative_to(folder).as_posix() if found.is_relative_to(folder) else str(found))
+    return one_line(found.relative_to(folder).as_posix() if found.is_relative_to(folder) else str(found))
 
 
 def claim_of_file(path: Path, formats: tuple[Format, ...]) -> Claim:

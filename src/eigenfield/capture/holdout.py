@@ -40,7 +40,7 @@ def held_out_cameras(rule: str | None, names: Sequence[str], coordinates: NDArra
         held[grid.index] = (rows % 2 == 1) | (columns % 2 == 1)
     elif rule.startswith("every:"):
         step = rule.removeprefix("every:")
-        if not step.isdecimal() or int(step) < 2:
+        if not step.isdecimal() or len(step) > 9 or int(step) < 2:
             raise OptionError("hold-out", f"{rule}: K must be a number of 2 or more", remedy="for example every:5")
         held[int(step) // 2 :: int(step)] = True
     else:

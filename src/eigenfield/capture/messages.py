@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-from eigenfield.capture.calibration import escape_name
+from eigenfield.core.errors import one_line
 
 MESSAGE_MAX_NAMES = 5  # names that a problem line lists
 
@@ -26,7 +26,7 @@ def count_phrase(items: Sequence[object], one: str, many: str) -> str:
 
 def list_names(names: Sequence[str]) -> str:
     """The first few names, and how many more there are."""
-    shown = ", ".join(escape_name(name) for name in names[:MESSAGE_MAX_NAMES])
+    shown = ", ".join(one_line(name) for name in names[:MESSAGE_MAX_NAMES])
     return shown if len(names) <= MESSAGE_MAX_NAMES else f"{shown} and {len(names) - MESSAGE_MAX_NAMES} more"
 
 
@@ -49,5 +49,5 @@ def unique_names(paths: Sequence[Path]) -> list[str]:
     try:
         common = os.path.commonpath([path.parent for path in shared]) if shared else ""
     except ValueError:
-        return [escape_name(path.name if times[path.name] == 1 else path.as_posix()) for path in paths]
-    return [escape_name(path.name if times[path.name] == 1 else path.relative_to(common).as_posix()) for path in paths]
+        return [one_line(path.name if times[path.name] == 1 else path.as_posix()) for path in paths]
+    return [one_line(path.name if times[path.name] == 1 else path.relative_to(common).as_posix()) for path in paths]

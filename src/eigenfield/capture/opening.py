@@ -153,9 +153,28 @@ def open_any(
     also: Sequence[StrPath] | None = None,
     work: StrPath | None = None,
 ) -> Capture:
-    """Open a light field where a calibration or the names state the cameras, otherwise photographs.
+    """Open a capture: a `LightField` where a calibration or the names state the cameras, otherwise a `PhotoSet`.
 
-    Arguments and errors are those of `open_capture` and `open_photographs`.
+    Args:
+        path: A folder of photographs (in itself or in its `images/`), or of one video a camera; one video of a walk; a
+            zip of any of these; an address of an object store. A calibration beside the photographs is found.
+        calibration: A calibration that lies elsewhere: its file, or its folder.
+        masks: A folder of masks named as the photographs, white where they count. None: the calibration's own, if any.
+        strict: Raise the first error. If False, leave out what is wrong and name it in `problems`.
+        format: The name of a format, where a capture may be read in several ways (docs/captures.md).
+        grid: (rows, columns) of numbered photographs, in row-major order.
+        frame: Frame of each video: an index from 0, or seconds ("2.5s"). None: the first.
+        pattern: How names state row and column of a grid: `view_{row}_{col}.png`; `*` stands for any text.
+        frames: How many frames of the video of a walk are taken. None: by how far the camera goes.
+        also: Further folders with photographs of the same capture.
+        work: A folder that keeps the frames of videos as PNG, and what a zip holds, so that they are unpacked once.
+            None: they last as long as the process.
+
+    Raises:
+        CaptureError: There are no photographs (`photographs-missing`), or fewer than three (`too-few`); one is
+            unreadable, or has another size than its camera or grid (`image-size`); a calibration is damaged; more than
+            one format fits (`format-ambiguous`); and others of `open_capture` and `open_photographs`.
+        OptionError: An option is impossible or would have no effect.
     """
     options = OpenOptions(_check_grid(grid), frame, None if work is None else Path(work), pattern, frames)
     if also:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eigenfield.capture.calibration import Calibration, Entry, escape_name, or_error, split_scale
+from eigenfield.capture.calibration import Calibration, Entry, or_error, split_scale
 from eigenfield.capture.duplicates import describe_duplicates, find_duplicates
 from eigenfield.capture.far import move_to_origin
 from eigenfield.capture.lightfield import LightField, View
@@ -19,7 +19,7 @@ from eigenfield.capture.locate import PhotographFinder, photographs_in, with_mas
 from eigenfield.capture.messages import describe, natural_key, unique_names
 from eigenfield.capture.photographs.read import read_header
 from eigenfield.core.camera import Camera
-from eigenfield.core.errors import CaptureError
+from eigenfield.core.errors import CaptureError, one_line
 from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger(__name__)
@@ -116,7 +116,7 @@ def _make_views(
     made = [outcome for outcome in outcomes if not isinstance(outcome, CaptureError)]
     problems = []
     if rescaled := [one.view for one in made if one.scaled]:
-        camera, name = rescaled[0].camera, escape_name(rescaled[0].path.name)
+        camera, name = rescaled[0].camera, one_line(rescaled[0].path.name)
         problems.append(
             f"{len(rescaled)} cameras are for another size of the same picture and were scaled to the photographs "
             f"(to {camera.width}x{camera.height} for {name})"
@@ -125,7 +125,7 @@ def _make_views(
         view, stated, by_angle = disagreeing[0]
         problems.append(
             f"{len(disagreeing)} cameras have a focal length and an angle of view that contradict each other "
-            f"({stated:.4g} and {by_angle:.4g} pixels for {escape_name(view.path.name)}): the focal length is taken"
+            f"({stated:.4g} and {by_angle:.4g} pixels for {one_line(view.path.name)}): the focal length is taken"
         )
     problems += _describe_rotations(made)
     if outside := [one for one in made if _is_outside(one.view.camera)]:
@@ -133,7 +133,7 @@ def _make_views(
         problems.append(
             f"{len(outside)} cameras have their principal point outside of the photograph or in its corner "
             f"(({camera.K[0, 2]:.4g}, {camera.K[1, 2]:.4g}) of {camera.width}x{camera.height} for "
-            f"{escape_name(outside[0].view.path.name)}): "
+            f"{one_line(outside[0].view.path.name)}): "
             + ("the calibration gives no width and height (w, h), so " if unsized else "")
             + "its numbers may be of a larger photograph, or fractions; right only for photographs that were cut out"
         )
@@ -153,11 +153,11 @@ def _describe_rotations(made: Sequence[_Made]) -> list[str]:
     if scaled := [one for one in made if one.pose_scale != 1]:
         problems.append(
             f"{len(scaled)} cameras have a pose with a scale ({scaled[0].pose_scale:.4g} for "
-            f"{escape_name(scaled[0].view.path.name)}), which is divided out"
+            f"{one_line(scaled[0].view.path.name)}), which is divided out"
         )
     if rounded := [one.view for one in made if one.pose_rounded and one.pose_scale == 1]:
         problems.append(
-            f"{len(rounded)} cameras have rotations of few digits (that of {escape_name(rounded[0].path.name)} is not "
+            f"{len(rounded)} cameras have rotations of few digits (that of {one_line(rounded[0].path.name)} is not "
             "orthonormal): the nearest rotations are taken"
         )
     return problems
@@ -256,7 +256,7 @@ def _find_own_mask(entry: Entry, finder: PhotographFinder, calibration: Path) ->
     if mask is None:
         raise CaptureError(
             "mask-missing",
-            f"{entry.label}: its mask {escape_name(entry.mask)} does not exist",
+            f"{entry.label}: its mask {one_line(entry.mask)} does not exist",
             path=calibration,
             remedy="put it there, or remove its mask_path",
         )

@@ -20,7 +20,8 @@ from click.shell_completion import shell_complete
 from eigenfield.cli.completion import COMPLETION_VARIABLE
 from eigenfield.cli.limits import limit_of
 from eigenfield.cli.streams import prepare_streams
-from eigenfield.core.errors import EigenfieldError
+from eigenfield.core.arguments import on_command_line
+from eigenfield.core.errors import EigenfieldError, one_line
 from eigenfield.core.shell import shell_word
 from eigenfield.core.version import __version__
 from eigenfield.runtime.children import kill_children
@@ -109,7 +110,8 @@ def _stop(number: int, frame: FrameType | None) -> None:
     kill_children()  # a thread may wait for one
     late = threading.Timer(STOP_SECONDS, _exit_interrupted)  # others compute in a library for long
     late.daemon = True
-    late.start()
+    with contextlib.suppress(RuntimeError):  # the system has no more threads
+        late.start()
     raise KeyboardInterrupt
 
 
@@ -147,7 +149,7 @@ def main() -> None:
                 signal.signal(number, _stop)
     context: dict[str, object] = {}
     try:
-        with group.make_context("eigenfield", sys.argv[1:]) as root:
+        with on_command_line(), group.make_context("eigenfield", sys.argv[1:]) as root:
             context = root.meta
             group.invoke(root)
     except click.exceptions.Exit as error:
@@ -178,5 +180,5 @@ def main() -> None:
         limit = limit_of(error)
         if limit is None or context.get("traceback"):
             raise
-        click.echo(f"eigenfield: {limit[0]}; {limit[1]}", err=True)
+        click.echo(f"eigenfield: {one_line(limit[0])}; {limit[1]}", err=True)
         sys.exit(2)

@@ -34,6 +34,8 @@ def _parse_colour(context: click.Context, parameter: click.Parameter, value: str
 
 def _parse_rate(context: click.Context, parameter: click.Parameter, value: str) -> Fraction:
     try:
+        if not re.fullmatch(r"[^eE]{1,40}([eE][-+]?\d{1,2})?", value.strip()):  # 1e999999999 would be computed
+            raise ValueError
         rate = Fraction(value).limit_denominator(1001)
     except (ValueError, ZeroDivisionError):
         raise click.BadParameter("pictures a second: 30, 24000/1001") from None

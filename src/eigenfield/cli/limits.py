@@ -22,11 +22,14 @@ _WORDS = {  # of RuntimeError, ImportError and cv2.error
 
 
 def limit_of(error: BaseException) -> tuple[str, str] | None:
-    """What the machine lacked and a remedy, where that is why an error was raised, or the one that it came from."""
+    """What the machine lacked or refused and a remedy, where that is why an error was raised, or what it came from."""
     if isinstance(error, MemoryError):
         return _MEMORY
     if isinstance(error, OSError):
-        return _ERRNOS.get(error.errno or 0)
+        if error.errno in (errno.ENAMETOOLONG, errno.ELOOP, errno.EIO):
+            return f"{error.filename or 'a file'}: {error.strerror}", "name another"
+        if error.errno in _ERRNOS:
+            return _ERRNOS[error.errno]
     found = next((words for pattern, words in _WORDS.items() if re.search(pattern, str(error))), None)
     cause = error.__cause__ or error.__context__
     return found if found is not None or cause is None else limit_of(cause)

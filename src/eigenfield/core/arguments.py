@@ -1,24 +1,36 @@
-"""Arguments of public functions, checked against their annotations: a wrong one is an OptionError that names it."""
+"""Arguments of public functions, checked against their annotations: a wrong one is an OptionError that names it.
+
+Messages name the options of the command line. Whoever calls a public function reads its arguments instead.
+"""
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import functools
 import inspect
+import re
 import types
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextvars import ContextVar
 from numbers import Integral, Real
 from typing import Any, ParamSpec, TypeVar, Union, get_args, get_origin, get_type_hints
 
-from eigenfield.core.errors import OptionError
+from eigenfield.core.errors import EigenfieldError, OptionError
 
 P = ParamSpec("P")
 R = TypeVar("R")
+_OPTION = re.compile(r"`[^`]*`|(?<![\w-])--(?P<no>no-)?(?P<option>[a-z][a-z0-9]*(-[a-z0-9]+)*)(?P<value> [\w.]+)?")
+_ARGUMENTS = {"as": "kind", "primitive": "primitives", "fit-sphere": "fit_spheres", "fill-background": "background"}
+_on_command_line: ContextVar[bool] = ContextVar("on_command_line", default=False)
+_BAD_NAMES = errno.ENAMETOOLONG, errno.ELOOP  # which even asking whether there is such a file raises
 _NUMBERS = {int: Integral, float: Real}  # NumPy's numbers too
 _WORDS = {int: "a whole number", float: "a number", str: "a text", bool: "True or False", type(None): "None"}
 
 
 def checked(function: Callable[P, R]) -> Callable[P, R]:
-    """The function, which raises OptionError `argument` for arguments of another type than it says, and unknown ones.
+    """The function, which raises OptionError `argument` for arguments of another type than it says, and unknown ones,
+    and `path` for a path that no file can have.
 
     A NumPy array or a list stands for a tuple, and a whole number for a number.
 
@@ -47,9 +59,51 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
             if kind is not inspect.Parameter.VAR_KEYWORD and not matches(value, hint(name)):
                 message = f"{name} of {function.__name__} is {_shown(value)}"
                 raise OptionError("argument", message, remedy=f"give {in_words(hint(name))}")
-        return function(*args, **named)
+        try:
+            return function(*args, **named)
+        except OSError as error:
+            if error.errno not in _BAD_NAMES:
+                raise
+            raise OptionError("path", error.strerror, path=error.filename, remedy="name another") from error
+        except EigenfieldError as error:
+            if not _on_command_line.get():
+                _name_arguments(error, signature)
+            raise
 
     return call
+
+
+@contextlib.contextmanager
+def on_command_line() -> Iterator[None]:
+    """Within the block errors name options, not arguments."""
+    token = _on_command_line.set(True)
+    try:
+        yield
+    finally:
+        _on_command_line.reset(token)
+
+
+def _name_arguments(error: EigenfieldError, signature: inspect.Signature) -> None:
+    """Write overwrite=True for --overwrite, fit="none" for "say --fit none", and hold_out for other uses of --hold-out,
+    where the function has such an argument."""
+    parameters = signature.parameters
+    takes_more = any(parameter.kind is inspect.Parameter.VAR_KEYWORD for parameter in parameters.values())
+
+    def argument(found: re.Match[str]) -> str:
+        if found["option"] is None:  # a command
+            return found[0]
+        name = _ARGUMENTS.get(found["option"], found["option"].replace("-", "_"))
+        if name not in parameters and not takes_more:
+            return found[0]
+        value = found["value"] or ""
+        if found["no"] or (name in parameters and "bool" in str(parameters[name].annotation)):
+            return f"{name}={not found['no']}{value}"
+        is_said = found.string[: found.start()].endswith(("say ", "or ")) and value not in ("", " or", " and")
+        return f'{name}="{value[1:]}"' if is_said else f"{name}{value}"
+
+    error.message = _OPTION.sub(argument, error.message)
+    error.remedy = None if error.remedy is None else _OPTION.sub(argument, error.remedy)
+    error.args = error.code, error.message
 
 
 def matches(value: Any, hint: Any) -> bool:

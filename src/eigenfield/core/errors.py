@@ -18,7 +18,7 @@ import os
 import unicodedata
 
 
-def escape_name(text: str) -> str:
+def one_line(text: str) -> str:
     """A name from a file as one line that every terminal and JSON can hold: control characters, separators of lines and
     lone surrogates (bytes that are no UTF-8) are written as escapes."""
     if text.isprintable():
@@ -51,7 +51,7 @@ class EigenfieldError(Exception):
 
     def __str__(self) -> str:
         text = self.message if self.path is None else f"{self.path}: {self.message}"
-        return escape_name(text if self.remedy is None else f"{text}; {self.remedy}")
+        return one_line(text if self.remedy is None else f"{text}; {self.remedy}")
 
 
 class CaptureError(EigenfieldError):
@@ -66,7 +66,8 @@ class FormatError(EigenfieldError):
     """A scene file that is damaged, newer or not ours.
 
     Attributes:
-        where: A byte offset ("byte 20") or a JSON pointer ("/extensions/EIGENFIELD_eigen_textures/planes/0").
+        where: A byte offset ("byte 20") or a JSON pointer ("/extensions/EIGENFIELD_eigen_textures/planes/0");
+            "byte 0" of what is wrong with the whole file, whose message names no place.
     """
 
     def __init__(
@@ -74,12 +75,12 @@ class FormatError(EigenfieldError):
         code: str,
         message: str,
         *,
-        where: str,
+        where: str | None = None,
         path: str | os.PathLike[str] | None = None,
         remedy: str | None = None,
     ) -> None:
-        super().__init__(code, f"{message} (at {where})", path=path, remedy=remedy)
-        self.where = where
+        super().__init__(code, message if where is None else f"{message} (at {where})", path=path, remedy=remedy)
+        self.where = where or "byte 0"
 
 
 class OutputError(EigenfieldError):

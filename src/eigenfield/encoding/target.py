@@ -26,7 +26,7 @@ TARGET_NEAR_SIZE_RATIO = 0.985  # of a target size: such files are near enough
 
 def parse_size(text: str) -> int:
     """Bytes from a text: "300kB", "1.5MB" or "300000". Raises OptionError `target`."""
-    found = re.fullmatch(r"(\d+(?:\.\d+)?) *(k|m|g|)b?", text.strip().lower())
+    found = re.fullmatch(r"(\d{1,18}(?:\.\d+)?) *(k|m|g|)b?", text.strip().lower())
     if found is None:
         raise OptionError("target", f"{text!r} is no size", remedy="say bytes, kB or MB: 500kB, 1.5MB, 300000")
     return round(float(found[1]) * {"": 1, "k": 1e3, "m": 1e6, "g": 1e9}[found[2]])

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import json
-import math
+import codecs
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -12,7 +11,8 @@ from pathlib import Path, PurePosixPath
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.core.errors import OptionError
+from eigenfield.core.errors import FormatError, OptionError
+from eigenfield.gltf import strict_json
 
 
 @dataclass(frozen=True)
@@ -54,8 +54,8 @@ def read_circles(path: str | os.PathLike[str], names: Sequence[str]) -> dict[str
         OptionError: `circles-unreadable`, `circles-malformed` or `circles-unmatched`.
     """
     try:
-        document = json.loads(Path(path).read_text("utf-8"))
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
+        document = strict_json.parse(Path(path).read_bytes().removeprefix(codecs.BOM_UTF8), finite=False)
+    except (OSError, ValueError, FormatError) as error:  # ValueError: a path with a null byte
         reason = (error.strerror or "cannot be read") if isinstance(error, OSError) else f"is no JSON: {error}"
         raise OptionError(
             "circles-unreadable", reason, path=path, remedy='give {"circles": {"a.jpg": {"cx": ...}}}'
@@ -77,7 +77,7 @@ def read_circles(path: str | os.PathLike[str], names: Sequence[str]) -> dict[str
 
 def _parse_circle(key: str, entry: object, path: str | os.PathLike[str]) -> ExcludedCircle:
     values = [entry.get(field) for field in ("cx", "cy", "r")] if isinstance(entry, dict) else []
-    numbers = [float(v) for v in values if isinstance(v, (int, float)) and not isinstance(v, bool) and math.isfinite(v)]
+    numbers = [float(v) for v in values if isinstance(v, (int, float)) and not isinstance(v, bool) and abs(v) < 1e9]
     if len(numbers) != 3 or numbers[2] < 0:
         raise OptionError(
             "circles-malformed", f"the circle of {key} needs a finite cx, cy and r", path=path, remedy="mend its entry"

@@ -60,16 +60,16 @@ def read_file(path: Path) -> bytes:
     try:
         status = path.stat()
         if not stat.S_ISREG(status.st_mode):  # a pipe would wait, a device may never end
-            raise FormatError("not-a-file", "is no regular file", where="byte 0", remedy="name a .glb")
+            raise FormatError("not-a-file", "is no regular file", remedy="name a .glb")
         if status.st_size > limits.MAX_FILE:
-            raise FormatError("file-size", f"{status.st_size} bytes, {limits.MAX_FILE} are allowed", where="byte 0")
+            raise FormatError("file-size", f"{status.st_size} bytes, {limits.MAX_FILE} are allowed")
         return path.read_bytes()
     except FileNotFoundError as error:
         refuse_address(path)
-        raise FormatError("file-missing", "does not exist", where="byte 0", remedy="check the name") from error
+        raise FormatError("file-missing", "does not exist", remedy="check the name") from error
     except (OSError, ValueError) as error:  # ValueError: a name with a null byte
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise FormatError("file-unreadable", f"cannot be read: {reason}", where="byte 0") from error
+        raise FormatError("file-unreadable", f"cannot be read: {reason}") from error
 
 
 def parse_glb(data: bytes) -> Glb:
@@ -81,7 +81,7 @@ def parse_glb(data: bytes) -> Glb:
     if data[:4] != MAGIC:
         what = recognise(data[:HEAD_BYTES])
         message = "does not begin with 'glTF'" if what is None else f"is {what}, and no .glb"
-        raise FormatError("not-glb", message, where="byte 0", remedy="name a .glb")
+        raise FormatError("not-glb", message, remedy="name a .glb")
     if len(data) < HEADER.size:
         raise FormatError("truncated", f"ends after {len(data)} bytes, within the header", where=f"byte {len(data)}")
     _, version, length = HEADER.unpack_from(data)

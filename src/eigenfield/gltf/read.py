@@ -53,7 +53,7 @@ def name_file_in_errors(path: str | os.PathLike[str]) -> Iterator[None]:
         raise
     except MemoryError as error:
         message, remedy = "does not fit into memory", "open it on a larger machine"
-        raise FormatError("memory", message, where="byte 0", path=path, remedy=remedy) from error
+        raise FormatError("memory", message, path=path, remedy=remedy) from error
 
 
 def layout_of(data: bytes) -> tuple[Document, FileLayout]:

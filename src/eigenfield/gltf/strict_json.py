@@ -16,8 +16,13 @@ _QUOTE_MAX_CHARACTERS = 60  # of a value in a message
 _CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]")
 
 
-def parse(data: bytes, where: str) -> Any:
+def parse(data: bytes, where: str | None = None, *, finite: bool = True) -> Any:
     """The JSON value in `data`.
+
+    Args:
+        data: UTF-8.
+        where: In which part of a file it is; None: it is a whole file.
+        finite: Whether NaN and infinite numbers are refused.
 
     Raises:
         FormatError: `json-size`, `json-invalid`, `json-depth`.
@@ -30,7 +35,7 @@ def parse(data: bytes, where: str) -> Any:
 
     def real(text: str) -> float:
         value = float(text)
-        return value if math.isfinite(value) else refuse(text[:_QUOTE_MAX_CHARACTERS])
+        return value if math.isfinite(value) or not finite else refuse(text[:_QUOTE_MAX_CHARACTERS])
 
     def whole(text: str) -> int:
         return int(text) if len(text) <= 20 else refuse(f"a whole number of {len(text)} digits")
@@ -43,9 +48,10 @@ def parse(data: bytes, where: str) -> Any:
             raise FormatError("json-invalid", f"{quote(doubled)} occurs twice in one object", where=where)
         return made
 
+    constant = refuse if finite else float
     try:
         text = data.decode("utf-8")
-        value = json.loads(text, parse_constant=refuse, parse_float=real, parse_int=whole, object_pairs_hook=single)
+        value = json.loads(text, parse_constant=constant, parse_float=real, parse_int=whole, object_pairs_hook=single)
     except UnicodeDecodeError as error:
         raise FormatError("json-invalid", f"not UTF-8 ({error.reason})", where=where) from error
     except json.JSONDecodeError as error:
@@ -56,7 +62,7 @@ def parse(data: bytes, where: str) -> Any:
     return value
 
 
-def _check_depth_and_text(value: Any, where: str) -> None:
+def _check_depth_and_text(value: Any, where: str | None) -> None:
     level, depth = [value], 0
     while level:
         if depth > limits.MAX_DEPTH:

@@ -113,6 +113,7 @@ def place_weights(
 
 def _sparse_weights(scene: Scene, at: tuple[float, float], mode: str) -> _Sparse:
     """As `place_weights`, in any order."""
+    _check_mode(mode)
     x, y = float(at[0]), float(at[1])
     if not (np.isfinite(x) and np.isfinite(y)):
         raise OptionError("viewpoint", f"the viewpoint {x:g},{y:g} is not finite", remedy="give two from -1 to 1")
@@ -124,10 +125,13 @@ def _sparse_weights(scene: Scene, at: tuple[float, float], mode: str) -> _Sparse
         return delaunay_weights(point, places, scene.rig.triangles)
     if mode == "nearest3":
         return _nearest3(point, places)
-    if mode == "bilinear":
-        return _bilinear(point, places)
-    remedy = f"use one of {', '.join(WEIGHT_MODES)}"
-    raise OptionError("weights-mode", f"no view weights are called {mode!r}", remedy=remedy)
+    return _bilinear(point, places)
+
+
+def _check_mode(mode: str) -> None:
+    if mode not in WEIGHT_MODES:
+        remedy = f"use one of {', '.join(WEIGHT_MODES)}"
+        raise OptionError("weights-mode", f"no view weights are called {mode!r}", remedy=remedy)
 
 
 def camera_weights(scene: Scene, index: int, mode: str = "delaunay", time: int = 0) -> ViewWeights:
@@ -142,6 +146,7 @@ def camera_weights(scene: Scene, index: int, mode: str = "delaunay", time: int =
     Raises:
         OptionError: As `place_weights`.
     """
+    _check_mode(mode)
     row = int(scene.rows(index, time))
     if row >= 0:
         return ViewWeights.one(row)

@@ -41,7 +41,7 @@ def output_errors(path: str | os.PathLike[str]) -> Iterator[None]:
         if getattr(error, "winerror", None) == _SHARING_VIOLATION:
             message, remedy = "is open in another program", "close it there or name another file"
             raise OutputError("not-writable", message, path=path, remedy=remedy) from error
-        if isinstance(error, _NOT_WRITABLE_ERRORS) or error.errno == errno.EROFS:
+        if isinstance(error, _NOT_WRITABLE_ERRORS) or error.errno in (errno.EROFS, errno.ENAMETOOLONG):
             message, remedy = error.strerror or "cannot be written", "name a place that can be written"
             raise OutputError("not-writable", message, path=path, remedy=remedy) from error
         raise
@@ -49,6 +49,8 @@ def output_errors(path: str | os.PathLike[str]) -> Iterator[None]:
 
 def refuse_existing(path: Path, overwrite: bool) -> None:
     """Before any work: raise OutputError if `path` exists and may not be replaced, or its folder is missing."""
+    with output_errors(path):  # of a name that is too long even this cannot be asked
+        path.exists()
     objects = find_objects(path)
     if objects is not None:
         if objects.exists() and not overwrite:

@@ -35,12 +35,18 @@ class _Pool:
 
     def __init__(self, count: int) -> None:
         self._work: SimpleQueue[tuple[Future[Any], Callable[[Any], Any], Any] | None] = SimpleQueue()
-        self._count = count
+        self._count = 0
         self.is_forked = False  # its threads are those of the parent of this process
         self._open = True
         self._gate = threading.Lock()
         for number in range(count):
-            threading.Thread(target=self._run, name=f"eigenfield-{number}", daemon=True).start()
+            try:
+                threading.Thread(target=self._run, name=f"eigenfield-{number}", daemon=True).start()
+            except RuntimeError:  # the system has no more of them: fewer do the work as well
+                if self._count == 0:
+                    raise
+                break
+            self._count += 1
 
     def _run(self) -> None:
         _thread_state.worker = True

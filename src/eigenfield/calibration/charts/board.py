@@ -219,7 +219,7 @@ def parse_length(text: str) -> tuple[float, str]:
     Raises:
         OptionError: `length`: the text is no length.
     """
-    match = re.fullmatch(r"\s*(\d+\.?\d*|\.\d+)\s*([a-z\"]*)\s*", text.lower())
+    match = re.fullmatch(r"\s*(\d{1,9}\.?\d*|\.\d+)\s*([a-z\"]*)\s*", text.lower())
     if match is None or (match[2] and match[2] not in BOARD_UNIT_NAMES):
         raise OptionError(
             "length", f"{text!r} is no length", remedy=f"write a number, or one with {', '.join(BOARD_UNIT_METRES)}"
@@ -259,6 +259,8 @@ def read_board(path: Path) -> Board:
         raise _invalid_file(path, error.strerror or "cannot be read") from error
     except ValueError as error:
         raise _invalid_file(path, f"is no valid TOML ({str(error).splitlines()[0][:100]})") from error
+    except RecursionError as error:
+        raise _invalid_file(path, "is nested too deep") from error
     columns, rows = (_read_integer(top, key, path) for key in ("columns", "rows"))
     square, unit = _read_square(top, columns, rows, path)
     dictionary = top.get("dictionary", BOARD_DEFAULT_DICTIONARY)
@@ -285,8 +287,8 @@ def _read_square(top: Mapping[str, Any], columns: int, rows: int, path: Path) ->
 
 def _read_integer(top: Mapping[str, Any], key: str, path: Path) -> int:
     value = top.get(key)
-    if not isinstance(value, int) or isinstance(value, bool):
-        raise _invalid_file(path, f"its {key} is no whole number" if key in top else f"does not say {key}")
+    if not isinstance(value, int) or isinstance(value, bool) or abs(value) > 1e9:
+        raise _invalid_file(path, f"its {key} is no whole number of squares" if key in top else f"does not say {key}")
     return value
 
 

@@ -18,12 +18,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.calibration import escape_name
 from eigenfield.capture.locate import files_named, photographs_in
 from eigenfield.capture.messages import natural_key
 from eigenfield.capture.photographs.read import decode, read_header
 from eigenfield.capture.readers.video import find_film
-from eigenfield.core.errors import CaptureError
+from eigenfield.core.errors import CaptureError, one_line
 
 CHART_VIDEO_SUFFIXES = (".mp4", ".mov", ".avi", ".mkv", ".webm", ".m4v")
 CHART_MAX_VIDEO_FRAMES = 300  # evenly spread over the video
@@ -179,9 +178,9 @@ def _videos_by_camera(root: Path) -> dict[str, Path]:
     """Videos of a folder by their names, or the one video of each folder by the folder's name."""
     here = _videos_in(root)
     if here:
-        return {escape_name(path.stem): path for path in here}
+        return {one_line(path.stem): path for path in here}
     below = {folder: _videos_in(folder) for folder in _folders(root)}
-    return {escape_name(folder.name): videos[0] for folder, videos in below.items() if len(videos) == 1}
+    return {one_line(folder.name): videos[0] for folder, videos in below.items() if len(videos) == 1}
 
 
 def _pictures_by_camera(root: Path) -> dict[str, list[tuple[str, Path]]]:
@@ -191,7 +190,7 @@ def _pictures_by_camera(root: Path) -> dict[str, list[tuple[str, Path]]]:
     if here:
         for path in here:
             name, moment = split_name(path.stem)
-            cameras.setdefault(escape_name(name or root.name), []).append((moment, path))
+            cameras.setdefault(one_line(name or root.name), []).append((moment, path))
         return cameras
     for folder in _folders(root):
         pictures = photographs_in(folder)
@@ -199,7 +198,7 @@ def _pictures_by_camera(root: Path) -> dict[str, list[tuple[str, Path]]]:
             numbers = [split_name(path.stem)[1] for path in pictures]
             by_number = all(numbers) and len(set(numbers)) == len(numbers)
             moments = numbers if by_number else [path.stem for path in pictures]
-            cameras[escape_name(folder.name)] = list(zip(moments, pictures, strict=True))
+            cameras[one_line(folder.name)] = list(zip(moments, pictures, strict=True))
     return cameras
 
 
@@ -259,7 +258,7 @@ def _usable_pictures(
     if len(sizes) > 1:
         usual = max(sizes, key=lambda size: (sizes[size], size))
         odd = [moment for moment, (_, size) in found.items() if size != usual]
-        shown = ", ".join(escape_name(found[m][0].name) for m in odd[:CHART_MAX_LISTED_NAMES])
+        shown = ", ".join(one_line(found[m][0].name) for m in odd[:CHART_MAX_LISTED_NAMES])
         shown += " .." if len(odd) > CHART_MAX_LISTED_NAMES else ""
         problems.append(f"camera {name}: {len(odd)} pictures are not {usual[0]}x{usual[1]} (left out): {shown}")
         found = {moment: value for moment, value in found.items() if value[1] == usual}

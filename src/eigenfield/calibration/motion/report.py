@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from eigenfield.calibration.motion.sfm import SfmResult
-from eigenfield.capture.calibration import escape_name
+from eigenfield.core.errors import one_line
 
 MOTION_REPORT_SCHEMA = "eigenfield.calibration/1"
 
@@ -53,9 +53,7 @@ def report_lines(report: dict[str, Any]) -> list[str]:
     views = report["views"]
     found = [view for view in views if view["registered"]]
     rows = [("camera", "features", "points", "error")]
-    rows += [
-        (escape_name(v["name"]), str(v["features"]), str(v["observations"]), f"{v['error']:.3f} px") for v in found
-    ]
+    rows += [(one_line(v["name"]), str(v["features"]), str(v["observations"]), f"{v['error']:.3f} px") for v in found]
     widths = [max(len(row[i]) for row in rows) for i in range(4)]
     lines = [
         f"{row[0]:{widths[0]}}" + "".join(f"  {cell:>{width}}" for cell, width in zip(row[1:], widths[1:], strict=True))
@@ -64,7 +62,7 @@ def report_lines(report: dict[str, Any]) -> list[str]:
     lost = [view for view in views if not view["registered"]]
     if lost:
         lines.append(f"without a camera: {len(lost)}")
-        lines += [f"  {escape_name(view['name'])}: {view['reason']}" for view in lost]
+        lines += [f"  {one_line(view['name'])}: {view['reason']}" for view in lost]
     lines += [f"lens of {lens['views']}: {_lens_line(lens)}" for lens in report["lenses"]]
     lines.append(
         f"{report['registered']} of {report['photographs']} photographs registered, {report['points']:,} points, "

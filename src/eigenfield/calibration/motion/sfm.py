@@ -25,14 +25,13 @@ from eigenfield.calibration.motion.colmap_core import pycolmap
 from eigenfield.calibration.motion.features import NO_FEATURES, Features, undistort_features
 from eigenfield.calibration.motion.mapping import MAPPING_TUNING, SparseModel, map_views
 from eigenfield.calibration.motion.matching import MATCHING_TUNING, Match, Matching, check_matching
-from eigenfield.capture.calibration import escape_name
 from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.messages import count_phrase, list_names
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.photoset import PhotoSet, Shot
 from eigenfield.capture.points import SparsePoints
 from eigenfield.core.camera import Camera
-from eigenfield.core.errors import CaptureError, OptionError
+from eigenfield.core.errors import CaptureError, OptionError, one_line
 from eigenfield.core.progress import Progress
 from eigenfield.runtime.parts import Parts
 from eigenfield.runtime.stages import Stages
@@ -245,7 +244,7 @@ def _failure_reason(
             + (f", a group of {len(company)} apart from the rest" if company else ", which have no camera either")
         )
     return "no-pose", (
-        f"residual too large: it matches {matched} (best {escape_name(names[best])}, {partners[best]} features), "
+        f"residual too large: it matches {matched} (best {one_line(names[best])}, {partners[best]} features), "
         "but no pose explains enough points"
     )
 
@@ -307,7 +306,7 @@ def _assemble(
     for place, index in enumerate(chosen):
         error = float(sums[place] / max(by_view[place], 1))
         entries[index] = replace(entries[index], observations=int(by_view[place]), error=error)
-    problems = [f"{escape_name(e.name)} has no camera: {e.reason}" for e in entries if not e.registered]
+    problems = [f"{one_line(e.name)} has no camera: {e.reason}" for e in entries if not e.registered]
     log.info("%d of %d photographs have a camera", len(chosen), len(photos))
     light_field = photos.subset(chosen).with_cameras(cameras, [lens.lens for lens in lenses], problems)
     return SfmResult(light_field, points, tuple(entries))

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics
 from eigenfield.capture.messages import describe
 from eigenfield.capture.photographs.kinds import ALL_EXTENSIONS
 from eigenfield.capture.photographs.lens import Lens
@@ -30,7 +30,7 @@ from eigenfield.capture.readers.text import (
     read_text,
     unreadable_error,
 )
-from eigenfield.core.errors import CaptureError
+from eigenfield.core.errors import CaptureError, one_line
 
 BUNDLER_FOLDERS = ("", "bundle", "bundler")
 BUNDLER_LISTS = ("list.txt", "list_imgs.txt", "list.orig.txt", "imagelist.txt", "name_list.txt", "list.lst")
@@ -116,7 +116,7 @@ def read_bundler(path: Path) -> Calibration:
     for name in names:
         block = list(islice(lines, 5))
         if len(block) < 5:
-            raise damaged_error(path, f"ends before camera {escape_name(name)}")
+            raise damaged_error(path, f"ends before camera {one_line(name)}")
         try:
             entry = _parse_entry(block, name, path)
         except CaptureError as error:
@@ -167,7 +167,7 @@ def _read_lines(path: Path) -> Iterator[tuple[int, str]]:
 
 def _parse_entry(lines: list[tuple[int, str]], name: str, path: Path) -> Entry | None:
     """The camera of five lines; None where it was not registered."""
-    label = f"camera {escape_name(name)}"
+    label = f"camera {one_line(name)}"
     rows = [parse_numbers(line.split(), 3, f"line {n} of {label} ({excerpt(line)})", path) for n, line in lines]
     (focal, k1, k2), R, t = rows[0], np.stack(rows[1:4]), rows[4]
     if focal == 0:

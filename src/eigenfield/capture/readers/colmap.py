@@ -16,11 +16,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name, read_each
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, read_each
 from eigenfield.capture.messages import count_phrase, list_names
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.readers.text import CALIBRATION_MAX_SIDE_PIXELS, excerpt, unreadable_error
-from eigenfield.core.errors import CaptureError
+from eigenfield.core.errors import CaptureError, one_line
 
 COLMAP_FOLDERS = ("sparse/*", "sparse", ".", "colmap/sparse/*")  # * is a number: of several the one of most images
 # name: (number in the binary format, number of parameters); from colmap/src/colmap/sensor/models.h
@@ -146,7 +146,7 @@ def _read_images(folder: Path) -> Iterator[_ImageRecord]:
 
 
 def _make_entry(shot: _ImageRecord, cameras: Mapping[int, _ListedCamera], path: Path) -> Entry:
-    label = f"image {escape_name(shot.name)}"
+    label = f"image {one_line(shot.name)}"
     if shot.camera not in cameras:
         raise CaptureError(
             "colmap-camera",

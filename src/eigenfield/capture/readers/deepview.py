@@ -14,14 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from eigenfield.capture.calibration import (
-    CALIBRATION_MAX_MAGNITUDE,
-    Calibration,
-    Entry,
-    Intrinsics,
-    escape_name,
-    read_each,
-)
+from eigenfield.capture.calibration import CALIBRATION_MAX_MAGNITUDE, Calibration, Entry, Intrinsics, read_each
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.readers.lens_keys import letters, refuse_lens_keys
 from eigenfield.capture.readers.text import (
@@ -35,7 +28,7 @@ from eigenfield.capture.readers.text import (
     read_contents,
     read_head,
 )
-from eigenfield.core.errors import CaptureError
+from eigenfield.core.errors import CaptureError, one_line
 
 DEEPVIEW_FILE = "models.json"
 DEEPVIEW_HEAD_BYTES = 4096  # in which the keys of the first camera must stand
@@ -80,7 +73,7 @@ def _make_entry(camera: Any, number: int, longest: float, path: Path) -> Entry:
     name = camera.get("name") if isinstance(camera, dict) else None
     if not isinstance(name, str) or not name.strip("./") or "\0" in name:
         raise damaged_error(path, f"camera {number} has no name", "mend or remove its entry")
-    label = f"camera {escape_name(name)}"
+    label = f"camera {one_line(name)}"
 
     def numbers(key: str, least: int, most: int, otherwise: Any = None) -> list[float]:
         given = camera.get(key, otherwise)

@@ -19,9 +19,9 @@ from xml.etree.ElementTree import Element
 import numpy as np
 import yaml
 
-from eigenfield.capture.calibration import escape_name
 from eigenfield.capture.readers.text import damaged_error, excerpt, read_head, read_text
 from eigenfield.capture.readers.xml_tree import load_xml
+from eigenfield.core.errors import one_line
 
 Tree = dict[str, Any]
 STORAGE_PLAIN_EXTENSIONS = (".yml", ".yaml", ".toml")  # which have no head that tells
@@ -125,7 +125,7 @@ def _from_toml(source: str, path: Path) -> Any:
     try:
         return _with_floats(tomllib.loads(source), 0)
     except (ValueError, RecursionError) as error:
-        raise damaged_error(path, f"is no valid TOML ({escape_name(str(error)[:80])})") from error
+        raise damaged_error(path, f"is no valid TOML ({one_line(str(error)[:80])})") from error
 
 
 def _with_floats(node: Any, depth: int) -> Any:
@@ -180,7 +180,7 @@ def _from_yaml(source: str) -> Any:
     except yaml.YAMLError as error:
         mark, problem = getattr(error, "problem_mark", None), getattr(error, "problem", None)
         place = f"line {mark.line + 1}: " if mark else ""
-        raise _BadStorageError(place + escape_name(str(problem or "characters that no YAML has"))) from None
+        raise _BadStorageError(place + one_line(str(problem or "characters that no YAML has"))) from None
     if len(documents) > 1 and all(isinstance(document, dict) for document in documents):
         return {key: value for document in documents for key, value in document.items()}
     return documents[0] if documents else None

@@ -23,9 +23,8 @@ from eigenfield.capture.arrangement import (
     photographs_of,
     require_photographs,
 )
-from eigenfield.capture.calibration import escape_name
 from eigenfield.capture.readers.stanford import find_stanford
-from eigenfield.core.errors import CaptureError, OptionError
+from eigenfield.core.errors import CaptureError, OptionError, one_line
 
 GRID_MAX_NODE_NUMBER = 999
 GRID_MIN_FILLED_FRACTION = 0.5  # of the nodes must hold a photograph for the names to be taken for a grid
@@ -71,7 +70,7 @@ def find_grid_names(folder: Path) -> Path | None:
         line = "row" if shape[0] == 1 else "column"
         raise CaptureError(
             "format-ambiguous",
-            f"{escape_name(files[0].name)} and the like may be one {line} of a grid, or just numbered",
+            f"{one_line(files[0].name)} and the like may be one {line} of a grid, or just numbered",
             path=folder,
             remedy="say --format grid, or --format folder",
         )
@@ -86,7 +85,7 @@ def read_grid_names(folder: Path, options: OpenOptions) -> Arrangement:
     if options.pattern is None:
         found, what = _find_nodes(folder), "*_RR_CC, rowR_colC, xC_yR or the like with two numbers that differ"
     else:
-        found, what = _match_pattern(folder, options.pattern), f"like {escape_name(options.pattern)}"
+        found, what = _match_pattern(folder, options.pattern), f"like {one_line(options.pattern)}"
     require_photographs(found.files, folder, what)
     layout, problems = make_grid_layout(found.files, found.rows, found.columns, options, folder)
     return Arrangement("grid", tuple(found.files), layout, tuple(problems), tuple(found.others))
@@ -99,7 +98,7 @@ def compile_pattern(pattern: str) -> re.Pattern[str]:
     if sorted(fields) != ["col", "row"]:
         raise OptionError(
             "pattern-unknown",
-            f"--pattern {escape_name(pattern)} does not hold {{row}} and {{col}} once each",
+            f"--pattern {one_line(pattern)} does not hold {{row}} and {{col}} once each",
             remedy="say it as 'view_{row}_{col}.png'",
         )
     parts, at = [], 0

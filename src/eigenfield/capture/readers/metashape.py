@@ -27,7 +27,6 @@ from eigenfield.capture.calibration import (
     Calibration,
     Entry,
     Intrinsics,
-    escape_name,
     or_error,
     read_each,
     split_scale,
@@ -46,7 +45,7 @@ from eigenfield.capture.readers.text import (
     read_head,
 )
 from eigenfield.capture.readers.xml_tree import load_xml
-from eigenfield.core.errors import CaptureError
+from eigenfield.core.errors import CaptureError, one_line
 
 METASHAPE_FILES = ("cameras.xml", "camera.xml", "metashape.xml")  # then any other, in name order
 METASHAPE_HEAD_BYTES = 4096  # in which <document> and <chunk> must stand
@@ -128,7 +127,7 @@ def _find_chunk(root: Element, path: Path) -> tuple[Element, list[str]]:
 
 
 def _camera_label(camera: Element) -> str:
-    return escape_name(camera.get("label") or f"camera {excerpt(camera.get('id', '?'))}")
+    return one_line(camera.get("label") or f"camera {excerpt(camera.get('id', '?'))}")
 
 
 def _pose_owner(camera: Element, by_number: Mapping[str, Element]) -> Element | None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name, read_each
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, read_each
 from eigenfield.capture.readers.skew import remove_skew
 from eigenfield.capture.readers.text import (
     camera_centre,
@@ -20,7 +20,7 @@ from eigenfield.capture.readers.text import (
     read_head,
     read_text,
 )
-from eigenfield.core.errors import CaptureError
+from eigenfield.core.errors import CaptureError, one_line
 
 MIDDLEBURY_SUFFIX = "_par.txt"
 MIDDLEBURY_NUMBERS = 9 + 9 + 3  # in a line: K, R, t
@@ -61,7 +61,7 @@ def _parse_entry(line: str, number: int, path: Path) -> Entry:
     if len(words) != MIDDLEBURY_NUMBERS + 1:
         raise damaged_error(path, f"line {number} is not a name and {MIDDLEBURY_NUMBERS} numbers ({excerpt(line)})")
     name = words[0]
-    label = f"line {number} ({escape_name(name)})"
+    label = f"line {number} ({one_line(name)})"
     values = parse_numbers(words[1:], MIDDLEBURY_NUMBERS, label, path)
     check_finite([values], label, path)
     K, R, t = values[:9].reshape(3, 3), values[9:18].reshape(3, 3), values[18:]

@@ -5,9 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from eigenfield.capture.arrangement import Arrangement, OpenOptions, make_grid_layout, require_photographs
-from eigenfield.capture.calibration import escape_name
 from eigenfield.capture.readers.grid_names import largest_name_group
-from eigenfield.core.errors import CaptureError, OptionError
+from eigenfield.core.errors import CaptureError, OptionError, one_line
 
 
 def read_numbered(folder: Path, options: OpenOptions) -> Arrangement:
@@ -31,7 +30,7 @@ def read_numbered(folder: Path, options: OpenOptions) -> Arrangement:
         if number == following:
             raise CaptureError(
                 "node-twice",
-                f"{escape_name(first.name)} and {escape_name(second.name)} have the same number",
+                f"{one_line(first.name)} and {one_line(second.name)} have the same number",
                 path=folder,
                 remedy="take one of them out",
             )

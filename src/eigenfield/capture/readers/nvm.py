@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name, read_each
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, read_each
 from eigenfield.capture.locate import PhotographFinder
 from eigenfield.capture.photographs.lens import Lens, metashape_distortion
 from eigenfield.capture.photographs.read import read_header
@@ -29,7 +29,7 @@ from eigenfield.capture.readers.text import (
     read_head,
     unreadable_error,
 )
-from eigenfield.core.errors import CaptureError
+from eigenfield.core.errors import CaptureError, one_line
 
 NVM_HEAD = "NVM_V3"
 NVM_NUMBERS = 10  # of a camera: focal length, quaternion, centre, radial coefficient, 0
@@ -111,7 +111,7 @@ def _make_entry(
     if len(words) != NVM_NUMBERS + 1:
         raise damaged_error(path, f"line {number} is not a name and {NVM_NUMBERS} numbers ({excerpt(line)})")
     name = words[0].replace('"', " ").strip().replace("\\", "/")
-    label = f"line {number} ({escape_name(name)})"
+    label = f"line {number} ({one_line(name)})"
     values = parse_numbers(words[1:], NVM_NUMBERS, label, path)
     check_finite([values], label, path)
     focal, quaternion, centre, radial = float(values[0]), values[1:5], values[5:8], float(values[8])

@@ -19,7 +19,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.calibration import CALIBRATION_MAX_MAGNITUDE, Calibration, Entry, Intrinsics, escape_name
+from eigenfield.capture.calibration import CALIBRATION_MAX_MAGNITUDE, Calibration, Entry, Intrinsics
 from eigenfield.capture.locate import IMAGES_FOLDER, photographs_in
 from eigenfield.capture.messages import describe
 from eigenfield.capture.photographs.lens import Lens
@@ -45,7 +45,7 @@ from eigenfield.capture.readers.text import (
     longest_vector,
 )
 from eigenfield.core.camera_names import name_key
-from eigenfield.core.errors import CaptureError
+from eigenfield.core.errors import CaptureError, one_line
 
 OPENCV_FOLDERS = ("", "calibration", "calib", "cameras", "intri_extri")
 OPENCV_ROLES = {
@@ -234,8 +234,7 @@ def read_opencv_intrinsics(path: Path) -> dict[str, tuple[Intrinsics, Lens | Non
             remedy="name the file of a calibration",
         )
     return {
-        name: _read_intrinsics(camera, f"camera {escape_name(name) or path.stem}", path)
-        for name, camera in found.items()
+        name: _read_intrinsics(camera, f"camera {one_line(name) or path.stem}", path) for name, camera in found.items()
     }
 
 
@@ -448,7 +447,7 @@ def _photograph_name(name: str, stems: set[str]) -> str:
 
 
 def _make_entry(name: str, found: Values, longest: float, path: Path) -> Entry:
-    label = f"camera {escape_name(name)}"
+    label = f"camera {one_line(name)}"
     if "\0" in name:
         raise damaged_error(path, f"{label} is no name of a file", "mend or remove it")
     intrinsics, lens = _read_intrinsics(found, label, path)
@@ -469,7 +468,7 @@ def _rotation_vector(found: Values) -> NDArray[np.float64] | None:
 def _angles_error(name: str, key: str, path: Path) -> CaptureError:
     return CaptureError(
         "camera-rotation-vector",
-        f"camera {escape_name(name) or path.stem} has its rotation in {key!r}: degrees and Euler angles are not read",
+        f"camera {one_line(name) or path.stem} has its rotation in {key!r}: degrees and Euler angles are not read",
         path=path,
         remedy="give rotation vectors in radians, as cv2.Rodrigues makes them, or 3x3 matrices",
     )

@@ -14,10 +14,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name, read_each
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, read_each
 from eigenfield.capture.readers.skew import remove_skew
 from eigenfield.capture.readers.text import check_finite, damaged_error, files_in, parse_numbers, read_text
-from eigenfield.core.errors import CaptureError
+from eigenfield.core.errors import CaptureError, one_line
 
 PROJECTION_SUFFIXES = ("_P.txt", "_p.txt", ".P")
 PROJECTION_FOLDERS = ("", "P", "projections", "projection", "calib", "calibration", "cameras", "txt", "images")
@@ -84,7 +84,7 @@ def _read_matrix(path: Path) -> NDArray[np.float64]:
 
 def _read_entry(path: Path) -> Entry:
     name = _photograph_name(path)
-    label = escape_name(name)
+    label = one_line(name)
     P = _read_matrix(path)
     check_finite([P], label, path)
     K, R, centre = decompose_projection(P, label, path)

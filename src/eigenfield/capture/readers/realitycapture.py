@@ -15,14 +15,14 @@ from pathlib import Path
 
 import numpy as np
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name, read_each
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, read_each
 from eigenfield.capture.locate import PhotographFinder
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.photographs.read import read_header
 from eigenfield.capture.readers.lens_keys import refuse_lens_keys
 from eigenfield.capture.readers.text import check_finite, check_lens, damaged_error, excerpt, read_head, read_text
 from eigenfield.capture.readers.transforms import OPENGL_TO_OPENCV_AXES
-from eigenfield.core.errors import CaptureError
+from eigenfield.core.errors import CaptureError, one_line
 
 REALITYCAPTURE_HEAD_BYTES = 4096
 REALITYCAPTURE_SENSOR_MM = 36.0
@@ -76,7 +76,7 @@ def _make_entry(row: list[str], columns: list[str], finder: PhotographFinder, pa
 
     first = columns.index("name")
     name = row[first].strip().replace("\\", "/") if first < len(row) else ""
-    label = f"camera {escape_name(name)}"
+    label = f"camera {one_line(name)}"
     if not name or "\0" in name or len(row) < len(columns):
         raise damaged_error(path, f"{label} has {len(row)} values, not {len(columns)}", "export it again")
 

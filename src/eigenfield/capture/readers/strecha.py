@@ -11,10 +11,10 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name, read_each
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, read_each
 from eigenfield.capture.readers.skew import remove_skew
 from eigenfield.capture.readers.text import check_finite, check_size, damaged_error, files_in, parse_numbers, read_text
-from eigenfield.core.errors import CaptureError
+from eigenfield.core.errors import CaptureError, one_line
 
 STRECHA_SUFFIX = ".camera"
 STRECHA_FOLDERS = ("", "gt_dense_cameras", "cameras", "images")  # then any other, in name order
@@ -62,7 +62,7 @@ def read_strecha(path: Path) -> Calibration:
 
 def _read_entry(path: Path) -> Entry:
     name = path.name.removesuffix(STRECHA_SUFFIX)
-    label = escape_name(name)
+    label = one_line(name)
     values = parse_numbers(read_text(path, STRECHA_MAX_BYTES).split(), STRECHA_NUMBERS, "it", path)
     check_finite([values], label, path)
     K, distortion, R, centre, size = values[:9], values[9:12], values[12:21], values[21:24], values[24:]

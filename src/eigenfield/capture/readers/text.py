@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from eigenfield.capture.calibration import CALIBRATION_MAX_MAGNITUDE, escape_name, split_scale
-from eigenfield.core.errors import CaptureError
+from eigenfield.capture.calibration import CALIBRATION_MAX_MAGNITUDE, split_scale
+from eigenfield.core.errors import CaptureError, one_line
 
 CALIBRATION_MAX_BYTES = 64 * 2**20  # of one file that is read whole
 CALIBRATION_MAX_SIDE_PIXELS = 1_000_000  # of a photograph in a calibration
@@ -77,7 +77,7 @@ def damaged_error(path: Path, message: str, remedy: str = "copy or export it aga
 
 def excerpt(word: object) -> str:
     """A word from a file as a message repeats it: one short line."""
-    line = escape_name(str(word)[: EXCERPT_MAX_CHARACTERS + 1])
+    line = one_line(str(word)[: EXCERPT_MAX_CHARACTERS + 1])
     return line if len(line) <= EXCERPT_MAX_CHARACTERS else f"{line[:EXCERPT_MAX_CHARACTERS]}..."
 
 

@@ -17,11 +17,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name, read_each
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, read_each
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.readers.lens_keys import lens_keys, letters
 from eigenfield.capture.readers.text import CALIBRATION_MAX_SIDE_PIXELS, excerpt, read_contents, read_head
-from eigenfield.core.errors import CaptureError
+from eigenfield.core.errors import CaptureError, one_line
 
 TRANSFORMS_FILE = "transforms.json"
 TRANSFORMS_SPLIT_FILES = tuple(f"transforms_{split}.json" for split in ("train", "val", "test"))  # of NeRF's sets
@@ -206,7 +206,7 @@ def _make_entry(frame: _Frame, own: Any, undo: Similarity) -> Entry:
     file = own.get("file_path")
     if not isinstance(file, str) or not file or "\0" in file:
         raise frame.error("frame-file", f"{frame.label} has no usable file_path", "mend or remove it")
-    frame = replace(frame, label=f"{frame.label} ({escape_name(file)})")
+    frame = replace(frame, label=f"{frame.label} ({one_line(file)})")
     mask = own.get("mask_path")
     if mask is not None and (not isinstance(mask, str) or "\0" in mask):
         raise frame.error("frame-mask", f"{frame.label} has a mask_path that is no text", "mend or remove it")

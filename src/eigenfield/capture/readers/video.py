@@ -33,7 +33,7 @@ from eigenfield.runtime.stages import Stages, stage_key
 
 VIDEO_FOLDER = "videos"
 VIDEO_MIN_FILES = 2  # of a rig
-VIDEO_TIME_PATTERN = re.compile(r"(\d+(?:\.\d*)?|\.\d+)s")
+VIDEO_TIME_PATTERN = re.compile(r"(\d{1,9}(?:\.\d*)?|\.\d+)s")
 # red and blue of Y' by AVColorSpace: BT.709, FCC, BT.601 (two numbers), SMPTE 240M, BT.2020; others are not converted
 VIDEO_LUMA_WEIGHTS = {
     1: (0.2126, 0.0722), 4: (0.30, 0.11), 5: (0.299, 0.114), 6: (0.299, 0.114), 7: (0.212, 0.087), 9: (0.2627, 0.0593)

@@ -153,7 +153,7 @@ def _write(
         return output, f"{output.stat().st_size / 1e6:.1f} MB, for any viewer"
     if _is_obj(output):
         write_obj(scene, output, overwrite=overwrite)
-        return output, "with its material and the mean; a folder with --as obj holds the eigen textures too"
+        return output, "with its material and the mean; a folder of the kind obj holds the eigen textures too"
     if kind == "obj":
         write_obj_folder(scene, output, textures=job.textures, **how)
         return output, "mesh, mean and eigen textures"
