@@ -29,7 +29,8 @@ async function answer(request, url, meanwhile) {
   const key = keyOf(url);
   try {
     const response = await fetch(request);
-    if (response.status === 200) meanwhile(cache.put(key, response.clone()).catch(() => undefined)); // no room: not kept
+    const own = url.href.startsWith(registration.scope); // beside it, the page keeps what it draws
+    if (own && response.status === 200) meanwhile(cache.put(key, response.clone()).catch(() => undefined));
     return response;
   } catch (error) {
     const kept = await cache.match(key);

@@ -6,11 +6,13 @@ const CACHE = "eigenfield"; // the worker's
 export function keepOffline(worker: string, opened: Promise<string | Blob | undefined> | undefined): void {
   const { serviceWorker } = navigator;
   if (!serviceWorker) return; // no https
-  const seen = serviceWorker.controller !== null; // it saw the scene come
+  const scope = serviceWorker.controller && new URL(".", new URL(worker, location.href)).href;
   serviceWorker.register(worker).catch(() => undefined);
-  void opened?.then(async (from) => {
-    if (seen || typeof from !== "string" || new URL(from, location.href).origin !== location.origin) return;
+  const keep = async (from: string): Promise<void> => {
+    const { href, origin } = new URL(from, location.href);
+    if (origin !== location.origin || (scope !== null && href.startsWith(scope))) return; // the worker saw it come
     const cache = await caches.open(CACHE);
-    await cache.add(new Request(from, { cache: "force-cache" })); // the browser has it still: nothing is asked for twice
-  }).catch(() => undefined); // no room: not kept
+    await cache.add(new Request(href, { cache: "force-cache" })); // which the browser has still
+  };
+  void opened?.then((from) => (typeof from === "string" ? keep(from) : undefined)).catch(() => undefined); // no room
 }
