@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from eigenfield.core.camera import Camera
-from eigenfield.core.viewplane import fit_view_plane
+from eigenfield.core.viewplane import ViewPlane, fit_view_plane
 from eigenfield.gltf import save
 from eigenfield.gltf.axes import capture_to_gltf, opening_view, quaternion
 from support import glb_surgery
@@ -37,6 +38,16 @@ def test_the_array_looks_along_minus_z_with_y_up():
     np.testing.assert_allclose(turn @ [0, 0, 1], [0, 0, -1], atol=1e-12)  # the cameras' forward
     np.testing.assert_allclose(turn @ [0, 1, 0], [0, -1, 0], atol=1e-12)  # their down
     np.testing.assert_allclose(np.linalg.det(turn), 1)
+
+
+def test_axes_of_any_length_and_angle_give_a_rotation():
+    plane = ViewPlane(np.zeros(3), np.array([2, 0.1, 0]), np.array([0.3, -1.5, 0.2]), np.ones(2))
+    turn = capture_to_gltf(plane)
+    np.testing.assert_allclose(turn @ turn.T, np.eye(3), atol=1e-12)
+    assert np.linalg.det(turn) == pytest.approx(1)
+    np.testing.assert_allclose(turn @ plane.right, [np.hypot(2, 0.1), 0, 0], atol=1e-12)
+    x, y, z = turn @ plane.up  # in the plane of both, on its own side
+    assert y > 1.5 and abs(z) < 1e-12 and x == pytest.approx(plane.right @ plane.up / np.hypot(2, 0.1))
 
 
 def test_the_opening_view_is_the_photograph_where_gltf_can_say_it():
