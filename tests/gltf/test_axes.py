@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from eigenfield.core.camera import Camera
+from eigenfield.core.mesh import Mesh
 from eigenfield.core.viewplane import ViewPlane, fit_view_plane
 from eigenfield.gltf import save
 from eigenfield.gltf.axes import capture_to_gltf, opening_view, quaternion
@@ -58,6 +59,13 @@ def test_the_opening_view_is_the_photograph_where_gltf_can_say_it():
     np.testing.assert_allclose(perspective["aspectRatio"], (32 / 70) / (24 / 50))
     np.testing.assert_allclose(axes, np.diag([1, -1, -1]), atol=1e-12)
     assert 0 < perspective["znear"] < 3
+
+
+@pytest.mark.parametrize(("depths", "near"), [((-0.5, 2, 5), 0.2), ((-3, -1, -2), 0.01)])
+def test_the_near_plane_is_before_what_is_before_the_camera(depths, near):
+    mesh = Mesh(np.array([[0, 0, z] for z in depths], np.float32), np.array([[0, 1, 2]], np.int32))
+    camera = Camera(np.array([[60.0, 0, 32], [0, 60, 24], [0, 0, 1]]), np.eye(3), np.zeros(3), 64, 48)
+    assert opening_view(camera, mesh)[0]["znear"] == pytest.approx(near)
 
 
 def test_the_opening_view_aims_at_the_photographs_middle():
