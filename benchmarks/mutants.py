@@ -252,6 +252,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--seed", type=int, default=0, help="another draws other lines, also beside the first")
     parser.add_argument("--root", type=Path, default=Path(__file__).parents[1], help="holds src and tests")
     given = parser.parse_args(arguments)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("stopped"))  # ends the tests and removes the copy
     begin, rows, counts = time.monotonic(), list[str](), Counter[str]()
 
     def say(text: str) -> None:

@@ -140,6 +140,9 @@ def test_photoscan_before_1_2(tmp_path):
     assert calibration.entries[0].intrinsics.focal == (91, 90)
     assert calibration.entries[0].intrinsics.principal == (50, 31)
     assert calibration.entries[0].lens == Lens("brown", (-0.05, 0.02, 0.003, -0.002, 0.0))
+    path.write_text(path.read_text().replace("<fy>90</fy><cx>50</cx><cy>31</cy>", ""))
+    simple = read_metashape(path).entries[0].intrinsics
+    assert simple.focal == (91, 91) and simple.principal == (simple.width / 2, simple.height / 2)
 
 
 LAUGHS = '<!DOCTYPE a [<!ENTITY a "ha"><!ENTITY b "&a;&a;&a;&a;"><!ENTITY c "&b;&b;&b;&b;">]>'

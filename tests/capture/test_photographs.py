@@ -223,13 +223,23 @@ def profile_bytes(columns: np.ndarray, curve: bytes, space: bytes = b"RGB ", tab
 
 ADOBE = np.array([[0.60974, 0.20528, 0.14919], [0.31111, 0.62567, 0.06322], [0.01947, 0.06087, 0.74457]])
 GAMMA22 = b"curv\0\0\0\0" + struct.pack(">IH", 1, round(2.19921875 * 256))
-SRGB_PARA = b"para\0\0\0\0" + struct.pack(
-    ">HH5i", 3, 0, *(round(v * 65536) for v in (2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045))
-)
 
 
-def test_matrix_profile_agrees_with_littlecms(tmp_path):
-    profile = profile_bytes(ADOBE, GAMMA22)
+def parametric(kind: int, *numbers: float) -> bytes:
+    return b"para\0\0\0\0" + struct.pack(f">HH{len(numbers)}i", kind, 0, *(round(v * 65536) for v in numbers))
+
+
+SRGB_PARA = parametric(3, 2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045)
+CURVES = [
+    GAMMA22, SRGB_PARA, parametric(0, 1.8), parametric(1, 2.2, 1.25, -0.25), parametric(2, 1.5, 1.1, -0.3, 0.1),
+    parametric(4, 2.0, 0.9, 0.05, 0.3, 0.2, 0.06, 0.02),
+    b"curv\0\0\0\0" + struct.pack(">I4H", 4, 0, 9000, 20000, 65535),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("curve", CURVES)
+def test_matrix_profile_agrees_with_littlecms(tmp_path, curve):
+    profile = profile_bytes(ADOBE, curve)
     image = Image.fromarray(smooth())
     path = save(tmp_path / "a.png", image, icc_profile=profile)
     reference = ImageCms.profileToProfile(

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from eigenfield.core.camera import Camera
+from eigenfield.core.camera_names import named_camera
+from eigenfield.core.errors import OptionError
 
 K = np.array([[90.0, 1, 52], [0, 100, 38], [0, 0, 1]])
 CAMERA = Camera(K, np.eye(3), np.zeros(3), 100, 80)
@@ -20,3 +22,11 @@ def test_a_resized_view_covers_its_raster_just_so(width, height, scale):
     assert right - left == pytest.approx(100 * scale) and bottom - top == pytest.approx(80 * scale)
     assert point - middle == pytest.approx([-25 * scale, 20 * scale])
     assert max(left, top) == pytest.approx(0, abs=1e-9) and min(right - width, bottom - height) == pytest.approx(0)
+
+
+def test_a_camera_is_called_as_its_photograph():
+    names = ("a.png", "A.jpg", "b.png", "c.png", "a.tif")
+    assert [named_camera(name, names, "view") for name in ("A.jpg", "a.png", "B", "c.JPG")] == [1, 0, 2, 3]
+    with pytest.raises(OptionError) as caught:
+        named_camera("a", names, "view")
+    assert caught.value.code == "view" and caught.value.remedy == "nearest are a.png, A.jpg, a.tif"

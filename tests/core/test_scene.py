@@ -58,6 +58,7 @@ def test_a_lattice_of_a_camera_is_its_pixels_and_inverse_depth():
     matrix = np.array([[100, 0, 50, 7], [0, 80, 40, -3], [0, 0, 1, 2.0]])
     steps = np.array([[0, 0, 0], [10, -4, 3]])
     lattice = camera_lattice(matrix, 0.25, 0.1)
+    assert lattice.flat
     points = lattice.points(steps)
     u, v, depth = (np.c_[points, np.ones(2)] @ matrix.T).T
     np.testing.assert_allclose(np.c_[u / depth, v / depth, 1 / depth], [[0.5, 0.5, 0.05], [3, -0.5, 0.35]])

@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from eigenfield.core.camera import Camera
-from eigenfield.core.viewplane import fit_view_plane
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.viewplane import ViewPlane, fit_view_plane
 from eigenfield.gltf import save
 from eigenfield.gltf.axes import capture_to_gltf, opening_view, quaternion
 from support import glb_surgery
@@ -39,6 +41,16 @@ def test_the_array_looks_along_minus_z_with_y_up():
     np.testing.assert_allclose(np.linalg.det(turn), 1)
 
 
+def test_axes_of_any_length_and_angle_give_a_rotation():
+    plane = ViewPlane(np.zeros(3), np.array([2, 0.1, 0]), np.array([0.3, -1.5, 0.2]), np.ones(2))
+    turn = capture_to_gltf(plane)
+    np.testing.assert_allclose(turn @ turn.T, np.eye(3), atol=1e-12)
+    assert np.linalg.det(turn) == pytest.approx(1)
+    np.testing.assert_allclose(turn @ plane.right, [np.hypot(2, 0.1), 0, 0], atol=1e-12)
+    x, y, z = turn @ plane.up  # in the plane of both, on its own side
+    assert y > 1.5 and abs(z) < 1e-12 and x == pytest.approx(plane.right @ plane.up / np.hypot(2, 0.1))
+
+
 def test_the_opening_view_is_the_photograph_where_gltf_can_say_it():
     K = np.array([[70.0, 0, 32], [0, 50, 24], [0, 0, 1]])
     camera = Camera(K, np.eye(3), np.array([0, 0, 3.0]), 64, 48)
@@ -47,6 +59,13 @@ def test_the_opening_view_is_the_photograph_where_gltf_can_say_it():
     np.testing.assert_allclose(perspective["aspectRatio"], (32 / 70) / (24 / 50))
     np.testing.assert_allclose(axes, np.diag([1, -1, -1]), atol=1e-12)
     assert 0 < perspective["znear"] < 3
+
+
+@pytest.mark.parametrize(("depths", "near"), [((-0.5, 2, 5), 0.2), ((-3, -1, -2), 0.01)])
+def test_the_near_plane_is_before_what_is_before_the_camera(depths, near):
+    mesh = Mesh(np.array([[0, 0, z] for z in depths], np.float32), np.array([[0, 1, 2]], np.int32))
+    camera = Camera(np.array([[60.0, 0, 32], [0, 60, 24], [0, 0, 1]]), np.eye(3), np.zeros(3), 64, 48)
+    assert opening_view(camera, mesh)[0]["znear"] == pytest.approx(near)
 
 
 def test_the_opening_view_aims_at_the_photographs_middle():

@@ -38,6 +38,7 @@ def test_good_files_are_good(tmp_path, good):
     assert good
     for data in good.values():
         assert outcome(tmp_path / "a.glb", data) is None
+        assert not re.search(r"-0\.0\b", json.dumps(glb_surgery.split(data)[0]))
 
 
 TEXTURE = ("planes", 0, "bases", 0, "textures", 0)
@@ -56,6 +57,7 @@ CASES = {
     "channels-none": (ours("planes", 0, "channels", value=0), "json-value"),
     "channels-many": (ours("planes", 0, "channels", value=10**9), "json-value"),
     "channels-real": (ours("planes", 0, "channels", value=3.0), "json-type"),
+    "channels-text": (ours("planes", 0, "channels", value="x" * 100), "json-type"),
     "channels-true": (ours("planes", 0, "channels", value=True), "json-type"),
     "channels-other": (ours("planes", 0, "channels", value=2), ("picture-size", "json-value")),
     "size-huge": (ours("planes", 0, "bases", 0, "size", value=[10**6, 10**6]), "json-value"),
@@ -68,7 +70,7 @@ CASES = {
     "scale-missing": (not_ours(*TEXTURE, "scale"), "json-missing"),
     "scale-short": (ours(*TEXTURE, "scale", value=[1.0]), "json-value"),
     "scale-text": (ours(*TEXTURE, "scale", value=[1, 2, "3"]), "json-type"),
-    "scale-huge": (ours(*TEXTURE, "scale", value=[1, 2, 1e300]), "json-value"),
+    "scale-huge": (ours(*TEXTURE, "scale", value=[1, 2, 3.41e38]), "json-value"),  # float32 ends at 3.403e38
     "zero-null": (ours(*TEXTURE, "zero", value=None), "json-type"),
     "texture-elsewhere": (ours(*TEXTURE, "bufferView", value=9999), "view-missing"),
     "texture-negative": (ours(*TEXTURE, "bufferView", value=-1), "json-value"),
@@ -211,6 +213,14 @@ def test_data_uris_and_what_is_in_extras_stay(tmp_path, good):
 )
 def test_containers_that_are_none(tmp_path, data, code):
     assert outcome(tmp_path / "a.glb", data) in (code if isinstance(code, tuple) else (code,))
+
+
+@pytest.mark.parametrize(("padding", "fits"), [(-1, False), (0, True), (3, True), (4, False)])
+def test_a_binary_chunk_is_padded_by_up_to_three_bytes(tmp_path, good, padding, fits):
+    _, binary = glb_surgery.split(good["webp"])
+    change = setting("buffers", 0, "byteLength", value=len(binary) - padding)
+    found = outcome(tmp_path / "a.glb", glb_surgery.changed(good["webp"], change))
+    assert (found != "buffer") == fits
 
 
 def test_too_much_json(tmp_path, good, monkeypatch):
