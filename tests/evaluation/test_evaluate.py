@@ -346,7 +346,10 @@ def test_options_that_cannot_be(scene, tmp_path, options, code):
     assert caught.value.code == code
 
 
-@pytest.mark.parametrize("settings", [{"resampling": "magic"}, {"align": "crystals"}, {"resampling": []}, {"maxAngle": 0}, {"maxAngle": [85]}])
+@pytest.mark.parametrize(
+    "settings",
+    [{"resampling": "magic"}, {"align": "crystals"}, {"resampling": []}, {"maxAngle": 0}, {"maxAngle": [85]}],
+)
 def test_settings_of_a_later_version(scene, tmp_path, settings):
     with pytest.raises(OptionError) as caught:
         evaluate(dataclasses.replace(scene, settings=settings), write_capture(scene, tmp_path / "c"))

@@ -6,6 +6,7 @@ import {
   BufferAttribute,
   BufferGeometry,
   Camera,
+  DepthStencilFormat,
   DepthTexture,
   GLSL3,
   HalfFloatType,
@@ -15,6 +16,7 @@ import {
   RawShaderMaterial,
   Scene,
   UnsignedByteType,
+  UnsignedInt248Type,
   Vector2,
   Vector4,
   WebGLRenderTarget,
@@ -26,7 +28,7 @@ import { ERROR, OVER, PRECISIONS, makeDepthMaterial, type SurfaceMaterial } from
 /** Name of the child of a mesh that draws its sheets: its geometry is the whole picture. */
 export const SHEETS = "sheets";
 
-const PIXEL_BYTES = 16; // half-floats of R, G, B and coverage; three bytes of depth and one that says so; depth
+const PIXEL_BYTES = 16; // half-floats of R, G, B and coverage; three bytes of depth and one that says so; depth and stencil
 
 const SCREEN_VERTEX = `
 precision highp float;
@@ -179,10 +181,13 @@ export class SheetStack {
 }
 
 function makeTarget(width: number, height: number): WebGLRenderTarget {
+  const depthTexture = new DepthTexture(width, height, UnsignedInt248Type);
+  depthTexture.format = DepthStencilFormat;
   const target = new WebGLRenderTarget(width, height, {
     count: 2,
     type: HalfFloatType,
-    depthTexture: new DepthTexture(width, height),
+    stencilBuffer: true,
+    depthTexture,
     minFilter: NearestFilter,
     magFilter: NearestFilter,
   });
