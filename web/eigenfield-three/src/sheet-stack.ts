@@ -1,6 +1,7 @@
 // Sheets: drawn back to front into a target of their own, with a depth test within each sheet only, and from there into
 // the picture, where the depth test is that of all other objects. Each sheet is drawn twice: its depth, and then what is
-// nearest. Depths of a sheet lie before those of all sheets behind it: nothing is cleared between sheets.
+// nearest, once a pixel (the stencil). Depths of a sheet lie before those of all sheets behind it: nothing is cleared
+// between sheets.
 
 import {
   BufferAttribute,
