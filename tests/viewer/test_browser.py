@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from support import coded_scenes, composed, sheet_scenes, viewer_scenes
+from support import coded_scenes, composed, pinholes, sheet_scenes, viewer_scenes
 from support.browsers import CHROMIUM, OTHERS, lacks
 
 WEB = Path(__file__).parents[2] / "web"
@@ -50,6 +50,7 @@ def folder(tmp_path_factory):
     composed.write(made)
     coded_scenes.write(made)
     sheet_scenes.write(made)
+    pinholes.write(made)
     return made
 
 

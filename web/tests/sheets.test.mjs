@@ -64,6 +64,31 @@ test("sheets, their bytes and those of what they are drawn into", async () => {
   await close();
 });
 
+test("a thousand eyes see no pinhole in a sheet, and nothing of it twice", async () => {
+  const { page, close } = await lab.open();
+  await load(page, "pinholes.glb");
+  const seen = await page.evaluate((eyes) => {
+    const { lab, field } = window;
+    const { renderer, camera, THREE } = lab;
+    const [{ width, height }] = eyes;
+    renderer.setSize(width, height);
+    camera.parent.background = new THREE.Color(1, 1, 1);
+    const pixels = new Uint8Array(4 * width * height);
+    const gl = renderer.getContext();
+    const counts = {};
+    for (const eye of eyes) {
+      lab.placeCamera(field, camera, eye, width / height);
+      lab.draw();
+      gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+      for (let at = 0; at < pixels.length; at += 4) counts[pixels[at]] = (counts[pixels[at]] ?? 0) + 1;
+    }
+    return counts;
+  }, JSON.parse(readFileSync(scenePath("pinholes.json"), "utf8")));
+  // half opaque and black over white: a pinhole is 255, a pixel that is drawn twice 64
+  assert.deepEqual(Object.keys(seen).filter((level) => Math.abs(level - 127.5) > 2), [], JSON.stringify(seen));
+  await close();
+});
+
 test("one opaque sheet is what is drawn without sheets, but for edges", async () => {
   const { page, close } = await lab.open();
   await load(page, "scene.glb");

@@ -3,13 +3,16 @@
 import {
   CustomBlending,
   DoubleSide,
+  EqualStencilFunc,
   FrontSide,
   GLSL3,
+  IncrementStencilOp,
   Matrix4,
   OneFactor,
   OneMinusSrcAlphaFactor,
   RawShaderMaterial,
   Vector3,
+  ZeroStencilOp,
 } from "three";
 import type { IUniform, Texture } from "three";
 import cubic from "../../../src/eigenfield/rendering/shaders/cubic.glsl?raw";
@@ -127,6 +130,15 @@ void main() { fragment = solid = vec4(0.0); }
 /** Colours times coverage, over what is there. */
 export const OVER = { blending: CustomBlending, blendSrc: OneFactor, blendDst: OneMinusSrcAlphaFactor } as const;
 
+// A sheet's depth comes before it. Where it is folded two triangles may have the same: its depth leaves a stencil of 0,
+// which the first of them counts up.
+const ONCE = {
+  depthWrite: false,
+  stencilWrite: true,
+  stencilFunc: EqualStencilFunc,
+  stencilZPass: IncrementStencilOp,
+} as const;
+
 /** The material of a surface, or of the sheets of one, before anything is composed. */
 export function makeMaterial(doubleSided: boolean, sheets: boolean): SurfaceMaterial {
   const uniforms: SurfaceUniforms = {
@@ -146,7 +158,7 @@ export function makeMaterial(doubleSided: boolean, sheets: boolean): SurfaceMate
     uniforms,
     defines: { BICUBIC: FILTERS.bicubic },
     side: doubleSided ? DoubleSide : FrontSide,
-    ...(sheets ? { ...OVER, depthWrite: false } : {}), // sheets have their depth before
+    ...(sheets ? { ...OVER, ...ONCE } : {}),
   });
   material.name = "eigen textures";
   return material as SurfaceMaterial;
@@ -162,5 +174,7 @@ export function makeDepthMaterial(sheets: SurfaceMaterial): RawShaderMaterial {
     fragmentShader: DEPTH_FRAGMENT,
     colorWrite: false,
     side,
+    stencilWrite: true,
+    stencilZPass: ZeroStencilOp,
   });
 }

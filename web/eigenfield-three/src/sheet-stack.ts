@@ -1,11 +1,13 @@
 // Sheets: drawn back to front into a target of their own, with a depth test within each sheet only, and from there into
 // the picture, where the depth test is that of all other objects. Each sheet is drawn twice: its depth, and then what is
-// nearest. Depths of a sheet lie before those of all sheets behind it: nothing is cleared between sheets.
+// nearest, once a pixel (the stencil). Depths of a sheet lie before those of all sheets behind it: nothing is cleared
+// between sheets.
 
 import {
   BufferAttribute,
   BufferGeometry,
   Camera,
+  DepthStencilFormat,
   DepthTexture,
   GLSL3,
   HalfFloatType,
@@ -15,6 +17,7 @@ import {
   RawShaderMaterial,
   Scene,
   UnsignedByteType,
+  UnsignedInt248Type,
   Vector2,
   Vector4,
   WebGLRenderTarget,
@@ -26,7 +29,7 @@ import { ERROR, OVER, PRECISIONS, makeDepthMaterial, type SurfaceMaterial } from
 /** Name of the child of a mesh that draws its sheets: its geometry is the whole picture. */
 export const SHEETS = "sheets";
 
-const PIXEL_BYTES = 16; // half-floats of R, G, B and coverage; three bytes of depth and one that says so; depth
+const PIXEL_BYTES = 16; // half-floats of R, G, B and coverage; three bytes of depth and one that says so; depth and stencil
 
 const SCREEN_VERTEX = `
 precision highp float;
@@ -179,10 +182,13 @@ export class SheetStack {
 }
 
 function makeTarget(width: number, height: number): WebGLRenderTarget {
+  const depthTexture = new DepthTexture(width, height, UnsignedInt248Type);
+  depthTexture.format = DepthStencilFormat;
   const target = new WebGLRenderTarget(width, height, {
     count: 2,
     type: HalfFloatType,
-    depthTexture: new DepthTexture(width, height),
+    stencilBuffer: true,
+    depthTexture,
     minFilter: NearestFilter,
     magFilter: NearestFilter,
   });
