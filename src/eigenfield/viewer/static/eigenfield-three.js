@@ -1,5 +1,5 @@
-import { BufferAttribute as e, BufferGeometry as t, Camera as n, ClampToEdgeWrapping as r, Color as i, CustomBlending as a, DataArrayTexture as o, DataUtils as s, DepthTexture as c, DoubleSide as l, EventDispatcher as u, ExternalTexture as d, FrontSide as f, GLSL3 as p, HalfFloatType as m, InstancedBufferGeometry as h, LinearFilter as g, LinearMipmapLinearFilter as _, Matrix4 as v, Mesh as y, MeshBasicMaterial as b, NearestFilter as x, NoBlending as S, OneFactor as C, OneMinusSrcAlphaFactor as w, RGBAFormat as T, RawShaderMaterial as E, Scene as D, Sphere as O, UnsignedByteType as ee, Vector2 as k, Vector3 as A, Vector4 as te, WebGLRenderTarget as ne } from "three";
-import { GLTFLoader as re } from "three/addons/loaders/GLTFLoader.js";
+import { BufferAttribute as e, BufferGeometry as t, Camera as n, ClampToEdgeWrapping as r, Color as i, CustomBlending as a, DataArrayTexture as o, DataUtils as s, DepthStencilFormat as c, DepthTexture as l, DoubleSide as u, EqualStencilFunc as d, EventDispatcher as f, ExternalTexture as p, FrontSide as m, GLSL3 as h, HalfFloatType as g, IncrementStencilOp as _, InstancedBufferGeometry as v, LinearFilter as y, LinearMipmapLinearFilter as b, Matrix4 as x, Mesh as S, MeshBasicMaterial as C, NearestFilter as w, NoBlending as T, OneFactor as E, OneMinusSrcAlphaFactor as ee, RGBAFormat as D, RawShaderMaterial as O, Scene as k, Sphere as te, UnsignedByteType as ne, UnsignedInt248Type as re, Vector2 as ie, Vector3 as A, Vector4 as ae, WebGLRenderTarget as oe, ZeroStencilOp as se } from "three";
+import { GLTFLoader as ce } from "three/addons/loaders/GLTFLoader.js";
 // eigenfield-three/src/errors.ts
 var j = class extends Error {
 	code;
@@ -12,19 +12,42 @@ var j = class extends Error {
 function M(e, t) {
 	return new j("damaged", `The file is damaged (${e}: ${t}); make or download it again.`, e);
 }
-function ie(e, t) {
+function le(e, t) {
 	return new j("truncated", `The file is cut off after ${e} of ${t} bytes; download or copy it again.`, String(e));
 }
-function ae(e) {
+function ue(e) {
 	return new j("truncated", `The file is cut off (${e}); download or copy it again.`, e);
 }
-function oe(e, t = "") {
+function de(e, t = "") {
 	return e instanceof j ? e : new j("damaged", `The file cannot be read (${(e instanceof Error ? e.message : String(e)).replace(/^THREE\.GLTFLoader: /, "")}); make or download it again.`, t, { cause: e });
 }
+// eigenfield-three/src/addresses.ts
+var fe = 60;
+function pe(e) {
+	return {
+		name: "EIGENFIELD_addresses",
+		beforeRoot: async () => me(e.json)
+	};
+}
+function me(e) {
+	let t = [["", e]];
+	for (let e = t.pop(); e; e = t.pop()) {
+		let [n, r] = e;
+		if (typeof r == "object" && r) for (let [e, i] of Object.entries(r)) {
+			if (e === "extras" && !Array.isArray(r)) continue;
+			let a = `${n}/${e}`;
+			if (e === "uri" && !(typeof i == "string" && /^data:/i.test(i))) throw he(a, JSON.stringify(i));
+			t.push([a, i]);
+		}
+	}
+}
+function he(e, t) {
+	return new j("address", `The file names another one (${e}: ${t.length > fe ? `${t.slice(0, fe)}…` : t}), which is not fetched; export all of it as one .glb.`, e);
+}
 // eigenfield-three/src/av1-picture.ts
-var se = 1, ce = 7;
-function le(e, t) {
-	let { level: n, tier: r, width: i, height: a } = ue(new Uint8Array(e), t), o = r << 7 | 76, s = N("ipco", [
+var ge = 1, _e = 7;
+function ve(e, t) {
+	let { level: n, tier: r, width: i, height: a } = ye(new Uint8Array(e), t), o = r << 7 | 76, s = N("ipco", [
 		...N("ispe", [
 			...P(0),
 			...P(i),
@@ -121,7 +144,7 @@ function le(e, t) {
 	], f = new Uint8Array(u + e.byteLength);
 	return f.set(d), f.set(new Uint8Array(e), u), f.buffer;
 }
-function ue(e, t) {
+function ye(e, t) {
 	let n = e[0] ?? 0, r = 8 * (1 + (n >> 2 & 1) + (n >> 1 & 1)), i = (t) => {
 		let n = 0;
 		for (let i = r + t; r < i; r++) n = 2 * n + ((e[r >> 3] ?? 0) >> 7 - (r & 7) & 1);
@@ -130,8 +153,8 @@ function ue(e, t) {
 	i(4);
 	let a = i(1) === 1, o = !a && i(7) !== 0;
 	a || i(12);
-	let s = i(5), c = !a && s > ce ? i(1) : 0, [l, u] = [i(4) + 1, i(4) + 1], [d, f] = [i(l) + 1, i(u) + 1];
-	if (n >> 3 !== se || o || r > 8 * e.length) throw M(t, "no AV1 sequence header");
+	let s = i(5), c = !a && s > _e ? i(1) : 0, [l, u] = [i(4) + 1, i(4) + 1], [d, f] = [i(l) + 1, i(u) + 1];
+	if (n >> 3 !== ge || o || r > 8 * e.length) throw M(t, "no AV1 sequence header");
 	return {
 		level: s,
 		tier: c,
@@ -158,7 +181,7 @@ function F(e) {
 	return Array.from(e, (e) => e.charCodeAt(0));
 }
 // eigenfield-three/src/inflate.ts
-async function de(e, t, n, r) {
+async function be(e, t, n, r) {
 	let i = [], a = 0, o = new Blob([e]).stream().pipeThrough(new DecompressionStream(t)).getReader();
 	try {
 		for (let e = await o.read(); !e.done && a <= n; e = await o.read()) i.push(e.value), a += e.value.length;
@@ -171,11 +194,11 @@ async function de(e, t, n, r) {
 	return s;
 }
 // eigenfield-three/src/limits.ts
-var fe = "EIGENFIELD_eigen_textures", pe = 64 * 2 ** 20, I = 16384, me = 16384, he = 1024, ge = 2 ** 27, _e = 4096, ve = 8 * 2 ** 30, L = 1e5, ye = 65535, be = 2 ** 29, R = 1024, xe = 2 ** 25, Se = 2 ** 26, Ce = 2 ** 27, we = 2 ** 28, Te = 1e30, z = 65536, Ee = 126, B = 64, De = 0, Oe = 1, ke = 2, Ae = 24, je = 44, Me = 21, Ne = 26214, Pe = 4, Fe = Float64Array.from({ length: 4095 }, (e, t) => Math.round(z / (1 + Math.exp((2047 - t) / 256)))), Ie = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), Le = Float64Array.from({ length: 127 }, (e, t) => Math.round(z / (t + 1.5)));
+var xe = "EIGENFIELD_eigen_textures", Se = 64 * 2 ** 20, I = 16384, Ce = 16384, we = 1024, Te = 2 ** 27, Ee = 4096, De = 8 * 2 ** 30, L = 1e5, Oe = 65535, ke = 2 ** 29, R = 1024, Ae = 2 ** 25, je = 2 ** 26, Me = 2 ** 27, Ne = 2 ** 28, Pe = 1e30, z = 65536, Fe = 126, B = 64, Ie = 0, Le = 1, Re = 2, ze = 24, Be = 44, Ve = 21, He = 26214, Ue = 4, We = Float64Array.from({ length: 4095 }, (e, t) => Math.round(z / (1 + Math.exp((2047 - t) / 256)))), Ge = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), Ke = Float64Array.from({ length: 127 }, (e, t) => Math.round(z / (t + 1.5)));
 function V(e) {
 	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + V(Math.floor(e / 4294967296));
 }
-var Re = class {
+var qe = class {
 	bytes;
 	low = 0;
 	high = 4294967295;
@@ -185,11 +208,11 @@ var Re = class {
 	seen;
 	weights;
 	constructor(e, t, n) {
-		this.bytes = e, this.probability = new Uint16Array(t * B).fill(z / 2), this.seen = new Uint8Array(t * B), this.weights = new Float64Array(n * B * 3).fill(Ne);
-		for (let e = 0; e < Pe; e++) this.code = this.code * 256 + this.next();
+		this.bytes = e, this.probability = new Uint16Array(t * B).fill(z / 2), this.seen = new Uint8Array(t * B), this.weights = new Float64Array(n * B * 3).fill(He);
+		for (let e = 0; e < Ue; e++) this.code = this.code * 256 + this.next();
 	}
 	checkEnd(e) {
-		if (this.at > this.bytes.length + Pe) throw ae(e);
+		if (this.at > this.bytes.length + Ue) throw ue(e);
 	}
 	flag(e, t, n, r) {
 		return this.node(e, t, n, r, 0) === 1;
@@ -201,17 +224,17 @@ var Re = class {
 	}
 	integer(e, t, n, r) {
 		let i = this.magnitude(e, t, n, r);
-		return i === 0 ? 0 : this.node(e, t, n, r, Oe) ? -i : i;
+		return i === 0 ? 0 : this.node(e, t, n, r, Le) ? -i : i;
 	}
 	magnitude(e, t, n, r) {
-		if (!this.node(e, t, n, r, De)) return 0;
+		if (!this.node(e, t, n, r, Ie)) return 0;
 		let i = 0;
-		for (; i < Me && this.node(e, t, n, r, ke + i);) i += 1;
+		for (; i < Ve && this.node(e, t, n, r, Re + i);) i += 1;
 		if (i < 2) return i + 1;
 		let a = 1;
 		for (let o = i - 2; o >= 0; o--) {
 			let s;
-			s = o === i - 2 ? this.node(e, t, n, r, Ae + i) : o === i - 3 ? this.node(e, t, n, r, je + 2 * Math.min(i, 9) + (a & 1)) : this.split(z / 2), a = a * 2 + s;
+			s = o === i - 2 ? this.node(e, t, n, r, ze + i) : o === i - 3 ? this.node(e, t, n, r, Be + 2 * Math.min(i, 9) + (a & 1)) : this.split(z / 2), a = a * 2 + s;
 		}
 		return a + 1;
 	}
@@ -219,12 +242,12 @@ var Re = class {
 		return this.bit(e * B + i, t * B + i, n * B + i, (r * B + i) * 3);
 	}
 	bit(e, t, n, r) {
-		let { probability: i, weights: a } = this, o = Ie[i[e] >> 4], s = Ie[i[t] >> 4], c = Ie[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / z), u = Fe[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? z - u : -u;
+		let { probability: i, weights: a } = this, o = Ge[i[e] >> 4], s = Ge[i[t] >> 4], c = Ge[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / z), u = We[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? z - u : -u;
 		return a[r] += o * f >> 14, a[r + 1] += s * f >> 14, a[r + 2] += c * f >> 14, this.learn(e, d), this.learn(t, d), this.learn(n, d), d;
 	}
 	learn(e, t) {
 		let [n, r] = [this.probability[e], this.seen[e]];
-		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * Le[r] / z), r < Ee && (this.seen[e] = r + 1);
+		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * Ke[r] / z), r < Fe && (this.seen[e] = r + 1);
 	}
 	split(e) {
 		let t = this.low + Math.floor((this.high - this.low) * e / z), n = +(this.code <= t);
@@ -235,26 +258,26 @@ var Re = class {
 		return this.bytes[this.at++] ?? 0;
 	}
 };
-function ze(e, t, n, r = 1) {
-	if (e.length < t) throw ae(n);
+function Je(e, t, n, r = 1) {
+	if (e.length < t) throw ue(n);
 	if (e[0] !== r) throw M(n, `coded numbers of version ${e[0]}`);
 	return new DataView(e.buffer, e.byteOffset, e.byteLength);
 }
-function Be(e, t, n, r) {
+function Ye(e, t, n, r) {
 	if (t > n || t > 16 * e.length + 1024) throw M(r, `${t} numbers announced`);
 }
 // eigenfield-three/src/table-decoder.ts
-var Ve = 12, He = 3, Ue = 312, We = He * Ue, Ge = 938, Ke = 24, qe = 16, Je = 1722, Ye = 1726, Xe = 4, Ze = 5;
-function Qe(e) {
-	return new Re(e, Ye, 21);
+var Xe = 12, Ze = 3, Qe = 312, $e = Ze * Qe, et = 938, tt = 24, nt = 16, rt = 1722, it = 1726, at = 4, ot = 5;
+function st(e) {
+	return new qe(e, it, 21);
 }
-function $e(e) {
-	return e.flag(We, We, We, He) ? 2 : +!!e.flag(937, 937, 937, He);
+function ct(e) {
+	return e.flag($e, $e, $e, Ze) ? 2 : +!!e.flag(937, 937, 937, Ze);
 }
-function et(e) {
+function lt(e) {
 	return Math.min(V(e), 11);
 }
-function tt(e, t, n, r) {
+function ut(e, t, n, r) {
 	let i = new Float64Array(n.length), a = n.length / t, o = (e, n, r) => n < 0 || r < 0 || r >= t ? 0 : e[n * t + r], s = 0;
 	for (let c = 0; c < a; c++) for (let a = 0; a < t; a++) {
 		let [l, u] = [o(i, c, a - 1), o(i, c - 1, a)], [d, f] = [o(i, c - 1, a - 1), o(i, c - 1, a + 1)], [p, m, h] = [
@@ -263,31 +286,31 @@ function tt(e, t, n, r) {
 			s
 		];
 		r === 1 ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
-		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * Ue, y = e.integer(v + et(m) * Ve + et(g), v + 144 + et(m + h), v + 144 + 24 + _ * Ve + et(g + Math.abs(l)), r);
+		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * Qe, y = e.integer(v + lt(m) * Xe + lt(g), v + 144 + lt(m + h), v + 144 + 24 + _ * Xe + lt(g + Math.abs(l)), r);
 		i[c * t + a] = p + y, s = Math.abs(y);
 	}
 	return i;
 }
-function nt(e, t, n, r) {
+function dt(e, t, n, r) {
 	let i = new Float64Array(t * n), a = new Float64Array(n);
 	for (let o = 0; o < t; o++) {
 		let t = 0;
 		for (let s = 0; s < n; s++) {
-			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(V(a[s]), 23), d = Math.min(V(t), 23), f = e.integer(Ge + l * Ke + u, Ge + (qe + l) * Ke + d, 1706 + l, Ze + l);
+			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(V(a[s]), 23), d = Math.min(V(t), 23), f = e.integer(et + l * tt + u, et + (nt + l) * tt + d, 1706 + l, ot + l);
 			i[o * n + s] = c + f, t = Math.abs(f), a[s] = Math.floor((a[s] + t + 1) / 2);
 		}
 	}
 	return i;
 }
-function rt(e, t, n, r) {
+function ft(e, t, n, r) {
 	let i = new Float64Array(t).fill(-1), a = new Uint8Array(n), [o, s, c] = [
 		0,
 		1,
 		0
 	];
 	for (let l = 0; l < t; l++) {
-		if (s = +!!e.flag(Je + s, Je + s, 1724, Xe), !s) continue;
-		let t = o + e.integer(1725, 1725, 1725, Xe);
+		if (s = +!!e.flag(rt + s, rt + s, 1724, at), !s) continue;
+		let t = o + e.integer(1725, 1725, 1725, at);
 		if (!(t >= 0 && t < n) || a[t]) throw M(r, "a grid with a camera out of place");
 		a[t] = 1, i[l] = t, o = t + 1, c += 1;
 	}
@@ -295,20 +318,20 @@ function rt(e, t, n, r) {
 	return i;
 }
 // eigenfield-three/src/camera-decoder.ts
-var it = 130, H = 11, at = 1, ot = 2, st = 2, ct = 44 * L + 1024;
-async function lt(e, t) {
-	if (e[0] !== st) throw M(t, `version ${e[0]}`);
-	let n = await de(Uint8Array.from(e.subarray(1)), "deflate-raw", ct, t);
-	return ut(Uint8Array.from([1, ...n]), t);
+var pt = 130, H = 11, mt = 1, ht = 2, gt = 2, _t = 44 * L + 1024;
+async function vt(e, t) {
+	if (e[0] !== gt) throw M(t, `version ${e[0]}`);
+	let n = await be(Uint8Array.from(e.subarray(1)), "deflate-raw", _t, t);
+	return yt(Uint8Array.from([1, ...n]), t);
 }
-function ut(e, t) {
-	let n = ze(e, it, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & at) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
+function yt(e, t) {
+	let n = Je(e, pt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & mt) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
 	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw M(t, "cameras that cannot be");
 	if (i > 1e5 || a && o * s < i) throw M(t, `${i} cameras`);
-	Be(e, Math.max(H * i, o * s), H * L, t);
-	let l = it + (a ? 132 : 0);
-	ze(e, l, t);
-	let u = (e, t) => a ? n.getFloat32(it + 4 * (e * H + t), !0) : 0, d = Qe(e.subarray(l)), f = a ? rt(d, o * s, i, t) : null, p = nt(d, i, H, (r & ot) !== 0);
+	Ye(e, Math.max(H * i, o * s), H * L, t);
+	let l = pt + (a ? 132 : 0);
+	Je(e, l, t);
+	let u = (e, t) => a ? n.getFloat32(pt + 4 * (e * H + t), !0) : 0, d = st(e.subarray(l)), f = a ? ft(d, o * s, i, t) : null, p = dt(d, i, H, (r & ht) !== 0);
 	d.checkEnd(t);
 	let m = {
 		intrinsics: new Float32Array(5 * i),
@@ -319,7 +342,7 @@ function ut(e, t) {
 		0,
 		0,
 		...c.subarray(12)
-	], g = ft(c[3], c[4], c[5], c[6]), _ = new Float64Array(H), v = 0;
+	], g = xt(c[3], c[4], c[5], c[6]), _ = new Float64Array(H), v = 0;
 	for (let e = 0; e < (f ? f.length : i); e++) {
 		let t = f ? f[e] : e;
 		if (t < 0) continue;
@@ -328,18 +351,18 @@ function ut(e, t) {
 			let t = c[e < 5 ? 0 : e < 8 ? 1 : 2], i = u(0, e) + u(1, e) * n + u(2, e) * r;
 			_[e] = p[v * H + e] * t + h[e] + i;
 		}
-		dt(_, g, m, t), v += 1;
+		bt(_, g, m, t), v += 1;
 	}
 	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw M(t, "cameras that are not finite");
 	return m;
 }
-function dt(e, t, n, r) {
+function bt(e, t, n, r) {
 	n.intrinsics.set(e.subarray(0, 5), 5 * r);
 	let [i, a, o] = [
 		e[5],
 		e[6],
 		e[7]
-	], s = i * i + a * a + o * o, c = 1 + s, l = ft(2 * i / c, 2 * a / c, 2 * o / c, (1 - s) / c);
+	], s = i * i + a * a + o * o, c = 1 + s, l = xt(2 * i / c, 2 * a / c, 2 * o / c, (1 - s) / c);
 	for (let i = 0; i < 3; i++) {
 		let a = 0;
 		for (let o = 0; o < 3; o++) {
@@ -350,7 +373,7 @@ function dt(e, t, n, r) {
 		n.poses[12 * r + 4 * i + 3] = a;
 	}
 }
-function ft(e, t, n, r) {
+function xt(e, t, n, r) {
 	return [
 		[
 			1 - 2 * (t * t + n * n),
@@ -369,7 +392,7 @@ function ft(e, t, n, r) {
 		]
 	].flat();
 }
-var pt = 2 ** 24, mt = class {
+var St = 2 ** 24, Ct = class {
 	points;
 	start;
 	end;
@@ -436,7 +459,7 @@ var pt = 2 ** 24, mt = class {
 	add(e, t, n) {
 		let { heap: r, key: i, points: a } = this, o = this.gates++;
 		this.start[o] = e, this.end[o] = t, this.opposite[o] = n, this.status[o] = 1, this.into[t] = o;
-		let s = (a[3 * e] + a[3 * t]) * pt + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
+		let s = (a[3 * e] + a[3 * t]) * St + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
 		for (; c > 0;) {
 			let e = c - 1 >> 1;
 			if (i[e] <= s) break;
@@ -444,57 +467,57 @@ var pt = 2 ** 24, mt = class {
 		}
 		return r[c] = o, i[c] = s, o;
 	}
-}, ht = 2 ** 20, gt = .8, _t = 44, vt = 385, yt = 897, bt = 1086, xt = 1095, [St, Ct, wt, Tt, Et] = [
+}, wt = 2 ** 20, Tt = .8, Et = 44, Dt = 385, Ot = 897, kt = 1086, At = 1095, [jt, Mt, Nt, Pt, Ft] = [
 	0,
 	1,
 	2,
 	3,
 	15
 ];
-function Dt(e) {
-	return Math.floor(Math.min(Math.max(e, -ht), ht) + .5);
+function It(e) {
+	return Math.floor(Math.min(Math.max(e, -wt), wt) + .5);
 }
-function Ot(e, t, n) {
+function Lt(e, t, n) {
 	let r = Math.max((1 << n) - 1, 1);
 	return (e[3 * t] & r ? 1 : 0) + (e[3 * t + 1] & r ? 2 : 0);
 }
-function kt(e, t, n, r, i) {
-	i.flat ? At(e, t, n, r, i.fine) : jt(e, t, n, r);
+function Rt(e, t, n, r, i) {
+	i.flat ? zt(e, t, n, r, i.fine) : Bt(e, t, n, r);
 }
-function At(e, t, n, r, i) {
+function zt(e, t, n, r, i) {
 	let { a, b: o, o: s, pair: c } = r, [l, u, d, f] = [
 		t[3 * a],
 		t[3 * a + 1],
 		t[3 * o],
 		t[3 * o + 1]
-	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? gt : -.8, _ = 1 << i >> 1, v = Dt((l + d) * .5 + g * m) + _ >> i, y = Dt((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(V(Math.floor((p * p + m * m) / b)), 23), S = Math.min(V(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, St), T = Math.min(V(Math.abs(w)), 7), [E, D] = [577, 705], O = T * 2 + +(w > 0), ee = e.integer(vt + x * 8 + C, E + O * 8 + C, D + S * 8 + T, Ct);
-	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + ee << i, i === 0) return;
-	let k = Ot(t, a, i) + 4 * Ot(t, o, i);
-	if (e.flag(yt + k, 913 + Ot(t, s, i), 917 + c, Et)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
+	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? Tt : -.8, _ = 1 << i >> 1, v = It((l + d) * .5 + g * m) + _ >> i, y = It((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(V(Math.floor((p * p + m * m) / b)), 23), S = Math.min(V(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, jt), T = Math.min(V(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(Dt + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, Mt);
+	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + O << i, i === 0) return;
+	let k = Lt(t, a, i) + 4 * Lt(t, o, i);
+	if (e.flag(Ot + k, 913 + Lt(t, s, i), 917 + c, Ft)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
 }
-function jt(e, t, n, { a: r, b: i, o: a }) {
+function Bt(e, t, n, { a: r, b: i, o: a }) {
 	let o = 0;
 	for (let e = 0; e < 3; e++) o += (t[3 * i + e] - t[3 * r + e]) ** 2;
 	let s = Math.min(V(o), 43), c = 0;
 	for (let o = 0; o < 3; o++) {
-		let l = Dt(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, _t + o * 24 + c, 116 + o * _t + s, wt);
+		let l = It(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, Et + o * 24 + c, 116 + o * Et + s, Nt);
 		t[3 * n + o] = l + u, c = Math.min(V(Math.abs(u)), 23);
 	}
 }
-function Mt(e, t, n, r, i) {
+function Vt(e, t, n, r, i) {
 	for (let a = 0; a < (i ? 2 : 3); a++) {
-		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -ht), ht) : 0, o = bt + a;
-		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, Tt);
+		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -wt), wt) : 0, o = kt + a;
+		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, Pt);
 	}
 }
 // eigenfield-three/src/mesh-faces.ts
-var Nt = 13, Pt = 11, Ft = 12, U = 169, It = 8, Lt = xt, Rt = Lt + U + 104 + 26, zt = Rt + U + 104 + Nt, Bt = zt + 64 + 64 + U, Vt = Bt + U + 4 + 1, Ht = Vt + 6, [Ut, Wt, Gt, Kt, qt] = [
+var Ht = 13, Ut = 11, Wt = 12, U = 169, Gt = 8, Kt = At, qt = Kt + U + 104 + 26, Jt = qt + U + 104 + Ht, Yt = Jt + 64 + 64 + U, Xt = Yt + U + 4 + 1, Zt = Xt + 6, [Qt, $t, en, tn, nn] = [
 	4,
 	5,
 	6,
 	7,
 	8
-], Jt = [
+], rn = [
 	-1,
 	-.4,
 	0,
@@ -505,12 +528,12 @@ var Nt = 13, Pt = 11, Ft = 12, U = 169, It = 8, Lt = xt, Rt = Lt + U + 104 + 26,
 	2,
 	4
 ];
-function Yt(e, t, n, r, i) {
+function an(e, t, n, r, i) {
 	let a = new Int32Array(3 * t), o = {
 		points: a,
 		faces: new Int32Array(3 * n),
 		parents: new Int32Array(3 * t).fill(-1)
-	}, s = new Int32Array(t), c = new mt(a, n), [l, u] = [0, 0], d = (e, t, n) => {
+	}, s = new Int32Array(t), c = new Ct(a, n), [l, u] = [0, 0], d = (e, t, n) => {
 		o.faces.set([
 			e,
 			t,
@@ -534,56 +557,56 @@ function Yt(e, t, n, r, i) {
 			-1,
 			-1
 		];
-		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(Vt + n, Vt + 3 + n, Vt + n, qt)) t[n] = p();
+		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(Xt + n, Xt + 3 + n, Xt + n, nn)) t[n] = p();
 		else {
 			let i = t[n] = f();
-			Mt(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
+			Vt(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
 		}
 		let [n, o, s] = t;
 		if (n === o || o === s || s === n) throw M(i, "a face of two corners");
 		d(n, o, s), c.seed(t);
-	}, h = (e, t, n, i) => c.status[t] === 2 ? Ft : c.status[t] !== 1 || n === i || t === e ? Pt : Xt(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
+	}, h = (e, t, n, i) => c.status[t] === 2 ? Wt : c.status[t] !== 1 || n === i || t === e ? Ut : on(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
 	for (; u < n;) {
 		let t = c.next();
 		if (t < 0) {
 			m();
 			continue;
 		}
-		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * Nt + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = Lt + U + 104 + 2 * y + +(_ === v);
-		if (y < Pt && e.flag(Lt + x, Lt + U + y * It + S, w, Ut)) {
+		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * Ht + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = Kt + U + 104 + 2 * y + +(_ === v);
+		if (y < Ut && e.flag(Kt + x, Kt + U + y * Gt + S, w, Qt)) {
 			d(l, n, _), c.closeLeft(t);
 			continue;
 		}
-		if (b < Pt && (v !== _ || y >= Pt) && e.flag(Rt + x, Rt + U + b * It + C, Rt + U + 104 + b, Wt)) {
+		if (b < Ut && (v !== _ || y >= Ut) && e.flag(qt + x, qt + U + b * Gt + C, qt + U + 104 + b, $t)) {
 			d(l, n, v), c.closeRight(t);
 			continue;
 		}
-		let T = +(y === Ft) + (b === Ft ? 2 : 0), E = Ot(a, n, r.fine) + 4 * Ot(a, l, r.fine), D = zt + 64 + S * It + C;
-		if (e.flag(zt + T * 16 + E, D, zt + 64 + 64 + x, Gt)) {
+		let T = +(y === Wt) + (b === Wt ? 2 : 0), E = Lt(a, n, r.fine) + 4 * Lt(a, l, r.fine), ee = Jt + 64 + S * Gt + C;
+		if (e.flag(Jt + T * 16 + E, ee, Jt + 64 + 64 + x, en)) {
 			c.status[t] = 2;
 			continue;
 		}
-		let O;
-		if (e.flag(Bt + x, Bt + U + T, Bt + U + 4, Kt)) {
-			O = f();
+		let D;
+		if (e.flag(Yt + x, Yt + U + T, Yt + U + 4, tn)) {
+			D = f();
 			let i = c.opposite[t];
 			o.parents.set([
 				n,
 				l,
 				i
-			], 3 * O), kt(e, a, O, {
+			], 3 * D), Rt(e, a, D, {
 				a: n,
 				b: l,
 				o: i,
 				pair: x
 			}, r);
-		} else if (O = p(), O === n || O === l) throw M(i, "a face of two corners");
-		d(l, n, O), c.openOut(t, O);
+		} else if (D = p(), D === n || D === l) throw M(i, "a face of two corners");
+		d(l, n, D), c.openOut(t, D);
 	}
 	if (l !== t) throw M(i, "fewer places than announced");
 	return o;
 }
-function Xt(e, t, n, r, i, a) {
+function on(e, t, n, r, i, a) {
 	let o = (n, r) => a && r === 2 ? 0 : e[3 * n + r] - e[3 * t + r], [s, c, l] = [
 		o(n, 0),
 		o(n, 1),
@@ -606,21 +629,21 @@ function Xt(e, t, n, r, i, a) {
 		s * m - c * p
 	], S = Math.sqrt(g * g + _ * _ + v * v);
 	if (S === 0 || g * y + _ * b + v * x > 0) return 0;
-	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = Jt.findIndex((e) => C < e);
+	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = rn.findIndex((e) => C < e);
 	return w < 0 ? 10 : w + 1;
 }
 // eigenfield-three/src/mesh-corners.ts
-var Zt = 32, Qt = 4, [$t, en, tn, nn] = [
+var sn = 32, cn = 4, [ln, un, dn, fn] = [
 	0,
 	1,
 	2,
 	3
-], rn = Ht, an = rn + 64 + 12 + 16, W = an + Qt + 1, on = W + 4, [sn, cn, ln] = [
+], pn = Zt, mn = pn + 64 + 12 + 16, W = mn + cn + 1, hn = W + 4, [gn, _n, vn] = [
 	9,
 	10,
 	11
 ];
-function un(e, t) {
+function yn(e, t) {
 	let n = new Int32Array(t + 1);
 	for (let t of e) n[t + 1] += 1;
 	for (let e = 0; e < t; e++) n[e + 1] += n[e];
@@ -630,7 +653,7 @@ function un(e, t) {
 		corners: i
 	};
 }
-function dn(e, t, n, r, i, a, o) {
+function bn(e, t, n, r, i, a, o) {
 	let s = t.faces.length / 3, c = Math.min(s, Math.floor(n / 3)), l = {
 		faces: new Int32Array(3 * s),
 		place: new Int32Array(n),
@@ -645,7 +668,7 @@ function dn(e, t, n, r, i, a, o) {
 		0,
 		0,
 		0
-	], m = new Int32Array(Qt), h = /* @__PURE__ */ new Int32Array(8), [g, _, v] = [
+	], m = new Int32Array(cn), h = /* @__PURE__ */ new Int32Array(8), [g, _, v] = [
 		0,
 		0,
 		-1
@@ -654,7 +677,7 @@ function dn(e, t, n, r, i, a, o) {
 		return -1;
 	}, b = (e, n) => {
 		let [a, o] = [t.faces[3 * e + n], t.faces[3 * e + (n + 1) % 3]];
-		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + Zt); t++) {
+		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + sn); t++) {
 			let n = Math.floor(i[t] / 3);
 			if (n >= e) break;
 			if (y(n, o) >= 0) return n;
@@ -663,42 +686,42 @@ function dn(e, t, n, r, i, a, o) {
 	}, x = (e, t) => l.faces[3 * e + y(e, t)], S = (n, r) => {
 		let i = t.faces[3 * n + r], a = u[i];
 		if (a < 0) return -1;
-		h.fill(nn);
+		h.fill(fn);
 		let s = 0;
 		for (let e of [r, (r + 2) % 3]) {
 			if (f[e] < 0) continue;
 			let t = x(f[e], i);
 			s === 1 && m[0] === t ? h[1] = p[e] : (m[s] = t, h[2 * s] = p[e], s += 1);
 		}
-		for (let e = 0; e < Zt && s < Qt && a >= 0; e++) (s < 1 || a !== m[0]) && (s < 2 || a !== m[1]) && (m[s++] = a), a = d[a];
+		for (let e = 0; e < sn && s < cn && a >= 0; e++) (s < 1 || a !== m[0]) && (s < 2 || a !== m[1]) && (m[s++] = a), a = d[a];
 		let c = -1;
 		for (let t = 0; t < s && c < 0; t++) {
-			let [n, i] = [h[2 * t], h[2 * t + 1]], a = rn + 76 + Math.min(s, 3) * 4 + n;
-			e.flag(rn + t * 16 + n * 4 + i, rn + 64 + t * 3 + r, a, sn) && (c = m[t]);
+			let [n, i] = [h[2 * t], h[2 * t + 1]], a = pn + 76 + Math.min(s, 3) * 4 + n;
+			e.flag(pn + t * 16 + n * 4 + i, pn + 64 + t * 3 + r, a, gn) && (c = m[t]);
 		}
 		if (c < 0) {
-			if (e.flag(an + s, an + s, an + Qt, cn)) return -1;
+			if (e.flag(mn + s, mn + s, mn + cn, _n)) return -1;
 			if (c = e.raw(V(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
 		}
-		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? en : tn);
+		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? un : dn);
 		return c;
 	}, C = () => {
 		let t = _++;
-		if (!e.flag(W, W, W, ln)) return l.kinds[t] = e.flag(W + 1, W + 1, W + 1, ln) ? 2 : 0, t;
+		if (!e.flag(W, W, W, vn)) return l.kinds[t] = e.flag(W + 1, W + 1, W + 1, vn) ? 2 : 0, t;
 		l.kinds[t] = 1;
 		let n = v;
-		if (v = t, n >= 0 && e.flag(W + 2, W + 2, W + 2, ln)) {
+		if (v = t, n >= 0 && e.flag(W + 2, W + 2, W + 2, vn)) {
 			let n = e.raw(V(t - 1));
 			if (n >= t || l.kinds[n] !== 1) throw M(o, "a map that is not there");
 			return l.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
 		}
-		let r = n >= 0 && e.flag(W + 3, W + 3, W + 3, ln);
+		let r = n >= 0 && e.flag(W + 3, W + 3, W + 3, vn);
 		for (let i = 0; i < 4; i++) l.maps[6 * t + i] = r ? l.maps[6 * n + i] : e.raw(32);
 		for (let n = 4; n < 6; n++) l.maps[6 * t + n] = e.raw(a);
 		return t;
 	};
 	for (let e = 0; e < s; e++) {
-		for (let t = 0; t < 3; t++) f[t] = b(e, t), p[t] = $t;
+		for (let t = 0; t < 3; t++) f[t] = b(e, t), p[t] = ln;
 		let r = -1, i = [];
 		for (let a = 0; a < 3; a++) {
 			let s = S(e, a);
@@ -718,7 +741,7 @@ function dn(e, t, n, r, i, a, o) {
 	return l;
 }
 // eigenfield-three/src/mesh-values.ts
-var fn = 16, pn = 6, mn = 13, hn = 14, gn = 20, _n = on, vn = _n + 169 + 280 + 182, yn = vn + 144 + 576 + 48, [bn, xn] = [12, 13], Sn = [
+var xn = 16, Sn = 6, Cn = 13, wn = 14, Tn = 20, En = hn, Dn = En + 169 + 280 + 182, On = Dn + 144 + 576 + 48, [kn, An] = [12, 13], jn = [
 	.5,
 	1.5,
 	3,
@@ -726,14 +749,14 @@ var fn = 16, pn = 6, mn = 13, hn = 14, gn = 20, _n = on, vn = _n + 169 + 280 + 1
 	12,
 	30
 ];
-function Cn(e, t) {
-	return Dt(Number.isNaN(e) ? t : e);
+function Mn(e, t) {
+	return It(Number.isNaN(e) ? t : e);
 }
-function wn(e) {
-	let t = Sn.filter((t) => Math.abs(e) >= t).length;
-	return e < 0 ? pn - t : pn + t;
+function Nn(e) {
+	let t = jn.filter((t) => Math.abs(e) >= t).length;
+	return e < 0 ? Sn - t : Sn + t;
 }
-function Tn(e, t, n, r) {
+function Pn(e, t, n, r) {
 	let { points: i, faces: a, parents: o } = t, s = /* @__PURE__ */ new Float64Array(9), c = (e) => i[3 * e], l = (e) => i[3 * e + 1], u = (e) => i[3 * e + 2], d = (e, t) => {
 		let [n, r, i] = [
 			c(t) - c(e),
@@ -754,18 +777,18 @@ function Tn(e, t, n, r) {
 			Infinity,
 			-Infinity
 		];
-		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + fn); e++) for (let i = 1; i < 3; i++) {
-			let o = En(a, r[e], i);
+		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + xn); e++) for (let i = 1; i < 3; i++) {
+			let o = Fn(a, r[e], i);
 			if (o >= t) continue;
 			let s = d(t, o);
 			h += s * u(o), g += s, _ = Math.min(_, u(o)), v = Math.max(v, u(o));
-			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + fn); e++) for (let n = 1; n < 3; n++) {
-				let i = En(a, r[e], n);
+			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + xn); e++) for (let n = 1; n < 3; n++) {
+				let i = Fn(a, r[e], n);
 				i < t && d(t, i);
 			}
 		}
 		let y = 13, b = t > 0 ? u(t - 1) : 0, x = b;
-		g > 0 && (y = Math.min(V(v - _), 12), b = h / g, x = Math.min(Math.max(Dn(s), p), m));
+		g > 0 && (y = Math.min(V(v - _), 12), b = h / g, x = Math.min(Math.max(In(s), p), m));
 		let S = b, [C, w, T] = [
 			o[3 * t],
 			o[3 * t + 1],
@@ -783,15 +806,15 @@ function Tn(e, t, n, r) {
 				S = Math.min(Math.max(u(C) + t * (u(w) - u(C)) + c * (u(T) - u(C)), p), m);
 			}
 		}
-		let E = Cn(x, b), [D, O] = [wn(S - E), wn(b - E)], ee = e.integer(_n + D * mn + O, _n + 169 + y * gn + f, _n + 169 + 280 + D * hn + y, bn), k = E + ee;
-		i[3 * t + 2] = k, f = Math.min(V(Math.abs(ee)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
+		let E = Mn(x, b), [ee, D] = [Nn(S - E), Nn(b - E)], O = e.integer(En + ee * Cn + D, En + 169 + y * Tn + f, En + 169 + 280 + ee * wn + y, kn), k = E + O;
+		i[3 * t + 2] = k, f = Math.min(V(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
 	}
 }
-function En(e, t, n) {
+function Fn(e, t, n) {
 	let r = t % 3;
 	return e[t - r + (r + n) % 3];
 }
-function Dn(e) {
+function In(e) {
 	let [t, n, r] = [
 		e[0],
 		e[1],
@@ -811,7 +834,7 @@ function Dn(e) {
 	];
 	return (s * u - c * d + l * f) / (t * u - n * d + r * f);
 }
-function On(e, t, n, r, i) {
+function Ln(e, t, n, r, i) {
 	let { faces: a, chart: o, kinds: s, place: c } = t, l = new Int32Array(2 * c.length), u = [0, 0], d = -1;
 	for (let t = 0; t < c.length; t++) {
 		let f = s[o[t]];
@@ -823,25 +846,25 @@ function On(e, t, n, r, i) {
 			-1,
 			0
 		];
-		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + fn); e++) {
-			let [r, s] = [En(a, i[e], 1), En(a, i[e], 2)];
+		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + xn); e++) {
+			let [r, s] = [Fn(a, i[e], 1), Fn(a, i[e], 2)];
 			if (r < t && o[r] === o[t] && (g = Math.max(g, r)), s < t && o[s] === o[t] && (g = Math.max(g, s)), r >= t || s >= t) continue;
-			let [u, d] = kn(n, c, l, t, r, s, f === 2);
+			let [u, d] = Rn(n, c, l, t, r, s, f === 2);
 			if (!Number.isFinite(u) || !Number.isFinite(d)) continue;
 			p += u, m += d, h += 1;
 			let v = Math.abs(l[2 * r] - l[2 * s]) + Math.abs(l[2 * r + 1] - l[2 * s + 1]);
 			_ = Math.max(_, V(v));
 		}
 		g < 0 && (g = d), d = t;
-		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = vn + 144;
+		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = Dn + 144;
 		for (let n = 0; n < 2; n++) {
-			let r = e.integer(vn + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], xn + n);
-			l[2 * t + n] = Cn(y[n], 0) + r, u[n] = Math.min(V(Math.abs(r)), 23);
+			let r = e.integer(Dn + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], An + n);
+			l[2 * t + n] = Mn(y[n], 0) + r, u[n] = Math.min(V(Math.abs(r)), 23);
 		}
 	}
 	return l;
 }
-function kn(e, t, n, r, i, a, o) {
+function Rn(e, t, n, r, i, a, o) {
 	let [s, c, l] = [
 		0,
 		0,
@@ -855,15 +878,15 @@ function kn(e, t, n, r, i, a, o) {
 	return [n[2 * i] + f * u - m * d, n[2 * i + 1] + f * d + m * u];
 }
 // eigenfield-three/src/mesh-decoder.ts
-var An = 144, jn = 2, Mn = 3, Nn = 18, Pn = 8;
-function Fn(e, t) {
-	return Ln(e, t, 1);
+var zn = 144, Bn = 2, Vn = 3, Hn = 18, Un = 8;
+function Wn(e, t) {
+	return Kn(e, t, 1);
 }
-function In(e, t) {
-	return Ln(e, t, jn);
+function Gn(e, t) {
+	return Kn(e, t, Bn);
 }
-function Ln(e, t, n) {
-	let r = ze(e, An, t, n), [i, a, o] = [
+function Kn(e, t, n) {
+	let r = Je(e, zn, t, n), [i, a, o] = [
 		r.getUint8(1),
 		r.getUint8(2),
 		r.getUint8(3)
@@ -872,21 +895,21 @@ function Ln(e, t, n) {
 		8,
 		12
 	].map((e) => r.getUint32(e, !0)), u = Float64Array.from({ length: 16 }, (e, t) => r.getFloat64(16 + 8 * t, !0));
-	if (s > Se || l > Se || c > Ce) throw M(t, `${l} vertices and ${c} faces`);
-	if (Be(e, Math.max(s, c, l), Ce, t), i > 1 || o > Pn * i || a < 1 || a > Nn || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
-	let d = new Re(e.subarray(An), yn, 16), f = Yt(d, s, c, {
+	if (s > je || l > je || c > Me) throw M(t, `${l} vertices and ${c} faces`);
+	if (Ye(e, Math.max(s, c, l), Me, t), i > 1 || o > Un * i || a < 1 || a > Hn || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
+	let d = new qe(e.subarray(zn), On, 16), f = an(d, s, c, {
 		flat: i === 1,
 		fine: o
 	}, t);
 	d.checkEnd(t);
-	let p = un(f.faces, s);
-	i && Tn(d, f, p.first, p.corners);
-	let m = n === jn ? a + Mn : 32, h = dn(d, f, l, p.first, p.corners, m, t), g = Rn(f.points, u), _ = un(h.faces, l), v = On(d, h, g, _.first, _.corners);
+	let p = yn(f.faces, s);
+	i && Pn(d, f, p.first, p.corners);
+	let m = n === Bn ? a + Vn : 32, h = bn(d, f, l, p.first, p.corners, m, t), g = qn(f.points, u), _ = yn(h.faces, l), v = Ln(d, h, g, _.first, _.corners);
 	d.checkEnd(t);
 	let y = new Float32Array(h.maps.buffer);
-	return Bn(zn(f, h, g, v, 2 ** a, (e) => n === jn ? h.maps[e] / 2 ** (a + 1) - 2 : y[e]), t);
+	return Yn(Jn(f, h, g, v, 2 ** a, (e) => n === Bn ? h.maps[e] / 2 ** (a + 1) - 2 : y[e]), t);
 }
-function Rn(e, t) {
+function qn(e, t) {
 	let n = new Float64Array(e.length);
 	for (let r = 0; r < e.length; r += 3) {
 		let i = (n) => t[4 * n] * e[r] + t[4 * n + 1] * e[r + 1] + t[4 * n + 2] * e[r + 2] + t[4 * n + 3], a = i(3);
@@ -894,7 +917,7 @@ function Rn(e, t) {
 	}
 	return n;
 }
-function zn(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) {
+function Jn(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) {
 	let u = new Float32Array(3 * n.length), d = new Float32Array(2 * n.length), f = new Float32Array(a.buffer);
 	return n.forEach((t, n) => {
 		u.set(o.subarray(3 * t, 3 * t + 3), 3 * n);
@@ -909,15 +932,15 @@ function zn(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) 
 		indices: new Uint32Array(t)
 	};
 }
-function Bn(e, t) {
-	let n = (e) => Math.abs(e) <= Te;
+function Yn(e, t) {
+	let n = (e) => Math.abs(e) <= Pe;
 	if (!e.positions.every(n) || !e.uv.every(n)) throw M(t, "positions or texture coordinates that are not finite");
 	return e;
 }
 // eigenfield-three/src/name-decoder.ts
-var Vn = 4 * R;
-async function Hn(e, t, n) {
-	let r = Math.min(xe, Vn * t), i = await de(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
+var Xn = 4 * R;
+async function Zn(e, t, n) {
+	let r = Math.min(Ae, Xn * t), i = await be(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
 	if (a === 0 || !Number.isInteger(a)) throw M(n, `${i.length} bytes of ${t} names`);
 	let o = new TextDecoder("utf-8", {
 		fatal: !0,
@@ -936,16 +959,16 @@ async function Hn(e, t, n) {
 	return c;
 }
 // eigenfield-three/src/headers.ts
-function Un(e) {
+function Qn(e) {
 	let t = new DataView(e);
 	try {
-		return Gn(t) ?? Kn(t) ?? qn(t) ?? Jn(t);
+		return er(t) ?? tr(t) ?? nr(t) ?? rr(t);
 	} catch (e) {
 		if (e instanceof RangeError) return null;
 		throw e;
 	}
 }
-function Wn(e, t) {
+function $n(e, t) {
 	return String.fromCharCode(...[
 		0,
 		1,
@@ -953,15 +976,15 @@ function Wn(e, t) {
 		3
 	].map((n) => e.getUint8(t + n)));
 }
-function Gn(e) {
-	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || Wn(e, 12) !== "IHDR" ? null : {
+function er(e) {
+	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || $n(e, 12) !== "IHDR" ? null : {
 		type: "image/png",
 		width: e.getUint32(16),
 		height: e.getUint32(20),
 		bits: null
 	};
 }
-function Kn(e) {
+function tr(e) {
 	if (e.getUint16(0) !== 65496) return null;
 	for (let t = 2;;) {
 		let n = e.getUint16(t);
@@ -984,12 +1007,12 @@ function Kn(e) {
 		t += 2 + e.getUint16(t + 2);
 	}
 }
-function qn(e) {
-	if (Wn(e, 0) !== "RIFF" || Wn(e, 8) !== "WEBP") return null;
+function nr(e) {
+	if ($n(e, 0) !== "RIFF" || $n(e, 8) !== "WEBP") return null;
 	let t = {
 		type: "image/webp",
 		bits: null
-	}, n = Wn(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
+	}, n = $n(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
 	if (n === "VP8X") return {
 		...t,
 		width: 1 + r(24),
@@ -1009,11 +1032,11 @@ function qn(e) {
 		height: e.getUint16(28, !0) & 16383
 	} : null;
 }
-function Jn(e) {
-	if (Wn(e, 4) !== "ftyp") return null;
+function rr(e) {
+	if ($n(e, 4) !== "ftyp") return null;
 	let t = null, n = null, r = (i, a) => {
 		for (let o = i; o + 8 <= a;) {
-			let i = e.getUint32(o), s = Wn(e, o + 4), c = i === 0 ? a : o + i;
+			let i = e.getUint32(o), s = $n(e, o + 4), c = i === 0 ? a : o + i;
 			if (i === 1 || c < o + 8 || c > a) return;
 			if (s === "meta" && r(o + 12, c), (s === "iprp" || s === "ipco") && r(o + 8, c), s === "ispe") {
 				let [n, r] = [e.getUint32(o + 12), e.getUint32(o + 16)];
@@ -1036,42 +1059,42 @@ function Jn(e) {
 	};
 }
 // eigenfield-three/src/pictures-8bit.ts
-var Yn = {
+var ir = {
 	colorSpaceConversion: "none",
 	premultiplyAlpha: "none"
-}, Xn = {
+}, ar = {
 	"image/avif": "AAAAHGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZgAAAOltZXRhAAAAAAAAACFoZGxyAAAAAAAAAABwaWN0AAAAAAAAAAAAAAAAAAAAAA5waXRtAAAAAAABAAAAHmlsb2MAAAAARAAAAQABAAAAAQAAAQ0AAAAZAAAAKGlpbmYAAAAAAAEAAAAaaW5mZQIAAAAAAQAAYXYwMUNvbG9yAAAAAGhpcHJwAAAASWlwY28AAAAUaXNwZQAAAAAAAAAIAAAACAAAAA5waXhpAAAAAAEIAAAADGF2MUOBABwAAAAAE2NvbHJuY2x4AAEADQAGgAAAABdpcG1hAAAAAAAAAAEAAQQBAoMEAAAAIW1kYXQSAAoIGAi/aYCGg1AyCxlGIYeeaACQQNmg",
 	"image/webp": "UklGRh4AAABXRUJQVlA4TBEAAAAvAAAAAAdQwAIWsP+BiOh/AAA="
 };
-function Zn(e, t, n) {
-	let r = Un(e);
+function or(e, t, n) {
+	let r = Qn(e);
 	if (!r) throw M(t.where, "no picture");
 	let { width: i, height: a, bits: o } = r;
 	if (n && (i !== n[0] || a !== n[1])) throw M(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
 	if (t.codec.bits !== 8 && t.codec.bits !== o) throw M(t.where, `no picture of ${t.codec.bits} bits`);
 	let s = i * a;
-	if (!s || i > 16384 || a > 32768 || s > ge) throw M(t.where, `a picture of ${i} x ${a}`);
+	if (!s || i > 16384 || a > 32768 || s > Te) throw M(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
-async function Qn(e, t, n, r) {
-	let [i, a] = Zn(e, t, n), [o, s] = [Math.ceil(i / r), Math.ceil(a / r)], c = r === 1 ? {} : {
+async function sr(e, t, n, r) {
+	let [i, a] = or(e, t, n), [o, s] = [Math.ceil(i / r), Math.ceil(a / r)], c = r === 1 ? {} : {
 		resizeWidth: o,
 		resizeHeight: s,
 		resizeQuality: "high"
-	}, l = Un(e)?.type ?? t.codec.mimeType, u;
+	}, l = Qn(e)?.type ?? t.codec.mimeType, u;
 	try {
 		u = await createImageBitmap(new Blob([e], { type: l }), {
-			...Yn,
+			...ir,
 			...c
 		});
 	} catch (e) {
-		throw await er(l) ? M(t.where, "it cannot be decoded") : tr(l, t, e);
+		throw await lr(l) ? M(t.where, "it cannot be decoded") : ur(l, t, e);
 	}
 	if (u.width === o && u.height === s) return u;
 	throw u.close(), M(t.where, `decoded to ${u.width} x ${u.height}, not to ${o} x ${s}`);
 }
-var $n = async (e, t, n, r = 1) => {
-	let i = t.pieces * t.textures, [a, o] = Zn(e, t, n && [n[0], i * n[1]]), s = await Qn(e, t, [a, o], i === 1 ? r : 1);
+var cr = async (e, t, n, r = 1) => {
+	let i = t.pieces * t.textures, [a, o] = or(e, t, n && [n[0], i * n[1]]), s = await sr(e, t, [a, o], i === 1 ? r : 1);
 	if (i === 1) return [{
 		picture: s,
 		row: 0,
@@ -1084,7 +1107,7 @@ var $n = async (e, t, n, r = 1) => {
 	}));
 	if (r === 1) return l;
 	let [u, d] = [Math.ceil(a / r), Math.ceil(c / r)], f = {
-		...Yn,
+		...ir,
 		resizeWidth: u,
 		resizeHeight: d,
 		resizeQuality: "high"
@@ -1095,8 +1118,8 @@ var $n = async (e, t, n, r = 1) => {
 		rows: d
 	}));
 };
-async function er(e) {
-	let t = Xn[e];
+async function lr(e) {
+	let t = ar[e];
 	if (!t) return !0;
 	let n = Uint8Array.from(atob(t), (e) => e.charCodeAt(0));
 	try {
@@ -1105,17 +1128,17 @@ async function er(e) {
 		return !1;
 	}
 }
-function tr(e, t, n) {
+function ur(e, t, n) {
 	return new j("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
 }
 // eigenfield-three/src/pictures-10bit.ts
-var nr = /* @__PURE__ */ new Set([
+var dr = /* @__PURE__ */ new Set([
 	"I420P10",
 	"I422P10",
 	"I444P10"
-]), rr = async (e, t, n, r = 1) => {
-	let i = t.pieces * t.textures, [a, o] = Zn(e, t, n && [n[0], i * n[1]]), s = await ir(e, a, o);
-	if (!s) return $n(e, t, n, r);
+]), fr = async (e, t, n, r = 1) => {
+	let i = t.pieces * t.textures, [a, o] = or(e, t, n && [n[0], i * n[1]]), s = await pr(e, a, o);
+	if (!s) return cr(e, t, n, r);
 	let c = o / i;
 	return Array.from({ length: i }, (e, t) => {
 		if (r === 1) return {
@@ -1123,7 +1146,7 @@ var nr = /* @__PURE__ */ new Set([
 			row: t * c,
 			rows: c
 		};
-		let n = ar(s, t * c, c, r);
+		let n = mr(s, t * c, c, r);
 		return {
 			picture: n,
 			row: 0,
@@ -1131,7 +1154,7 @@ var nr = /* @__PURE__ */ new Set([
 		};
 	});
 };
-async function ir(e, t, n) {
+async function pr(e, t, n) {
 	if (typeof ImageDecoder > "u") return null;
 	let r = null, i = null;
 	try {
@@ -1140,7 +1163,7 @@ async function ir(e, t, n) {
 			type: "image/avif"
 		}), i = (await r.decode()).image;
 		let a = i.visibleRect;
-		if (!nr.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
+		if (!dr.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
 		let o = new Uint8Array(i.allocationSize()), [s] = await i.copyTo(o);
 		return s ? {
 			data: o.subarray(s.offset),
@@ -1154,7 +1177,7 @@ async function ir(e, t, n) {
 		i?.close(), r?.close();
 	}
 }
-function ar(e, t, n, r) {
+function mr(e, t, n, r) {
 	let [i, a] = [Math.ceil(e.width / r), Math.ceil(n / r)], o = new Uint8Array(2 * i * a);
 	for (let s = 0; s < a; s++) for (let a = 0; a < i; a++) {
 		let [c, l] = [0, 0];
@@ -1173,36 +1196,36 @@ function ar(e, t, n, r) {
 	};
 }
 // eigenfield-three/src/triangle-decoder.ts
-var or = 5;
-function sr(e, t) {
-	let n = ze(e, or, t).getUint32(1, !0);
-	Be(e, 3 * n, 6 * L, t);
-	let r = Qe(e.subarray(or)), i = nt(r, n, 3, !0);
+var hr = 5;
+function gr(e, t) {
+	let n = Je(e, hr, t).getUint32(1, !0);
+	Ye(e, 3 * n, 6 * L, t);
+	let r = st(e.subarray(hr)), i = dt(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
 	if (!a.every((e) => e >= 0 && e < 1e5)) throw M(t, "triangles of cameras that there cannot be");
 	return { corners: Uint32Array.from(a) };
 }
 // eigenfield-three/src/weight-decoder.ts
-var cr = 14, lr = 2 ** 20;
-function ur(e, t) {
-	let n = ze(e, cr, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
+var _r = 14, vr = 2 ** 20;
+function yr(e, t) {
+	let n = Je(e, _r, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
 	if (n.getUint8(1) > 1 || i === 0) throw M(t, "weights of no camera, or of an unknown kind");
-	Be(e, o * s * Math.max(a, 1), we, t), ze(e, cr + 4 * a, t);
+	Ye(e, o * s * Math.max(a, 1), Ne, t), Je(e, _r + 4 * a, t);
 	let c = o * s;
 	if (c < i) throw M(t, "a grid with too few cells");
-	let l = Qe(e.subarray(cr + 4 * a)), u = r ? rt(l, c, i, t) : null, d = u !== null && i === c, f = [
+	let l = st(e.subarray(_r + 4 * a)), u = r ? ft(l, c, i, t) : null, d = u !== null && i === c, f = [
 		0,
 		1,
 		2
-	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * lr * Math.max(o, s);
+	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * vr * Math.max(o, s);
 	for (let e = 0; e < a; e++) {
-		let r = n.getFloat32(cr + 4 * e, !0);
+		let r = n.getFloat32(_r + 4 * e, !0);
 		if (!(r > 0 && r < Infinity)) throw M(t, "a step that is not positive");
-		let i = $e(l), h = tt(l, s, f[i], i);
+		let i = ct(l), h = ut(l, s, f[i], i);
 		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw M(t, `numbers of component ${e} that cannot be`);
 		f[i] = h;
-		let g = i === 2 ? dr(h, o, s) : h;
+		let g = i === 2 ? br(h, o, s) : h;
 		for (let t = 0; t < c; t++) {
 			let n = u ? u[t] : t;
 			n >= 0 && (p[n * a + e] = g[t] * r);
@@ -1216,14 +1239,14 @@ function ur(e, t) {
 		values: p
 	};
 }
-function dr(e, t, n) {
-	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = fr(n);
+function br(e, t, n) {
+	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = xr(n);
 	for (let i = 0; i < t; i++) for (let t = 0; t < n; t++) {
 		let o = 0;
 		for (let r = 0; r < n; r++) o += a(r, t) * e[i * n + r];
 		r[i * n + t] = o;
 	}
-	let o = fr(t);
+	let o = xr(t);
 	for (let e = 0; e < t; e++) for (let a = 0; a < n; a++) {
 		let s = 0;
 		for (let i = 0; i < t; i++) s += o(i, e) * r[i * n + a];
@@ -1231,13 +1254,13 @@ function dr(e, t, n) {
 	}
 	return i;
 }
-function fr(e) {
+function xr(e) {
 	let [t, n] = [Math.sqrt(1 / e), Math.sqrt(2 / e)], r = Float64Array.from({ length: 4 * e }, (t, r) => n * Math.cos(Math.PI * r / (2 * e)));
 	return (n, i) => n === 0 ? t : r[(2 * i + 1) * n % (4 * e)];
 }
 // eigenfield-three/src/codecs.ts
-function pr(e) {
-	let [t, n] = [$n, $n];
+function Sr(e) {
+	let [t, n] = [cr, cr];
 	return {
 		kind: "picture",
 		decode: t,
@@ -1255,76 +1278,76 @@ function pr(e) {
 var G = {
 	"mesh-1": {
 		kind: "mesh",
-		decode: Fn,
+		decode: Wn,
 		needs: "codedMesh",
 		limits: ["MAX_VERTICES", "MAX_TRIANGLES"]
 	},
 	"mesh-2": {
 		kind: "mesh",
-		decode: In,
+		decode: Gn,
 		needs: "mesh-2",
 		limits: ["MAX_VERTICES", "MAX_TRIANGLES"]
 	},
 	"cameras-1": {
 		kind: "cameras",
-		decode: ut,
+		decode: yt,
 		needs: "codedCameras",
 		limits: ["MAX_CAMERAS"]
 	},
 	"cameras-2": {
 		kind: "cameras",
-		decode: lt,
+		decode: vt,
 		needs: "cameras-2",
 		limits: ["MAX_CAMERAS"]
 	},
 	"names-1": {
 		kind: "names",
-		decode: Hn,
+		decode: Zn,
 		needs: "codedNames",
 		limits: ["MAX_NAMES", "MAX_CAMERAS"]
 	},
 	"triangles-1": {
 		kind: "triangles",
-		decode: sr,
+		decode: gr,
 		needs: "codedTriangles",
 		limits: ["MAX_CAMERAS"]
 	},
 	"weights-1": {
 		kind: "weights",
-		decode: ur,
+		decode: yr,
 		needs: "codedWeights",
 		limits: ["MAX_WEIGHTS"]
 	},
-	png: pr("image/png"),
-	webp: pr("image/webp"),
-	avif: pr("image/avif"),
-	jpeg: pr("image/jpeg"),
+	png: Sr("image/png"),
+	webp: Sr("image/webp"),
+	avif: Sr("image/avif"),
+	jpeg: Sr("image/jpeg"),
 	"av1-10bit-1": {
-		...pr("image/avif"),
+		...Sr("image/avif"),
 		bits: 10,
-		decode: rr,
+		decode: fr,
 		needs: "bits"
 	},
 	"av1-10bit-2": {
-		...pr("video/AV1"),
+		...Sr("video/AV1"),
 		bits: 10,
-		decode: (e, t, n, r) => rr(le(e, t.where), t, n, r),
-		bitmaps: (e, t, n, r) => $n(le(e, t.where), t, n, r),
+		decode: (e, t, n, r) => fr(ve(e, t.where), t, n, r),
+		bitmaps: (e, t, n, r) => cr(ve(e, t.where), t, n, r),
 		needs: "av1-10bit-2"
 	}
-}, mr = {
+}, Cr = {
 	mesh: "mesh-1",
 	cameras: "cameras-1",
 	names: "names-1",
 	triangles: "triangles-1",
 	weights: "weights-1"
 };
-function hr(e, t, n) {
+function wr(e, t, n) {
 	let r = t.exists ? t.text(R) : n, i = Object.hasOwn(G, r) ? G[r] : null;
 	if (i?.kind === e) return i;
 	throw new j("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
 }
-function gr(e, t) {
+function Tr(e, t) {
 	return Object.keys(G).find((n) => {
 		let r = G[n];
 		return r.kind === "picture" && r.mimeType === e && (t ?? r.bits) === r.bits;
@@ -1362,7 +1385,7 @@ var K = class e {
 		if (this.raw.length > e) throw this.wrong(`longer than ${e} characters`);
 		return this.raw;
 	}
-	number(e = -Te, t = Te) {
+	number(e = -Pe, t = Pe) {
 		if (typeof this.raw != "number") throw this.wrong("no number");
 		if (!(this.raw >= e && this.raw <= t)) throw this.wrong(`${this.raw} is not in ${e}..${t}`);
 		return this.raw;
@@ -1372,7 +1395,7 @@ var K = class e {
 		if (!Number.isInteger(n)) throw this.wrong(`${n} is no whole number`);
 		return n;
 	}
-	numbers(e, t = -Te, n = Te) {
+	numbers(e, t = -Pe, n = Pe) {
 		let r = this.items(e);
 		if (r.length !== e) throw this.wrong(`${e} numbers are needed`);
 		return r.map((e) => e.number(t, n));
@@ -1388,21 +1411,21 @@ var K = class e {
 	wrong(e) {
 		return M(this.where || "/", this.exists ? e : "missing");
 	}
-}, _r = 5121, vr = 5123, yr = 5125, q = 5126, br = {
-	[_r]: 1,
-	[vr]: 2,
-	[yr]: 4,
+}, Er = 5121, Dr = 5123, Or = 5125, q = 5126, kr = {
+	[Er]: 1,
+	[Dr]: 2,
+	[Or]: 4,
 	[q]: 4
-}, xr = /* @__PURE__ */ new Set([
+}, Ar = /* @__PURE__ */ new Set([
 	"cameras",
 	"triangles",
 	"weights"
-]), Sr = {
+]), jr = {
 	SCALAR: 1,
 	VEC2: 2,
 	VEC3: 3
 };
-function Cr(e) {
+function Mr(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
@@ -1418,10 +1441,10 @@ function Cr(e) {
 		return i;
 	});
 }
-function wr(e) {
+function Nr(e) {
 	return (t) => t.integer(0, e.length - 1);
 }
-function Tr(e, t) {
+function Pr(e, t) {
 	let n = e.key("accessors"), r = n.exists ? n.items(I) : [];
 	return (e, n, i, a) => {
 		let o = r[e.integer(0, r.length - 1)];
@@ -1432,14 +1455,14 @@ function Tr(e, t) {
 		if (o.key("sparse").exists) throw o.wrong("sparse");
 		let c = o.key("normalized");
 		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = Sr[n] ?? 1, u = o.key("count").integer(1, we);
+		let l = jr[n] ?? 1, u = o.key("count").integer(1, Ne);
 		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
 		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
 		if (!f) throw o.wrong("no such buffer view");
-		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = br[s] * l;
+		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = kr[s] * l;
 		if (f.stride && (f.stride < h || n === "SCALAR")) throw o.wrong("a stride that cannot be");
 		if (m + (u - 1) * (f.stride || h) + h > f.length) throw o.wrong("outside its buffer view");
-		if ((m + f.offset) % br[s]) throw o.wrong("not aligned");
+		if ((m + f.offset) % kr[s]) throw o.wrong("not aligned");
 		return {
 			view: d,
 			offset: m,
@@ -1450,40 +1473,40 @@ function Tr(e, t) {
 		};
 	};
 }
-function Er(e, t, n) {
-	let r = typeof t.raw == "number" && xr.has(e), i = hr(e, r ? new K(void 0, t.where) : t.key("codec"), mr[e]);
+function Fr(e, t, n) {
+	let r = typeof t.raw == "number" && Ar.has(e), i = wr(e, r ? new K(void 0, t.where) : t.key("codec"), Cr[e]);
 	return {
 		view: n(r ? t : t.key("bufferView")),
 		codec: i,
 		where: t.where
 	};
 }
-async function Dr(e, t, n) {
+async function Ir(e, t, n) {
 	let r = await n(e.view), i = t[e.view]?.length ?? Infinity;
-	if (r.byteLength < i) throw ae(e.where);
-	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + br[c] * o * s);
-	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : Or(new Float32Array(l), e.where);
+	if (r.byteLength < i) throw ue(e.where);
+	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + kr[c] * o * s);
+	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : Lr(new Float32Array(l), e.where);
 }
-function Or(e, t) {
+function Lr(e, t) {
 	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw M(t, `${n} among its numbers`);
 	return e;
 }
 // eigenfield-three/src/planes.ts
-var J = 8, kr = 16;
-function Ar(e, t) {
+var J = 8, Rr = 16;
+function zr(e, t) {
 	return new j("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function jr(e, t = me) {
+function Br(e, t = Ce) {
 	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
 	if (!n || !r) throw e.wrong("two numbers are needed");
-	if (n * r > ge) throw e.wrong(`more than ${ge} texels`);
+	if (n * r > Te) throw e.wrong(`more than ${Te} texels`);
 	return [n, r];
 }
-function Mr(e, t, n, r, i) {
+function Vr(e, t, n, r, i) {
 	let a = e.key("planes").items(16);
 	if (!a.length) throw e.key("planes").wrong("no plane");
 	let o = a.map((e, a) => {
-		let o = e.key("channels").integer(1, 64), s = Br(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => Ur(e, o, t, r, i);
+		let o = e.key("channels").integer(1, 64), s = Yr(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => Qr(e, o, t, r, i);
 		return {
 			channels: o,
 			...s,
@@ -1497,11 +1520,11 @@ function Mr(e, t, n, r, i) {
 			s += t[0] * t[1] * e * n, c += r;
 		}
 	}
-	if (c > 4096) throw e.key("planes").wrong(`more than ${_e} textures`);
-	if (s > ve) throw e.key("planes").wrong("too large when it is decoded");
+	if (c > 4096) throw e.key("planes").wrong(`more than ${Ee} textures`);
+	if (s > De) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
-function Nr(e, t) {
+function Hr(e, t) {
 	let n = t.reduce((e, { channels: t }) => e + t, 0), r = e.key("toRGB");
 	if (r.exists) {
 		let e = r.numbers(3 * n), t = (t, r) => e[t * n + r] ?? 0;
@@ -1533,11 +1556,11 @@ function Nr(e, t) {
 			1
 		]
 	];
-	throw Ar(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
+	throw zr(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
 }
-function Pr(e, t, n, r, i, a = !1) {
-	let o = Fr(e), s = t === 3 && o.bits === J ? 1 : t;
-	r && Wr(e, s * n, r);
+function Ur(e, t, n, r, i, a = !1) {
+	let o = Wr(e), s = t === 3 && o.bits === J ? 1 : t;
+	r && $r(e, s * n, r);
 	let [c, l] = [e.key("scale"), e.key("zero")], u = {
 		view: i(e.key("bufferView")),
 		codec: o,
@@ -1547,41 +1570,41 @@ function Pr(e, t, n, r, i, a = !1) {
 	};
 	return a && o.bits === J && !c.exists && !l.exists ? {
 		...u,
-		...Ir(t)
+		...Gr(t)
 	} : {
 		...u,
-		scale: zr(c, t, n),
-		zero: zr(l, t, n)
+		scale: Jr(c, t, n),
+		zero: Jr(l, t, n)
 	};
 }
-function Fr(e) {
+function Wr(e) {
 	let t = e.key("mimeType").text(R);
-	if (!gr(t)) throw e.key("mimeType").wrong("an unknown type");
-	let n = e.key("bits"), r = n.exists ? n.integer(1, kr) : J, i = gr(t, r);
+	if (!Tr(t)) throw e.key("mimeType").wrong("an unknown type");
+	let n = e.key("bits"), r = n.exists ? n.integer(1, Rr) : J, i = Tr(t, r);
 	if (!i) throw n.wrong(`${r} bits of ${t}`);
-	let a = e.key("codec"), o = hr("picture", a, i);
+	let a = e.key("codec"), o = wr("picture", a, i);
 	if (o.mimeType !== t || o.bits !== r) throw a.wrong(`${r} bits of ${t}`);
 	return o;
 }
-function Ir(e) {
+function Gr(e) {
 	return {
 		scale: Array(e).fill(1 / 255),
 		zero: Array(e).fill(0)
 	};
 }
-function Lr(e) {
+function Kr(e) {
 	return e.some(({ codec: e }) => e.bits > J);
 }
-function Rr({ codec: e }) {
+function qr({ codec: e }) {
 	return (2 ** e.bits - 1) / 255;
 }
-function zr(e, t, n) {
+function Jr(e, t, n) {
 	let r = e.items(t * n).map((e) => e.number());
 	if (r.length === t * n) return r;
 	if (r.length !== t) throw e.wrong(`${t} or ${t * n} numbers are needed`);
 	return Array(n).fill(r).flat();
 }
-function Br(e, t, n, r) {
+function Yr(e, t, n, r) {
 	let i = e.key("mean");
 	if (!i.exists) {
 		if (n === null || t !== 1 && t !== 3) throw i.wrong("no mean");
@@ -1592,22 +1615,22 @@ function Br(e, t, n, r) {
 				textures: 1,
 				pieces: 1,
 				where: "/images/0",
-				...Ir(t)
+				...Gr(t)
 			},
 			meanSize: null,
 			precision: null
 		};
 	}
-	let a = jr(i.key("size")), o = Pr(i, t, 1, a, r, !0);
+	let a = Br(i.key("size")), o = Ur(i, t, 1, a, r, !0);
 	return {
 		mean: o,
 		meanSize: a,
-		precision: Hr(i.key("precision"), o, r)
+		precision: Zr(i.key("precision"), o, r)
 	};
 }
-function Vr(e, t) {
-	let n = jr(e.key("size")), r = Fr(e);
-	return Wr(e, 1, n), {
+function Xr(e, t) {
+	let n = Br(e.key("size")), r = Wr(e);
+	return $r(e, 1, n), {
 		channels: 1,
 		mean: {
 			view: t(e.key("bufferView")),
@@ -1622,10 +1645,10 @@ function Vr(e, t) {
 		precision: null
 	};
 }
-function Hr(e, t, n) {
+function Zr(e, t, n) {
 	if (!e.exists) return null;
 	if (t.codec.bits === J) throw e.wrong(`of a mean of ${J} bits`);
-	let r = jr(e.key("size"), he), i = hr("picture", e.key("codec"), "png");
+	let r = Br(e.key("size"), we), i = wr("picture", e.key("codec"), "png");
 	if (i !== G.png) throw e.key("codec").wrong("no PNG");
 	return {
 		view: n(e.key("bufferView")),
@@ -1636,19 +1659,19 @@ function Hr(e, t, n) {
 		where: e.where
 	};
 }
-function Ur(e, t, n, r, i) {
-	let a = jr(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? jr(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, me) : [];
+function Qr(e, t, n, r, i) {
+	let a = Br(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Br(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, Ce) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
-	let d = 0, f = e.key("picture"), p = f.exists ? f.object() : {}, m = e.key("textures").items(_e).map((e) => {
+	let d = 0, f = e.key("picture"), p = f.exists ? f.object() : {}, m = e.key("textures").items(Ee).map((e) => {
 		let n = new K({
 			...p,
 			...e.object()
-		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, _e) : 1;
-		return d += o, Pr(n, t, o, a, i);
+		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, Ee) : 1;
+		return d += o, Ur(n, t, o, a, i);
 	});
-	if (d > 4096) throw e.wrong(`more than ${_e} textures`);
-	let h = e.key("codedWeights"), g = d ? h.exists ? Er("weights", h, i) : r(e.key("weights"), "SCALAR", [q], n * d) : null;
+	if (d > 4096) throw e.wrong(`more than ${Ee} textures`);
+	let h = e.key("codedWeights"), g = d ? h.exists ? Fr("weights", h, i) : r(e.key("weights"), "SCALAR", [q], n * d) : null;
 	return {
 		size: a,
 		grid: c,
@@ -1659,23 +1682,23 @@ function Ur(e, t, n, r, i) {
 		where: e.where
 	};
 }
-function Wr(e, t, [n, r]) {
+function $r(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
-	if (n * i > ge) throw e.wrong(`more than ${ge} texels`);
+	if (n * i > Te) throw e.wrong(`more than ${Te} texels`);
 }
 // eigenfield-three/src/sheets.ts
-function Gr(e, t) {
+function ei(e, t) {
 	if (!e.exists) return null;
-	let n = e.key("faces").items(32).map((e) => e.integer(1, Ce));
+	let n = e.key("faces").items(32).map((e) => e.integer(1, Me));
 	if (!n.length) throw e.key("faces").wrong("no sheet");
 	return {
 		faces: n,
-		opacity: Vr(e.key("opacity"), t),
+		opacity: Xr(e.key("opacity"), t),
 		where: e.where
 	};
 }
-function Kr({ faces: e, where: t }, { index: n, attributes: r }) {
+function ti({ faces: e, where: t }, { index: n, attributes: r }) {
 	let i = e.reduce((e, t) => e + t, 0), a = (n?.count ?? 0) / 3;
 	if (i !== a) throw M(`${t}/faces`, `the sheets have ${i} triangles, the mesh has ${a}`);
 	let o = new Uint8Array(r.position?.count ?? 0), s = 0;
@@ -1688,7 +1711,7 @@ function Kr({ faces: e, where: t }, { index: n, attributes: r }) {
 	});
 }
 // eigenfield-three/src/document.ts
-var qr = [
+var ni = [
 	"namePattern",
 	"noFallback",
 	"packed",
@@ -1698,19 +1721,19 @@ var qr = [
 	"sheets",
 	"stacks",
 	"toRGB"
-], Jr = Object.values(G).flatMap(({ needs: e }) => e ?? []), Yr = /* @__PURE__ */ new Set([...qr, ...Jr]), Xr = 64, Zr = 9, Qr = 10 ** Zr;
-function $r(e) {
+], ri = Object.values(G).flatMap(({ needs: e }) => e ?? []), ii = /* @__PURE__ */ new Set([...ni, ...ri]), ai = 64, oi = 9, si = 10 ** oi;
+function ci(e) {
 	let t = new K(e, "");
 	try {
-		return t.key("extensions").key(fe).exists;
+		return t.key("extensions").key(xe).exists;
 	} catch {
 		return !1;
 	}
 }
-function ei(e) {
-	let t = new K(e, ""), n = t.key("extensions").key(fe), r = ri(n), i = Cr(t), a = Tr(t, i), o = wr(i);
-	ii(t);
-	let s = si(t, o), c = n.key("cameras"), { count: l, names: u } = ci(c, o), d = di(c, l), f = d.filter((e) => !e).length, p = Mr(n, f, s, a, o), m = Nr(n, p), h = c.key("colour");
+function li(e) {
+	let t = new K(e, ""), n = t.key("extensions").key(xe), r = fi(n), i = Mr(t), a = Pr(t, i), o = Nr(i);
+	pi(t);
+	let s = gi(t, o), c = n.key("cameras"), { count: l, names: u } = _i(c, o), d = bi(c, l), f = d.filter((e) => !e).length, p = Vr(n, f, s, a, o), m = Hr(n, p), h = c.key("colour");
 	if (h.exists && m.length < 3) throw h.wrong("needs three channels");
 	let g = n.key("viewPlane"), [_, v] = [g.key("triangles"), g.key("codedTriangles")], y = n.key("generator"), b = n.key("mesh");
 	return {
@@ -1721,48 +1744,48 @@ function ei(e) {
 		names: u,
 		heldOut: d,
 		reference: n.key("reference").integer(0, l - 1),
-		calibration: fi(c, l, a, o),
-		sizes: pi(c, l, a),
+		calibration: xi(c, l, a, o),
+		sizes: Si(c, l, a),
 		colour: h.exists ? a(h, "SCALAR", [q], 6 * l) : null,
-		...mi(g),
-		triangles: v.exists ? Er("triangles", v, o) : _.exists ? oi(a(_, "SCALAR", [vr, yr], null), 2 * L) : null,
-		settings: hi(n.key("settings")),
-		scores: hi(n.key("scores")),
+		...Ci(g),
+		triangles: v.exists ? Fr("triangles", v, o) : _.exists ? hi(a(_, "SCALAR", [Dr, Or], null), 2 * L) : null,
+		settings: wi(n.key("settings")),
+		scores: wi(n.key("scores")),
 		views: i,
-		mesh: b.exists ? Er("mesh", b, o) : null,
-		sheets: Gr(n.key("sheets"), o),
-		shown: b.exists && !t.key("meshes").exists ? null : ti(t, a),
+		mesh: b.exists ? Fr("mesh", b, o) : null,
+		sheets: ei(n.key("sheets"), o),
+		shown: b.exists && !t.key("meshes").exists ? null : ui(t, a),
 		preview: s
 	};
 }
-function ti(e, t) {
+function ui(e, t) {
 	let n = e.key("meshes").at(0).key("primitives").at(0), r = n.key("mode");
 	if (r.exists && r.integer(0, 6) !== 4) throw r.wrong("no triangles");
 	let [i, a] = [n.key("attributes"), n.key("indices")];
 	return {
-		position: ai(t(i.key("POSITION"), "VEC3", [q], null), Se),
-		uv: ai(t(i.key("TEXCOORD_0"), "VEC2", [q], null), Se),
-		indices: oi(t(a, "SCALAR", [
-			_r,
-			vr,
-			yr
-		], null), Ce)
+		position: mi(t(i.key("POSITION"), "VEC3", [q], null), je),
+		uv: mi(t(i.key("TEXCOORD_0"), "VEC2", [q], null), je),
+		indices: hi(t(a, "SCALAR", [
+			Er,
+			Dr,
+			Or
+		], null), Me)
 	};
 }
-function ni({ planes: e, sheets: t }) {
+function di({ planes: e, sheets: t }) {
 	return t ? [...e, t.opacity] : e;
 }
-function ri(e) {
+function fi(e) {
 	let t = e.key("version").text(R);
 	if (!/^1\.\d+$/.test(t)) throw new j("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
 	for (let e of n.exists ? n.items(I) : []) {
 		let t = e.text(R);
-		if (!Yr.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
+		if (!ii.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
-function ii(e) {
+function pi(e) {
 	let t = e.key("nodes").items(I), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
@@ -1777,42 +1800,42 @@ function ii(e) {
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
-function ai(e, t) {
+function mi(e, t) {
 	if (e.count > t) throw M(e.where, `more than ${t}`);
 	return e;
 }
-function oi(e, t) {
+function hi(e, t) {
 	if (e.count % 3) throw M(e.where, "torn triangles");
-	return ai(e, 3 * t);
+	return mi(e, 3 * t);
 }
-function si(e, t) {
+function gi(e, t) {
 	let n = e.key("images");
 	if (!n.exists) return null;
 	let r = n.at(0).key("bufferView");
 	return r.exists ? t(r) : null;
 }
-function ci(e, t) {
+function _i(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
 		count: n.key("count").integer(1, L),
-		names: Er("names", n, t)
+		names: Fr("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? ui(r) : i.items(L).map((e) => e.text(R));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? yi(r) : i.items(L).map((e) => e.text(R));
 	if (!a.length) throw i.wrong("no cameras");
-	let o = li(a);
+	let o = vi(a);
 	if (o) throw i.wrong(o);
 	return {
 		count: a.length,
 		names: a
 	};
 }
-function li(e) {
+function vi(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
-function ui(e) {
+function yi(e) {
 	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, L));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
-	let r = e.key("parts").items(Xr).map((e) => {
+	let r = e.key("parts").items(ai).map((e) => {
 		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(R))];
 		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
 		if (a.exists) {
@@ -1820,7 +1843,7 @@ function ui(e) {
 			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
 			return [r, e];
 		}
-		let [o, s] = [e.key("first").integer(0, Qr), e.key("step").integer(0, Qr)], c = e.key("digits").integer(1, Zr);
+		let [o, s] = [e.key("first").integer(0, si), e.key("step").integer(0, si)], c = e.key("digits").integer(1, oi);
 		return [r, Array.from({ length: i }, (e, t) => String(o + s * t).padStart(c, "0"))];
 	});
 	return Array.from({ length: t * n }, (t, i) => {
@@ -1829,7 +1852,7 @@ function ui(e) {
 		return o;
 	});
 }
-function di(e, t) {
+function bi(e, t) {
 	let n = Array(t).fill(!1), r = e.key("heldOut");
 	if (!r.exists) return n;
 	for (let e of r.items(t)) {
@@ -1840,21 +1863,21 @@ function di(e, t) {
 	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
 	return n;
 }
-function fi(e, t, n, r) {
+function xi(e, t, n, r) {
 	let i = e.key("coded");
-	return i.exists ? Er("cameras", i, r) : {
+	return i.exists ? Fr("cameras", i, r) : {
 		intrinsics: n(e.key("intrinsics"), "SCALAR", [q], 5 * t),
 		poses: n(e.key("poses"), "SCALAR", [q], 12 * t)
 	};
 }
-function pi(e, t, n) {
+function Si(e, t, n) {
 	let r = e.key("size");
-	if (!r.exists) return n(e.key("sizes"), "SCALAR", [yr], 2 * t);
-	let [i = 0, a = 0] = r.numbers(2, 1, ye);
+	if (!r.exists) return n(e.key("sizes"), "SCALAR", [Or], 2 * t);
+	let [i = 0, a = 0] = r.numbers(2, 1, Oe);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
-function mi(e) {
+function Ci(e) {
 	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
 	for (let i of [
 		r(t, t) - 1,
@@ -1869,23 +1892,23 @@ function mi(e) {
 		extent: [i, a]
 	};
 }
-function hi(e) {
+function wi(e) {
 	return e.exists ? e.object() : {};
 }
 // eigenfield-three/src/info.ts
-var gi = 1e-6;
-async function _i(e, t) {
+var Ti = 1e-6;
+async function Ei(e, t) {
 	let [n, { lenses: r, poses: i }, a, o] = await Promise.all([
-		vi(e, t),
-		bi(e, t),
-		xi(e, t),
-		e.colour ? Dr(e.colour, e.views, t) : null
+		Di(e, t),
+		ki(e, t),
+		Ai(e, t),
+		e.colour ? Ir(e.colour, e.views, t) : null
 	]);
 	return n.map((t, n) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
-		if (!(s > gi && c > gi)) throw M(r.where, `focal lengths of "${t}"`);
-		let { R: f, t: p } = Si([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
-		if (!m || !h || Math.max(m, h) > 65535 || m * h > be) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
+		if (!(s > Ti && c > Ti)) throw M(r.where, `focal lengths of "${t}"`);
+		let { R: f, t: p } = ji([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
+		if (!m || !h || Math.max(m, h) > 65535 || m * h > ke) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
 				s,
@@ -1902,13 +1925,13 @@ async function _i(e, t) {
 				0,
 				1
 			]
-		], [_, v] = o ? Ci([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
+		], [_, v] = o ? Mi([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
 		return {
 			name: t,
 			K: g,
 			R: f,
 			t: p,
-			centre: Pi(f, p),
+			centre: Ui(f, p),
 			width: m,
 			height: h,
 			gain: _,
@@ -1916,31 +1939,31 @@ async function _i(e, t) {
 		};
 	});
 }
-async function vi({ names: e, heldOut: t }, n) {
+async function Di({ names: e, heldOut: t }, n) {
 	if (Array.isArray(e)) return e;
-	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : li(r);
+	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : vi(r);
 	if (i) throw M(e.where, i);
 	return r;
 }
-async function yi(e, t, n) {
+async function Oi(e, t, n) {
 	return {
-		numbers: await Dr(e, t.views, n),
+		numbers: await Ir(e, t.views, n),
 		where: e.where
 	};
 }
-async function bi(e, t) {
+async function ki(e, t) {
 	let { calibration: n, heldOut: r } = e;
 	if ("intrinsics" in n) {
 		let { intrinsics: r, poses: i } = n;
 		return {
-			lenses: await yi(r, e, t),
-			poses: await yi(i, e, t)
+			lenses: await Oi(r, e, t),
+			poses: await Oi(i, e, t)
 		};
 	}
 	let { view: i, codec: a, where: o } = n, s = await a.decode(new Uint8Array(await t(i)), o), c = s.poses.length / 12;
 	if (c !== r.length) throw M(o, `${c} cameras in it, and ${r.length} names`);
 	let l = (e) => ({
-		numbers: Or(e, o),
+		numbers: Lr(e, o),
 		where: o
 	});
 	return {
@@ -1948,15 +1971,15 @@ async function bi(e, t) {
 		poses: l(s.poses)
 	};
 }
-async function xi(e, t) {
-	if (!Array.isArray(e.sizes)) return yi(e.sizes, e, t);
+async function Ai(e, t) {
+	if (!Array.isArray(e.sizes)) return Oi(e.sizes, e, t);
 	let [n, r] = e.sizes;
 	return {
 		numbers: Uint32Array.from({ length: 2 * e.heldOut.length }, (e, t) => t % 2 ? r : n),
 		where: "its cameras' size"
 	};
 }
-function Si(e, t, n) {
+function ji(e, t, n) {
 	let r = (t) => [
 		e[4 * t] ?? NaN,
 		e[4 * t + 1] ?? NaN,
@@ -1974,19 +1997,19 @@ function Si(e, t, n) {
 		let a = Y(i[e], i[r]) - +(e === r);
 		if (!(Math.abs(a) <= 2e-4)) throw M(t, `the pose of "${n}" is no rotation`);
 	}
-	if (!(Y(Fi(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
+	if (!(Y(Wi(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
 	return {
 		R: i,
 		t: a
 	};
 }
-function Ci(e, t, n) {
+function Mi(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
 	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw M(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
-async function wi(e, t) {
-	let n = Ei(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => Ti(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
+async function Ni(e, t) {
+	let n = Fi(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => Pi(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
 	for (let e of i) {
 		let t = e.length / r;
 		for (let n = 0; n < r; n++) o.set(e.subarray(n * t, (n + 1) * t), n * a + s);
@@ -1994,26 +2017,26 @@ async function wi(e, t) {
 	}
 	return o;
 }
-async function Ti({ weights: e, count: t }, n, r, i) {
+async function Pi({ weights: e, count: t }, n, r, i) {
 	if (!e) return /* @__PURE__ */ new Float32Array();
-	if ("type" in e) return Dr(e, r.views, i);
+	if ("type" in e) return Ir(e, r.views, i);
 	let { view: a, codec: o, where: s } = e, { cameras: c, components: l, values: u } = o.decode(new Uint8Array(await i(a)), s);
-	if (c === n && l === t) return Or(u, s);
+	if (c === n && l === t) return Lr(u, s);
 	throw M(s, `${c} x ${l} weights, and ${n} encoded cameras x ${t} textures`);
 }
-function Ei(e) {
+function Fi(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
 }
-function Di(e) {
-	return Math.max(0, ...Ei(e).map(({ count: e }) => e));
+function Ii(e) {
+	return Math.max(0, ...Fi(e).map(({ count: e }) => e));
 }
-function Oi(e, t) {
-	let n = [...t.slice(0, e.planes.length), ...Ei(e).map(({ grid: e }) => e)];
+function Li(e, t) {
+	let n = [...t.slice(0, e.planes.length), ...Fi(e).map(({ grid: e }) => e)];
 	return [Math.max(...n.map(([e]) => e)), Math.max(...n.map(([, e]) => e))];
 }
-async function ki(e, t) {
+async function Ri(e, t) {
 	if (!e.triangles) return /* @__PURE__ */ new Uint32Array();
-	let { where: n } = e.triangles, r = await Ai(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
+	let { where: n } = e.triangles, r = await zi(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
 		if (Math.max(t, a, o) >= i) throw M(n, `no encoded camera ${Math.max(t, a, o)}`);
@@ -2021,11 +2044,11 @@ async function ki(e, t) {
 	}
 	return r;
 }
-async function Ai(e, t, n) {
-	return "type" in e ? Uint32Array.from(await Dr(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
+async function zi(e, t, n) {
+	return "type" in e ? Uint32Array.from(await Ir(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
 }
-function ji(e, t, n, r, i, a) {
-	let { right: o, up: s } = e, c = Fi(o, s), l = [
+function Bi(e, t, n, r, i, a) {
+	let { right: o, up: s } = e, c = Wi(o, s), l = [
 		0,
 		0,
 		0
@@ -2053,8 +2076,8 @@ function ji(e, t, n, r, i, a) {
 		settings: e.settings,
 		scores: e.scores,
 		metresPerUnit: typeof u == "number" && u > 0 && u <= 1e30 ? u : null,
-		bytes: Mi(e, i),
-		size: Oi(e, n),
+		bytes: Vi(e, i),
+		size: Li(e, n),
 		planes: e.planes.map(({ channels: e, bases: t }, r) => ({
 			channels: e,
 			mean: n[r] ?? [1, 1],
@@ -2069,9 +2092,9 @@ function ji(e, t, n, r, i, a) {
 		facesPlane: Math.abs(Y(l, c)) > .7
 	};
 }
-function Mi(e, t) {
-	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(Di(e)).fill(0);
-	for (let { pictures: t } of Ei(e)) {
+function Vi(e, t) {
+	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(Ii(e)).fill(0);
+	for (let { pictures: t } of Fi(e)) {
 		let e = 0;
 		for (let { view: n, textures: i } of t) {
 			let t = r(n);
@@ -2081,7 +2104,7 @@ function Mi(e, t) {
 			}
 		}
 	}
-	let c = i(Ei(e).flatMap((e) => e.weights ? [e.weights.view] : [])), l = i([...Object.values(e.shown ?? {}), ...e.mesh ? [e.mesh] : []].map(({ view: e }) => e)), u = e.sheets ? r(e.sheets.opacity.mean.view) : 0;
+	let c = i(Fi(e).flatMap((e) => e.weights ? [e.weights.view] : [])), l = i([...Object.values(e.shown ?? {}), ...e.mesh ? [e.mesh] : []].map(({ view: e }) => e)), u = e.sheets ? r(e.sheets.opacity.mean.view) : 0;
 	return {
 		total: t,
 		mesh: l,
@@ -2092,7 +2115,7 @@ function Mi(e, t) {
 		textures: s
 	};
 }
-function Ni(e, t) {
+function Hi(e, t) {
 	let { origin: n, extent: r } = e, i = [
 		t[0] - n[0],
 		t[1] - n[1],
@@ -2100,7 +2123,7 @@ function Ni(e, t) {
 	];
 	return [r[0] > 0 ? Y(i, e.right) / r[0] : 0, r[1] > 0 ? Y(i, e.up) / r[1] : 0];
 }
-function Pi(e, t) {
+function Ui(e, t) {
 	let n = (n) => -(e[0][n] * t[0] + e[1][n] * t[1] + e[2][n] * t[2]);
 	return [
 		n(0),
@@ -2111,7 +2134,7 @@ function Pi(e, t) {
 function Y(e, t) {
 	return e[0] * t[0] + e[1] * t[1] + e[2] * t[2];
 }
-function Fi(e, t) {
+function Wi(e, t) {
 	return [
 		e[1] * t[2] - e[2] * t[1],
 		e[2] * t[0] - e[0] * t[2],
@@ -2119,7 +2142,7 @@ function Fi(e, t) {
 	];
 }
 // eigenfield-three/src/cameras.ts
-function Ii(e, t, n) {
+function Gi(e, t, n) {
 	let { info: r } = e, i = r.cameras.filter((e, t) => !r.heldOut[t]), a = r.cameras[r.reference];
 	if (!a) throw RangeError(`no camera ${r.reference}`);
 	let { width: o, height: s } = a, c = [
@@ -2158,7 +2181,7 @@ function Ii(e, t, n) {
 	e.viewWeights(t, n, "delaunay").forEach((e, t) => {
 		let n = i[t];
 		if (!e || !n) return;
-		let r = Li(n, o, s);
+		let r = Ki(n, o, s);
 		for (let t of [
 			0,
 			1,
@@ -2169,7 +2192,7 @@ function Ii(e, t, n) {
 			2
 		]) t < 2 && (c[t][i] += e * r[t][i]), l[t][i] += e * n.R[t][i];
 	});
-	let u = zi(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Ri(t) * m[0], Ri(n) * m[1]], _ = [
+	let u = Ji(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [qi(t) * m[0], qi(n) * m[1]], _ = [
 		0,
 		1,
 		2
@@ -2186,7 +2209,7 @@ function Ii(e, t, n) {
 		offset: null
 	};
 }
-function Li({ K: e, width: t, height: n }, r, i) {
+function Ki({ K: e, width: t, height: n }, r, i) {
 	let a = Math.max(r / t, i / n), [o, s] = [(r - a * t) / 2, (i - a * n) / 2];
 	return [
 		[
@@ -2206,16 +2229,16 @@ function Li({ K: e, width: t, height: n }, r, i) {
 		]
 	];
 }
-function Ri(e) {
+function qi(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function zi(e) {
+function Ji(e) {
 	let t = e;
 	for (let e = 0; e < 50; e++) {
 		let e = [
-			Fi(t[1], t[2]),
-			Fi(t[2], t[0]),
-			Fi(t[0], t[1])
+			Wi(t[1], t[2]),
+			Wi(t[2], t[0]),
+			Wi(t[0], t[1])
 		], n = Y(t[0], e[0]);
 		if (!(n > 1e-12)) break;
 		let r = t.map((t, r) => t.map((t, i) => (t + e[r][i] / n) / 2)), i = Math.max(...r.flatMap((e, n) => e.map((e, r) => Math.abs(e - t[n][r]))));
@@ -2223,24 +2246,24 @@ function zi(e) {
 	}
 	return t;
 }
-function Bi(e, t, n, r, i = 1) {
+function Yi(e, t, n, r, i = 1) {
 	let a = n.width / n.height, o = i * Math.min(1, a / r), s = i * Math.min(1, r / a), c = {
 		left: (1 - o) / 2,
 		top: (1 - s) / 2,
 		width: o,
 		height: s
 	};
-	return Vi(e, t, n), Hi(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
+	return Xi(e, t, n), Zi(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
 }
-function Vi(e, t, n) {
-	let { R: r, centre: i } = n, a = new v().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
+function Xi(e, t, n) {
+	let { R: r, centre: i } = n, a = new x().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
 	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new A()), t.updateMatrixWorld(!0);
 }
-function Hi(e, t, n, r) {
-	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Ui(e, n);
+function Zi(e, t, n, r) {
+	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Qi(e, n);
 	t.near = d, t.far = f, t.projectionMatrix.set(l * i, -l * a, -(2 * r.left - 1 + l * o), 0, 0, u * s, -(1 - 2 * r.top - u * c), 0, 0, 0, -(f + d) / (f - d), -2 * f * d / (f - d), 0, 0, -1, 0), t.projectionMatrixInverse.copy(t.projectionMatrix).invert();
 }
-function Ui(e, t) {
+function Qi(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
@@ -2250,19 +2273,19 @@ function Ui(e, t) {
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
 // eigenfield-three/src/footprint.ts
-var Wi = 256;
-function Gi(e, t, n) {
+var $i = 256;
+function ea(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / Wi)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / $i)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Ki(t, i.getX(e), i.getY(e), i.getZ(e))), l = qi(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => ta(t, i.getX(e), i.getY(e), i.getZ(e))), l = na(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = qi(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = na(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -2272,7 +2295,7 @@ function Gi(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function Ki({ K: e, R: t, t: n }, r, i, a) {
+function ta({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -2280,36 +2303,36 @@ function Ki({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function qi(e) {
+function na(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/memory.ts
-var Ji = 4 / 3, Yi = 4, Xi = 8, Zi = 2, Qi = 2 ** 20;
-function $i() {
+var ra = 4 / 3, ia = 4, aa = 8, oa = 2, sa = 2 ** 20;
+function ca() {
 	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
-	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && ea(e) ? Math.min(t ?? 4, 6) * 128 * Qi : Math.min(t ?? 8, 8) * 256 * Qi;
+	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && la(e) ? Math.min(t ?? 4, 6) * 128 * sa : Math.min(t ?? 8, 8) * 256 * sa;
 }
-function ea(e) {
+function la(e) {
 	return (e?.maxTouchPoints ?? 0) > 1;
 }
 function X([e, t], n) {
 	return [Math.ceil(e / n), Math.ceil(t / n)];
 }
-function ta(e, t) {
+function ua(e, t) {
 	let [n, r] = X(e, t);
 	return n * r;
 }
-function na(e) {
+function da(e) {
 	return Math.ceil(e / 4);
 }
-function ra(e, t) {
-	return t * ia(e);
+function fa(e, t) {
+	return t * pa(e);
 }
-function ia(e) {
+function pa(e) {
 	return Math.max(1, Math.ceil(e / 4));
 }
-function aa(e) {
+function ma(e) {
 	let { atlas: t, means: n, bases: r } = e, i = [
 		t,
 		...n.map(({ size: e }) => e),
@@ -2317,14 +2340,14 @@ function aa(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-function oa(e, t) {
+function ha(e, t) {
 	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = [
 		1,
 		2,
 		4,
 		8,
 		16
-	].find((n) => Math.max(...e.atlas) / n <= t.side && sa(e, n) <= t.memory / 2) ?? 16, o = sa(e, a) + e.geometry, s = (t, n) => o + la(e, t, n), c = (n, r) => s(n, r) + fa(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
+	].find((n) => Math.max(...e.atlas) / n <= t.side && ga(e, n) <= t.memory / 2) ?? 16, o = ga(e, a) + e.geometry, s = (t, n) => o + va(e, t, n), c = (n, r) => s(n, r) + xa(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
 		1,
 		2,
 		4
@@ -2338,76 +2361,76 @@ function oa(e, t) {
 	};
 	return {
 		...p,
-		limitation: pa(p, n, e, t)
+		limitation: Sa(p, n, e, t)
 	};
 }
-function sa(e, t) {
-	let n = e.means.map((e) => ca(e) * na(e.channels) * ta(e.size, t)), r = aa(e).map((n) => {
-		let r = n.join() === e.atlas.join() ? Ji : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
-		return Xi * ta(n, t) * (r + +!!i);
+function ga(e, t) {
+	let n = e.means.map((e) => _a(e) * da(e.channels) * ua(e.size, t)), r = ma(e).map((n) => {
+		let r = n.join() === e.atlas.join() ? ra : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
+		return aa * ua(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function ca({ tenBits: e }) {
-	return e ? Xi : Yi;
+function _a({ tenBits: e }) {
+	return e ? aa : ia;
 }
-function la({ bases: e, rays: t }, n, r) {
+function va({ bases: e, rays: t }, n, r) {
 	return e.reduce((e, i) => {
 		let a = Math.min(r, i.count);
 		if (!a) return e;
-		let o = t ? ia(a) * 129 * 129 * Xi : 0;
-		return e + ca(i) * ra(a, i.channels) * ta(i.size, n) + o;
+		let o = t ? pa(a) * 129 * 129 * aa : 0;
+		return e + _a(i) * fa(a, i.channels) * ua(i.size, n) + o;
 	}, 0);
 }
-function ua({ means: e, bases: t }, n, r) {
-	return da([...e.filter(({ pieces: e, tenBits: t }) => e > 1 || t).map(({ size: e }) => X(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => X(e, r))]);
+function ya({ means: e, bases: t }, n, r) {
+	return ba([...e.filter(({ pieces: e, tenBits: t }) => e > 1 || t).map(({ size: e }) => X(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => X(e, r))]);
 }
-function da(e) {
+function ba(e) {
 	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
 }
-function fa(e, t) {
-	let [n, r] = ua({
+function xa(e, t) {
+	let [n, r] = ya({
 		means: [],
 		bases: e.bases
 	}, 1, t);
-	return (Yi + (e.bases.some(({ tenBits: e }) => e) ? Zi : 0)) * n * r;
+	return (ia + (e.bases.some(({ tenBits: e }) => e) ? oa : 0)) * n * r;
 }
-function pa(e, t, n, r) {
+function Sa(e, t, n, r) {
 	let i = [];
 	if (e.usable < t && i.push(`${e.usable} of ${t} eigen textures are drawn`), e.usable && e.scaleDown > 1 && i.push(`eigen textures have 1/${e.scaleDown} of their size`), e.meanDown > 1 && i.push(`the mean texture has 1/${e.meanDown} of its size`), !i.length) return null;
-	let a = sa(n, 1) + la(n, 1, t) + fa(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${ma(a)} MB of graphics memory and ${ma(r.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${ha(i.join(", "))}: ${o}.`;
+	let a = ga(n, 1) + va(n, 1, t) + xa(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${Ca(a)} MB of graphics memory and ${Ca(r.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${wa(i.join(", "))}: ${o}.`;
 }
-function ma(e) {
+function Ca(e) {
 	return (e / 1e6).toFixed(+(e < 1e7));
 }
-function ha(e) {
+function wa(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var ga = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of four passes. All\n// draw into textures whose row 0 is v = 0. All but the first add R, G, B and opacity to what is there, which is cleared\n// to zeros before:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n//   finerOpacity  in a scene with sheets, once for all of the atlas: the opacity of the sheets\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum; or the opacity, in the first channel, at a density of its own\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n\n// The opacity in `coarse` at texture coordinates of the atlas.\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", _a = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", va = 2, ya = `
+var Ta = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of four passes. All\n// draw into textures whose row 0 is v = 0. All but the first add R, G, B and opacity to what is there, which is cleared\n// to zeros before:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n//   finerOpacity  in a scene with sheets, once for all of the atlas: the opacity of the sheets\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum; or the opacity, in the first channel, at a density of its own\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n\n// The opacity in `coarse` at texture coordinates of the atlas.\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Ea = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", Da = 2, Oa = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${_a}${ga}`, ba = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", xa = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", Sa = `${ya}
+${Ea}${Ta}`, ka = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", Aa = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", ja = `${Oa}
 in vec3 point;
 out vec4 place;
 void main() { place = placeOf(point); }
-`, Ca = "sumTextures", wa = "finerValue", Ta = "finerOpacity";
-function Ea(n, r, i) {
-	let o = new E({
-		glslVersion: p,
-		vertexShader: ba,
-		fragmentShader: `${ya}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
+`, Ma = "sumTextures", Na = "finerValue", Pa = "finerOpacity";
+function Fa(n, r, i) {
+	let o = new O({
+		glslVersion: h,
+		vertexShader: ka,
+		fragmentShader: `${Oa}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
 		uniforms: {
-			rectangle: { value: new te(...r) },
+			rectangle: { value: new ae(...r) },
 			...i
 		},
-		side: l,
+		side: u,
 		blending: a,
-		blendSrc: C,
-		blendDst: C,
+		blendSrc: E,
+		blendDst: E,
 		depthTest: !1,
 		depthWrite: !1
 	}), s = new t();
@@ -2431,62 +2454,62 @@ function Ea(n, r, i) {
 		2,
 		1,
 		3
-	]), s.boundingSphere = new O();
-	let c = new y(s, o);
+	]), s.boundingSphere = new te();
+	let c = new S(s, o);
 	return c.frustumCulled = !1, c;
 }
-function Da([e, t], n) {
-	return new ne(e, t, {
-		type: m,
+function Ia([e, t], n) {
+	return new oe(e, t, {
+		type: g,
 		depthBuffer: !1,
 		generateMipmaps: n,
-		minFilter: n ? _ : x,
-		magFilter: n ? g : x
+		minFilter: n ? b : w,
+		magFilter: n ? y : w
 	});
 }
-function Oa(e, t) {
-	let n = Fi(e.right, e.up), r = [
+function La(e, t) {
+	let n = Wi(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
 		t[2] - e.origin[2]
 	];
-	return [...Ni(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
+	return [...Hi(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
 }
-function ka(t, n, r) {
+function Ra(t, n, r) {
 	let i = t.geometry.getAttribute("position"), a = t.geometry.getAttribute("uv"), o = new Float32Array(3 * i.count), s = new Float32Array(2 * i.count);
-	for (let e = 0; e < i.count; e++) o.set(Oa(n, [
+	for (let e = 0; e < i.count; e++) o.set(La(n, [
 		i.getX(e),
 		i.getY(e),
 		i.getZ(e)
 	]), 3 * e), s.set([a.getX(e), a.getY(e)], 2 * e);
-	let c = Array.from({ length: 5 }, (e, t) => t - va), u = c.flatMap((e) => c.map((t) => new k(t, e)));
-	u.sort((e, t) => t.lengthSq() - e.lengthSq());
-	let d = new h();
-	d.setAttribute("position", new e(s, 2)), d.setAttribute("onPlane", new e(o, 3)), d.setIndex(t.geometry.index ? new e(t.geometry.index.array, 1) : null), d.instanceCount = u.length, d.boundingSphere = new O();
-	let f = new E({
-		glslVersion: p,
-		vertexShader: xa.replace("SHIFTS", String(u.length)),
-		fragmentShader: Sa,
+	let c = Array.from({ length: 5 }, (e, t) => t - Da), l = c.flatMap((e) => c.map((t) => new ie(t, e)));
+	l.sort((e, t) => t.lengthSq() - e.lengthSq());
+	let d = new v();
+	d.setAttribute("position", new e(s, 2)), d.setAttribute("onPlane", new e(o, 3)), d.setIndex(t.geometry.index ? new e(t.geometry.index.array, 1) : null), d.instanceCount = l.length, d.boundingSphere = new te();
+	let f = new O({
+		glslVersion: h,
+		vertexShader: Aa.replace("SHIFTS", String(l.length)),
+		fragmentShader: ja,
 		uniforms: {
-			texel: { value: new k(2 / r.width, 2 / r.height) },
-			shifts: { value: u }
+			texel: { value: new ie(2 / r.width, 2 / r.height) },
+			shifts: { value: l }
 		},
-		side: l,
-		blending: S,
+		side: u,
+		blending: T,
 		depthTest: !1,
 		depthWrite: !1
-	}), m = new y(d, f);
-	m.frustumCulled = !1;
-	let g = new D();
-	return g.add(m), {
-		scene: g,
+	}), p = new S(d, f);
+	p.frustumCulled = !1;
+	let m = new k();
+	return m.add(p), {
+		scene: m,
 		free: () => {
 			d.dispose(), f.dispose();
 		}
 	};
 }
 // eigenfield-three/src/composer.ts
-var Aa = {
+var za = {
 	version: 0,
 	mean: !0,
 	opacity: !0,
@@ -2495,7 +2518,7 @@ var Aa = {
 	weights: /* @__PURE__ */ new Float64Array(),
 	eye: null,
 	maps: null
-}, ja = class {
+}, Ba = class {
 	opacity;
 	down;
 	mesh;
@@ -2506,14 +2529,14 @@ var Aa = {
 	camera = new n();
 	constructor(e, t, n, r, i, a) {
 		this.opacity = n, this.down = r, this.mesh = i, this.plane = a;
-		let [o, ...s] = aa({
+		let [o, ...s] = ma({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), c = (e, n) => {
-			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(Na), a = new D();
+			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(Ha), a = new k();
 			return i.forEach(({ quad: e }, t) => a.add(Object.assign(e, { renderOrder: t }))), {
-				target: Da(X(e, r), n),
+				target: Ia(X(e, r), n),
 				scene: a,
 				steps: i,
 				places: null
@@ -2521,7 +2544,7 @@ var Aa = {
 		}, l = c(o ?? e, !0);
 		this.grids = s.map((e) => c(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = Ea(wa, [
+			let t = Fa(Na, [
 				0,
 				0,
 				1,
@@ -2535,36 +2558,36 @@ var Aa = {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && Ia(this.composed, n) || (this.composed = n, za(e, t, () => {
+		this.composed && Ga(this.composed, n) || (this.composed = n, Ja(e, t, () => {
 			n.opacity && !this.opacityDrawn && this.drawOpacity(e);
 			for (let t of this.grids) {
 				n.eye && !t.places && t.steps.some(({ part: e }) => e.basis) && this.findPlaces(e, t);
-				for (let e of t.steps) Pa(e, t.places?.texture ?? null, n);
+				for (let e of t.steps) Ua(e, t.places?.texture ?? null, n);
 				this.draw(e, t.scene, t.target, this.opacityDrawn && t === this.grids.at(-1));
 			}
 		}));
 	}
 	dispose() {
-		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.dispose(), Ma(n);
+		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.dispose(), Va(n);
 	}
 	drawOpacity(e) {
 		let t = this.grids.at(-1);
 		if (!this.opacity || !t) return;
-		let n = Da(X(this.opacity.grid, this.down), !1), r = Na(this.opacity);
-		for (let e of r) Pa(e, null, Aa);
-		let [i, a] = [new D(), new D()];
-		i.add(...r.map(({ quad: e }) => e)), a.add(Ea(Ta, [
+		let n = Ia(X(this.opacity.grid, this.down), !1), r = Ha(this.opacity);
+		for (let e of r) Ua(e, null, za);
+		let [i, a] = [new k(), new k()];
+		i.add(...r.map(({ quad: e }) => e)), a.add(Fa(Pa, [
 			0,
 			0,
 			1,
 			1
 		], { coarse: { value: n.texture } })), this.draw(e, i, n), this.draw(e, a, t.target);
-		for (let e of [i, a]) Ma(e);
+		for (let e of [i, a]) Va(e);
 		n.dispose(), this.opacityDrawn = !0;
 	}
 	findPlaces(e, t) {
-		t.places = Da([t.target.width, t.target.height], !1);
-		let { scene: n, free: r } = ka(this.mesh, this.plane, t.places);
+		t.places = Ia([t.target.width, t.target.height], !1);
+		let { scene: n, free: r } = Ra(this.mesh, this.plane, t.places);
 		this.draw(e, n, t.places), r();
 	}
 	draw(e, t, n, r = !1) {
@@ -2573,17 +2596,17 @@ var Aa = {
 		r && i.colorMask(!0, !0, !0, !1), e.clear(!0, !1, !1), r && i.colorMask(!0, !0, !0, !0), e.render(t, this.camera);
 	}
 };
-function Ma(e) {
+function Va(e) {
 	for (let { geometry: t, material: n } of e.children) t.dispose(), n.dispose();
 }
-function Na(e) {
+function Ha(e) {
 	let t = e.colours.length, [n, r] = [e.scale.length / (4 * t), Math.floor(64 / t)], i = [];
 	for (let a = 0; a < n; a += r) {
 		let o = Array.from({ length: 64 }, (t, n) => new A(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), s = e.basis ? 1 : 4, c = Ea(Ca, e.rectangle, {
+		])), s = e.basis ? 1 : 4, c = Fa(Ma, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(a * t / s) },
 			sharing: { value: s },
@@ -2607,42 +2630,42 @@ function Na(e) {
 	}
 	return i;
 }
-function Pa({ part: e, first: t, groups: n, quad: r }, i, a) {
+function Ua({ part: e, first: t, groups: n, quad: r }, i, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Fa(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Wa(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
 	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", u ? i : null), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function Fa(e, t, n, r) {
+function Wa(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function Ia(e, t) {
+function Ga(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
-var La = new i(0), Ra = new i();
-function za(e, t, n) {
+var Ka = new i(0), qa = new i();
+function Ja(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(Ra), e.setClearColor(La, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(Ra, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(qa), e.setClearColor(Ka, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(qa, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/maps.ts
-function Ba(e, t, n, i, a) {
+function Ya(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? ia(t) : 0;
+		u += e, d += t ? pa(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -2658,23 +2681,23 @@ function Ba(e, t, n, i, a) {
 		}
 	}
 	let p = new o(f, 129, 129, Math.max(1, d));
-	return p.format = T, p.type = m, p.minFilter = p.magFilter = g, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
+	return p.format = D, p.type = g, p.minFilter = p.magFilter = y, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
 }
 // ../src/eigenfield/rendering/shaders/surface.glsl?raw
-var Va = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/renderer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B and opacity at texture coordinates; nothing is cut off.\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What is seen of a value of the surface.\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\n\n// What an opaque surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\n\n// What a sheet adds to the sheets behind it at texture coordinates: R, G, B times its opacity, and its opacity. It is\n// blended with the factors ONE and ONE_MINUS_SRC_ALPHA. Colours are not cut off: those of all sheets together count.\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", Ha = {
+var Xa = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/renderer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B and opacity at texture coordinates; nothing is cut off.\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What is seen of a value of the surface.\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\n\n// What an opaque surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\n\n// What a sheet adds to the sheets behind it at texture coordinates: R, G, B times its opacity, and its opacity. It is\n// blended with the factors ONE and ONE_MINUS_SRC_ALPHA. Colours are not cut off: those of all sheets together count.\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", Za = {
 	bilinear: 0,
 	bicubic: 1
-}, Ua = {
+}, Qa = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, Wa = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Ga = Wa.replace("void main", "invariant gl_Position;\nvoid main"), Ka = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", qa = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", Ja = `${Ka}
-${_a}${Va}
+}, $a = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", eo = $a.replace("void main", "invariant gl_Position;\nvoid main"), to = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", no = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", ro = `${to}
+${Ea}${Xa}
 uniform float shownGain;       // of the eigen texture around mid grey
 in vec2 surfaceUv;
 vec3 eigenColour(vec3 value) { return clamp(0.5 + shownGain * value, 0.0, 1.0); }
-`, Ya = `${Ja}${qa}
+`, io = `${ro}${no}
 in vec3 surfacePlace;
 out vec4 fragment;
 void main() {
@@ -2684,7 +2707,7 @@ void main() {
   if (shown == 3) colour = errorColour(colour, surfacePlace);
   fragment = vec4(colour, 1.0);
 }
-`, Xa = `${Ja}
+`, ao = `${ro}
 layout(location = 0) out vec4 fragment;
 layout(location = 1) out vec4 solid;
 vec3 threeBytes(float depth) {
@@ -2698,76 +2721,89 @@ void main() {
   float depth = (gl_FragCoord.z - gl_DepthRange.near) / gl_DepthRange.diff;
   solid = colour.a < 0.5 ? vec4(0.0) : vec4(threeBytes(depth), 1.0);
 }
-`, Za = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", Qa = {
+`, oo = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", so = {
 	blending: a,
-	blendSrc: C,
-	blendDst: w
+	blendSrc: E,
+	blendDst: ee
+}, co = {
+	depthWrite: !1,
+	stencilWrite: !0,
+	stencilFunc: d,
+	stencilZPass: _
 };
-function $a(e, t) {
+function lo(e, t) {
 	let n = {
 		composed: { value: null },
 		finest: { value: 1 },
 		exposureScale: { value: new A(1, 1, 1) },
 		exposureBias: { value: new A() },
-		shown: { value: Ua.picture },
+		shown: { value: Qa.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
-		toPhotograph: { value: new v() }
-	}, r = new E({
-		glslVersion: p,
-		vertexShader: t ? Ga : Wa,
-		fragmentShader: t ? Xa : Ya,
+		toPhotograph: { value: new x() }
+	}, r = new O({
+		glslVersion: h,
+		vertexShader: t ? eo : $a,
+		fragmentShader: t ? ao : io,
 		uniforms: n,
-		defines: { BICUBIC: Ha.bicubic },
-		side: e ? l : f,
+		defines: { BICUBIC: Za.bicubic },
+		side: e ? u : m,
 		...t ? {
-			...Qa,
-			depthWrite: !1
+			...so,
+			...co
 		} : {}
 	});
 	return r.name = "eigen textures", r;
 }
-function eo(e) {
+function uo(e) {
 	let { side: t } = e;
-	return new E({
+	return new O({
 		name: "depth of sheets",
-		glslVersion: p,
-		vertexShader: Ga,
-		fragmentShader: Za,
+		glslVersion: h,
+		vertexShader: eo,
+		fragmentShader: oo,
 		colorWrite: !1,
-		side: t
+		side: t,
+		stencilWrite: !0,
+		stencilZPass: se
 	});
 }
 // eigenfield-three/src/gpu.ts
-function to(e, t) {
+function fo(e) {
+	let t = e.getContext();
+	if (!(t instanceof WebGL2RenderingContext)) throw new j("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
+	if ((t.getExtension("EXT_color_buffer_float") ?? t.getExtension("EXT_color_buffer_half_float")) || t.isContextLost()) return t;
+	throw new j("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
+}
+function po(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function no(e, [t, n], r, i, a) {
-	return ao(e, e.TEXTURE_2D_ARRAY, () => {
+function mo(e, [t, n], r, i, a) {
+	return _o(e, e.TEXTURE_2D_ARRAY, () => {
 		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, a ? e.RGBA16F : e.RGBA8, t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function ro(e, t, n) {
+function ho(e, t, n) {
 	let { width: r, height: i } = n;
-	oo(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
+	vo(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
 }
-function io(e, [t, n], r = !1) {
-	return ao(e, e.TEXTURE_2D, () => {
+function go(e, [t, n], r = !1) {
+	return _o(e, e.TEXTURE_2D, () => {
 		e.texStorage2D(e.TEXTURE_2D, 1, r ? e.RG8 : e.RGBA8, t, n), e.texParameteri(e.TEXTURE_2D, e.TEXTURE_MIN_FILTER, e.NEAREST);
 	});
 }
-function ao(e, t, n) {
+function _o(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return oo(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return vo(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function oo(e, t, n, r) {
+function vo(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -2781,9 +2817,9 @@ function oo(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-var so = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", co = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform vec2 size; // of what is drawn\nuniform highp sampler2D precisions;\nuniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nvoid main() {\n  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);\n  if (nodes.x == 0) stored = vec4(code);\n  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / 4.0, -65504.0, 65504.0));\n}\n";
-function lo(e, t) {
-	let n = mo(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], [a, o, s, c, l] = [
+var yo = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", bo = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform vec2 size; // of what is drawn\nuniform highp sampler2D precisions;\nuniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nvoid main() {\n  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);\n  if (nodes.x == 0) stored = vec4(code);\n  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / 4.0, -65504.0, 65504.0));\n}\n";
+function xo(e, t) {
+	let n = To(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], [a, o, s, c, l] = [
 		"factors",
 		"size",
 		"precisions",
@@ -2791,7 +2827,7 @@ function lo(e, t) {
 		"zero"
 	].map((t) => e.getUniformLocation(n, t)), u = ({ picture: t, rows: u }, d, f, p, m) => {
 		e.useProgram(n), e.uniform2f(o ?? null, t.width, u), e.uniform1i(s ?? null, +!!m), e.uniform2i(c ?? null, m?.precision.width ?? 0, m?.precision.height ?? 0), e.uniform1f(l ?? null, m?.zero ?? 0), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.viewport(0, 0, t.width, u);
-		for (let { channel: n, layer: r, component: i } of f) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, d, 0, r), uo(t) ? e.uniform4f(a ?? null, 255, 65280, 0, 0) : e.uniform4fv(a ?? null, [
+		for (let { channel: n, layer: r, component: i } of f) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, d, 0, r), So(t) ? e.uniform4f(a ?? null, 255, 65280, 0, 0) : e.uniform4fv(a ?? null, [
 			0,
 			1,
 			2,
@@ -2800,13 +2836,13 @@ function lo(e, t) {
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let { picture: s, row: c, rows: l } = n, d = uo(s) ? t.codes : t.picture;
+			let { picture: s, row: c, rows: l } = n, d = So(s) ? t.codes : t.picture;
 			if (!d) return;
-			let f = () => ho(e, 0, d, () => {
-				uo(s) ? po(e, s, c, l) : fo(e, s, c, l), go(e, () => u(n, r, i, a, o));
+			let f = () => Eo(e, 0, d, () => {
+				So(s) ? wo(e, s, c, l) : Co(e, s, c, l), Do(e, () => u(n, r, i, a, o));
 			});
-			o ? ho(e, 1, t.precision, () => {
-				fo(e, o.precision, 0, o.precision.height), f();
+			o ? Eo(e, 1, t.precision, () => {
+				Co(e, o.precision, 0, o.precision.height), f();
 			}) : f();
 		},
 		free() {
@@ -2814,30 +2850,30 @@ function lo(e, t) {
 		}
 	};
 }
-function uo(e) {
+function So(e) {
 	return "data" in e;
 }
-function fo(e, t, n, r) {
+function Co(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function po(e, { data: t, width: n, stride: r }, i, a) {
+function wo(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
-function mo(e) {
+function To(e) {
 	let t = e.createProgram();
-	for (let [n, r] of [[e.VERTEX_SHADER, so], [e.FRAGMENT_SHADER, co]]) {
+	for (let [n, r] of [[e.VERTEX_SHADER, yo], [e.FRAGMENT_SHADER, bo]]) {
 		let i = e.createShader(n);
 		i && (e.shaderSource(i, r), e.compileShader(i), e.attachShader(t, i), e.deleteShader(i));
 	}
 	return e.linkProgram(t), t;
 }
-function ho(e, t, n, r) {
+function Eo(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), oo(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), vo(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function go(e, t) {
+function Do(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -2852,7 +2888,7 @@ function go(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/parts.ts
-function _o(e, t, n) {
+function Oo(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -2862,7 +2898,7 @@ function _o(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = yo(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = Ao(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -2890,7 +2926,7 @@ function _o(e, t, n) {
 						n + e[1] / i[1]
 					],
 					colours: f,
-					...xo(l, u, h),
+					...Mo(l, u, h),
 					basis: {
 						ready: m,
 						column: o,
@@ -2898,11 +2934,11 @@ function _o(e, t, n) {
 					}
 				});
 			}
-			o += p, s += h ? ia(h) : 0;
+			o += p, s += h ? pa(h) : 0;
 		}
 	}), r;
 }
-function vo({ planes: e, sheets: t }, { means: n, needs: r }) {
+function ko({ planes: e, sheets: t }, { means: n, needs: r }) {
 	let i = n[e.length], a = r.means[e.length]?.size;
 	return !t || !i || !a ? null : {
 		stored: i,
@@ -2918,12 +2954,12 @@ function vo({ planes: e, sheets: t }, { means: n, needs: r }) {
 			0,
 			0
 		]],
-		...yo(t.opacity),
+		...Ao(t.opacity),
 		basis: null
 	};
 }
-function yo({ mean: e, channels: t, precision: n }) {
-	let { scale: r, zero: i } = e, a = n ? 4 : bo([e]), o = {
+function Ao({ mean: e, channels: t, precision: n }) {
+	let { scale: r, zero: i } = e, a = n ? 4 : jo([e]), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
 	};
@@ -2933,11 +2969,11 @@ function yo({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function bo(e) {
-	return Lr(e) ? 1 : 255;
+function jo(e) {
+	return Kr(e) ? 1 : 255;
 }
-function xo(e, t, n) {
-	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = bo(e), o = 4 * t * ia(n), s = {
+function Mo(e, t, n) {
+	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = jo(e), o = 4 * t * pa(n), s = {
 		scale: new Float32Array(o),
 		bias: new Float32Array(o)
 	};
@@ -2948,7 +2984,7 @@ function xo(e, t, n) {
 	return s;
 }
 // eigenfield-three/src/sheet-stack.ts
-var So = "sheets", Co = 16, wo = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", To = `${Ka}${qa}
+var No = "sheets", Po = 16, Fo = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Io = `${to}${no}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -2973,8 +3009,8 @@ void main() {
   gl_FragDepth = depth;
   fragment = colour;
 }
-`, Eo = new te(), Do = class {
-	scene = new D();
+`, Lo = new ae(), Ro = class {
+	scene = new k();
 	camera = new n();
 	sheets;
 	depth;
@@ -2985,16 +3021,16 @@ void main() {
 		e.forEach((e, n) => {
 			for (let i of [0, 1]) t.addGroup(r, 3 * e, 2 * n + i);
 			r += 3 * e;
-		}), this.depth = eo(n), this.depth.transparent = n.transparent = !0, this.sheets = new y(t, e.flatMap(() => [this.depth, n])), this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (t, n, r, i, a, o) => {
+		}), this.depth = uo(n), this.depth.transparent = n.transparent = !0, this.sheets = new S(t, e.flatMap(() => [this.depth, n])), this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (t, n, r, i, a, o) => {
 			let { materialIndex: s = 0 } = o, c = e.length - 1 - (s >> 1);
 			t.getContext().depthRange(c / e.length, (c + 1) / e.length);
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
 		let { shown: i, photograph: a, toPhotograph: o } = n.uniforms;
-		this.screen = new E({
-			name: So,
-			glslVersion: p,
-			vertexShader: wo,
-			fragmentShader: To,
+		this.screen = new O({
+			name: No,
+			glslVersion: h,
+			vertexShader: Fo,
+			fragmentShader: Io,
 			uniforms: {
 				shown: i,
 				photograph: a,
@@ -3003,16 +3039,16 @@ void main() {
 				solid: { value: null },
 				nearest: { value: null },
 				slices: { value: e.length },
-				corner: { value: new k() },
-				size: { value: new k() },
-				toPlace: { value: new v() }
+				corner: { value: new ie() },
+				size: { value: new ie() },
+				toPlace: { value: new x() }
 			},
 			transparent: !0,
-			...Qa
+			...so
 		});
 	}
 	get bytes() {
-		return this.target ? Co * this.target.width * this.target.height : 0;
+		return this.target ? Po * this.target.width * this.target.height : 0;
 	}
 	attach(n, r) {
 		for (let e of [n.material].flat()) e.visible = !1;
@@ -3032,8 +3068,8 @@ void main() {
 			boundingBox: i,
 			boundingSphere: a
 		});
-		let s = new y(o, this.screen);
-		s.name = So, s.raycast = () => void 0, s.onBeforeRender = (e, t, i) => {
+		let s = new S(o, this.screen);
+		s.name = No, s.raycast = () => void 0, s.onBeforeRender = (e, t, i) => {
 			r(e, i), this.draw(e, i, n);
 		}, n.add(s);
 	}
@@ -3041,11 +3077,11 @@ void main() {
 		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
 	}
 	draw(e, t, n) {
-		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Eo);
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Lo);
 		if (!a || !o) return;
-		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Oo(a, o));
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = zo(a, o));
 		let { target: s } = this;
-		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), za(e, t, () => {
+		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), Ja(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
 		}), e.getContext().depthRange(0, 1);
 		let { uniforms: c } = this.screen, l = (e, t) => {
@@ -3054,32 +3090,35 @@ void main() {
 		l("sheets", s.textures[0]), l("solid", s.textures[1]), l("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
 	}
 };
-function Oo(e, t) {
-	let n = new ne(e, t, {
+function zo(e, t) {
+	let n = new l(e, t, re);
+	n.format = c;
+	let r = new oe(e, t, {
 		count: 2,
-		type: m,
-		depthTexture: new c(e, t),
-		minFilter: x,
-		magFilter: x
-	}), [, r] = n.textures;
-	return r && (r.type = ee), n;
+		type: g,
+		stencilBuffer: !0,
+		depthTexture: n,
+		minFilter: w,
+		magFilter: w
+	}), [, i] = r.textures;
+	return i && (i.type = ne), r;
 }
 // eigenfield-three/src/pieces.ts
-function ko(e) {
+function Bo(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
 // eigenfield-three/src/strength.ts
-var Ao = 128, jo = .98;
-async function Mo(e, t, n, r) {
+var Vo = 128, Ho = .98;
+async function Uo(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = Rr(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Ao, Ao).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = qr(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Vo, Vo).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, Ao, Ao);
-		let { data: u } = d.getImageData(0, 0, Ao, Ao);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, Vo, Vo);
+		let { data: u } = d.getImageData(0, 0, Vo, Vo);
 		(l ? [
 			0,
 			1,
@@ -3088,30 +3127,30 @@ async function Mo(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), ko(u), f.sort((e, t) => e - t);
-	let p = f[Math.floor(jo * f.length)] ?? 0;
+	}), Bo(u), f.sort((e, t) => e - t);
+	let p = f[Math.floor(Ho * f.length)] ?? 0;
 	return p > 0 ? .45 / p : 1;
 }
 // eigenfield-three/src/means.ts
-async function No(e, t, n = 1) {
-	let { mean: r, meanSize: i } = e, a = e.precision && await Po(await t(e.precision.view), e.precision);
+async function Wo(e, t, n = 1) {
+	let { mean: r, meanSize: i } = e, a = e.precision && await Go(await t(e.precision.view), e.precision);
 	return {
 		pieces: await r.codec.decode(await t(r.view), r, i, n),
 		precision: a
 	};
 }
-async function Po(e, t) {
-	let { type: n } = Un(e) ?? {}, { mimeType: r } = t.codec;
+async function Go(e, t) {
+	let { type: n } = Qn(e) ?? {}, { mimeType: r } = t.codec;
 	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
 	if (!i) throw M(t.where, "no picture");
 	return i.picture;
 }
-function Fo({ pieces: e, precision: t }) {
-	ko(e), t?.close();
+function Ko({ pieces: e, precision: t }) {
+	Bo(e), t?.close();
 }
 // eigenfield-three/src/textures.ts
-var Io = 3, Lo = class {
+var qo = 3, Jo = class {
 	parts;
 	options;
 	means;
@@ -3138,20 +3177,20 @@ var Io = 3, Lo = class {
 		let o = r.planes.flatMap(({ channels: e, bases: t }) => t.map((t) => ({
 			...t,
 			channels: e,
-			tenBits: Lr(t.pictures)
-		}))), s = ni(r).map(({ channels: e, mean: t }, n) => ({
+			tenBits: Kr(t.pictures)
+		}))), s = di(r).map(({ channels: e, mean: t }, n) => ({
 			size: i[n] ?? [1, 1],
 			channels: e,
 			pieces: t.pieces,
-			tenBits: Lr([t])
+			tenBits: Kr([t])
 		}));
 		this.needs = {
-			atlas: Oi(r, i),
+			atlas: Li(r, i),
 			means: s,
 			bases: o,
 			rays: a,
 			geometry: t
-		}, this.means = s.map(() => new d()), this.bases = o.map(() => new d()), this.ready = o.map(({ count: e }) => Array(e).fill(!1)), this.entries = o.flatMap((e, t) => {
+		}, this.means = s.map(() => new p()), this.bases = o.map(() => new p()), this.ready = o.map(({ count: e }) => Array(e).fill(!1)), this.entries = o.flatMap((e, t) => {
 			let n = 0;
 			return e.pictures.map((r) => {
 				let i = n;
@@ -3174,16 +3213,14 @@ var Io = 3, Lo = class {
 	}
 	attach(e) {
 		if (this.disposed) return;
-		let t = e.getContext();
-		if (!(t instanceof WebGL2RenderingContext)) throw new j("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
 		this.detach(), this.renderer = e, e.domElement.addEventListener("webglcontextlost", this.onLost), e.domElement.addEventListener("webglcontextrestored", this.onRestored);
-		let n = this.turn;
-		this.load(t, n).catch((e) => {
-			n === this.turn && this.onError(e);
+		let t = this.turn;
+		this.load(e, t).catch((e) => {
+			t === this.turn && this.onError(e);
 		});
 	}
 	dispose() {
-		this.detach(), this.disposed = !0, this.decoded?.forEach(Fo), this.decoded = null;
+		this.detach(), this.disposed = !0, this.decoded?.forEach(Ko), this.decoded = null;
 	}
 	detach() {
 		let e = this.renderer?.getContext();
@@ -3200,26 +3237,27 @@ var Io = 3, Lo = class {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		if (!e.getExtension("EXT_color_buffer_float") && !e.getExtension("EXT_color_buffer_half_float")) throw new j("unsupported", "These graphics draw no half-floats; use a newer device or browser.");
-		let { packer: n, plan: r } = this.makeRoom(e);
-		if (this.plan = r, this.packer = n, this.onPlan(r), await this.loadMeans(e, t, r.meanDown), t !== this.turn) return;
-		let i = this.entries.filter(({ first: e }) => e < r.usable), a = [], o = 0;
+		let n = fo(e);
+		if (n.isContextLost()) return;
+		let { packer: r, plan: i } = this.makeRoom(n);
+		if (this.plan = i, this.packer = r, this.onPlan(i), await this.loadMeans(n, t, i.meanDown), t !== this.turn) return;
+		let a = this.entries.filter(({ first: e }) => e < i.usable), o = [], s = 0;
 		try {
-			for (let e of i) {
-				for (; a.length < Io && o < i.length;) a.push(this.decode(i[o++], r.scaleDown));
-				let s = await a[0] ?? [];
-				if (a.shift(), t === this.turn && this.pack(s, e, n, r.usable), ko(s), t !== this.turn) return;
+			for (let e of a) {
+				for (; o.length < qo && s < a.length;) o.push(this.decode(a[s++], i.scaleDown));
+				let n = await o[0] ?? [];
+				if (o.shift(), t === this.turn && this.pack(n, e, r, i.usable), Bo(n), t !== this.turn) return;
 				this.onTexture();
 			}
 		} finally {
-			for (let e of a) e.then(ko).catch(() => void 0);
+			for (let e of o) e.then(Bo).catch(() => void 0);
 		}
-		n.free(), this.packer = null, this.onComplete();
+		r.free(), this.packer = null, this.onComplete();
 	}
 	pack(e, t, n, r) {
 		let { number: i, channels: a, first: o, picture: s } = t, c = this.bases[i]?.sourceTexture, l = this.ready[i];
 		if (!(c instanceof WebGLTexture) || !l) return;
-		let u = this.needs.bases[i]?.tenBits ? 255 * Rr(s) : 1, d = s.pieces < a;
+		let u = this.needs.bases[i]?.tenBits ? 255 * qr(s) : 1, d = s.pieces < a;
 		for (let t = o; t < Math.min(o + s.textures, r); t++) {
 			for (let r = 0; r < s.pieces; r++) {
 				let i = (e) => a * Math.floor(t / 4) + e, l = (d ? [
@@ -3239,13 +3277,13 @@ var Io = 3, Lo = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs, r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
-		for (let i = this.options.memory ?? $i();; i /= 2) {
-			let a = oa(this.needs, to(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, tenBits: r }) => no(e, X(t, o), na(n), l, r)), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
+		for (let i = this.options.memory ?? ca();; i /= 2) {
+			let a = ha(this.needs, po(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, tenBits: r }) => mo(e, X(t, o), da(n), l, r)), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return no(e, a ? X(t, s) : [1, 1], a ? ra(a, n) : 1, l, i);
-			})], d = ua(this.needs, o, s), f = io(e, d), p = [...t, ...n].some(({ tenBits: e }) => e), m = p ? io(e, d, !0) : null, h = io(e, da(r));
+				return mo(e, a ? X(t, s) : [1, 1], a ? fa(a, n) : 1, l, i);
+			})], d = ya(this.needs, o, s), f = go(e, d), p = [...t, ...n].some(({ tenBits: e }) => e), m = p ? go(e, d, !0) : null, h = go(e, ba(r));
 			if (f && h && (m || !p) && u.every((e) => e !== null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = u[t] ?? null), {
-				packer: lo(e, {
+				packer: xo(e, {
 					picture: f,
 					codes: m,
 					precision: h
@@ -3262,19 +3300,19 @@ var Io = 3, Lo = class {
 		}
 	}
 	async loadMeans(e, t, n) {
-		let { scene: r, bytes: i } = this.parts, a = ni(r), { decoded: o } = this;
-		this.decoded = null, (!o || n > 1) && (o?.forEach(Fo), o = await Promise.all(a.map((e) => No(e, i, n)))), o.forEach((n, r) => {
+		let { scene: r, bytes: i } = this.parts, a = di(r), { decoded: o } = this;
+		this.decoded = null, (!o || n > 1) && (o?.forEach(Ko), o = await Promise.all(a.map((e) => Wo(e, i, n)))), o.forEach((n, r) => {
 			let i = this.means[r]?.sourceTexture, o = a[r]?.mean;
-			t === this.turn && o && i instanceof WebGLTexture && this.putMean(e, n, o, i), Fo(n);
+			t === this.turn && o && i instanceof WebGLTexture && this.putMean(e, n, o, i), Ko(n);
 		}), t === this.turn && (this.hasMeans = !0, this.version += 1);
 	}
 	putMean(e, t, n, r) {
-		let { pieces: i, precision: a } = t, o = Lr([n]), [s] = i;
+		let { pieces: i, precision: a } = t, o = Kr([n]), [s] = i;
 		if (s && i.length === 1 && !o && "close" in s.picture) {
-			ro(e, r, s.picture);
+			ho(e, r, s.picture);
 			return;
 		}
-		let c = o ? 255 * Rr(n) : 1;
+		let c = o ? 255 * qr(n) : 1;
 		i.forEach((e, t) => {
 			let i = [{
 				channel: 0,
@@ -3292,7 +3330,7 @@ var Io = 3, Lo = class {
 		let { basis: n, picture: r } = e, i = this.parts.bytes(r.view).then((e) => r.codec.decode(e, r, n.size, t));
 		return i.catch(() => void 0), i;
 	}
-}, Ro = 1.5, zo = .001, Bo = class extends u {
+}, Yo = 1.5, Xo = .001, Zo = class extends f {
 	parts;
 	mesh;
 	info;
@@ -3324,15 +3362,15 @@ var Io = 3, Lo = class {
 		super(), this.parts = e;
 		let { scene: n, info: r, meshes: i } = e, [a] = i;
 		if (!a) throw Error("a field needs a mesh");
-		this.mesh = a, this.info = r, this.total = Di(n), this.counts = Ei(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
+		this.mesh = a, this.info = r, this.total = Ii(n), this.counts = Fi(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
 		let o = 0;
-		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new Lo(e, Wo(a), t);
-		let s = [a.material].flat().some((e) => e.side !== f);
-		this.material = $a(s, n.sheets !== null), this.stack = n.sheets && new Do(n.sheets.faces, a.geometry, this.material), this.complete = new Promise((e, t) => {
+		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new Jo(e, ts(a), t);
+		let s = [a.material].flat().some((e) => e.side !== m);
+		this.material = lo(s, n.sheets !== null), this.stack = n.sheets && new Ro(n.sheets.faces, a.geometry, this.material), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0);
 		let c = r.cameras[r.reference];
-		this.detail = c ? Gi(a.geometry, c, [1, 1]) : 0, this.listen();
+		this.detail = c ? ea(a.geometry, c, [1, 1]) : 0, this.listen();
 		for (let e of i) {
 			let t = (t, n) => this.prepare(t, n, e);
 			this.stack ? this.stack.attach(e, t) : (e.material = this.material, e.onBeforeRender = (e, n, r) => t(e, r));
@@ -3365,7 +3403,7 @@ var Io = 3, Lo = class {
 		let t = this.rowOf[e] ?? -1, n = this.info.cameras[e], r = this.columns;
 		if (t >= 0) return Float64Array.from(this.parts.omega.subarray(t * r, (t + 1) * r));
 		if (!n) throw RangeError(`no camera ${e}`);
-		return this.componentWeights(...Ni(this.info.viewPlane, n.centre));
+		return this.componentWeights(...Hi(this.info.viewPlane, n.centre));
 	}
 	restore(e) {
 		this.textures.attach(e);
@@ -3379,7 +3417,7 @@ var Io = 3, Lo = class {
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return Ro * Math.max(1, this.detail * Math.sqrt(e * t) / n);
+		return Yo * Math.max(1, this.detail * Math.sqrt(e * t) / n);
 	}
 	get columns() {
 		return this.counts.reduce((e, t) => e + t, 0);
@@ -3396,9 +3434,9 @@ var Io = 3, Lo = class {
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = Uo(t, n), [i, a] = Ni(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
+		let r = es(t, n), [i, a] = Hi(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
 		this.setView();
-		let l = Ha[this.filter];
+		let l = Za[this.filter];
 		this.material.defines.BICUBIC !== l && (this.material.defines.BICUBIC = l, this.material.needsUpdate = !0), this.material.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
@@ -3406,8 +3444,8 @@ var Io = 3, Lo = class {
 		if (!r) return;
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
 		if (!s) {
-			let { scene: e } = this.parts, t = vo(e, this.textures);
-			s = new ja(i, _o(e, this.textures, r), t, o, this.mesh, a), this.composers.set(o, s);
+			let { scene: e } = this.parts, t = ko(e, this.textures);
+			s = new Ba(i, Oo(e, this.textures, r), t, o, this.mesh, a), this.composers.set(o, s);
 		}
 		s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
 	}
@@ -3416,15 +3454,15 @@ var Io = 3, Lo = class {
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.material.uniforms.shown.value, r = n === Ua.eigen ? this.shownEigen : null;
+		let n = this.material.uniforms.shown.value, r = n === Qa.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			opacity: this.textures.hasMeans && this.stack !== null,
 			only: r,
-			count: n === Ua.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === Qa.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && Oa(this.info.viewPlane, t),
+			eye: t && La(this.info.viewPlane, t),
 			maps: t && this.mapsOf(this.mixing)
 		};
 	}
@@ -3436,7 +3474,7 @@ var Io = 3, Lo = class {
 		]).map((e) => 1 / e);
 		e.exposureScale.value.fromArray(a), e.exposureBias.value.fromArray(a.map((e, t) => -(i?.[t] ?? 0) * e));
 		let o = this.view === "error" && !t ? "picture" : this.view, s = this.shownEigen;
-		e.shown.value = Ua[o === "eigen" && s >= this.loaded ? "mean" : o], o === "eigen" && (e.shownGain.value = this.gainOf(s)), t && this.aimPhotograph();
+		e.shown.value = Qa[o === "eigen" && s >= this.loaded ? "mean" : o], o === "eigen" && (e.shownGain.value = this.gainOf(s)), t && this.aimPhotograph();
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -3444,7 +3482,7 @@ var Io = 3, Lo = class {
 	aimPhotograph() {
 		let e = this.camera === null ? void 0 : this.info.cameras[this.camera], { photograph: t } = this;
 		if (!e || !t) return;
-		let { K: n, R: r, t: i, width: a, height: o } = e, s = new v().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new v().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !Go(t.image), u = new v().makeScale(1 / a, (l ? -1 : 1) / o, 1);
+		let { K: n, R: r, t: i, width: a, height: o } = e, s = new x().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new x().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !ns(t.image), u = new x().makeScale(1 / a, (l ? -1 : 1) / o, 1);
 		l && (u.elements[13] = 1), this.material.uniforms.toPhotograph.value.multiplyMatrices(u, c.multiply(s)), this.material.uniforms.photograph.value = t;
 	}
 	gainOf(e) {
@@ -3455,7 +3493,7 @@ var Io = 3, Lo = class {
 		for (let { channels: t, bases: a } of n.planes) {
 			let o = n.colours.slice(i, i += t), s = a.find(({ count: t }) => t > e);
 			if (!(!s || e < 0)) {
-				Mo(s, e, o, r).then((t) => {
+				Uo(s, e, o, r).then((t) => {
 					this.gains.set(e, t), this.dispatchEvent({ type: "texture" });
 				}).catch(() => void 0);
 				break;
@@ -3465,13 +3503,13 @@ var Io = 3, Lo = class {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= zo * Math.max(...r);
+		return Math.abs(i) <= Xo * Math.max(...r);
 	}
 	mapsOf(e) {
 		let { usable: t } = this;
 		if (this.maps?.mixing === e && this.maps.usable === t) return this.maps.texture;
 		this.maps?.texture.dispose();
-		let n = Ba(this.parts.weights, e, this.parts.omega, this.counts, t);
+		let n = Ya(this.parts.weights, e, this.parts.omega, this.counts, t);
 		return this.maps = {
 			texture: n,
 			mixing: e,
@@ -3479,33 +3517,33 @@ var Io = 3, Lo = class {
 		}, n;
 	}
 	fail(e) {
-		if (Ko(e)) return;
-		let t = oe(e), n = `The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`;
+		if (rs(e)) return;
+		let t = de(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
 		this.dispatchEvent({
 			type: "error",
-			error: new j(t.code, `${t.message} ${n}`, t.where)
+			error: new j(t.code, r, t.where)
 		});
 	}
-}, Vo = new v(), Ho = new A();
-function Uo(e, t) {
-	return Ho.setFromMatrixPosition(e.matrixWorld).applyMatrix4(Vo.copy(t.matrixWorld).invert()), [
-		Ho.x,
-		Ho.y,
-		Ho.z
+}, Qo = new x(), $o = new A();
+function es(e, t) {
+	return $o.setFromMatrixPosition(e.matrixWorld).applyMatrix4(Qo.copy(t.matrixWorld).invert()), [
+		$o.x,
+		$o.y,
+		$o.z
 	];
 }
-function Wo(e) {
+function ts(e) {
 	let { attributes: t, index: n } = e.geometry;
 	return Object.values(t).reduce((e, t) => e + t.array.byteLength, 0) + (n?.array.byteLength ?? 0);
 }
-function Go(e) {
+function ns(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
-function Ko(e) {
+function rs(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var qo = class {
+var is = class {
 	received = 0;
 	chunks = [];
 	waiters = [];
@@ -3536,7 +3574,7 @@ var qo = class {
 	}
 	settle() {
 		let e = [];
-		for (let t of this.waiters) t.to <= this.received ? t.resolve(this.copy(t.from, t.to)) : this.broken ? t.reject(this.broken.reason) : this.ended ? t.reject(ie(this.received, t.to)) : e.push(t);
+		for (let t of this.waiters) t.to <= this.received ? t.resolve(this.copy(t.from, t.to)) : this.broken ? t.reject(this.broken.reason) : this.ended ? t.reject(le(this.received, t.to)) : e.push(t);
 		this.waiters = e;
 	}
 	copy(e, t) {
@@ -3548,53 +3586,53 @@ var qo = class {
 		}
 		return n.buffer;
 	}
-}, Jo = 1179937895, Yo = 1313821514, Xo = 5130562;
-async function Zo(e) {
+}, as = 1179937895, os = 1313821514, ss = 5130562;
+async function cs(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof j && t.code === "truncated" ? ns(e.received === 0) : t;
+		throw t instanceof j && t.code === "truncated" ? ps(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== Jo) throw ns(!1);
+	if (new DataView(t).getUint32(0, !0) !== as) throw ps(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
 	if (r !== 2) throw new j("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
 	if (i < 20) throw M("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== Yo) throw M("16", "it does not begin with JSON");
-	if (o > pe) throw M("12", `${o} bytes of JSON`);
+	if (a.getUint32(4, !0) !== os) throw M("16", "it does not begin with JSON");
+	if (o > Se) throw M("12", `${o} bytes of JSON`);
 	if (20 + o > i) throw M("12", "a chunk longer than the file");
-	let s = $o(await e.read(20, 20 + o));
+	let s = us(await e.read(20, 20 + o));
 	return {
 		length: i,
 		text: s,
-		json: es(s, "20"),
-		binary: () => Qo(e, 20 + o, i)
+		json: ds(s, "20"),
+		binary: () => ls(e, 20 + o, i)
 	};
 }
-async function Qo(e, t, n) {
+async function ls(e, t, n) {
 	let r = t;
 	for (let t = 1; t < 64 && r + 8 <= n; t++) {
 		let t = new DataView(await e.read(r, r + 8)), i = t.getUint32(0, !0);
 		if (r + 8 + i > n) throw M(String(r), "a chunk longer than the file");
-		if (t.getUint32(4, !0) === Xo) return r + 8;
+		if (t.getUint32(4, !0) === ss) return r + 8;
 		r += 8 + i;
 	}
 	throw M(String(t), "no binary chunk");
 }
-function $o(e) {
+function us(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
 		throw M("20", "its JSON is not UTF-8");
 	}
 }
-function es(e, t) {
-	if (ts(e) > 64) throw M(t, "its JSON is nested too deep");
+function ds(e, t) {
+	if (fs(e) > 64) throw M(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
 		throw M(t, "its JSON cannot be read");
 	}
 }
-function ts(e) {
+function fs(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3605,33 +3643,33 @@ function ts(e) {
 	}
 	return n;
 }
-function ns(e) {
+function ps(e) {
 	return new j("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/packed.ts
-var rs = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", is = 4;
-async function as(e, t) {
-	let n = new K(e, ""), r = n.key("extensions").key(fe), i = r.key("packed");
+var ms = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", hs = 4;
+async function gs(e, t) {
+	let n = new K(e, ""), r = n.key("extensions").key(xe), i = r.key("packed");
 	if (!i.exists) return e;
-	ri(r);
-	let a = Cr(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < is) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, is)).getUint32(0, !0);
-	if (is + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new K(es(await ss(await t(o.offset + is, s), i.where), i.where), i.where).object(), u = os(new K(c, `${i.where}/lengths`), o, is + s), { packed: d, ...f } = r.object();
+	fi(r);
+	let a = Mr(n), o = a[i.integer(a.length - 1, a.length - 1)];
+	if (!o || o.length < hs) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, hs)).getUint32(0, !0);
+	if (hs + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new K(ds(await vs(await t(o.offset + hs, s), i.where), i.where), i.where).object(), u = _s(new K(c, `${i.where}/lengths`), o, hs + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
 		bufferViews: [...n.key("bufferViews").items(I).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
 		extensions: {
 			...n.key("extensions").object(),
-			[fe]: {
+			[xe]: {
 				...f,
 				...l
 			}
 		}
 	};
 }
-function os(e, t, n) {
+function _s(e, t, n) {
 	let r = n, i = e.items(I).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
@@ -3643,8 +3681,8 @@ function os(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function ss(e, t) {
-	let n = new TextEncoder().encode(rs), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function vs(e, t) {
+	let n = new TextEncoder().encode(ms), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -3652,7 +3690,7 @@ async function ss(e, t) {
 		~r,
 		~i
 	]), a.set(n, 5), a.set(new Uint8Array(e), 5 + n.length);
-	let o = await de(a, "deflate-raw", n.length + pe, t);
+	let o = await be(a, "deflate-raw", n.length + Se, t);
 	try {
 		return new TextDecoder("utf-8", {
 			fatal: !0,
@@ -3663,8 +3701,8 @@ async function ss(e, t) {
 	}
 }
 // eigenfield-three/src/proxy.ts
-var cs = 65535;
-function ls(e, t) {
+var ys = 65535;
+function bs(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
 	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
 	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
@@ -3674,46 +3712,46 @@ function ls(e, t) {
 	}
 	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
 }
-async function us({ view: n, codec: r, where: i }, a) {
+async function xs({ view: n, codec: r, where: i }, a) {
 	let { positions: o, uv: s, indices: c } = r.decode(new Uint8Array(await a(n)), i);
 	if (!c.length) throw M(i, "a mesh without faces");
 	let l = new t();
 	l.setAttribute("position", new e(o, 3)), l.setAttribute("uv", new e(s, 2));
-	let u = o.length / 3 <= cs;
+	let u = o.length / 3 <= ys;
 	return l.setIndex(new e(u ? Uint16Array.from(c) : c, 1)), l;
 }
-function ds(e) {
+function Ss(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/grid.ts
-function fs(e) {
+function Cs(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = ps(e, n, r) ?? (n === r ? null : ps(e, r, n));
+		let r = t / n, i = ws(e, n, r) ?? (n === r ? null : ws(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function ps(e, t, n) {
-	let [r, i] = [hs(e, 0), hs(e, 1)];
-	if (t === 1 && gs(i) > 0 || n === 1 && gs(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => _s(i, e) - _s(i, t));
+function ws(e, t, n) {
+	let [r, i] = [Es(e, 0), Es(e, 1)];
+	if (t === 1 && Ds(i) > 0 || n === 1 && Ds(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => Os(i, e) - Os(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => _s(r, e) - _s(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Os(r, e) - Os(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return ms(n, t, (e, t) => _s(r, o(t, e))) && ms(t, n, (e, t) => _s(i, o(e, t))) ? {
+	return Ts(n, t, (e, t) => Os(r, o(t, e))) && Ts(t, n, (e, t) => Os(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function ms(e, t, n) {
+function Ts(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -3723,33 +3761,33 @@ function ms(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function hs(e, t) {
+function Es(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function gs(e) {
+function Ds(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var _s = (e, t) => e[t] ?? 0, vs = 1e-6, ys = 32, bs = class {
+var Os = (e, t) => e[t] ?? 0, ks = 1e-6, As = 32, js = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = fs(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = Cs(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(xs(e), this.isLine ? 0 : xs(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(Ms(e), this.isLine ? 0 : Ms(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => js(e, t, this.places) : e === "bilinear" && this.grid ? Ns(this.places, this.grid) : ws(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => Hs(e, t, this.places) : e === "bilinear" && this.grid ? Ws(this.places, this.grid) : Fs(this.places, this.triangles);
 	}
 };
-function xs(e) {
+function Ms(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Ss(e) {
+function Ns(e) {
 	let t = {
 		camera: [
 			0,
@@ -3769,7 +3807,7 @@ function Ss(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function Cs(e, t, n, r, i, a) {
+function Ps(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -3777,49 +3815,49 @@ function Cs(e, t, n, r, i, a) {
 		m
 	];
 }
-function ws(e, t) {
+function Fs(e, t) {
 	if (!t.length) {
-		let t = As(e, ks(e));
-		return (n, r) => Os(n, r, e, t);
+		let t = Vs(e, Bs(e));
+		return (n, r) => zs(n, r, e, t);
 	}
-	let n = Es(e, t, 3), r = Ds(t);
+	let n = Ls(e, t, 3), r = Rs(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * ys + $(i)] ?? []) {
+		for (let r of n[$(a) * As + $(i)] ?? []) {
 			let [n, l, u] = [
-				Ts(t, r, 0),
-				Ts(t, r, 1),
-				Ts(t, r, 2)
-			], d = Cs(i, a, e, n, l, u), f = Math.min(...d);
+				Is(t, r, 0),
+				Is(t, r, 1),
+				Is(t, r, 2)
+			], d = Ps(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? Os(i, a, e, r) : Ss(c.map((e, n) => [Ts(t, o, n), e]));
+		return s < -1e-9 ? zs(i, a, e, r) : Ns(c.map((e, n) => [Is(t, o, n), e]));
 	};
 }
-var Ts = (e, t, n) => e[3 * t + n] ?? 0;
+var Is = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * ys)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * As)));
 }
-function Es(e, t, n) {
+function Ls(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * ys + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * As + t]?.push(i);
 	}
 	return r;
 }
-function Ds(e) {
+function Rs(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [Ts(e, n, r), Ts(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [Is(e, n, r), Is(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -3828,7 +3866,7 @@ function Ds(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function Os(e, t, n, r) {
+function zs(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -3843,12 +3881,12 @@ function Os(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return Ss([[o, 1 - c], [s, c]]);
+	return Ns([[o, 1 - c], [s, c]]);
 }
-function ks(e) {
+function Bs(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function As(e, t) {
+function Vs(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -3869,7 +3907,7 @@ function As(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function js(e, t, n) {
+function Hs(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -3883,12 +3921,12 @@ function js(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || Ms(n, r, i, a) <= vs) return Os(e, t, n, As(n, [
+	if (a < 0 || Us(n, r, i, a) <= ks) return zs(e, t, n, Vs(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = Cs(e, t, n, r, i, a);
+	let [l, u, d] = Ps(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -3904,15 +3942,15 @@ function js(e, t, n) {
 		]
 	};
 }
-function Ms(e, t, n, r) {
+function Us(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function Ns(e, t) {
+function Ws(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = As(e, ks(e));
-		return (n, r) => Os(n, r, e, t);
+		let t = Vs(e, Bs(e));
+		return (n, r) => zs(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -3921,7 +3959,7 @@ function Ns(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = Es(e, o.flat(), 4), c = [];
+	let s = Ls(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -3929,12 +3967,12 @@ function Ns(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * ys + $(t)] ?? []) {
-			let s = o[a], c = s ? Ps(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * As + $(t)] ?? []) {
+			let s = o[a], c = s ? Gs(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return Os(t, n, e, l);
-		let [a, c] = Fs(t, n, e, r);
+		if (!r || i < -1e-9) return zs(t, n, e, l);
+		let [a, c] = Ks(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -3946,7 +3984,7 @@ function Ns(e, t) {
 		};
 	};
 }
-function Ps(e, t, n, r) {
+function Gs(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -3954,7 +3992,7 @@ function Ps(e, t, n, r) {
 	}
 	return i;
 }
-function Fs(e, t, n, r) {
+function Ks(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -3972,37 +4010,38 @@ function Fs(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Is(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [Is(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = qs(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [qs(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function Is(e) {
+function qs(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var Ls = class {
+var Js = class {
 	parser;
 	options;
-	name = fe;
+	name = xe;
 	scene = null;
 	ours;
 	constructor(e, t = {}) {
-		this.parser = e, this.options = t, this.ours = $r(e.json);
+		this.parser = e, this.options = t, this.ours = ci(e.json);
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
+		this.options.renderer && fo(this.options.renderer);
 		let { json: e } = this.parser;
-		Object.assign(e, await as(e, (e, t) => this.read(e, t))), this.scene = ei(e), this.scene.shown || Rs(e);
+		me(e), Object.assign(e, await gs(e, (e, t) => this.read(e, t))), this.scene = li(e), this.scene.shown || Ys(e);
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
 		let n = (await this.parser.getDependency("buffer", 0)).slice(e, e + t);
-		if (n.byteLength < t) throw ae("/buffers/0");
+		if (n.byteLength < t) throw ue("/buffers/0");
 		return n;
 	}
 	loadMaterial(e) {
 		let t = this.scene && this.parser.json.meshes[0].primitives[0];
 		if (!t || t.material !== e) return null;
-		let { doubleSided: n } = this.parser.json.materials?.[e] ?? {}, r = new b();
+		let { doubleSided: n } = this.parser.json.materials?.[e] ?? {}, r = new C();
 		return r.side = n === !0 ? 2 : 0, Promise.resolve(r);
 	}
 	loadBufferView(e) {
@@ -4012,25 +4051,25 @@ var Ls = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = zs(e, this.parser), [r] = n;
+		let n = Xs(e, this.parser), [r] = n;
 		if (!r) throw M("/meshes/0", "no node shows it");
-		t.shown && ls(r.geometry, t.shown);
+		t.shown && bs(r.geometry, t.shown);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
-			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ae(`/bufferViews/${e}`);
+			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ue(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await us(t.mesh, i);
+		}, a = t.mesh && await xs(t.mesh, i);
 		if (a) {
 			r.geometry.dispose();
 			for (let e of n) e.geometry = a;
 		}
-		t.sheets && Kr(t.sheets, r.geometry);
+		t.sheets && ti(t.sheets, r.geometry);
 		let [o, s, c, l] = await Promise.all([
-			Promise.all(ni(t).map((e) => No(e, i))),
-			_i(t, i),
-			wi(t, i),
-			ki(t, i)
-		]), u = s.filter((e, n) => !t.heldOut[n]), d = new bs(Float64Array.from(u.flatMap((e) => Ni(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = ji(t, s, f, d.grid, this.fileBytes(), ds(r.geometry)), m = {
+			Promise.all(di(t).map((e) => Wo(e, i))),
+			Ei(t, i),
+			Ni(t, i),
+			Ri(t, i)
+		]), u = s.filter((e, n) => !t.heldOut[n]), d = new js(Float64Array.from(u.flatMap((e) => Hi(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = Bi(t, s, f, d.grid, this.fileBytes(), Ss(r.geometry)), m = {
 			scene: t,
 			info: p,
 			meshes: n,
@@ -4041,7 +4080,7 @@ var Ls = class {
 			weights: d,
 			bytes: i
 		};
-		e.userData.eigenfield = new Bo(m, this.options);
+		e.userData.eigenfield = new Zo(m, this.options);
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -4049,51 +4088,51 @@ var Ls = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function Rs(e) {
+function Ys(e) {
 	let [t] = e.nodes;
 	t && (t.mesh = 0), e.meshes = [{ primitives: [{
 		attributes: {},
 		material: 0
 	}] }], e.materials = [{ doubleSided: !0 }];
 }
-function zs(e, t) {
+function Xs(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		Bs(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		Zs(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function Bs(e) {
+function Zs(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function Vs(e, t = {}) {
+async function Qs(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new qo(), i = new AbortController(), a = () => {
+	let r = new is(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = Ws(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = tc(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
-		let e = await Zo(r);
-		if (!$r(e.json)) return {
-			gltf: await Us(r, e, o),
+		let e = await cs(r);
+		if (!ci(e.json)) return {
+			gltf: await ec(r, e, o),
 			field: null
 		};
-		let i = await Hs(r, e, t);
+		let i = await $s(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
 			gltf: i,
-			field: a instanceof Bo ? a : null
+			field: a instanceof Zo ? a : null
 		};
 	} catch (e) {
-		throw i.abort(), n?.throwIfAborted(), oe(e);
+		throw i.abort(), n?.throwIfAborted(), de(e);
 	}
 }
-async function Hs(e, t, n) {
-	let r = new re(), i = t.binary();
+async function $s(e, t, n) {
+	let r = new ce(), i = t.binary();
 	i.catch(() => void 0);
 	let a = {
 		total: t.length,
@@ -4102,40 +4141,42 @@ async function Hs(e, t, n) {
 			return e.read(r, r + n);
 		}
 	};
-	return r.register((e) => new Ls(e, {
+	return r.register((e) => new Js(e, {
 		...n,
 		stream: a
 	})), r.parseAsync(t.text, "");
 }
-async function Us(e, t, n) {
+async function ec(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
-		return await new re().parseAsync(r, "");
+		let e = new ce();
+		return e.register(pe), await e.parseAsync(r, "");
 	} catch (e) {
-		let t = oe(e).message;
+		if (e instanceof j) throw e;
+		let t = de(e).message;
 		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function Ws(e, t, n, r) {
+async function tc(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? Gs(e) : await Ks(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? nc(e) : await rc(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : qs(t.received, e);
+			throw n.aborted ? e : ic(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function Gs(e) {
+function nc(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function Ks(e, t) {
+async function rc(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -4146,7 +4187,7 @@ async function Ks(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function qs(e, t) {
+function ic(e, t) {
 	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { Bo as EigenField, Ls as EigenfieldPlugin, So as SHEETS, j as SceneError, $i as defaultMemory, Vs as loadEigenfield, Ii as novelCamera, Bi as placeCamera };
+export { Zo as EigenField, Js as EigenfieldPlugin, No as SHEETS, j as SceneError, ca as defaultMemory, Qs as loadEigenfield, Gi as novelCamera, Yi as placeCamera, pe as refuseAddresses };

@@ -14,19 +14,23 @@ addEventListener("activate", (event) => event.waitUntil(clients.claim()));
 addEventListener("fetch", (event) => {
   const { request } = event;
   const url = new URL(request.url);
-  if (request.method !== "GET" || !url.href.startsWith(registration.scope)) return; // another site's is not kept
+  if (request.method !== "GET" || url.origin !== location.origin) return; // another site's is not kept
   event.respondWith(answer(request, url, (work) => event.waitUntil(work)));
 });
 
 /** The page is one, whatever its address asks it to load. */
-const keyOf = (url) => (/\/(index\.html)?$/.test(url.pathname) ? registration.scope : url.href);
+function keyOf({ origin, pathname, href }) {
+  const folder = origin + pathname.replace(/index\.html$/, "");
+  return folder === registration.scope ? folder : href;
+}
 
 async function answer(request, url, meanwhile) {
   const cache = await caches.open(CACHE);
   const key = keyOf(url);
   try {
     const response = await fetch(request);
-    if (response.status === 200) meanwhile(cache.put(key, response.clone()).catch(() => undefined)); // no room: not kept
+    const own = url.href.startsWith(registration.scope); // beside it, the page keeps what it draws
+    if (own && response.status === 200) meanwhile(cache.put(key, response.clone()).catch(() => undefined));
     return response;
   } catch (error) {
     const kept = await cache.match(key);
