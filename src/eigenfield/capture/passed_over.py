@@ -106,7 +106,7 @@ def refuse_foreign(path: Path) -> None:
         kind = _foreign_kind(path, _head(path))
         if kind is not None:
             remedy = kind.remedy.format(it="it")
-            raise CaptureError("calibration-foreign", f"is {kind.what}, which is not read", path=path, remedy=remedy)
+            raise CaptureError("calibration-foreign", f"is not read ({kind.what})", path=path, remedy=remedy)
 
 
 def _looks(names: list[str]) -> str:

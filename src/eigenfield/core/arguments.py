@@ -9,6 +9,7 @@ import contextlib
 import errno
 import functools
 import inspect
+import os
 import re
 import types
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -64,7 +65,7 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
         except OSError as error:
             if error.errno not in _BAD_NAMES:
                 raise
-            raise OptionError("path", error.strerror, path=error.filename, remedy="name another") from error
+            raise OptionError("path", os.strerror(error.errno), path=error.filename, remedy="name another") from error
         except EigenfieldError as error:
             if not _on_command_line.get():
                 _name_arguments(error, signature)
