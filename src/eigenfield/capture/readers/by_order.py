@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 
 from eigenfield.capture.locate import photographs_in
+from eigenfield.capture.photographs.kinds import may_be_renamed
 from eigenfield.core.errors import CaptureError
 
 # LLFF's images_4, images_8: the same photographs, so many times smaller
@@ -28,8 +29,10 @@ def photographs_in_order(root: Path, count: int, path: Path) -> list[str]:
     seen = []
     for folder in _candidate_folders(root):
         names = sorted(photograph.name for photograph in photographs_in(root / folder))
-        if len(names) == count:
-            return [f"{folder}/{name}" if folder else name for name in names]
+        usual = [name for name in names if not may_be_renamed(name)]
+        for chosen in (usual, names):  # others among them may be copies and posters
+            if len(chosen) == count:
+                return [f"{folder}/{name}" if folder else name for name in chosen]
         if names:
             seen.append(f"{len(names)} in {folder or root.name or 'the folder'}")
     raise CaptureError(
