@@ -64,7 +64,9 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
         except OSError as error:
             if error.errno not in _BAD_NAMES:
                 raise
-            raise OptionError("path", error.strerror, path=error.filename, remedy="name another") from error
+            raise OptionError(
+                "path", error.strerror or "is no path", path=error.filename, remedy="name another"
+            ) from error
         except EigenfieldError as error:
             if not _on_command_line.get():
                 _name_arguments(error, signature)
