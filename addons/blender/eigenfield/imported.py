@@ -305,7 +305,8 @@ class EIGENFIELD_OT_import(bpy.types.Operator, ImportHelper):
             if path.name == LISTING:
                 folder, name = path.parent, path.parent.name.removesuffix(".textures")
             else:
-                program = context.preferences.addons[__package__].preferences.program
+                addon = context.preferences.addons.get(__package__)  # None: registered by hand, without preferences
+                program = addon.preferences.program if addon is not None else ""
                 folder, name = export_folder(path, program), path.stem
             import_field(context, folder, name, self.upright)
         except (RefusalError, OSError, ValueError) as error:
