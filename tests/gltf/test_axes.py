@@ -61,7 +61,7 @@ def test_the_opening_view_is_the_photograph_where_gltf_can_say_it():
     assert 0 < perspective["znear"] < 3
 
 
-@pytest.mark.parametrize(("depths", "near"), [((-0.5, 2, 5), 0.2), ((-3, -1, -2), 0.01)])
+@pytest.mark.parametrize(("depths", "near"), [((-0.5, 0.5, 5), 0.05), ((-3, -1, -2), 0.01)])
 def test_the_near_plane_is_before_what_is_before_the_camera(depths, near):
     mesh = Mesh(np.array([[0, 0, z] for z in depths], np.float32), np.array([[0, 1, 2]], np.int32))
     camera = Camera(np.array([[60.0, 0, 32], [0, 60, 24], [0, 0, 1]]), np.eye(3), np.zeros(3), 64, 48)
