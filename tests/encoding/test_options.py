@@ -89,9 +89,9 @@ def test_the_rest_is_fitted():
         ({"preset": "small"}, {"fit": "photographs", "quality": 79, "density": density_for_quality(79)}),
         ({"quality": 60, "density": 1.2, "textures": 4}, {"fit": "photographs", "preset": "balanced"}),
         ({"target": Target(psnr=30)}, {"fit": "photographs", "preset": "balanced"}),
-        ({"fit": "none"}, {"textures": 15, "density": 1.5}),
-        ({"uv_ssim": 0.9}, {"fit": "none", "density": 1.5}),
-        ({"codec": "png", "atlas": (64, 32), "density": 1.0}, {"fit": "none", "textures": 15}),
+        ({"fit": "none"}, {"textures": 15, "density": 1.5, "max_angle": 85}),
+        ({"uv_ssim": 0.9}, {"fit": "none", "density": 1.5, "max_angle": 85}),
+        ({"codec": "png", "atlas": (64, 32), "density": 1.0, "max_angle": 90}, {"fit": "none", "textures": 15}),
     ],
 )  # fmt: skip
 def test_what_options_mean(asked, meant):
@@ -115,6 +115,7 @@ def test_choices_are_what_there_is_to_choose():
 @pytest.mark.parametrize(
     ("asked", "code"),
     [({"codec": "png", "quality": 50}, "quality"), ({"quality": -1}, "quality"), ({"density": 101}, "density"),
+     ({"max_angle": 91}, "max-angle"),
      ({"atlas": (64, 20_000)}, "atlas"), ({"residual": 40, "target": Target(size=5000)}, "residual"),
      ({"metres_per_unit": 0.0}, "metres"), ({"textures": -1}, "textures"), ({"uv_ssim": 0.0}, "uv-ssim")],
 )  # fmt: skip
