@@ -325,7 +325,7 @@ def test_what_is_done_is_no_problem(tmp_path, inspect):
     report = json.loads(inspect(tmp_path / "rig", "--json"))
     assert report["root"] == str(tmp_path / "rig") and not report["problems"]
     assert report["notes"] == ["frame 0 of each video is used; --frame names another"]
-    assert "  lenses     none: the views are pinholes" in inspect(tmp_path / "rig")
+    assert "  lenses     no distortion is stated" in inspect(tmp_path / "rig")
     (tmp_path / "odd").mkdir()
     for number, width in enumerate((200, 201, 200, 200)):
         picture(number, width, 150).save(tmp_path / "odd" / f"{number}.png")
