@@ -173,7 +173,7 @@ def _one_opencv_thread() -> Iterator[None]:
     Pictures are processed on our own threads.
     """
     count = cv2.getNumThreads()
-    cv2.setNumThreads(1)
+    cv2.setNumThreads(0)  # serial; 1 would wait for ever in a forked child
     try:
         yield
     finally:
