@@ -2,6 +2,7 @@
 same run; with --before also those of an earlier version, one run of each in turns.
 
     EIGENFIELD_DATA=captures python benchmarks/photographs.py [tarot-9x9 shop fern] [--before CHECKOUT] [--store]
+    EIGENFIELD_DATA=captures python benchmarks/photographs.py --hand-held [--store]    # the README's rows: no seconds
 
 Each measurement is a process of its own with its own work folder. Kernels are compiled before, which a first run does.
 """
@@ -19,6 +20,7 @@ from typing import Any
 import measure
 
 CRF = 40
+HAND_HELD = {"cube": "cube_colmap_mesh/images", "fern": "llff_fern/images"}  # photographs, and nothing beside them
 
 
 def photographs(name: str, folder: Path) -> tuple[Path, list[str]]:
@@ -75,8 +77,20 @@ def encode(capture: Path, arguments: list[str], tree: Path | None = None) -> dic
         image = json.loads(measured["output"])["image"]["encoded"]
         return {
             "seconds": found["seconds"], "peak_mb": found["peak_anonymous_mb"], "bytes": output.stat().st_size,
-            "psnr": round(image["psnr"], 2),
+            **{key: round(image[key], 4) for key in ("psnr", "psnr_luma", "ssim")},
         }  # fmt: skip
+
+
+def hand_held() -> dict[str, Any]:
+    """Bytes and quality of hand-held captures, whatever else the machine does."""
+    captures = {}
+    for name, place in HAND_HELD.items():
+        with tempfile.TemporaryDirectory() as folder:
+            for file in (measure.data() / place).iterdir():
+                (Path(folder) / file.name).symlink_to(file)
+            case = encode(Path(folder), [])
+        captures[name] = {key: case[key] for key in case if key not in ("seconds", "peak_mb")}
+    return captures
 
 
 def main() -> None:
@@ -86,8 +100,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("captures", nargs="*", default=["tarot-9x9", "shop", "fern"])
     parser.add_argument("--before", type=Path, help="checkout of an earlier version")
+    parser.add_argument("--hand-held", action="store_true", help="bare photographs of hand-held captures")
     parser.add_argument("--store", action="store_true")
     options = parser.parse_args()
+    if options.hand_held:
+        found = {"captures": hand_held()}
+        print(json.dumps(found, indent=1))
+        if options.store:
+            print(f"stored as {measure.store('hand-held', found)}")
+        return
     figures: dict[str, Any] = {"crf": CRF, "captures": {}}
     if options.before is not None:
         figures["before"] = measure.commit(options.before)

@@ -42,11 +42,13 @@ def section() -> str:
 
 
 def five() -> str:
-    """The README's table."""
+    """The README's table; hand-held captures are of bare photographs (benchmarks/photographs.py --hand-held)."""
     captures, _ = newest(runs("rate"))
+    bare, _ = newest(runs("hand-held"))
     rows = []
     for name, what in FIVE.items():
         point, peers = _default(captures[name])
+        point = bare.get(name, point)
         rows.append([
             f"`{name}`: {what}", f"{point['bytes'] / 1e3:.0f} kB", f"{point['psnr_luma']:.1f} dB",
             f"{point['ssim']:.3f}", _saved(point, _curve(peers, ANCHOR), "psnr_luma"),
