@@ -59,7 +59,7 @@ def test_hci_without_a_cfg_is_a_grid(tmp_path):
 
 def test_hci_grids_that_are_not_square(tmp_path):
     folder = hci(tmp_path, None, 8)
-    assert "--grid" in refused("grid-size", folder).remedy
+    assert "grid=(ROWS, COLUMNS)" in refused("grid-size", folder).remedy
     assert open_any(folder, grid=(2, 4)).layout.shape == (2, 4)
     assert nodes(open_any(folder, grid=(4, 2)))["input_Cam005.png"] == (2, 1)
     refused("grid-size", folder, grid=(2, 3))

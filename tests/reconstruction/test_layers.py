@@ -76,8 +76,8 @@ def test_auto_says_which_surface_draws_views_left_out_better(photos, made, caplo
         ({"layers": 33}, "33 layers"),
         ({"layers": 1, "surface": "layers"}, "one layer"),
         ({"layers": 4, "surface": "relief"}, "relief surface has no 4 layers"),
-        ({"surface": "layers", "background": False}, "--no-fill-background"),
-        ({"surface": "layers", "primitives": ["sphere:0,0,5,1"]}, "--primitive"),
+        ({"surface": "layers", "background": False}, "background=False"),
+        ({"surface": "layers", "primitives": ["sphere:0,0,5,1"]}, "with primitives"),
     ],
 )
 def test_options_that_cannot_be(photos, options, words):

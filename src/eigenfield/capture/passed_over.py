@@ -137,5 +137,5 @@ def _recognise(path: Path) -> str | None:
     if content == "poses":
         return "in OpenCV's terms): name {it} with --calibration"
     if content == "intrinsics":
-        return "intrinsics without poses): name {it} with --intrinsics of `eigenfield calibrate`"
+        return "intrinsics without poses): name {it} with --intrinsics of `eigenfield calibrate CAPTURE`"
     return f"of no known program): {WRITE_TRANSFORMS}" if re.search(POSE_KEY, head, flags) else None

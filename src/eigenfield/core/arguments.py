@@ -99,6 +99,8 @@ def _name_arguments(error: EigenfieldError, signature: inspect.Signature) -> Non
         value = found["value"] or ""
         if found["no"] or (name in parameters and "bool" in str(parameters[name].annotation)):
             return f"{name}={not found['no']}{value}"
+        if name in parameters and "tuple" in str(parameters[name].annotation) and value[1:]:  # ROWSxCOLUMNS
+            return f"{name}=({value[1:].replace('x', ', ')})"
         is_said = found.string[: found.start()].endswith(("say ", "or ")) and value not in ("", " or", " and")
         return f'{name}="{value[1:]}"' if is_said else f"{name}{value}"
 

@@ -322,7 +322,8 @@ def viewpoint(
     if at is not None and camera is not None:
         raise OptionError("viewpoint", "a place and a camera were both given", remedy="give one of them")
     if at is not None and not all(abs(v) <= 1 + RENDER_PLACE_TOLERANCE for v in at):  # False for NaN
-        message = f"the viewpoint {at[0]},{at[1]} lies outside the array"
+        x, y = (min(max(v, -1e9), 1e9) for v in at)  # integers may be beyond what floats hold
+        message = f"the viewpoint {x:g},{y:g} lies outside the array"
         raise OptionError("viewpoint", message, remedy="give two numbers from -1 to 1; 0,0 is its middle")
     if not 0 <= time < len(scene.times):
         raise OptionError("time", f"there is no instant {time}", remedy=f"give 0 to {len(scene.times) - 1}")
