@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import itertools
 import struct
 import zlib
 from pathlib import Path
@@ -389,9 +390,10 @@ def test_damage_inside_a_jpeg_is_named(tmp_path, kind):
     """Blocks of zeros, as a bad card or a failed copy leaves them; libjpeg decodes something else then, to the end."""
     data = JPEGS[kind]
     decode(save(tmp_path / "a.jpg", data))
-    for part in (0.3, 0.5, 0.7):
+    for part, size in itertools.product((0.3, 0.5, 0.7), (512,) if kind == "progressive" else (48, 64, 200, 512)):
         at = int(part * len(data))
-        assert refused(save(tmp_path / "a.jpg", data[:at] + bytes(512) + data[at + 512 :])).code == "image-unreadable"
+        damaged = data[:at] + bytes(size) + data[at + size :]
+        assert refused(save(tmp_path / "a.jpg", damaged)).code == "image-unreadable", (part, size)
 
 
 @pytest.mark.parametrize("kind", [kind for kind in JPEGS if kind != "TIFF"])
@@ -403,6 +405,7 @@ def test_what_is_no_damage_of_a_jpeg_changes_nothing(tmp_path, kind):
     sound = {
         "as it is": data,
         "padding before the end": data[:end] + bytes(7) + data[end:],
+        "more padding before the end": data[:end] + bytes(40) + data[end:],
         "fill bytes": data[:end] + b"\xff" * 20 + data[end:],
         "another picture behind": data + jpeg(),
         "a film behind": data + b"\0\0\0\x18ftypmp42" + bytes(range(256)) * 9,

@@ -129,7 +129,7 @@ def _exit_interrupted() -> NoReturn:
     end_no_step()
     kill_children()
     remove_temporaries()
-    with contextlib.suppress(OSError):  # the terminal has gone
+    with contextlib.suppress(OSError, RuntimeError):  # the terminal has gone; the signal came within a write
         click.echo("eigenfield: interrupted", err=True)
         sys.stdout.flush()
     os._exit(130)  # threads in the middle of a kernel or a codec are not waited for

@@ -99,10 +99,11 @@ def _name_arguments(error: EigenfieldError, signature: inspect.Signature) -> Non
         value = found["value"] or ""
         if found["no"] or (name in parameters and "bool" in str(parameters[name].annotation)):
             return f"{name}={not found['no']}{value}"
-        if name in parameters and "tuple" in str(parameters[name].annotation) and value[1:]:  # ROWSxCOLUMNS
-            return f"{name}=({value[1:].replace('x', ', ')})"
         is_said = found.string[: found.start()].endswith(("say ", "or ")) and value not in ("", " or", " and")
-        return f'{name}="{value[1:]}"' if is_said else f"{name}{value}"
+        if not is_said:
+            return f"{name}{value}"
+        is_pair = name in parameters and "tuple" in str(parameters[name].annotation)  # ROWSxCOLUMNS
+        return f"{name}=({value[1:].replace('x', ', ')})" if is_pair else f'{name}="{value[1:]}"'
 
     error.message = _OPTION.sub(argument, error.message)
     error.remedy = None if error.remedy is None else _OPTION.sub(argument, error.remedy)
