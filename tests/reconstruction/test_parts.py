@@ -50,7 +50,7 @@ def picture(index, rng):
     K = np.array([[60.0, 0, 24], [0, 60.0, 18], [0, 0, 1]])
     camera = Camera(K, np.eye(3), np.array([-0.1 * index, 0.0, 0.0]), 48, 36)
     pixels = rng.integers(0, 255, (36, 48, 3)).astype(np.uint8)
-    return multiview._Picture(camera, np.roll(pixels, 0, 1), None, None)
+    return multiview.WorkingPicture(camera, np.roll(pixels, 0, 1), None, None)
 
 
 def test_workers_make_the_same_depth_maps(tmp_path):
@@ -59,7 +59,7 @@ def test_workers_make_the_same_depth_maps(tmp_path):
     pictures = []
     for index in range(4):
         one = picture(index, rng)
-        pictures.append(multiview._Picture(one.camera, wide[:, 2 * index : 2 * index + 48].copy(), None, None))
+        pictures.append(multiview.WorkingPicture(one.camera, wide[:, 2 * index : 2 * index + 48].copy(), None, None))
     points = np.stack([*np.meshgrid(np.linspace(-1, 1, 9), np.linspace(-1, 1, 9)), np.full((9, 9), 3.0)], -1)
     points = points.reshape(-1, 3) + rng.normal(0, 0.3, (81, 3))
     here, tolerance = multiview._depth_views(pictures, points, None, None)

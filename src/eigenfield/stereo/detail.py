@@ -16,7 +16,10 @@ DETAIL_MID_LEVEL = 128
 
 
 def detail_pictures(
-    pictures: Pictures, gain: float = DETAIL_GAIN, blur_sigma: float = DETAIL_BLUR_SIGMA_PIXELS
+    pictures: Pictures,
+    gain: float = DETAIL_GAIN,
+    blur_sigma: float = DETAIL_BLUR_SIGMA_PIXELS,
+    base_gain: float = DETAIL_BASE_GAIN,
 ) -> NDArray[np.uint32]:
     """Packed pictures mid + gain (p - base) + base_gain (base - mid), with base the picture after a bilateral filter.
 
@@ -31,6 +34,7 @@ def detail_pictures(
         pictures: (V, H, W, 3) uint8 or packed.
         gain: Factor of the detail.
         blur_sigma: Pixels by which the result is blurred; 0 for none.
+        base_gain: Factor of the base; 0 where exposure or gloss may differ between the photographs.
 
     Returns:
         (V, H, W) packed pictures.
@@ -43,7 +47,7 @@ def detail_pictures(
         base = cv2.bilateralFilter(
             colours, DETAIL_DIAMETER_PIXELS, DETAIL_RANGE_SIGMA_LEVELS, DETAIL_SPACE_SIGMA_PIXELS
         )
-        raised = DETAIL_MID_LEVEL + gain * (colours - base) + DETAIL_BASE_GAIN * (base - DETAIL_MID_LEVEL)
+        raised = DETAIL_MID_LEVEL + gain * (colours - base) + base_gain * (base - DETAIL_MID_LEVEL)
         if blur_sigma > 0:
             raised = cv2.GaussianBlur(raised, (0, 0), blur_sigma)
         result[index] = pack_pictures(np.clip(np.rint(raised), 0, 255).astype(np.uint8)[None])[0]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.imaging.sampling import farthest_points
-from eigenfield.stereo.detail import detail_pictures
+from eigenfield.stereo.detail import DETAIL_BASE_GAIN, detail_pictures
 from eigenfield.stereo.extend import extend_depth
 from eigenfield.stereo.refine import refine_depth
 from eigenfield.stereo.semiglobal import semi_global_matching
@@ -95,7 +95,7 @@ def estimate_depth(
         raise ValueError(f"an empty range of labels: {low} to {high}")
     frame = packed.shape[1:]
     chosen = spread_views(label_parallax(matrices, shape, (low + high) / 2), DEPTH_TUNING.sweep_max_views)
-    step = _label_step(matrices, shape, low, high)
+    step = label_step(matrices, shape, low, high)
     sharp = detail_pictures(packed[chosen], DEPTH_TUNING.sweep_detail_gain, blur_sigma=0)
     detail = detail_pictures(packed)
     picture, known = _warp_reference_picture(packed, matrices, shape)
@@ -103,7 +103,7 @@ def estimate_depth(
     def extend(d: NDArray[np.float32]) -> NDArray[np.float32]:
         return extend_depth(d, known | _seen_by_enough(packed[chosen], matrices[chosen], d), low, high)
 
-    d = _sweep_coarse(packed, matrices, shape, chosen, low, high, step)
+    d = sweep_coarse(packed, matrices, shape, chosen, low, high, step)
     d = extend(np.asarray(cv2.resize(d, (shape[1], shape[0]), interpolation=cv2.INTER_NEAREST), np.float32))
     d = extend(_sweep_fine(packed, sharp, matrices, shape, chosen, d, low, high, step))
     steps = DEPTH_TUNING.refinement_step_labels
@@ -150,7 +150,15 @@ def _seen_by_enough(
     return count >= max(DEPTH_TUNING.min_views, DEPTH_TUNING.min_view_fraction * len(pictures))
 
 
-def _label_step(matrices: NDArray[np.float64], shape: tuple[int, int], low: float, high: float) -> float:
+def label_step(matrices: NDArray[np.float64], shape: tuple[int, int], low: float, high: float) -> float:
+    """Distance of the labels of a sweep at full resolution.
+
+    Args:
+        matrices: (V, 3, 4) of the views.
+        shape: (h, w) of the reference view.
+        low: Lowest label.
+        high: Highest label.
+    """
     fastest = np.hypot(*label_parallax(matrices, shape, (low + high) / 2).T).max(initial=1e-9)
     return float(max(DEPTH_TUNING.sweep_stride_pixels / fastest, (high - low) / (DEPTH_TUNING.sweep_max_labels - 1)))
 
@@ -211,14 +219,25 @@ def sweep_and_match(
     return semi_global_matching(cost, grey, labels)[0], cost
 
 
-def _sweep_coarse(
+def sweep_coarse(
     packed: NDArray[np.uint32], matrices: NDArray[np.float64], shape: tuple[int, int], chosen: NDArray[np.int64],
-    low: float, high: float, step: float,
+    low: float, high: float, step: float, base_gain: float = DETAIL_BASE_GAIN,
 ) -> NDArray[np.float32]:  # fmt: skip
-    """Depth at half resolution over the whole range."""
+    """Depth at half resolution (rounded up) over the whole range.
+
+    Args:
+        packed: (V, H, W) packed pictures.
+        matrices: (V, 3, 4) of the views.
+        shape: (h, w) of the reference view.
+        chosen: Indices of the views that are compared.
+        low: Lowest label.
+        high: Highest label.
+        step: Of the labels at full resolution (`label_step`).
+        base_gain: Of `detail_pictures`.
+    """
     small_shape = ((shape[0] + 1) // 2, (shape[1] + 1) // 2)
     small = halve_pictures(packed[chosen])
-    detail = detail_pictures(small, DEPTH_TUNING.sweep_detail_gain, blur_sigma=0)
+    detail = detail_pictures(small, DEPTH_TUNING.sweep_detail_gain, blur_sigma=0, base_gain=base_gain)
     d, _ = sweep_and_match(
         detail, small, halved_matrices(matrices[chosen]), small_shape, spaced_labels(low, high, 2 * step),
         unseen_cost=DEPTH_TUNING.unseen_cost_levels, min_views=_min_views(len(chosen)),

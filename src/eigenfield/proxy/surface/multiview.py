@@ -7,10 +7,8 @@ motion are given. In the fine one each view covers the range of the points that 
 from __future__ import annotations
 
 import logging
-import pickle
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import cv2
 import numpy as np
@@ -21,17 +19,17 @@ from eigenfield.capture.photographs.lens import source_positions
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.progress import Progress, track
+from eigenfield.core.progress import Progress
 from eigenfield.proxy.atlas.unwrap import PROXY_DEFAULT_TRIANGLES
 from eigenfield.proxy.background import fill_background
 from eigenfield.proxy.primitives.shapes import Primitive, insert_primitive
+from eigenfield.proxy.surface.depth_maps import DepthJob, WorkingPicture, make_depth_maps
 from eigenfield.proxy.surface.fusion import DepthView, fuse_depth_maps
 from eigenfield.proxy.surface.neighbours import choose_neighbours, frustum_points, inside_frame, spread_views
 from eigenfield.proxy.surface.poisson import poisson_surface
 from eigenfield.proxy.surface.trim import SurfaceError, simplify_with_error, trim_by_masks, trim_surface
 from eigenfield.runtime.parallel import tracked_map
 from eigenfield.runtime.parts import Parts
-from eigenfield.stereo import ReferenceView, estimate_depth, view_matrices
 
 log = logging.getLogger("eigenfield.proxy")
 
@@ -53,8 +51,6 @@ class MultiviewTuning:
         range_margin_fraction: Added at both ends of the range of the points' inverse depths.
         range_percentiles: Percentiles of the points' inverse depths that bound the range.
         min_points: Points in view that determine a range.
-        refinement_rounds: Rounds of refinement of a depth map.
-        range_end_labels: Depths this near the ends of the range are invalid.
         mask_border_fraction: Fraction of the pixels that a mask may hide beyond the lens's border and still be that
             border.
         points_per_triangle: Points a triangle of the result: more are merged, so that noise is averaged, not
@@ -76,8 +72,6 @@ class MultiviewTuning:
     range_margin_fraction: float = 0.15
     range_percentiles: tuple[float, float] = (0.5, 99.5)
     min_points: int = 30
-    refinement_rounds: int = 2
-    range_end_labels: float = 0.25
     mask_border_fraction: float = 0.01
     points_per_triangle: int = 16
     min_fused_points: int = 100_000
@@ -86,8 +80,6 @@ class MultiviewTuning:
 
 
 MULTIVIEW_TUNING = MultiviewTuning()
-DEPTH_MAP_FILE = "depth.npz"
-DEPTH_MAP_MEMORY_BYTES = 1.5e9  # measured: nine views of `max_pixels`, 16 threads; 1.0 with two
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,23 +97,6 @@ class ReconstructedSurface:
     error: SurfaceError
     views: int
     points: int
-
-
-@dataclass(frozen=True, eq=False)
-class _Picture:
-    """A photograph at the working resolution.
-
-    Attributes:
-        camera: Of that resolution.
-        pixels: (H, W, 3) uint8.
-        mask: (H, W) bool, the foreground, or None.
-        known: (H, W) bool, where the removal of the lens leaves a picture, or None.
-    """
-
-    camera: Camera
-    pixels: NDArray[np.uint8]
-    mask: NDArray[np.bool_] | None
-    known: NDArray[np.bool_] | None
 
 
 def surface_from_views(
@@ -187,8 +162,10 @@ def _central_camera(cameras: Sequence[Camera]) -> int:
     return int(np.linalg.norm(centres - centres.mean(axis=0), axis=1).argmin())
 
 
-def _pictures(light_field: LightField, chosen: Sequence[int], most: int, progress: Progress | None) -> list[_Picture]:
-    def load(index: int) -> _Picture:
+def _pictures(
+    light_field: LightField, chosen: Sequence[int], most: int, progress: Progress | None
+) -> list[WorkingPicture]:
+    def load(index: int) -> WorkingPicture:
         photograph = light_field.photograph(index)
         camera = light_field.views[index].camera
         scale = min(1.0, float(np.sqrt(most / (camera.width * camera.height))))
@@ -198,7 +175,7 @@ def _pictures(light_field: LightField, chosen: Sequence[int], most: int, progres
         known = _lens_mask(light_field.views[index], small)
         if mask is not None and known is not None and (known & ~mask).mean() < MULTIVIEW_TUNING.mask_border_fraction:
             mask = None  # it only marks where the lens leaves no picture
-        return _Picture(small, np.rint(np.clip(pixels, 0, 1) * 255).astype(np.uint8), mask, known)
+        return WorkingPicture(small, np.rint(np.clip(pixels, 0, 1) * 255).astype(np.uint8), mask, known)
 
     return tracked_map(load, chosen, "photographs", progress)
 
@@ -230,7 +207,10 @@ def _resample(pixels: NDArray[np.float32], camera: Camera, small: Camera) -> NDA
 
 
 def _depth_views(
-    pictures: Sequence[_Picture], points: NDArray[np.float64] | None, parts: Parts | None, progress: Progress | None
+    pictures: Sequence[WorkingPicture],
+    points: NDArray[np.float64] | None,
+    parts: Parts | None,
+    progress: Progress | None,
 ) -> tuple[list[DepthView], float]:
     """The views that share enough with others, and the relative difference of depth up to which two of them agree."""
     cameras = [picture.camera for picture in pictures]
@@ -247,12 +227,8 @@ def _depth_views(
         if len(others) < MULTIVIEW_TUNING.min_neighbours:
             log.warning("a view shares too little with the others: it gets no depth map")
         else:
-            jobs.append(_DepthJob(index, tuple(others), span))
-    made = (_depth_map(job, pictures) for job in jobs) if parts is None else _depth_maps_on(parts, jobs, pictures)
-    views, tolerances = [], []
-    for job, (inverse_depth, tolerance) in zip(jobs, track(made, stage, len(jobs), progress), strict=True):
-        tolerances.append(tolerance)
-        views.append(DepthView(cameras[job.index], inverse_depth, pictures[job.index].mask))
+            jobs.append(DepthJob(index, tuple(others), span))
+    views, tolerances = make_depth_maps(jobs, pictures, parts, stage, progress)
     if len(views) < MULTIVIEW_TUNING.min_neighbours + 1:
         raise ProxyError(
             "surface-overlap",
@@ -282,69 +258,3 @@ def _inverse_range(
     parallax = camera.K[0, 0] * baseline
     most = MULTIVIEW_TUNING.max_parallax_sides * max(camera.width, camera.height)
     return MULTIVIEW_TUNING.min_parallax_pixels / parallax, most / parallax
-
-
-@dataclass(frozen=True)
-class _DepthJob:
-    """A depth map that is to be made.
-
-    Attributes:
-        index: Of the view.
-        others: Indices of those that it is compared with.
-        span: Its range of inverse depths.
-    """
-
-    index: int
-    others: tuple[int, ...]
-    span: tuple[float, float]
-
-
-def _depth_maps_on(
-    parts: Parts, jobs: Sequence[_DepthJob], pictures: Sequence[_Picture]
-) -> Iterator[tuple[NDArray[np.float32], float]]:
-    """The depth maps of `_depth_map`, made by workers, which read the pictures from files."""
-    with parts.shared([pickle.dumps(picture) for picture in pictures]) as files:
-        for folder in parts.make("depth", build_depth_map, [(job, files) for job in jobs], DEPTH_MAP_MEMORY_BYTES):
-            with np.load(folder / DEPTH_MAP_FILE) as data:
-                yield data["inverse_depth"], float(data["tolerance"])
-
-
-def build_depth_map(folder: Path, job: _DepthJob, files: Sequence[Path]) -> None:
-    """Write one depth map into a folder, on a worker.
-
-    Args:
-        folder: Exists.
-        job: The depth map.
-        files: Of all pictures.
-    """
-    pictures = {index: pickle.loads(files[index].read_bytes()) for index in (job.index, *job.others)}
-    inverse_depth, tolerance = _depth_map(job, pictures)
-    np.savez(folder / DEPTH_MAP_FILE, inverse_depth=inverse_depth, tolerance=tolerance)
-
-
-def _depth_map(
-    job: _DepthJob, pictures: Mapping[int, _Picture] | Sequence[_Picture]
-) -> tuple[NDArray[np.float32], float]:
-    """Inverse depth (H, W) of one view, 0 outside its mask, and the relative depth of a pixel of parallax."""
-    own, span = pictures[job.index], job.span
-    used = [own, *(pictures[i] for i in job.others)]
-    cameras = [picture.camera for picture in used[1:]]
-    axis = own.camera.R[2]
-    apart = [camera.centre - own.camera.centre for camera in cameras]
-    across = [np.linalg.norm(step - (step @ axis) * axis) for step in apart]
-    unit = 1 / (own.camera.K[0, 0] * max(float(np.median(across)), 1e-12))
-    reference = ReferenceView.with_margin(own.camera, 0, span[0], unit)
-    reach = (span[1] - span[0]) / unit
-    height, width = max(p.pixels.shape[0] for p in used), max(p.pixels.shape[1] for p in used)
-    stack = np.zeros((len(used), height, width, 3), np.uint8)
-    for slot, part in zip(stack, (picture.pixels for picture in used), strict=True):
-        slot[: part.shape[0], : part.shape[1]] = part
-    matrices = view_matrices(reference, [own.camera, *cameras])
-    d = estimate_depth(stack, matrices, reference.shape, (0.0, reach), rounds=MULTIVIEW_TUNING.refinement_rounds)
-    w = reference.offset + reference.scale * d
-    end = MULTIVIEW_TUNING.range_end_labels
-    w[(d <= end) | (d >= reach - end)] = 0
-    for kept in (own.mask, own.known):
-        if kept is not None:
-            w[~kept] = 0
-    return w.astype(np.float32), unit / float(np.median(w[w > 0])) if (w > 0).any() else 0.0
