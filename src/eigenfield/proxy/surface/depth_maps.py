@@ -230,7 +230,7 @@ def _second_map(
             height, width = other.inverse_depth.shape
             depths[number, :height, :width] = other.inverse_depth
             labels[number] = _projected_labels(reference, pictures[index].camera, other)
-    tolerance = DEPTH_AGREEMENT_PIXELS * mine.tolerance
+    tolerance = max(DEPTH_AGREEMENT_PIXELS * mine.tolerance, 1e-9)  # 0 where a mask hides all
     offset, scale = reference.offset, reference.scale
     others = OtherMaps(depths, offset, scale, 2 * tolerance, _quantiles(labels))
     planes, _ = match_patches(
