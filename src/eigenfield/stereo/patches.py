@@ -10,6 +10,7 @@ that the maps of the other views agree (Xu and Tao, Multi-Scale Geometric Consis
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import cv2
@@ -98,8 +99,12 @@ def match_patches(
     limits = [np.float32(limit) for limit in (high, PATCH_MAX_SLOPE_LABELS, fraction * high, PATCH_MARGIN)]
     for colour in (0, 1):  # a point reads those of the other colour only: the order of the bands has no effect
         fixed = colour, reference, views, PATCH_OFFSETS, *limits, np.ascontiguousarray(labels, np.float32), planes, cost
-        parallel_map(lambda band, fixed=fixed: exchange_planes(*band, *fixed), bands)
+        parallel_map(partial(_exchange_rows, fixed), bands)
     return planes, cost
+
+
+def _exchange_rows(fixed: tuple[Any, ...], rows: tuple[int, int]) -> None:
+    exchange_planes(*rows, *fixed)
 
 
 def _kernel_views(
