@@ -75,7 +75,7 @@ def find_best_two_on_lines(
         for j in range(count):
             residual = abs(a * points2[j, 0] + b * points2[j, 1] + c)
             if residual <= limit and residual <= tolerance * back[j]:
-                inner = 0
+                inner = np.int32(0)
                 for k in range(left.shape[1]):
                     inner += np.int32(left[i, k]) * np.int32(right[j, k])
                 s = np.float32(inner)
