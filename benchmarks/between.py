@@ -5,7 +5,8 @@
 
 CAPTURE: names as benchmarks/report.py knows them, or a folder of photographs of your own; without any, those of CASES,
 which says what each holds out and how large its file may be. Ours is the file of `eigenfield encode`, all defaults but
-these two. Beside it are drawn:
+these two, and `--blind` where a surface is estimated: held-out photographs take no part in it. Dense arrays, whose rule
+is odd, are encoded without. Beside it are drawn:
 
 - the encoded views as one film, decoded and blended on our own mesh (a lumigraph), for each codec of --peers. Its rate
   is searched so that film and mesh have the bytes of our file, at most 2 % more; the order of views is the best. Where
@@ -14,7 +15,7 @@ these two. Beside it are drawn:
 - the same lumigraph of the uncoded photographs;
 - the photograph of the nearest camera, and the neighbours' photographs blended;
 - the version before, with --before: another source tree, which encodes to the bytes of our file, or a .glb of the same
-  capture and hold-out rule.
+  capture and hold-out rule. A tree that refuses `--blind` for cameras all around encodes without it, in its favour.
 
 All are measured over the pixels that this mesh covers, and depth edges are this mesh's. Crops of ours, the peers and
 the photograph go to OUT/NAME/crops-PEER.png, for each peer of our bytes: where ours is worse than that peer by most,
@@ -172,11 +173,19 @@ def encoded(
     """
     name = "before" if tree else "opaque" if more else "ours"
     words = ["encode", *prepared.words(capture), "--hold-out", hold_out, *more]
+    blind = ["--blind"] if capture.proxy is None and hold_out != "odd" else []
     words += [] if capture.proxy is None else ["--proxy", str(capture.proxy)]
     words += [] if size is None else ["--target-size", str(size)]
     stages = "before.work" if tree else "ours.work"
     words += ["--work", str(work / stages), "-o", str(work / f"{name}.glb")]
-    made = measure.run(["-m", "eigenfield", *words, "--overwrite", "--quiet"], tree)
+    words = ["-m", "eigenfield", *words, "--overwrite", "--quiet"]
+    try:
+        made = measure.run([*words, *blind], tree)
+    except SystemExit:
+        if tree is None or not blind:
+            raise
+        print(f"{capture.name}, {name}: its surface sees held-out photographs", flush=True)
+        made = measure.run(words, tree)
     print(f"{capture.name}, {name}: {made['output'].strip()}", flush=True)
     return work / f"{name}.glb"
 

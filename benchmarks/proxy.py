@@ -55,11 +55,11 @@ SCENES = {
     "shop": Case("shop_9x9", ("--hold-out", "odd")),
     "boxes": Case("hci_boxes_9x9", ("--hold-out", "odd")),
     "antinous": Case("hci_antinous_9x9", ("--hold-out", "odd")),
-    "fern": Case("llff_fern", ("--hold-out", "every:5", "--textures", "7")),
-    "cube": Case("cube_colmap_mesh", ("--hold-out", "every:4", "--textures", "5")),
-    "fountain": Case("fountain_P11_half", ("--hold-out", "every:4", "--textures", "5")),
-    "fox": Case("fox_transforms_half", ("--hold-out", "every:8")),
-    "temple": Case("temple_ring16", ("--hold-out", "every:5", "--textures", "7")),
+    "fern": Case("llff_fern", ("--hold-out", "every:5", "--textures", "7", "--blind")),
+    "cube": Case("cube_colmap_mesh", ("--hold-out", "every:4", "--textures", "5", "--blind")),
+    "fountain": Case("fountain_P11_half", ("--hold-out", "every:4", "--textures", "5", "--blind")),
+    "fox": Case("fox_transforms_half", ("--hold-out", "every:8", "--blind")),
+    "temple": Case("temple_ring16", ("--hold-out", "every:5", "--textures", "7", "--blind")),
 }
 
 

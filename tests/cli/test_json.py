@@ -10,7 +10,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from eigenfield.calibration.motion.report import describe_motion
-from eigenfield.calibration.motion.sfm import SfmResult, ViewReport
+from eigenfield.calibration.motion.result import SfmResult, ViewReport
 from eigenfield.capture import open_capture
 from eigenfield.capture.points import SparsePoints
 from eigenfield.cli import VERBS

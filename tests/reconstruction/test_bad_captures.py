@@ -17,6 +17,7 @@ from PIL import Image, ImageFilter
 
 import eigenfield as ef
 from eigenfield.calibration.motion import sfm
+from eigenfield.calibration.motion.result import ViewReport
 from eigenfield.capture import PhotoSet, Shot, open_any, open_capture
 from eigenfield.core.errors import CaptureError, EigenfieldError
 from eigenfield.reconstruction import reconstruct
@@ -257,7 +258,7 @@ def test_options_are_judged_first(array, tmp_path, run, words):
 
 
 def report_of(photos, code):
-    return [sfm.ViewReport(name, False, code, "", 500, 3, 0, None) for name in photos.names]
+    return [ViewReport(name, False, code, "", 500, 3, 0, None) for name in photos.names]
 
 
 @pytest.mark.parametrize(

@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from eigenfield.capture import open_any, open_capture
+from eigenfield.capture import open_any
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.imaging.metrics import psnr
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy import atlas_fault
-from eigenfield.reconstruction import ReconstructionSettings, check_settings, reconstruct
+from eigenfield.reconstruction import reconstruct
 from eigenfield.reconstruction.layers import compare_held_out, draw_means, fit_views, layers_fault
 from eigenfield.stereo import view_matrices
-from support.captures import write_array, write_capture
+from support.captures import write_array
 
 
 @pytest.fixture(scope="module")
@@ -126,15 +126,6 @@ def test_who_can_have_sheets():
     assert "too few" in layers_fault(ring(2, 20))
     assert "do not look one way" in layers_fault(ring(5, 90))
     assert "do not look one way" in layers_fault(ring(4, 340))
-
-
-def test_a_capture_from_all_sides_is_refused_blind_before_any_work(tmp_path):
-    folder = write_capture(tmp_path / "c", cameras=ring(5, 340))
-    settings = ReconstructionSettings(blind="every:3")
-    with pytest.raises(OptionError) as caught:
-        check_settings(open_capture(folder), settings)
-    assert caught.value.code == "blind"
-    check_settings(open_capture(write_capture(tmp_path / "one-way", cameras=ring(5, 20))), settings)
 
 
 def wall(depth):

@@ -5,7 +5,8 @@ from __future__ import annotations
 from eigenfield.calibration.align import align_similarity, calibration_error
 from eigenfield.calibration.known import read_known_lenses
 from eigenfield.calibration.lenses import KnownLens
-from eigenfield.calibration.motion.sfm import SfmResult, structure_from_motion
+from eigenfield.calibration.motion.result import SfmResult
+from eigenfield.calibration.motion.sfm import structure_from_motion
 from eigenfield.calibration.motion.triangulate import triangulate_points
 from eigenfield.calibration.neighbours import NeighbourPair, measure_neighbours
 from eigenfield.calibration.planar.joint import PlanarArray, refine_planar

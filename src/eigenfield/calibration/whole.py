@@ -12,7 +12,8 @@ from eigenfield.calibration.charts.calibrate import ChartCalibration, calibrate_
 from eigenfield.calibration.charts.description import ChartOptions, board_of
 from eigenfield.calibration.known import read_known_lenses
 from eigenfield.calibration.motion.report import describe_motion
-from eigenfield.calibration.motion.sfm import SfmResult, structure_from_motion
+from eigenfield.calibration.motion.result import SfmResult
+from eigenfield.calibration.motion.sfm import structure_from_motion
 from eigenfield.capture import PhotoSet, open_photographs
 from eigenfield.capture.archive import is_zip
 from eigenfield.capture.writers.save import refuse_folder, save_calibration

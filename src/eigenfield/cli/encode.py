@@ -116,7 +116,8 @@ Examples:
 @click.option(
     "--blind",
     is_flag=True,
-    help="Estimate proxy and cameras without the held-out photographs too: each only registers its own camera.",
+    help="Held-out photographs take no part in cameras and proxy either. Where cameras are estimated, each then "
+    "registers its own against the finished points, and is left out if it cannot.",
 )
 @click.option("--overwrite", is_flag=True, help="Replace the output if it exists.")
 @common_options
@@ -175,8 +176,9 @@ def command(
 
             made = reconstruct_capture(capture, place, scratch, progress, quiet, check, workers=reached, **settings)
             scene = encode(
-                made.light_field, made.proxy, options, triangles=None, work=scratch, workers=for_maps, progress=progress
-            )
+                made.light_field, made.proxy, options, triangles=None, hold_out=made.hold_out, work=scratch,
+                workers=for_maps, progress=progress,
+            )  # fmt: skip
         save(scene, output, **options.for_save, overwrite=overwrite, progress=progress)
     sizes = parts(output)
     width, height = scene.settings["atlas"]

@@ -63,7 +63,7 @@ def encode(
         background: Whether the frustum is closed behind the surface.
         primitives: Texts of primitives.
         fit_spheres: Texts of spheres to fit.
-        blind: Estimate proxy and cameras without the held-out photographs too.
+        blind: Estimate proxy and cameras without the held-out photographs too: each only registers its own camera.
         work: Folder that keeps finished stages of the reconstruction, and scratch files: up to 17 bytes a pixel, and
             10 for each sheet that it shows; or 4 bytes x channels x cameras x texels. None: a temporary one.
         workers: Of `open_executor`: they make the depth maps of cameras all around (see `reconstruct`) and texture
@@ -96,8 +96,10 @@ def encode(
         "primitives": primitives or (), "fit_spheres": fit_spheres or (),
     }  # fmt: skip
     if proxy is None:
-        capture, proxy = estimate(capture, asked, reconstruction_settings(asked, own, blind), work, workers, progress)
-        asked = replace(asked, triangles=None)  # the mesh has no more than were asked for
+        made = estimate(capture, asked, reconstruction_settings(asked, own, blind), work, workers, progress)
+        capture, proxy = made.light_field, made.proxy
+        # the mesh has no more triangles than were asked for
+        asked = replace(asked, triangles=None, hold_out=made.hold_out)
     else:
         unused = {} if asked.resolved().fit == "none" else {"workers": workers}
         refuse_unused({**own, **unused}, blind)

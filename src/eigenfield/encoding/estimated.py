@@ -17,7 +17,7 @@ from eigenfield.core.proxy import Proxy
 from eigenfield.encoding.options import EncodeOptions
 from eigenfield.encoding.views import check_selection
 from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES, refuse_no_mesh
-from eigenfield.reconstruction import ReconstructionSettings, reconstruct
+from eigenfield.reconstruction import Reconstruction, ReconstructionSettings, reconstruct
 from eigenfield.runtime.tasks import Workers
 
 log = logging.getLogger("eigenfield.encode")
@@ -76,7 +76,7 @@ def refuse_unused(own: Mapping[str, Any], blind: bool) -> None:
 def estimate(
     given: Given, options: EncodeOptions, settings: Mapping[str, Any], work: str | os.PathLike[str] | None,
     workers: Workers | None, progress: Progress | None,
-) -> tuple[LightField, Proxy]:  # fmt: skip
+) -> Reconstruction:  # fmt: skip
     """Cameras and proxy of a capture.
 
     Args:
@@ -101,7 +101,7 @@ def estimate(
     check_selection(opened, options)
     made = reconstruct(opened, work=folder, workers=workers, progress=progress, **settings)
     _warn(made.light_field.problems[len(opened.problems) :])
-    return made.light_field, made.proxy
+    return made
 
 
 def calibrated(given: Given, proxy: str | os.PathLike[str] | Mesh | Proxy) -> CalibratedObservations:

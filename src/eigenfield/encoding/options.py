@@ -125,7 +125,8 @@ class EncodeOptions(Options):
     reference: str | None = option("Reference camera.  [default: nearest the centre of the array]", metavar="NAME")
     hold_out: str | None = option(
         "Cameras to leave out and measure later: odd (those in odd rows or odd columns of a grid, counted from 0: "
-        "three quarters), every:K (every K-th), or names with commas between.",
+        "three quarters), every:K (every K-th), or names with commas between. They take no part in the textures and "
+        "in soft sheets; in cameras and an opaque surface that are estimated they do, unless --blind is given.",
         metavar="RULE",
     )
     codec: str | None = option(

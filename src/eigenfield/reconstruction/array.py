@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from eigenfield.calibration import PlanarArray, PlanarStart, refine_planar, register_views, start_given, start_planar
 from eigenfield.capture import Capture, LightField
-from eigenfield.capture.holdout import held_out_cameras
 from eigenfield.capture.writers.save import save_calibration
 from eigenfield.core.camera import Camera, axis_angles
 from eigenfield.core.errors import CaptureError, ProxyError
@@ -137,16 +136,19 @@ class AlignedArray:
         return self.light_field.subset([self.light_field.names.index(capture.names[i]) for i in self.shown])
 
 
-def align_array(run: StageRunner, capture: Capture, points: NDArray[np.float64] | None) -> AlignedArray:
+def align_array(
+    run: StageRunner, capture: Capture, points: NDArray[np.float64] | None, blind: Collection[str] = ()
+) -> AlignedArray:
     """Cameras and depth of an array.
 
     Args:
         run: The stages.
         capture: Photographs with cameras or a layout.
         points: (n, 3) points of structure from motion, if any.
+        blind: Names of photographs that take no part: each only registers its own camera.
     """
     refine = _must_refine(capture, run.settings)
-    known = np.flatnonzero(~held_out_cameras(run.settings.blind, capture.names, array_positions(capture)))
+    known = np.flatnonzero([name not in blind for name in capture.names])
     inputs = [refine, known.tolist(), None if points is None else len(points)]
 
     def build(folder: Path) -> None:

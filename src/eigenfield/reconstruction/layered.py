@@ -13,12 +13,11 @@ from numpy.typing import NDArray
 
 from eigenfield.calibration import triangulate_points
 from eigenfield.capture import Capture, LightField
-from eigenfield.capture.holdout import held_out_cameras
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.proxy import Proxy
-from eigenfield.reconstruction.array import AlignedArray, array_depths, array_positions, inverse_depths
+from eigenfield.reconstruction.array import AlignedArray, array_depths, inverse_depths
 from eigenfield.reconstruction.frame import filled_pictures, resized_cameras
 from eigenfield.reconstruction.layers import (
     LAYERS_TUNING,
@@ -30,6 +29,7 @@ from eigenfield.reconstruction.layers import (
 )
 from eigenfield.reconstruction.run import StageRunner
 from eigenfield.reconstruction.stage_files import STAGE_PROXY_FILE, STAGE_TRIAL_FILE, read_proxy, write_proxy
+from eigenfield.reconstruction.unseen import without
 
 log = logging.getLogger("eigenfield.reconstruction")
 
@@ -68,29 +68,25 @@ class SheetSource:
         light_field: Those with a camera.
         array: Cameras and depth of an array; None for other captures.
         points: (n, 3) points of structure from motion, if any.
-        hold_out: Rule of the views that take no part.
+        unseen: Names of photographs that take no part in sheets.
     """
 
     capture: Capture
     light_field: LightField
     array: AlignedArray | None
     points: NDArray[np.float64] | None
-    hold_out: str | None
+    unseen: frozenset[str]
 
     @property
     def shown(self) -> LightField:
         """The photographs that take part."""
-        # by the capture's own order and places, whichever photographs were left out since
-        held = held_out_cameras(self.hold_out, self.capture.names, array_positions(self.capture))
-        unseen = {name for name, out in zip(self.capture.names, held, strict=True) if out}
-        names = self.light_field.names
-        return self.light_field.subset([index for index, name in enumerate(names) if name not in unseen])
+        return without(self.light_field, self.unseen)
 
     @property
     def inputs(self) -> list[Any]:
         """What stages depend on."""
         known = [None if self.points is None else len(self.points)] if self.array is None else self.array.inputs
-        return [known, self.hold_out]
+        return [known, sorted(self.unseen)]
 
     def views(self, run: StageRunner) -> tuple[NDArray[np.uint8], list[Camera], Range]:
         """The photographs that take part, their cameras at the same size, and the range of inverse depths.

@@ -44,7 +44,7 @@ class ReconstructionSettings:
         hold_out: Rule of the views that sheets are not made from; None: those of `blind`.
 
     Raises:
-        OptionError: `surface`, `layers`, `triangles`, `blind`, `primitive` or `fit-sphere`.
+        OptionError: `surface`, `layers`, `triangles`, `primitive` or `fit-sphere`.
     """
 
     surface: str = "auto"
@@ -69,9 +69,6 @@ class ReconstructionSettings:
                 f"{self.triangles} triangles were asked for",
                 remedy=f"ask for {UNWRAP_MIN_TRIANGLES} or more",
             )
-        if self.surface == "poisson" and self.blind is not None:
-            message = "a surface from all sides cannot be made blind, only arrays that look one way"
-            raise OptionError("blind", message, remedy="leave out --blind or --surface")
         for text in self.primitives:
             parse_primitive(text)
         for text in self.fit_spheres:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -55,6 +55,7 @@ from eigenfield.reconstruction.stage_files import (
     read_cameras,
     write_cameras,
 )
+from eigenfield.reconstruction.unseen import held_out_names, rule_for, without
 from eigenfield.runtime.parallel import parallel_map
 from eigenfield.runtime.stages import Stages, file_digest
 from eigenfield.runtime.tasks import Workers
@@ -72,6 +73,8 @@ class Reconstruction:
         calibration: The folder with a transforms.json and a COLMAP model, if cameras were estimated or refined.
         seconds: Time of each stage, in order; 0 for stages of an earlier run.
         report: Quality measures of the proxy's mesh.
+        hold_out: A rule of `hold_out` (see `encode`) for the photographs of `light_field`, which holds out those that
+            `hold_out`, or else `blind`, named among all photographs; None: there are none.
     """
 
     light_field: LightField
@@ -79,6 +82,7 @@ class Reconstruction:
     calibration: Path | None
     seconds: dict[str, float]
     report: ProxyReport
+    hold_out: str | None = None
 
 
 @checked
@@ -112,8 +116,8 @@ def reconstruct(
         background: Close the frustum behind the surface. None: unless there are masks.
         primitives: `sphere:...` or `plane:...`, inserted into the surface.
         fit_spheres: `VIEW:X,Y,W,H`, spheres fitted to an outline.
-        blind: A rule of `hold_out` (see `encode`): these views take no part, each only registers its own camera. Arrays
-            only.
+        blind: A rule of `hold_out` (see `encode`), by the order of all photographs: these take no part in cameras and
+            proxy. Each only registers its own camera, where that is not given, and is left out if it cannot.
         hold_out: A rule of `hold_out`: layers, whose opacity is appearance, are not made from these views. Default:
             those of `blind`.
         work: The folder of finished stages; None: nothing is stored.
@@ -131,33 +135,37 @@ def reconstruct(
         surface, layers, refine, triangles, background, tuple(primitives), tuple(fit_spheres), blind, hold_out
     )
     check_settings(capture, settings)
-    if blind is not None and capture.light_field is None and capture.layout is None:
-        log.warning("--blind is for cameras that look one way: if these turn out not to, this ends once they are known")
+    unseen = held_out_names(blind, capture)
+    unknown = capture.light_field is None and capture.layout is None
+    rule = blind if hold_out is None else hold_out
+    held = None if unknown and rule == "odd" else held_out_names(rule, capture)
     with Stages(work) as stages:
         run = StageRunner(stages, settings, capture_identity(capture), progress, {}, workers)
         points = calibration = array = None
         if capture.light_field is None and capture.layout is None:  # nothing is known about the cameras
-            capture, points, calibration = _estimate_cameras(run, capture)
-        if _is_array(capture, settings):
+            capture, points, calibration = _estimate_cameras(run, capture, unseen)
+        if held is None:
+            held = held_out_names(rule, capture)
+        if _is_array(without(capture, unseen), settings):
             if workers is not None:
                 log.warning("an array has one depth map of all views: workers have no part in it")
-            array = align_array(run, capture, points)
+            array = align_array(run, capture, points, unseen)
             light_field, calibration = array.light_field, array.folder / "calibration"
         else:
             assert capture.light_field is not None
             light_field = capture.light_field
-            _refuse_blind(settings)
-        source = SheetSource(capture, light_field, array, points, settings.hold_out or settings.blind)
+        source = SheetSource(capture, light_field, array, points, unseen | held)
         if settings.surface == "layers":
             proxy, error = sheets_of_capture(run, source, asked_count(run, source)), None
         else:
-            mesh, error = _opaque_surface(run, source)
+            mesh, error = _opaque_surface(run, source, without(light_field, unseen))
             proxy = Proxy(mesh)
             count = better_count(run, source, mesh) if settings.surface == "auto" else None
             if count is not None:
                 proxy, error = sheets_of_capture(run, source, count), None
         report = measure_proxy(proxy.mesh, light_field.cameras, error)
-        return Reconstruction(light_field, proxy, calibration if work is not None else None, run.seconds, report)
+        folder = calibration if work is not None else None
+        return Reconstruction(light_field, proxy, folder, run.seconds, report, rule_for(light_field, rule, held))
 
 
 def check_settings(capture: Capture, settings: ReconstructionSettings) -> None:
@@ -166,31 +174,23 @@ def check_settings(capture: Capture, settings: ReconstructionSettings) -> None:
     Raises:
         CaptureError, OptionError: As `reconstruct`.
     """
+    seen = without(capture, held_out_names(settings.blind, capture))
     for text in settings.fit_spheres:
-        find_view(parse_region(text), capture.names)
+        find_view(parse_region(text), seen.names)
     refuse_one_place(capture)
     if settings.surface == "layers":
         check_capture(capture)
-    if (capture.light_field is not None or capture.layout is not None) and not _is_array(capture, settings):
-        _refuse_blind(settings)
+    if capture.light_field is not None or capture.layout is not None:
+        _is_array(seen, settings)  # raises
 
 
-def _refuse_blind(settings: ReconstructionSettings) -> None:
-    """Raise OptionError `blind` for cameras all around."""
-    if settings.blind is not None:
-        raise OptionError(
-            "blind", "only arrays that look one way can be reconstructed blind",
-            remedy="leave out --blind: held-out views then help to find cameras and proxy",
-        )  # fmt: skip
-
-
-def _opaque_surface(run: StageRunner, source: SheetSource) -> tuple[Mesh, SurfaceError | None]:
-    """A relief, or a surface from all sides, with an atlas."""
+def _opaque_surface(run: StageRunner, source: SheetSource, shown: LightField) -> tuple[Mesh, SurfaceError | None]:
+    """A relief, or a surface from all sides, with an atlas, made from the photographs `shown`."""
     if source.array is not None:
         mesh, error = relief_of_array(run, source.capture, source.array), None
     else:
-        mesh, error = _poisson(run, source.light_field, source.points)
-    return _add_atlas(run, source.light_field, mesh), error
+        mesh, error = _poisson(run, shown, source.points)
+    return _add_atlas(run, shown, mesh), error
 
 
 def capture_identity(capture: Capture, of_file: Callable[[Path], Any] = file_digest) -> list[Any]:
@@ -217,18 +217,22 @@ def capture_identity(capture: Capture, of_file: Callable[[Path], Any] = file_dig
     return [parallel_map(digest, capture.sources), own]
 
 
-def _estimate_cameras(run: StageRunner, photos: PhotoSet) -> tuple[LightField, NDArray[np.float64], Path]:
+def _estimate_cameras(
+    run: StageRunner, photos: PhotoSet, unseen: Collection[str]
+) -> tuple[LightField, NDArray[np.float64], Path]:
     """Cameras of photographs without any information, by structure from motion."""
+
+    blind = [index for index, name in enumerate(photos.names) if name in unseen]
 
     def build(folder: Path) -> None:
         with run.parts() as parts:
             motion = structure_from_motion(
-                photos, work=run.stages.folder / "matches", parts=parts, progress=run.progress
+                photos, work=run.stages.folder / "matches", parts=parts, progress=run.progress, blind=blind
             )
         save_calibration(motion.light_field, folder / "calibration", motion.points)
         write_cameras(folder / STAGE_CAMERAS_FILE, photos, motion.light_field, motion.points.positions)
 
-    folder = run.stage("motion", [], build)
+    folder = run.stage("motion", blind, build)
     light_field, points = read_cameras(folder / STAGE_CAMERAS_FILE, photos)
     return light_field, points, folder / "calibration"
 
@@ -255,7 +259,7 @@ def _poisson(
 ) -> tuple[Mesh, SurfaceError]:
     settings = run.settings
     by_hand = [settings.primitives, settings.fit_spheres, settings.background]
-    inputs = [None if points is None else len(points), settings.triangles, by_hand]
+    inputs = [None if points is None else len(points), settings.triangles, by_hand, light_field.names]
 
     def build(folder: Path) -> None:
         known = triangulate_points(light_field, progress=run.progress) if points is None else points
@@ -280,7 +284,7 @@ def _add_atlas(run: StageRunner, light_field: LightField, mesh: Mesh) -> Mesh:
     by_hand = [settings.primitives, settings.fit_spheres] if relief else []
     if relief and not any(by_hand):
         return mesh
-    inputs = [hashlib.sha256(mesh.vertices.tobytes() + mesh.faces.tobytes()).hexdigest(), by_hand]
+    inputs = [hashlib.sha256(mesh.vertices.tobytes() + mesh.faces.tobytes()).hexdigest(), by_hand, light_field.names]
 
     def build(folder: Path) -> None:
         result = mesh

@@ -26,7 +26,11 @@ from eigenfield.runtime.stages import Stages, file_digest, stage_key
 
 
 def cached_features(
-    stages: Stages | None, photos: PhotoSet, parts: Parts | None, progress: Progress | None
+    stages: Stages | None,
+    photos: PhotoSet,
+    parts: Parts | None,
+    progress: Progress | None,
+    blind: Sequence[int] = (),
 ) -> tuple[list[Features | CaptureError], str]:
     """As `extract_features`, loaded from the stage if it is finished.
 
@@ -35,17 +39,18 @@ def cached_features(
         photos: The photographs.
         parts: Workers that find them; None: this process does.
         progress: Called for each photograph.
+        blind: As of `extract_features`.
 
     Returns:
         The features of every photograph, and the stage's key.
     """
     extract = extract_here if parts is None else partial(extract_on_workers, parts)
     if stages is None:
-        return extract_features(photos, None, progress, extract), ""
-    key = stage_key(["features", *(_identity(shot) for shot in photos.shots)])
+        return extract_features(photos, None, progress, extract, blind), ""
+    key = stage_key(["features", list(blind), *(_identity(shot) for shot in photos.shots)])
 
     def build(folder: Path) -> None:
-        write_features(folder, extract_features(photos, None, progress, extract))
+        write_features(folder, extract_features(photos, None, progress, extract, blind))
 
     folder = stages.run("features", key, build)
     return read_features(folder, photos.shots), key

@@ -7,7 +7,7 @@ Zisserman, CVPR 2012); with domain-size pooling where there is little texture (D
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -98,6 +98,7 @@ def extract_features(
     options: FeatureOptions | None = None,
     progress: Progress | None = None,
     extract: Extract = extract_here,
+    blind: Collection[int] = (),
 ) -> list[Features | CaptureError]:
     """The features of every photograph, or the error for a photograph that cannot be read.
 
@@ -107,10 +108,11 @@ def extract_features(
             few.
         progress: Called for each photograph.
         extract: Finds them for given photographs and options.
+        blind: Photographs that have no part in that choice.
     """
     chosen = FeatureOptions() if options is None else options
     found = extract(photos.shots, chosen, "features", progress)
-    counts = [len(features) for features in found if isinstance(features, Features)]
+    counts = [len(one) for index, one in enumerate(found) if isinstance(one, Features) and index not in blind]
     if options is None and counts and np.median(counts) < FEATURE_MIN_MEDIAN_COUNT:
         found = extract(photos.shots, WEAK_FEATURE_OPTIONS, "weaker features", progress)
     return found

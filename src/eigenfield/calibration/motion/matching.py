@@ -16,7 +16,7 @@ from threadpoolctl import threadpool_limits
 
 from eigenfield.calibration.motion.colmap_core import pycolmap
 from eigenfield.calibration.motion.features import Features
-from eigenfield.calibration.motion.matching_kernels import find_best_two, mask_off_lines
+from eigenfield.calibration.motion.matching_kernels import find_best_two, find_best_two_on_lines
 from eigenfield.capture.layout import GridLayout
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
@@ -185,7 +185,7 @@ def _similar_pairs(features: Sequence[Features], progress: Progress | None) -> l
     pairs_in_all = max(count * (count - 1) // 2, 1)
     wanted = np.sqrt(MATCHING_TUNING.preview_multiplications / (256 * pairs_in_all))
     preview = int(np.clip(wanted, MATCHING_TUNING.preview_min_features, MATCHING_TUNING.preview_max_features))
-    large = [_as_float(f.descriptors[:preview]) for f in features]
+    large = [f.descriptors[:preview] for f in features]
 
     def count_shared(i: int) -> list[int]:
         return [len(mutual_matches(large[i], large[j])) for j in range(i + 1, count)]
@@ -233,12 +233,11 @@ def match_pairs(
 
 def _match_pair(features: Sequence[Features], cameras: Sequence[Any], i: int, j: int, seed: int) -> Match:
     a, b = features[i], features[j]
-    left, right = _as_float(a.descriptors), _as_float(b.descriptors)
-    matches = mutual_matches(left, right)
+    matches = mutual_matches(a.descriptors, b.descriptors)
     geometry = _verify(a, b, cameras[i], cameras[j], matches, seed)
     few = geometry is not None and len(geometry.inlier_matches) < MATCHING_TUNING.guided_max_matches
     if few and geometry.F is not None:
-        guided = mutual_matches(left, right, (a.points, b.points, np.asarray(geometry.F)))
+        guided = mutual_matches(a.descriptors, b.descriptors, (a.points, b.points, np.asarray(geometry.F)))
         both = np.unique(np.concatenate([guided, np.asarray(geometry.inlier_matches)]), axis=0)
         again = _verify(a, b, cameras[i], cameras[j], _one_to_one(both), seed)
         if again is not None and len(again.inlier_matches) > len(geometry.inlier_matches):
@@ -246,19 +245,15 @@ def _match_pair(features: Sequence[Features], cameras: Sequence[Any], i: int, j:
     return Match(i, j, geometry)
 
 
-def _as_float(descriptors: NDArray[np.uint8]) -> NDArray[np.float32]:
-    return descriptors.astype(np.float32)
-
-
 def mutual_matches(
-    left: NDArray[np.float32],
-    right: NDArray[np.float32],
+    left: NDArray[np.uint8],
+    right: NDArray[np.uint8],
     epipolar: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]] | None = None,
 ) -> NDArray[np.int64]:
     """Rows of two descriptor arrays that are each other's best match and clearly better than the second best.
 
     Args:
-        left: (n, 128) integer descriptors of norm 512.
+        left: (n, 128) descriptors of norm 512.
         right: (m, 128) likewise.
         epipolar: Points of both and the fundamental matrix. Only features near each other's epipolar lines are
             compared.
@@ -272,12 +267,14 @@ def mutual_matches(
     top, second = np.empty(len(left), np.float32), np.empty(len(left), np.float32)
     column = np.full(len(right), -1, np.int64)
     column_top = np.full(len(right), -1, np.float32)
-    transposed = np.ascontiguousarray(right.T)
-    for start, stop in pieces(len(left), MATCHING_TUNING.block_rows):
-        similarity = left[start:stop] @ transposed
-        if epipolar is not None:
-            mask_off_lines(similarity, start, *epipolar, MATCHING_TUNING.guided_line_pixels)
-        find_best_two(similarity, start, row, top, second, column, column_top)
+    if epipolar is None:
+        transposed = np.ascontiguousarray(right.T, np.float32)
+        for start, stop in pieces(len(left), MATCHING_TUNING.block_rows):
+            similarity = left[start:stop].astype(np.float32) @ transposed
+            find_best_two(similarity, start, row, top, second, column, column_top)
+    else:
+        tolerance = MATCHING_TUNING.guided_line_pixels
+        find_best_two_on_lines(left, right, *epipolar, tolerance, row, top, second, column, column_top)
     angle = np.arccos(np.clip(top / MATCHING_TUNING.descriptor_length**2, 0, 1))
     runner = np.arccos(np.clip(second / MATCHING_TUNING.descriptor_length**2, 0, 1))
     ratio = MATCHING_TUNING.max_angle_ratio if epipolar is None else MATCHING_TUNING.guided_max_angle_ratio

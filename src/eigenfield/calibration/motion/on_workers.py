@@ -69,6 +69,7 @@ def match_on_workers(
     pairs: Sequence[Pair],
     seed: int,
     progress: Progress | None,
+    name: str = "matches",
 ) -> list[Match]:
     """As `match_pairs`, with the same matches.
 
@@ -79,10 +80,11 @@ def match_on_workers(
         pairs: Pairs (i, j), i < j.
         seed: Of RANSAC.
         progress: Called for each group of pairs.
+        name: Of the parts: each list of pairs has its own.
     """
     groups = [pairs[first:last] for first, last in pieces(len(pairs), PAIRS_A_TASK)]
     with parts.shared([pickle.dumps(photograph) for photograph in zip(features, cameras, strict=True)]) as files:
-        made = parts.make("matches", build_matches, [(files, group, seed) for group in groups], MATCHES_MEMORY_BYTES)
+        made = parts.make(name, build_matches, [(files, group, seed) for group in groups], MATCHES_MEMORY_BYTES)
         found = track(made, "matches", len(groups), progress)
         return [match for folder in found for match in read_matches(folder / MATCHES_FILE)]
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from eigenfield.calibration.motion.sfm import SfmResult
+from eigenfield.calibration.motion.result import SfmResult
 from eigenfield.core.errors import one_line
 
 MOTION_REPORT_SCHEMA = "eigenfield.calibration/1"

@@ -8,80 +8,42 @@ give the same cameras at any number of threads.
 
 from __future__ import annotations
 
-import logging
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Sequence
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibration.align import natural_gauge, transform_camera
-from eigenfield.calibration.lenses import KnownLens, distort_to_pixels
+from eigenfield.calibration.lenses import KnownLens
 from eigenfield.calibration.motion.cache import cached_features, cached_matches
 from eigenfield.calibration.motion.colmap_core import pycolmap
 from eigenfield.calibration.motion.features import NO_FEATURES, Features, undistort_features
 from eigenfield.calibration.motion.mapping import MAPPING_TUNING, SparseModel, map_views
-from eigenfield.calibration.motion.matching import MATCHING_TUNING, Match, Matching, check_matching
-from eigenfield.capture.lightfield import LightField
+from eigenfield.calibration.motion.matching import (
+    MATCHING_TUNING,
+    Match,
+    Matching,
+    check_matching,
+    choose_pairs,
+    match_pairs,
+)
+from eigenfield.calibration.motion.on_workers import match_on_workers
+from eigenfield.calibration.motion.register import register_photographs
+from eigenfield.calibration.motion.result import SfmResult, ViewReport, assemble
 from eigenfield.capture.messages import count_phrase, list_names
-from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.photoset import PhotoSet, Shot
-from eigenfield.capture.points import SparsePoints
-from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, OptionError, one_line
 from eigenfield.core.progress import Progress
 from eigenfield.runtime.parts import Parts
 from eigenfield.runtime.stages import Stages
 
-log = logging.getLogger("eigenfield.calibration")
+T = TypeVar("T")
 
 SFM_MIN_FEATURES = 60  # with fewer, a photograph is called blurred or textureless
 SFM_NOMINAL_FOCAL_SIDES = 1.2  # of the longer side, if no focal length is known
-
-
-@dataclass(frozen=True)
-class ViewReport:
-    """The outcome for one photograph.
-
-    Attributes:
-        name: The photograph's name.
-        registered: Whether it has a camera now.
-        code: Why not, for scripts: "unreadable", "few-features", "few-matches", "apart" (it matches only others without
-            a camera), "no-pose" (it has matches, but no pose explains them); "" if it is registered.
-        reason: Why not, for people; "" if it is registered.
-        features: Features found in it.
-        partners: Photographs with which it shares verified matches.
-        observations: Points of the scene seen in it.
-        error: Mean reprojection error in pixels; None if it is not registered.
-    """
-
-    name: str
-    registered: bool
-    code: str
-    reason: str
-    features: int
-    partners: int
-    observations: int
-    error: float | None
-
-
-@dataclass(frozen=True, eq=False)
-class SfmResult:
-    """The result of structure from motion.
-
-    Attributes:
-        light_field: The registered photographs with cameras and lenses, in the order of the set; `problems` lists the
-            rest. The world is that of `natural_gauge`.
-        points: The triangulated points; their views are those of the light field.
-        report: One entry for each photograph of the set, in order.
-    """
-
-    light_field: LightField
-    points: SparsePoints
-    report: tuple[ViewReport, ...]
 
 
 def structure_from_motion(
@@ -94,6 +56,7 @@ def structure_from_motion(
     seed: int = 0,
     parts: Parts | None = None,
     progress: Progress | None = None,
+    blind: Collection[int] = (),
 ) -> SfmResult:
     """Estimate the cameras of photographs, and points of the scene.
 
@@ -107,6 +70,7 @@ def structure_from_motion(
         seed: Of RANSAC.
         parts: Workers that find features and compare pairs; None: this process does.
         progress: Called in every stage.
+        blind: Indices of photographs that take no part in cameras and points: each only registers its own camera.
 
     Raises:
         CaptureError: `too-few`: too few photographs. `planar-rectified`: a two-plane capture, which has no perspective
@@ -114,19 +78,41 @@ def structure_from_motion(
         OptionError: As `check_matching`; `intrinsics-count`.
     """
     known = _check_intrinsics(intrinsics, photos)
-    _check_photographs(photos)
-    check_matching(matching, photos.layout)
+    out = frozenset(blind)
+    shown = [index for index in range(len(photos)) if index not in out]
+    part = photos.subset(shown)
+    _check_photographs(part)
+    check_matching(matching, part.layout)
     stages = None if work is None else Stages(work)
-    found, key = cached_features(stages, photos, parts, progress)
+    found, key = cached_features(stages, photos, parts, progress, sorted(out))
     undistorted, features = _undistort_features([f if isinstance(f, Features) else NO_FEATURES for f in found], known)
-    cameras, shared = _cameras(photos.shots, known, camera_per_photo)
+    cameras, shared = _cameras(photos.shots, known, camera_per_photo, [*shown, *sorted(out)])
     each = [cameras[k] for k in shared]
-    matches = cached_matches(stages, key, photos, undistorted, each, known, matching, seed, parts, progress)
-    model = map_views([f.points for f in undistorted], cameras, shared, matches, known is not None, seed, progress)
-    report = _report(photos, found, matches, model)
+
+    def of_part(values: Sequence[T]) -> list[T]:
+        return [values[index] for index in shown]
+
+    lenses = None if known is None else of_part(known)
+    seen, own = of_part(undistorted), of_part(shared)
+    matches = cached_matches(stages, key, part, seen, of_part(each), lenses, matching, seed, parts, progress)
+    model = map_views(
+        [f.points for f in seen], cameras[: max(own) + 1], own, matches, known is not None, seed, progress
+    )
+    report = _report(part, of_part(found), matches, model)
     if model is None:
-        raise _failure_error(photos, report)
-    return _assemble(photos, features, known, model, report)
+        raise _failure_error(part, report)
+    motion = assemble(part, of_part(features), lenses, model, report)
+    if not out:
+        return motion
+    registered = {shown[index] for index in model.registered}
+    pairs = [
+        pair for pair in choose_pairs(undistorted, matching, photos.layout, progress)
+        if len(registered.intersection(pair)) == 1 and len(out.intersection(pair)) == 1
+    ]  # fmt: skip
+    match = match_pairs if parts is None else partial(match_on_workers, parts, name="held-out")
+    matches = match(undistorted, each, pairs, seed, progress)
+    waiting = {index: _blind_report(index, photos, found[index], matches) for index in sorted(out)}
+    return register_photographs(photos, motion, model, shown, undistorted, each, known, matches, waiting, seed)
 
 
 def _check_intrinsics(intrinsics: KnownLens | Sequence[KnownLens] | None, photos: PhotoSet) -> list[KnownLens] | None:
@@ -168,13 +154,14 @@ def _undistort_features(
 
 
 def _cameras(
-    shots: Sequence[Shot], known: Sequence[KnownLens] | None, camera_per_photo: bool
+    shots: Sequence[Shot], known: Sequence[KnownLens] | None, camera_per_photo: bool, order: Sequence[int]
 ) -> tuple[list[Any], list[int]]:
-    """COLMAP's cameras, and the index of each photograph's."""
+    """COLMAP's cameras, in the order in which photographs of `order` need them, and the index of each photograph's."""
     cameras: list[Any] = []
     number: dict[Any, int] = {}
-    shared = []
-    for index, shot in enumerate(shots):
+    shared = [0] * len(shots)
+    for index in order:
+        shot = shots[index]
         key: Any = (shot.width, shot.height)
         if known is not None:
             K = known[index].K
@@ -184,7 +171,7 @@ def _cameras(
         if key not in number:
             number[key] = len(cameras)
             cameras.append(_camera(shot, None if known is None else known[index].K))
-        shared.append(number[key])
+        shared[index] = number[key]
     return cameras, shared
 
 
@@ -222,6 +209,22 @@ def _report(
             code, reason = _failure_reason(index, count, partners[index], photos.names, model)
         report.append(ViewReport(shot.name, index in registered, code, reason, count, len(partners[index]), 0, None))
     return report
+
+
+def _blind_report(
+    index: int, photos: PhotoSet, features: Features | CaptureError, matches: Sequence[Match]
+) -> ViewReport:
+    """What is said of a photograph that took no part, if its camera is not found."""
+    name = photos.names[index]
+    partners = sum(index in (match.first, match.second) for match in matches if match.inliers)
+    if isinstance(features, CaptureError):
+        return ViewReport(name, False, "unreadable", str(features), 0, 0, 0, None)
+    code, why = "no-pose", "no pose explains enough points of the photographs that took part"
+    if len(features) < SFM_MIN_FEATURES:
+        code, why = "few-features", f"too few features ({len(features)}): blurred, dark, masked or without texture"
+    elif not partners:
+        code, why = "few-matches", "too few matches with the photographs that took part"
+    return ViewReport(name, False, code, f"held out, and {why}", len(features), partners, 0, None)
 
 
 def _failure_reason(
@@ -275,81 +278,3 @@ def _may_be_grid(photos: PhotoSet) -> bool:
     """Whether the photographs may be a grid: no layout is known, one size, and a number with two factors."""
     has_factors = any(len(photos) % k == 0 for k in range(2, 1 + len(photos) // 2))
     return photos.layout is None and len(set(photos.sizes)) == 1 and has_factors
-
-
-# COLMAP's model as a light field and sparse points
-
-
-def _assemble(
-    photos: PhotoSet,
-    features: Sequence[Features],
-    known: Sequence[KnownLens] | None,
-    model: SparseModel,
-    report: Sequence[ViewReport],
-) -> SfmResult:
-    chosen = list(model.registered)
-    lenses, cameras = [], []
-    for index in chosen:
-        image = model.reconstruction.image(index + 1)
-        lens, camera = _solved_camera(image, photos.shots[index], None if known is None else known[index])
-        lenses.append(lens)
-        cameras.append(camera)
-    points = _points(model, chosen, features)
-    scale, R, t = natural_gauge(cameras)
-    cameras = [transform_camera(camera, scale, R, t) for camera in cameras]
-    points = points.transform(scale, R, t)
-    errors = _reprojection_errors(points, cameras, lenses)
-    points = points.with_errors(errors)
-    by_view = np.bincount(points.view, minlength=len(chosen))
-    sums = np.bincount(points.view, weights=errors, minlength=len(chosen))
-    entries = list(report)
-    for place, index in enumerate(chosen):
-        error = float(sums[place] / max(by_view[place], 1))
-        entries[index] = replace(entries[index], observations=int(by_view[place]), error=error)
-    problems = [f"{one_line(e.name)} has no camera: {e.reason}" for e in entries if not e.registered]
-    log.info("%d of %d photographs have a camera", len(chosen), len(photos))
-    light_field = photos.subset(chosen).with_cameras(cameras, [lens.lens for lens in lenses], problems)
-    return SfmResult(light_field, points, tuple(entries))
-
-
-def _solved_camera(image: Any, shot: Shot, known: KnownLens | None) -> tuple[KnownLens, Camera]:
-    if known is None:
-        focal, cx, cy, k = (float(v) for v in image.camera.params)
-        lens = Lens("brown", (k, 0.0, 0.0, 0.0, 0.0))
-        known = KnownLens(np.array([[focal, 0, cx], [0, focal, cy], [0, 0, 1.0]]), None if lens.is_identity else lens)
-    pose = np.asarray(image.cam_from_world().matrix())
-    return known, Camera.from_matrices(known.K, pose[:, :3], pose[:, 3], shot.width, shot.height, shot.name)
-
-
-def _points(model: SparseModel, chosen: Sequence[int], features: Sequence[Features]) -> SparsePoints:
-    """COLMAP's points in the order of their numbers."""
-    place = {index: position for position, index in enumerate(chosen)}
-    ids = sorted(model.reconstruction.point3D_ids())
-    positions = np.zeros((len(ids), 3))
-    seen: list[tuple[int, int, int]] = []
-    for row, point_id in enumerate(ids):
-        point = model.reconstruction.point3D(point_id)
-        positions[row] = point.xyz
-        track = {(e.image_id - 1, e.point2D_idx) for e in point.track.elements}
-        seen += sorted((row, index, feature) for index, feature in track if index in place)
-    rows, views, numbers = np.array(seen, np.int64).reshape(-1, 3).T
-    pixels = np.array([features[i].points[k] for i, k in zip(views, numbers, strict=True)]).reshape(-1, 2)
-    shades = np.array([features[i].colours[k] for i, k in zip(views, numbers, strict=True)], np.float64).reshape(-1, 3)
-    count = np.maximum(np.bincount(rows, minlength=len(ids)), 1)
-    sums = np.column_stack([np.bincount(rows, weights=shades[:, c], minlength=len(ids)) for c in range(3)])
-    colours = np.rint(sums / count[:, None]).astype(np.uint8)
-    where = np.array([place[int(i)] for i in views], np.int64)
-    return SparsePoints(positions, colours, np.zeros(len(ids)), rows, where, pixels)
-
-
-def _reprojection_errors(
-    points: SparsePoints, cameras: Sequence[Camera], lenses: Sequence[KnownLens]
-) -> NDArray[np.float64]:
-    """(m,) pixels between each observation and the projection of its point."""
-    errors = np.zeros(len(points.view))
-    for index, (camera, known) in enumerate(zip(cameras, lenses, strict=True)):
-        here = points.view == index
-        local = points.positions[points.point[here]] @ camera.R.T + camera.t
-        pixels = distort_to_pixels(local[:, :2] / local[:, 2:], known)
-        errors[here] = np.linalg.norm(pixels - points.pixels[here], axis=1)
-    return errors

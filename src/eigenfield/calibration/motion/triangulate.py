@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
 from eigenfield.calibration.lenses import KnownLens
 from eigenfield.calibration.motion.features import FeatureOptions, Features, extract_features, undistort_features
@@ -129,16 +128,14 @@ def fundamental_matrix(first: Camera, second: Camera) -> NDArray[np.float64]:
 def _match_views(
     features: Sequence[Features], cameras: Sequence[Camera], progress: Progress | None
 ) -> list[tuple[int, int, NDArray[np.int64]]]:
-    descriptors = [found.descriptors.astype(np.float32) for found in features]
     pairs = _pairs(cameras)
 
     def match(pair: tuple[int, int]) -> tuple[int, int, NDArray[np.int64]]:
         i, j = pair
         lines = features[i].points, features[j].points, fundamental_matrix(cameras[i], cameras[j])
-        return i, j, mutual_matches(descriptors[i], descriptors[j], lines)
+        return i, j, mutual_matches(features[i].descriptors, features[j].descriptors, lines)
 
-    with threadpool_limits(1, "blas"):
-        return tracked_map(match, pairs, "matches", progress)
+    return tracked_map(match, pairs, "matches", progress)
 
 
 def _triangulate_tracks(
