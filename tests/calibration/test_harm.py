@@ -76,6 +76,12 @@ def test_a_changed_photograph_is_named_alone(series, kind, place):
     assert words.get(kind, "") in found.reason
 
 
+def test_where_many_are_exposed_otherwise_none_is_the_exception(series):
+    capture, pictures, looks = series
+    dark = {k: look_at(Photograph.of(CHANGES["exposure, four stops"](pictures[k]), None)) for k in (1, 3)}
+    assert find_harmful(capture, {**looks, **dark}) == []
+
+
 def test_what_a_mask_hides_does_not_count(series):
     capture, pictures, looks = series
     mask = np.zeros(pictures[0].shape[:2], np.float32)

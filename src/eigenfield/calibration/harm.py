@@ -43,6 +43,7 @@ class HarmTuning:
         blurred_octaves: By which detail of some size and direction is less than that of neighbours (0.54).
         lost_octaves: The same of a photograph that shares too few points with any, against all others.
         exposure_stops: By which the brightness differs from that of neighbours (0.45).
+        exposure_max_part: Part of the photographs up to which those of another exposure are exceptions.
         quantisation: Grey levels added to detail, so that none is nothing.
         cover_side: Cells along the longer side, in which something near the lens is searched.
         cover_block: Cells of a block that is found again in a neighbour, each way.
@@ -63,6 +64,7 @@ class HarmTuning:
     blurred_octaves: float = 1.0
     lost_octaves: float = 2.0
     exposure_stops: float = 1.5
+    exposure_max_part: float = 0.25
     quantisation: float = 0.25
     cover_side: int = 64
     cover_block: int = 6
@@ -93,7 +95,7 @@ class Harm:
 
 
 @dataclass(frozen=True, eq=False)
-class Look:
+class PhotographLook:
     """What is kept of a photograph.
 
     Attributes:
@@ -118,7 +120,7 @@ class Look:
     cell_detail: NDArray[np.float32]
 
 
-def look_at(photograph: Photograph) -> Look:
+def look_at(photograph: Photograph) -> PhotographLook:
     """What `find_harmful` needs of a photograph."""
     tuning = HARM_TUNING
     codes = to_codes(photograph.pixels)
@@ -145,7 +147,7 @@ def look_at(photograph: Photograph) -> Look:
     luma = _at(around, points, size)
     contrast = np.array([[_at(each, points, size) for each in band] for band in bands]) / np.maximum(luma, 1)
     overall = np.array([band.mean(axis=(1, 2)) for band in bands]) / max(float(around.mean()), 1.0)
-    return Look(
+    return PhotographLook(
         size, points, descriptors, luma, np.log2(contrast), np.log2(overall),
         cv2.resize(small, grid, interpolation=cv2.INTER_AREA).astype(np.float32), np.log2(bands[-1].mean(axis=0)),
     )  # fmt: skip
@@ -162,7 +164,7 @@ def _detail(grey: NDArray[Any], grid: tuple[int, int]) -> NDArray[np.float32]:
     return np.stack(means) + np.float32(HARM_TUNING.quantisation)
 
 
-def find_harmful(capture: Capture, looks: Mapping[int, Look], progress: Progress | None = None) -> list[Harm]:
+def find_harmful(capture: Capture, looks: Mapping[int, PhotographLook], progress: Progress | None = None) -> list[Harm]:
     """The photographs that harm, in order.
 
     Args:
@@ -193,7 +195,9 @@ def find_harmful(capture: Capture, looks: Mapping[int, Look], progress: Progress
         return Harm(index, "apart", "shows nothing that another photograph shows: another place, or from too far aside")
 
     harms = tracked_map(judge, range(len(indices)), "photographs that harm", progress)
-    return [harm for harm in harms if harm is not None]
+    exposed = sum(harm is not None and harm.kind == "exposure" for harm in harms)
+    differ = exposed > HARM_TUNING.exposure_max_part * len(indices)  # then none of them is the exception
+    return [harm for harm in harms if harm is not None and not (differ and harm.kind == "exposure")]
 
 
 def advise(capture: Capture, progress: Progress | None = None) -> list[Harm]:
@@ -225,7 +229,9 @@ class _Match:
     there: NDArray[np.int64]
 
 
-def _find_partners(capture: Capture, looks: Mapping[int, Look], progress: Progress | None) -> dict[int, list[_Match]]:
+def _find_partners(
+    capture: Capture, looks: Mapping[int, PhotographLook], progress: Progress | None
+) -> dict[int, list[_Match]]:
     """The neighbours of each photograph that share points with it; of one without any, any other that does."""
     indices = sorted(looks)
     found: dict[int, list[_Match]] = {index: [] for index in indices}
@@ -260,7 +266,7 @@ def _near_pairs(capture: Capture, indices: Sequence[int]) -> list[tuple[int, int
     return [(indices[a], indices[b]) for a, b in sorted(pairs)]
 
 
-def _match(a: Look, b: Look) -> tuple[NDArray[np.int64], NDArray[np.int64]] | None:
+def _match(a: PhotographLook, b: PhotographLook) -> tuple[NDArray[np.int64], NDArray[np.int64]] | None:
     least = HARM_TUNING.min_matches
     if min(len(a.points), len(b.points)) < least:
         return None
@@ -274,7 +280,7 @@ def _match(a: Look, b: Look) -> tuple[NDArray[np.int64], NDArray[np.int64]] | No
 # what is wrong with a photograph
 
 
-def _compare(index: int, looks: Mapping[int, Look], partners: Sequence[_Match]) -> Harm | None:
+def _compare(index: int, looks: Mapping[int, PhotographLook], partners: Sequence[_Match]) -> Harm | None:
     """What harms of a photograph that shares points with others, if anything does."""
     a = looks[index]
     octaves, stops = [], []
@@ -303,7 +309,7 @@ def _least(values: Sequence[float]) -> float:
     return sorted(values, key=abs)[(len(values) - 1) // 2]
 
 
-def _covered(index: int, looks: Mapping[int, Look], partners: Sequence[_Match]) -> Harm | None:
+def _covered(index: int, looks: Mapping[int, PhotographLook], partners: Sequence[_Match]) -> Harm | None:
     """Something near the lens: at the border, smooth, and unlike all that neighbours show there, but for one, which
     may have it too."""
     tuning = HARM_TUNING
@@ -333,7 +339,9 @@ def _covered(index: int, looks: Mapping[int, Look], partners: Sequence[_Match]) 
     return Harm(index, "covered", f"has something near the lens: {where}")
 
 
-def _beside(a: Look, b: Look, match: _Match) -> tuple[NDArray[np.float32], NDArray[np.float32]] | None:
+def _beside(
+    a: PhotographLook, b: PhotographLook, match: _Match
+) -> tuple[NDArray[np.float32], NDArray[np.float32]] | None:
     """(rows, columns) how far each cell's block is from any block of a neighbour near where it should be, in grey
     levels, and how much more detail the neighbour has around there, in octaves; 0 and minus infinity where it does not
     reach."""
