@@ -76,10 +76,12 @@ def test_a_changed_photograph_is_named_alone(series, kind, place):
     assert words.get(kind, "") in found.reason
 
 
-def test_where_many_are_exposed_otherwise_none_is_the_exception(series):
+def test_where_many_are_exposed_otherwise_none_is_the_exception(series, caplog):
     capture, pictures, looks = series
     dark = {k: look_at(Photograph.of(CHANGES["exposure, four stops"](pictures[k]), None)) for k in (1, 3)}
     assert find_harmful(capture, {**looks, **dark}) == []
+    (line,) = caplog.messages
+    assert "5 photographs differ from their neighbours by more than 1.5 stops" in line and "--harmonise" in line
 
 
 def test_what_a_mask_hides_does_not_count(series):

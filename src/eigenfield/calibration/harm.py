@@ -6,6 +6,7 @@ beforehand, in a few seconds for fifty photographs: features at 0.1 megapixels s
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -24,6 +25,8 @@ from eigenfield.core.observations import Photograph
 from eigenfield.core.progress import Progress
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.runtime.parallel import tracked_map
+
+log = logging.getLogger("eigenfield.calibration")
 
 
 @dataclass(frozen=True)
@@ -195,9 +198,15 @@ def find_harmful(capture: Capture, looks: Mapping[int, PhotographLook], progress
         return Harm(index, "apart", "shows nothing that another photograph shows: another place, or from too far aside")
 
     harms = tracked_map(judge, range(len(indices)), "photographs that harm", progress)
-    exposed = sum(harm is not None and harm.kind == "exposure" for harm in harms)
-    differ = exposed > HARM_TUNING.exposure_max_part * len(indices)  # then none of them is the exception
-    return [harm for harm in harms if harm is not None and not (differ and harm.kind == "exposure")]
+    found = [harm for harm in harms if harm is not None]
+    exposed = sum(harm.kind == "exposure" for harm in found)
+    if exposed <= HARM_TUNING.exposure_max_part * len(indices):
+        return found
+    words = (
+        "%d of %d photographs differ from their neighbours by more than %.1f stops: fix the exposure, or encode with "
+    )
+    log.warning(words + "--fit none --harmonise affine", exposed, len(indices), HARM_TUNING.exposure_stops)
+    return [harm for harm in found if harm.kind != "exposure"]  # none of these is the exception
 
 
 def advise(capture: Capture, progress: Progress | None = None) -> list[Harm]:
