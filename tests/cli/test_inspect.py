@@ -82,7 +82,7 @@ def test_what_the_capture_is_good_for(tmp_path, inspect):
     assert found["exposure"] < 0.1 and 0.5 < found["overlap"] <= 1
     text = inspect(folder)
     assert "  parallax   neighbours are " in text and "up to about 10 px is drawn well between" in text
-    assert "  blurred    view_04.png: " in text
+    assert "  harmful    view_04.png is blurred: " in text and "--leave-out advised -o scene.glb" in text
     far = {"widest": {"photographs": ["a", "b"], "parallax": 41.2}, "overlap": 0.5, "exposure": 0.8}
     lines = "\n".join(report_lines(report | {"neighbours": found | far}))
     assert "widest: 41.2 px, between a and b; take more photographs there" in lines

@@ -266,11 +266,16 @@ def report_of(photos, code):
 )
 def test_photographs_that_may_be_a_grid_are_told_of_it(tmp_path, number, code, hint):
     shots = tuple(Shot(f"{k}.png", tmp_path / f"{k}.png", 64, 48) for k in range(number))
-    error = sfm._failure_error(
-        PhotoSet(tmp_path, shots, None, (), "folder"), report_of(PhotoSet(tmp_path, shots, None, (), "folder"), code)
-    )
+    photos = PhotoSet(tmp_path, shots, None, (), "folder")
+    error = sfm._failure_error(photos, report_of(photos, code), [])
     assert isinstance(error, CaptureError)
     assert ("--grid RxC" in str(error)) == hint
+
+
+def test_where_masks_leave_too_few_features_they_are_named(tmp_path):
+    shots = tuple(Shot(f"{k}.png", tmp_path / f"{k}.png", 64, 48, mask=tmp_path / f"{k}_mask.png") for k in range(5))
+    photos = PhotoSet(tmp_path, shots, None, (), "folder")
+    assert "look at the masks" in str(sfm._failure_error(photos, report_of(photos, "few-features"), []))
 
 
 # interrupted

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,12 +15,13 @@ from eigenfield.capture.photographs.read import read_header
 from eigenfield.capture.photoset import Capture
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError
+from eigenfield.core.observations import Photograph
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.viewplane import Grid, ViewPlane, find_grid, fit_view_plane
 from eigenfield.runtime.parallel import parallel_stream
 
+T = TypeVar("T")
 ONE_PLACE_ROUNDING = 1e-9  # of the cameras' distance from the origin
-BLURRED_MAX_RATIO = 0.25  # of a photograph's sharpness to the median of the capture's
 FOCUS_MIN_EIGENVALUE = 1e-7  # rays whose normal matrix has a smaller eigenvalue than this meet nowhere
 
 
@@ -115,25 +116,27 @@ def file_kinds(capture: Capture) -> list[tuple[str, int, bool, int]]:
     return [(*kind, count) for kind, count in sorted(kinds.items(), key=lambda item: (-item[1], item[0]))]
 
 
-def decode_all(capture: Capture, progress: Progress | None = None) -> tuple[list[CaptureError], list[int]]:
+def decode_all(
+    capture: Capture, look: Callable[[Photograph], T], progress: Progress | None = None
+) -> tuple[list[CaptureError], dict[int, T]]:
     """Decode every photograph and mask once.
 
     Args:
         capture: The photographs.
+        look: What is kept of a photograph.
         progress: Reports them.
 
     Returns:
-        What cannot be decoded or is hidden altogether, in the capture's order; and the indices of photographs that are
-        blurred, where the others are not (BLURRED_MAX_RATIO).
+        What cannot be decoded or is hidden altogether, in the capture's order; what is kept of the others, by index.
     """
 
-    def attempt(index: int) -> CaptureError | float:
+    def attempt(index: int) -> CaptureError | T:
         try:
             photograph = capture.photograph(index)
         except CaptureError as error:
             return error
         if photograph.mask is None or photograph.mask.any():
-            return _sharpness(photograph.pixels)
+            return look(photograph)
         source = capture.sources[index]
         return CaptureError(
             "mask-black",
@@ -145,15 +148,7 @@ def decode_all(capture: Capture, progress: Progress | None = None) -> tuple[list
     total = len(capture)
     outcomes = list(track(parallel_stream(attempt, range(total)), "decoding photographs", total, progress))
     damaged = [outcome for outcome in outcomes if isinstance(outcome, CaptureError)]
-    sharp = {index: outcome for index, outcome in enumerate(outcomes) if not isinstance(outcome, CaptureError)}
-    usual = float(np.median(list(sharp.values()))) if sharp else 0.0
-    return damaged, [index for index, value in sharp.items() if value < BLURRED_MAX_RATIO * usual]
-
-
-def _sharpness(pixels: NDArray[np.float32]) -> float:
-    """The mean square of the Laplacian over the variance: how much of the contrast is between neighbouring pixels."""
-    grey = pixels.mean(axis=2)
-    return float(np.square(cv2.Laplacian(grey, cv2.CV_32F)).mean() / max(float(grey.var()), 1e-6))
+    return damaged, {index: kept for index, kept in enumerate(outcomes) if not isinstance(kept, CaptureError)}
 
 
 def corners_and_centre(cameras: Sequence[Camera]) -> list[int]:

@@ -201,7 +201,7 @@ def first_names(names: list[str], most: int) -> str:
 
 def reconstruct_capture(
     capture: Path, place: dict[str, Any], work: Path, progress: Progress | None, quiet: bool,
-    check: Callable[[Capture], None] | None = None, **settings: Any,
+    choose: Callable[[Capture], Capture] | None = None, **settings: Any,
 ) -> Reconstruction:  # fmt: skip
     """Cameras and proxy of a capture, estimated where they are not given, with notes on what was found.
 
@@ -211,7 +211,7 @@ def reconstruct_capture(
         work: Folder that keeps finished stages.
         progress: Reports each stage.
         quiet: Whether nothing is noted.
-        check: Refuses the capture, if need be, before the work.
+        choose: Leaves photographs out, and refuses the capture, if need be, before the work.
         settings: Of `reconstruct`.
     """
     from eigenfield.capture import open_any
@@ -220,8 +220,8 @@ def reconstruct_capture(
 
     opened = open_any(capture, work=work / "frames", **place)
     note_all(opened.problems, quiet)
-    if check is not None:
-        check(opened)
+    if choose is not None:
+        opened = choose(opened)
     made = reconstruct(opened, work=work, progress=progress, **settings)
     note_all(made.light_field.problems[len(opened.problems) :], quiet)
     for stage, took in made.seconds.items():

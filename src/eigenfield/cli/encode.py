@@ -23,6 +23,7 @@ from eigenfield.cli.common import (
     worker_options,
 )
 from eigenfield.cli.field_options import field_options, from_fields
+from eigenfield.cli.leave_out import leave_out, leave_out_option
 from eigenfield.cli.progress import StepProgress, duration, progress_bars
 from eigenfield.encoding import EncodeOptions
 from eigenfield.encoding.target import parse_size
@@ -51,7 +52,8 @@ GROUPS = {  # of options in the help, the common ones first; what is named in no
         "workers", "cluster",
     ),
     "What the capture is": (
-        "calibration", "masks", "format", "grid", "pattern", "frame", "frames", "reference", "metres_per_unit",
+        "calibration", "masks", "format", "grid", "pattern", "frame", "frames", "without", "reference",
+        "metres_per_unit",
     ),
     "Estimated cameras and mesh": (
         "surface", "layers", "refine", "background", "primitives", "fit_spheres", "blind", "triangles",
@@ -102,6 +104,7 @@ Examples:
 )
 @click.option("--output", "-o", required=True, type=PATH, metavar="FILE", help="The .glb to write.")
 @capture_options
+@leave_out_option
 @field_options(EncodeOptions, atlas=parse_atlas, target_size=parse_target_size)
 @click.option(
     "--work",
@@ -126,6 +129,7 @@ def command(
     proxy: Path | None,
     output: Path,
     place: dict[str, Any],
+    without: str | None,
     work: Path | None,
     overwrite: bool,
     quiet: bool,
@@ -163,18 +167,20 @@ def command(
         for_maps = reached if projected else None
         if proxy is not None:
             scratch = work or (None if find_objects(output) else output.absolute().parent)
-            light_field = _open_capture(capture, place, scratch, quiet)
+            light_field = leave_out(_open_capture(capture, place, scratch, quiet), without, quiet)
             announce(light_field, options, None, progress)
             scene = encode(light_field, proxy, options, work=scratch, workers=for_maps, progress=progress)
         else:
             scratch = output.with_suffix(".work") if work is None else work
 
-            def check(opened: Capture) -> None:
+            def choose(whole: Capture) -> Capture:
+                opened = leave_out(whole, without, quiet)
                 check_selection(opened, options)
                 check_settings(opened, ReconstructionSettings.of_arguments(settings))
                 announce(opened, options, settings, progress)
+                return opened
 
-            made = reconstruct_capture(capture, place, scratch, progress, quiet, check, workers=reached, **settings)
+            made = reconstruct_capture(capture, place, scratch, progress, quiet, choose, workers=reached, **settings)
             scene = encode(
                 made.light_field, made.proxy, options, triangles=None, hold_out=made.hold_out, work=scratch,
                 workers=for_maps, progress=progress,

@@ -16,11 +16,10 @@ from eigenfield.cli.common import (
     capture_options,
     common_options,
     echo_json,
-    first_names,
     note,
 )
 from eigenfield.cli.progress import progress_bars
-from eigenfield.core.errors import EigenfieldError, OptionError
+from eigenfield.core.errors import EigenfieldError, OptionError, one_line
 from eigenfield.core.shell import shell_word
 
 if TYPE_CHECKING:
@@ -84,6 +83,7 @@ def command(
         refuse_existing(overlay, overwrite)
 
     from eigenfield.calibration import measure_neighbours
+    from eigenfield.calibration.harm import find_harmful, look_at
     from eigenfield.capture import open_any
     from eigenfield.capture.survey import decode_all
 
@@ -100,17 +100,21 @@ def command(
 
         mesh = read_mesh(proxy, opened.light_field.origin)
     with progress_bars(quiet) as progress:
-        damaged, blurred = decode_all(opened, progress)
+        damaged, looks = decode_all(opened, look_at, progress)
         broken = {error.path for error in damaged}
         sound = [i for i, one in enumerate(opened.sources) if not broken & {str(one.path), str(one.mask)}]
         pairs = measure_neighbours(opened, sound, progress)
+        harms = find_harmful(opened, looks, progress)
     refusal = _refusal(capture, place, opened, damaged, proxy)
     report = describe(opened, damaged)
     if not place["also"] and capture.exists() and not _lies_in(opened.root, capture):  # unpacked into another folder
         report["root"] = str(capture)
     report["refused"] = None if refusal is None else _error(refusal)
+    report["harmful"] = [
+        {"photograph": opened.names[harm.index], "kind": harm.kind, "reason": harm.reason} for harm in harms
+    ]
+    report["blurred"] = [opened.names[harm.index] for harm in harms if harm.kind == "blurred"]
     report["next"] = _next_commands(report, capture, {**place, "proxy": proxy})
-    report["blurred"] = [opened.names[index] for index in blurred]
     report["neighbours"] = _neighbours(opened, pairs) if pairs else None
     if mesh is not None and opened.light_field is not None:
         report["proxy"] = _proxy(mesh, opened, damaged, overlay, overwrite)
@@ -198,6 +202,7 @@ def describe(capture: Capture, damaged: list[CaptureError]) -> dict[str, Any]:
         "refused": None,
         "next": [],
         "blurred": [],
+        "harmful": [],
         "neighbours": None,
     }
 
@@ -265,7 +270,8 @@ def _next_commands(report: dict[str, Any], capture: Path, place: dict[str, Any])
     ]
     folders = [capture, *(place["also"] or ())]
     words = " ".join([*(shell_word(folder) for folder in folders), *said])
-    encode = f"eigenfield encode {words} -o scene.glb"
+    advised = " --leave-out advised" if report["harmful"] else ""
+    encode = f"eigenfield encode {words}{advised} -o scene.glb"
     return [encode] if report["views"] or place["also"] else [encode, f"eigenfield calibrate {words}"]
 
 
@@ -353,8 +359,9 @@ def report_lines(report: dict[str, Any]) -> list[str]:
         lines += _array_lines(report["array"])
     if report["neighbours"] is not None:
         lines += _neighbour_lines(report["neighbours"], MORE_VIEWS.get(report["format"], "take more photographs there"))
-    if report["blurred"]:
-        lines.append(f"  blurred    {first_names(report['blurred'], 5)}: take them again, or leave them out")
+    lines += [f"  harmful    {one_line(one['photograph'])} {one['reason']}" for one in report["harmful"]]
+    if report["harmful"]:
+        lines.append("             take them again, or leave them out: encode --leave-out advised")
     if report["proxy"] is not None:
         lines += _proxy_lines(report["proxy"])
     lines += [f"  note       {note}" for note in report["notes"]]

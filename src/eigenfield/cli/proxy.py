@@ -17,6 +17,7 @@ from eigenfield.cli.common import (
     note,
     reconstruct_capture,
 )
+from eigenfield.cli.leave_out import leave_out, leave_out_option
 from eigenfield.cli.progress import progress_bars
 
 
@@ -32,6 +33,7 @@ Examples:
 @capture_argument()
 @click.option("--output", "-o", required=True, type=PATH, metavar="FILE", help="The .glb or .ply to write.")
 @capture_options
+@leave_out_option
 @mesh_options
 @click.option(
     "--triangles", type=int, default=30_000, show_default=True, metavar="N", help="Triangles of the mesh, at most."
@@ -48,6 +50,7 @@ def command(
     capture: Path,
     output: Path,
     place: dict[str, Any],
+    without: str | None,
     work: Path | None,
     overwrite: bool,
     quiet: bool,
@@ -67,7 +70,10 @@ def command(
     refuse_existing(output, overwrite)
     work = work if work is not None else output.with_suffix(".work")
     with progress_bars(quiet) as progress:
-        made = reconstruct_capture(capture, place, work, progress, quiet, layers=1, **settings)  # a file holds none
+        made = reconstruct_capture(
+            capture, place, work, progress, quiet, lambda opened: leave_out(opened, without, quiet),
+            layers=1, **settings,  # a file holds no layers
+        )  # fmt: skip
     if made.calibration is not None:
         cameras = output.with_suffix(".cameras")
         save_calibration(made.light_field, cameras, overwrite=True)

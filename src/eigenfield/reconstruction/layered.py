@@ -165,8 +165,10 @@ def better_count(run: StageRunner, source: SheetSource, mesh: Mesh) -> int | Non
     counts, scores, opaque = _trial(run, source, mesh, gain)
     index = best_count(counts, scores)
     better = scores[index] > opaque + gain
-    words = "surface: %s, since views left out are drawn with %.2f dB by %d layers, with %.2f dB by the opaque surface"
-    log.info(words, "layers" if better else "opaque", scores[index], counts[index], opaque)
+    kind = "surface from all sides" if source.array is None else "relief"
+    tried = ", ".join(f"{count} layers {score:.2f}" for count, score in zip(counts, scores, strict=True))
+    chosen = f"{counts[index]} layers" if better else kind
+    log.info("views left out: %s %.2f dB, %s; layers must gain %.1f: %s", kind, opaque, tried, gain, chosen)
     return counts[index] if better else None
 
 

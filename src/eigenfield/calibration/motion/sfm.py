@@ -100,7 +100,7 @@ def structure_from_motion(
     )
     report = _report(part, of_part(found), matches, model)
     if model is None:
-        raise _failure_error(part, report)
+        raise _failure_error(part, report, matches)
     motion = assemble(part, of_part(features), lenses, model, report)
     if not out:
         return motion
@@ -252,19 +252,25 @@ def _failure_reason(
     )
 
 
-def _failure_error(photos: PhotoSet, report: Sequence[ViewReport]) -> CaptureError:
+def _failure_error(photos: PhotoSet, report: Sequence[ViewReport], matches: Sequence[Match]) -> CaptureError:
     code, number = Counter(entry.code for entry in report).most_common(1)[0]
     of = f"{number} of {len(report)} photographs"
+    masked = any(shot.mask is not None for shot in photos.shots)
     why, remedy = {
         "unreadable": (f"{of} cannot be read", "copy them again"),
         "few-features": (
             f"{of} have too few features (blurred, dark, masked or without texture)",
-            "take sharper photographs of a textured scene",
+            "look at the masks: white counts, black is left out" if masked
+            else "take sharper photographs of a textured scene",
         ),
         "few-matches": (f"{of} share too little with any other", "take photographs that overlap, a few degrees apart"),
     }.get(code, (f"{of} match others, but no cameras explain the matches", "give the lens with --intrinsics, or take "
                  "more photographs from places further apart"))  # fmt: skip
-    if not code.startswith(("unreadable", "few")) and _may_be_grid(photos):
+    has_matches = not code.startswith(("unreadable", "few"))
+    if has_matches and _shows_no_depth(matches):
+        why = "a turn of the camera explains what each two share, so that they show no depth"
+        remedy = "step aside between photographs, and take more than one flat thing"
+    if has_matches and _may_be_grid(photos):
         remedy = f"if the photographs are a rectified grid, say --grid RxC (rows x columns); else {remedy}"
     return CaptureError(
         "calibration-failed",
@@ -272,6 +278,14 @@ def _failure_error(photos: PhotoSet, report: Sequence[ViewReport]) -> CaptureErr
         path=photos.root,
         remedy=remedy,
     )
+
+
+def _shows_no_depth(matches: Sequence[Match]) -> bool:
+    """Whether most pairs that match do so by a homography: seen from one place, or one plane."""
+    kinds = pycolmap.TwoViewGeometryConfiguration
+    flat = {int(kind) for kind in (kinds.PLANAR, kinds.PANORAMIC, kinds.PLANAR_OR_PANORAMIC)}
+    known = [int(match.geometry.config) in flat for match in matches if match.geometry is not None]
+    return 2 * sum(known) > len(known)
 
 
 def _may_be_grid(photos: PhotoSet) -> bool:

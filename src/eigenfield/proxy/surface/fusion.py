@@ -137,7 +137,7 @@ def fuse_depth_maps(
         raise ProxyError(
             "surface-no-points",
             f"no point is confirmed by {FUSION_MIN_AGREEING_VIEWS + 1} of the {len(views)} views",
-            remedy="check the calibration (`eigenfield inspect CAPTURE`); photographs must overlap and have texture",
+            remedy="check calibration and masks (`eigenfield inspect CAPTURE`); photographs must overlap, with texture",
         )
     spacing = (2.0 ** ((stack.level[chosen] + 0.5) / 2.0)).astype(np.float32)  # the middle of each level's range
     points = OrientedPoints(mean[chosen], stack.normals[chosen], spacing)
