@@ -19,7 +19,7 @@ from eigenfield.encoding.projected.atlas import make_atlas
 from eigenfield.encoding.projected.harmonise import fit_colours, harmonised_map
 from eigenfield.encoding.projected.project import texture_map
 from eigenfield.evaluation import evaluate
-from eigenfield.gltf import encode_scene, save, validate
+from eigenfield.gltf import encode_scene, read_scene, save, validate
 from eigenfield.imaging.png import png_bytes
 from eigenfield.rendering import Renderer, ViewWeights, camera_colour, camera_weights, draw_texture
 from support import glb_surgery
@@ -126,6 +126,19 @@ def test_fewer_textures_do_where_exposures_differ(folders):
         return evaluate(scene, capture)["image"]["encoded"]["psnr"]
 
     assert figures(harmonise="gain") > figures() + 1
+
+
+def test_a_fit_to_one_exposure_takes_fewer_bytes(still):
+    capture, made = open_capture(still["affine"]), {}
+    for model in ("none", "affine"):
+        scene = ef.encode(capture, still["affine"] / "proxy.ply", textures=3, atlas=64, quality=80, harmonise=model)
+        assert scene.settings.get("harmonise", "none") == model
+        data = encode_scene(scene)
+        again = read_scene(data)
+        made[model] = len(data), evaluate(again, capture)["image"]["encoded"]["psnr"]
+        if model == "affine":
+            assert (again.appearance.colours == scene.appearance.colours).all() and again.appearance.mixed_colours
+    assert made["affine"][0] < made["none"][0] and made["affine"][1] > made["none"][1] - 0.1
 
 
 def test_held_out_cameras_have_no_colours(folders):

@@ -77,7 +77,7 @@ export async function readCameras(scene: SceneDocument, bytes: ViewBytes): Promi
     readNames(scene, bytes),
     readCalibration(scene, bytes),
     readSizes(scene, bytes),
-    readColours(scene, bytes),
+    readExposures(scene, bytes),
   ]);
   return names.map((name, i) => {
     const [fx = 0, fy = 0, skew = 0, cx = 0, cy = 0] = lenses.numbers.subarray(5 * i, 5 * i + 5);
@@ -95,7 +95,7 @@ export async function readCameras(scene: SceneDocument, bytes: ViewBytes): Promi
 }
 
 /** Gain and offset of R, G, B of all cameras; of held-out ones 1 and 0. */
-async function readColours({ colour, heldOut, views }: SceneDocument, bytes: ViewBytes): Promise<Numbers | null> {
+async function readExposures({ colour, heldOut, views }: SceneDocument, bytes: ViewBytes): Promise<Numbers | null> {
   if (!colour || "type" in colour) return colour && readNumbers(colour, views, bytes);
   const { cameras, components, values } = await colour.codec.decode(
     new Uint8Array(await bytes(colour.view)),
