@@ -28,9 +28,7 @@ log = logging.getLogger("eigenfield.fit")
 EXPOSURE_ATLAS_SIDE_TEXELS = 256  # of the maps; cells are averages over a few of their texels
 EXPOSURE_MODEL = "affine"
 EXPOSURE_MIN_GAIN_DB = 2.0  # by which the mean comes nearer to the photographs; chosen on Cube, Fountain and Temple
-EXPOSURE_MAX_LOSS_DB = (
-    1.0  # by which photographs left out may be predicted worse: without order exposures cannot be predicted
-)
+EXPOSURE_MAX_LOSS_DB = 1.0  # by which photographs left out may be predicted worse: chance, where there is no order
 
 
 def fit_exposures(
