@@ -63,7 +63,7 @@ def test_the_fit_draws_what_the_renderer_draws(scene):
             np.testing.assert_allclose(drawn.transpose(1, 2, 0), expected.image, atol=DROPPED)
             whole = np.zeros_like(drawn)
             white = np.full((camera.height, camera.width, 3), 255, np.uint8)
-            target(*footprints.of(index), white, np.eye(3, dtype=np.float32) / 255, whole)
+            target(*footprints.of(index), white, np.eye(3, 4, dtype=np.float32) / 255, whole)
             part = np.where(expected.coverage > 0.95, 1, expected.coverage)
             near = np.abs(expected.coverage - 0.95) < DROPPED
             np.testing.assert_allclose(whole[0][~near], part[~near], atol=DROPPED)

@@ -401,7 +401,7 @@ def test_a_fitted_scene_is_evaluated_without_texture_maps(fitted, run):
 
 @pytest.mark.parametrize(
     ("options", "code"),
-    [({"align": True}, "fit"), ({"uv_ssim": 0.9}, "fit"), ({"harmonise": "gain"}, "fit"), ({"fit": "magic"}, "fit"),
+    [({"align": True}, "fit"), ({"uv_ssim": 0.9}, "fit"), ({"fit": "magic"}, "fit"),
      ({"quality": 101}, "quality"), ({"preset": "huge"}, "preset"), ({"keep_maps": "maps"}, "fit"),
      ({"target": Target(size=50_000), "fit": "none"}, "target"), ({"target": Target(psnr=30), "quality": 50}, "target"),
      ({"target": Target()}, "target"), ({"target": Target(ssim=0.9, psnr=30)}, "target")],

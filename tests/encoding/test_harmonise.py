@@ -13,14 +13,15 @@ from hypothesis import strategies as st
 
 import eigenfield as ef
 from eigenfield.capture import open_capture
+from eigenfield.core.appearance import COLOUR_STEP
 from eigenfield.core.errors import FormatError, OptionError
 from eigenfield.encoding.projected.atlas import make_atlas
 from eigenfield.encoding.projected.harmonise import fit_colours, harmonised_map
 from eigenfield.encoding.projected.project import texture_map
 from eigenfield.evaluation import evaluate
-from eigenfield.gltf import encode_scene, save, validate
+from eigenfield.gltf import encode_scene, read_scene, save, validate
 from eigenfield.imaging.png import png_bytes
-from eigenfield.rendering import Renderer, camera_colour, camera_weights, draw_texture
+from eigenfield.rendering import Renderer, ViewWeights, camera_colour, camera_weights, draw_texture
 from support import glb_surgery
 from support.captures import backdrop, shaded_texture, write_capture
 from support.scenes import row_grid, tiny_scene
@@ -78,11 +79,11 @@ def test_known_colours_are_found(still, model):
     gains, offsets = scene.appearance.colours[:, 0], scene.appearance.colours[:, 1]
     known = GAINS / np.exp(np.log(GAINS).mean())
     np.testing.assert_allclose(gains, np.repeat(known[:, None], 3, axis=1), rtol=0.01)
-    np.testing.assert_allclose(np.exp(np.log(gains.astype(float)).mean(axis=0)), 1, atol=1e-6)
+    np.testing.assert_allclose(np.exp(np.log(gains.astype(float)).mean(axis=0)), 1, atol=1e-3)
     if model == "affine":
         wanted = OFFSETS / np.exp(np.log(GAINS).mean())
         np.testing.assert_allclose(offsets, np.repeat((wanted - wanted.mean())[:, None], 3, axis=1), atol=0.004)
-        np.testing.assert_allclose(offsets.mean(axis=0), 0, atol=1e-6)
+        np.testing.assert_allclose(offsets.mean(axis=0), 0, atol=1e-3)
     else:
         assert not offsets.any()
 
@@ -100,21 +101,20 @@ def test_equal_exposures_stay_as_they_are(folders):
     np.testing.assert_allclose(scene.appearance.planes[0].mean, without.appearance.planes[0].mean, atol=0.5 / 255)
 
 
-def test_captured_cameras_get_their_own_exposure_back_and_viewpoints_the_common_one(folders):
-    common = encoded(folders["equal"])
+def test_captured_cameras_get_their_own_exposure_back_and_viewpoints_a_mixture(folders):
     scene, capture = encoded(folders["gain"], harmonise="gain"), open_capture(folders["gain"])
-    level = np.exp(np.log(GAINS).mean())
     for index, name in enumerate(scene.rig.names):
         picture = ef.render(scene, camera=name)
         inside = picture.coverage > 0.999
         error = (picture.image - capture.photograph(index).pixels)[inside]
         assert np.sqrt(np.mean(error**2)) < 0.01
-    for at in ((0.0, 0.0), (-0.4, 0.7)):
-        seen, wanted = ef.render(scene, at=at).image, ef.render(common, at=at).image / level
-        assert np.sqrt(np.mean((seen - wanted) ** 2)) < 0.004
-    here = scene.rig.view_plane.coordinates(scene.rig.cameras[5].centre)[0]
-    apart = ef.render(scene, at=tuple(here)).image.mean() / ef.render(scene, camera=scene.rig.names[5]).image.mean()
-    assert apart == pytest.approx(scene.appearance.colours[5, 0].mean(), rel=0.01)
+    common = dataclasses.replace(scene, appearance=dataclasses.replace(scene.appearance, mixed_colours=False))
+    places = scene.rig.view_plane.coordinates([scene.rig.cameras[index].centre for index in (4, 5)])
+    factors = 1 / scene.appearance.colours[4:6, 0]
+    for part in (0, 0.3, 1):
+        at = tuple((1 - part) * places[0] + part * places[1])
+        seen, wanted = ef.render(scene, at=at).image, ef.render(common, at=at).image
+        np.testing.assert_allclose(seen, wanted * ((1 - part) * factors[0] + part * factors[1]), atol=2e-5)
 
 
 def test_fewer_textures_do_where_exposures_differ(folders):
@@ -128,12 +128,25 @@ def test_fewer_textures_do_where_exposures_differ(folders):
     assert figures(harmonise="gain") > figures() + 1
 
 
+def test_a_fit_to_one_exposure_takes_fewer_bytes(still):
+    capture, made = open_capture(still["affine"]), {}
+    for model in ("none", "affine"):
+        scene = ef.encode(capture, still["affine"] / "proxy.ply", textures=3, atlas=64, quality=80, harmonise=model)
+        assert scene.settings.get("harmonise", "none") == model
+        data = encode_scene(scene)
+        again = read_scene(data)
+        made[model] = len(data), evaluate(again, capture)["image"]["encoded"]["psnr"]
+        if model == "affine":
+            assert (again.appearance.colours == scene.appearance.colours).all() and again.appearance.mixed_colours
+    assert made["affine"][0] < made["none"][0] and made["affine"][1] > made["none"][1] - 0.1
+
+
 def test_held_out_cameras_have_no_colours(folders):
     scene = encoded(folders["gain"], harmonise="gain", hold_out="every:4")
     held = scene.rig.held_out
     assert held.any() and (scene.appearance.colours[held, 0] == 1).all() and not scene.appearance.colours[held, 1].any()
     np.testing.assert_allclose(
-        np.exp(np.log(scene.appearance.colours[~held, 0].astype(float)).mean(axis=0)), 1, atol=1e-6
+        np.exp(np.log(scene.appearance.colours[~held, 0].astype(float)).mean(axis=0)), 1, atol=1e-3
     )
 
 
@@ -213,24 +226,29 @@ def test_cameras_that_share_nothing_stay():
 # the file
 
 
-def coloured(channels=3):
+def coloured(channels=3, mixed=False):
     scene = tiny_scene(channels=channels, cameras=6, held_out=(4,))
     colours = np.zeros((6, 2, 3), np.float32)
     colours[:, 0] = np.linspace(0.7, 1.4, 18).reshape(6, 3)
     colours[:, 1] = np.linspace(-0.1, 0.1, 18).reshape(6, 3)
     colours[4] = [[1], [0]]
-    return dataclasses.replace(scene, appearance=dataclasses.replace(scene.appearance, colours=colours))
+    if mixed:
+        colours = np.rint(colours / np.float32(COLOUR_STEP)) * np.float32(COLOUR_STEP)
+    return dataclasses.replace(
+        scene, appearance=dataclasses.replace(scene.appearance, colours=colours, mixed_colours=mixed)
+    )
 
 
-@pytest.mark.parametrize("codec", ["png", "webp", "avif"])
-def test_colours_come_back_from_the_file(tmp_path, codec):
-    scene = coloured()
+@pytest.mark.parametrize(("codec", "mixed"), [("png", False), ("webp", True), ("avif", False)])
+def test_colours_come_back_from_the_file(tmp_path, codec, mixed):
+    scene = coloured(mixed=mixed)
     save(scene, tmp_path / "a.glb", codec=codec)
     again = ef.load(tmp_path / "a.glb")
     assert again.appearance.colours.dtype == np.float32 and (again.appearance.colours == scene.appearance.colours).all()
+    assert again.appearance.mixed_colours == mixed
     assert validate(tmp_path / "a.glb") == []
     gltf, _ = glb_surgery.split((tmp_path / "a.glb").read_bytes())
-    assert gltf["extensions"][glb_surgery.EXTENSION]["version"] == "1.1"
+    assert gltf["extensions"][glb_surgery.EXTENSION]["version"] == ("1.11" if mixed else "1.1")
 
 
 def test_a_scene_without_colours_is_written_as_before(tmp_path):
@@ -278,8 +296,24 @@ def test_too_few_colours_are_refused(tmp_path):
     refused(tmp_path, lambda gltf, extension, binary: extension["cameras"].update(colour="red"), "json-type")
 
 
-def refused(tmp_path, change, code):
-    (tmp_path / "a.glb").write_bytes(glb_surgery.changed(encode_scene(coloured(), codec="png"), change))
+def test_damaged_coded_colours_are_refused(tmp_path):
+    def shorter(gltf, extension, binary):
+        gltf["bufferViews"][extension["cameras"]["codedColour"]]["byteLength"] = 8
+
+    def others(gltf, extension, binary):
+        extension["cameras"]["codedColour"] = []
+
+    refused(tmp_path, shorter, "coded-truncated", mixed=True)
+    refused(tmp_path, others, "json-type", mixed=True)
+
+    def one_camera_less(gltf, extension, binary):
+        extension["cameras"]["heldOut"] = [4, 5]
+
+    refused(tmp_path, one_camera_less, "camera-count", mixed=True)
+
+
+def refused(tmp_path, change, code, mixed=False):
+    (tmp_path / "a.glb").write_bytes(glb_surgery.changed(encode_scene(coloured(mixed=mixed), codec="png"), change))
     with pytest.raises(FormatError) as caught:
         ef.load(tmp_path / "a.glb")
     assert caught.value.code == code
@@ -311,11 +345,19 @@ def test_the_surface_alone_is_given_its_exposure_back():
     codes = renderer.draw_uint8(scene.rig.cameras[2], row, background=behind, samples=2, colour=colour)
     np.testing.assert_array_equal(codes, own.to_uint8())
     assert camera_colour(tiny_scene(), 2) is None
+    mixed = dataclasses.replace(scene, appearance=dataclasses.replace(scene.appearance, mixed_colours=True))
+    np.testing.assert_allclose(
+        Renderer(mixed).draw(scene.rig.cameras[2], row, background=behind, samples=2).image, own.image, atol=1e-6
+    )
+    mean, plain = (
+        Renderer(one).draw(scene.rig.cameras[2], ViewWeights(), background=behind, samples=2) for one in (mixed, scene)
+    )
+    np.testing.assert_allclose(mean.image, plain.image, atol=1e-6)
 
 
 def test_the_command_line(folders, tmp_path, run):
     folder, out = folders["gain"], tmp_path / "a.glb"
-    words = ["encode", folder, "--proxy", folder / "proxy.ply", "-n", "3", "--atlas", "64", "-o", out]
+    words = ["encode", folder, "--proxy", folder / "proxy.ply", "-n", "3", "--atlas", "64", "--fit", "none", "-o", out]
     for extra in (["--harmonise"], ["--harmonise", "affine", "--overwrite"]):
         code, _, err = run(*words, "-q", *extra)
         assert code == 0, err

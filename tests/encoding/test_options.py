@@ -20,7 +20,7 @@ from eigenfield.encoding.options import PRESETS, UNKNOWN_CHOICE_TEXTS, density_f
 from eigenfield.gltf import encode_scene, save
 from support.captures import write_capture
 
-FOR_MAPS = [{"align": True}, {"uv_ssim": 0.9}, {"harmonise": "gain"}, {"keep_maps": "maps"},
+FOR_MAPS = [{"align": True}, {"uv_ssim": 0.9}, {"keep_maps": "maps"},
             {"codec": "png"}, {"max_angle": 90}]  # fmt: skip
 
 

@@ -328,7 +328,7 @@ def test_what_was_taken_from_one_sample_a_pixel_is_put_on_that(exact, tmp_path):
 
 
 def test_harmonised_scenes_have_their_own_exposure(capture):
-    scene = ef.encode(capture, capture.root / "proxy.ply", textures=2, atlas=64, harmonise="gain")
+    scene = ef.encode(capture, capture.root / "proxy.ply", textures=2, atlas=64, fit="none", harmonise="gain")
     exact = with_residual(read_scene(encode_scene(scene, quality=40)), capture, FINE)
     job = RenderJob(exact)
     drawn = job.picture(exact.rig.cameras[2], camera_weights(exact, 2), camera_colour(exact, 2))

@@ -26,7 +26,10 @@ def data():
     plain = soft_scene()
     places = np.random.default_rng(4).normal(size=(9, 2, 24)).round(6)
     names = tuple("_".join(f"{x:.6f}" for x in place.ravel()) for place in places)
-    return encode_scene(coded(replace(plain, rig=replace(plain.rig, names=names)), np.arange(9).reshape(3, 3)))
+    colours = np.tile(np.float32([[1.25], [0.125]]), (9, 1, 3))
+    appearance = replace(plain.appearance, colours=colours)
+    full = replace(plain, rig=replace(plain.rig, names=names), appearance=appearance)
+    return encode_scene(coded(full, np.arange(9).reshape(3, 3)))
 
 
 def entries(extension, path):
@@ -104,6 +107,7 @@ def raw_weights(data, where):
 def test_a_new_codec_is_an_entry_in_the_table(data, tmp_path, monkeypatch):
     """It is named in the file, with a need of its own, counted, read and written again; readers before refuse it."""
     scene, path = read_scene(data), tmp_path / "scene.glb"
+    scene = replace(scene, appearance=replace(scene.appearance, colours=None))  # which are coded as weights are
     weights = scene.appearance.planes[0].bases[0].weights
     stream = weights.shape[1].to_bytes(4, "little") + weights.astype("<f4").tobytes()
     changed = replace(scene, payloads=scene.payloads | {weights_key(weights): [Payload("weights-raw", stream)]})

@@ -150,11 +150,26 @@ def test_background_edges_and_exposure(context, loaded):
     partly = (drawn.coverage > 0) & (drawn.coverage < 1)
     assert 50 < partly.sum() < 5000
     colours = np.tile(np.array([[[1.1, 0.9, 1.2], [0.02, -0.03, 0.05]]], np.float32), (25, 1, 1))
-    harmonised = replace(loaded, appearance=replace(loaded.appearance, colours=colours))
+    appearance = replace(loaded.appearance, colours=colours, mixed_colours=False)
+    harmonised = replace(loaded, appearance=appearance)
     camera, weights = viewpoint(harmonised, camera="view_1_1")
     drawn = OpenGLRenderer(harmonised, context=context).draw(camera, weights, colour=camera_colour(harmonised, 6))
     expected = ef.render(harmonised, camera="view_1_1", samples=1)
     agree(drawn, replace(expected, image=np.clip(expected.image, 0, 1)))
+
+
+@pytest.mark.parametrize("where", [{"at": (0.37, -0.21)}, {"camera": "view_0_0"}])
+def test_exposures_are_mixed_as_the_software_renderer_does(context, loaded, where):
+    factors = np.linspace(0.8, 1.2, 75).reshape(25, 1, 3)
+    colours = np.concatenate([factors, (1 - factors) / 4], axis=1).astype(np.float32)
+    mixed = replace(loaded, appearance=replace(loaded.appearance, colours=colours))
+    camera, weights = viewpoint(mixed, **where)
+    expected = ef.render(mixed, **where, samples=1)
+    expected = replace(expected, image=np.clip(expected.image, 0, 1))
+    renderer = OpenGLRenderer(mixed, context=context)
+    agree(renderer.draw(camera, weights), expected)
+    if "at" in where:  # on the view plane all rays have the same weights
+        agree(renderer.draw(camera), expected)
 
 
 def test_pictures_of_several_sizes_one_after_the_other(context, loaded):

@@ -12,7 +12,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.proxy import Proxy, Sheets
 from eigenfield.core.scene import Scene
-from eigenfield.rendering import OpenGLRenderer, Renderer, ViewWeights, camera_colour, view_weights, viewpoint
+from eigenfield.rendering import OpenGLRenderer, Renderer, ViewWeights, view_weights, viewpoint
 from eigenfield.runtime.parallel import set_threads
 from support.composed import layered_scene
 from support.scenes import bumpy_square, tiny_scene
@@ -167,7 +167,7 @@ def test_a_harmonised_cameras_own_colours():
     colours = np.tile(np.array([[[1.1, 0.9, 1.2], [0.02, -0.03, 0.05]]], np.float32), (5, 1, 1))
     scene = replace(scene, appearance=replace(scene.appearance, colours=colours))
     camera, weights = viewpoint(scene, camera="view_01")
-    picture = Renderer(scene).draw(camera, weights, samples=1, background=GREY, colour=camera_colour(scene, 1))
+    picture = Renderer(scene).draw(camera, weights, samples=1, background=GREY)
     texture_scene = replace(scene, appearance=replace(scene.appearance, colours=None))
     plain, coverage = composited(texture_scene, weights, camera)
     surface = (plain - coverage[..., None] * colours[0, 1]) / colours[0, 0]

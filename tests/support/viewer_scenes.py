@@ -7,7 +7,8 @@ writes into FOLDER
     scene.glb           5 x 5 cameras, 6 textures of 128 x 128 as PNG: every decoder reads the same codes
     avif.glb            the same, coded as AVIF
     line.glb            five cameras on a line
-    harmonised.glb      with a gain and an offset for every camera
+    harmonised.glb      with a gain and an offset for every camera, and the common exposure between them
+    mixed.glb           the same, mixed between them
     held-out.glb        every third camera held out
     one.glb, four.glb   with that many textures, the first of scene.glb
     grey.glb            one channel, 5 textures
@@ -170,12 +171,9 @@ def write(folder: Path) -> None:
     save(plain, folder / "avif.glb", overwrite=True)
     save(scene(columns=5, rows=1), folder / "line.glb", codec="png", overwrite=True)
     save(scene(held_out=3), folder / "held-out.glb", codec="png", overwrite=True)
-    save(
-        replace(plain, appearance=replace(plain.appearance, colours=_colours(25))),
-        folder / "harmonised.glb",
-        codec="png",
-        overwrite=True,
-    )
+    for name, mixed in (("harmonised", False), ("mixed", True)):
+        coloured = replace(plain.appearance, colours=_colours(25), mixed_colours=mixed)
+        save(replace(plain, appearance=coloured), folder / f"{name}.glb", codec="png", overwrite=True)
     for name, textures in (("one", 1), ("four", 4)):
         save(scene(textures=textures), folder / f"{name}.glb", codec="png", overwrite=True)
     save(grey_scene(), folder / "grey.glb", codec="png", overwrite=True)
@@ -198,7 +196,7 @@ def write(folder: Path) -> None:
     _capture(folder / "capture", ef.load(folder / "scene.glb"))
     pictures = [*references(folder, "scene.glb"), *references(folder, "line.glb", PLACES[:2])]
     pictures += [*references(folder, "one.glb", PLACES[1:2]), *references(folder, "four.glb", PLACES[1:2])]
-    pictures += references(folder, "grey.glb", PLACES[1:2])
+    pictures += [*references(folder, "grey.glb", PLACES[1:2]), *references(folder, "mixed.glb", PLACES[1:2])]
     pictures += [*_counted_references(folder, "scene.glb"), *_free_references(folder, "scene.glb")]
     (folder / "references.json").write_text(json.dumps(pictures, indent=1), encoding="utf-8")
     weights = [{"scene": name, "places": _weights(folder / name)} for name in ("scene.glb", "line.glb", "held-out.glb")]

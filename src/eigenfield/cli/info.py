@@ -69,7 +69,7 @@ def _facts(layout: FileLayout, parts: dict[str, int]) -> dict[str, Any]:
             "encoded": cameras.encoded,
             "held_out": held_out,
             "reference": cameras.names[layout.reference],
-            "harmonised": _colour_facts(cameras.colours),
+            "harmonised": _colour_facts(cameras.colours, cameras.mixed_colours),
             "sizes": [{"size": list(size), "count": count} for size, count in sizes.most_common()],
         },
         "view_plane": {
@@ -85,12 +85,13 @@ def _facts(layout: FileLayout, parts: dict[str, int]) -> dict[str, Any]:
     }
 
 
-def _colour_facts(colours: NDArray[np.float32] | None) -> dict[str, Any] | None:
-    """Smallest and largest gain and offset of R, G and B; None where the scene is not harmonised."""
+def _colour_facts(colours: NDArray[np.float32] | None, mixed: bool) -> dict[str, Any] | None:
+    """Smallest and largest gain and offset of R, G and B, and whether views between cameras have a mixture of them;
+    None where the scene is not harmonised."""
     if colours is None:
         return None
     low, high = colours.min(axis=0).tolist(), colours.max(axis=0).tolist()
-    return {
+    return {"between": "mixed" if mixed else "common"} | {
         name: {channel: [low[i][c], high[i][c]] for c, channel in enumerate("RGB")}
         for i, name in enumerate(("gain", "offset"))
     }
@@ -153,6 +154,8 @@ def _text_lines(facts: dict[str, Any]) -> list[str]:
             )
             for title, key in (("harmonised by", "gain"), ("  plus", "offset"))
         )
+        common = cameras["harmonised"]["between"] == "common"
+        lines.append(f"  between     {'the common exposure' if common else 'exposures mixed by the view weights'}")
     lines.append(f"reference     {cameras['reference']}")
     plane = facts["view_plane"]
     shape = f"{plane['width']:g} x {plane['height']:g}" if plane["height"] else f"a line of {plane['width']:g}"

@@ -424,7 +424,7 @@ def _neighbour_lines(neighbours: dict[str, Any], remedy: str) -> list[str]:
     overlap, stops = neighbours["overlap"], neighbours["exposure"]
     shared = "" if overlap >= NEIGHBOUR_MIN_OVERLAP else ": too little, take them nearer to each other"
     lines.append(f"  overlap    neighbours show at least {overlap:.0%} of the same{shared}")
-    drift = "" if stops <= NEIGHBOUR_MAX_STOPS else ": fix the exposure, or encode with --fit none --harmonise"
+    drift = "" if stops <= NEIGHBOUR_MAX_STOPS else ": fix the exposure; `encode` takes out a gain and an offset"
     lines.append(f"  exposure   neighbours differ by at most {stops:.2f} stops{drift}")
     return lines
 

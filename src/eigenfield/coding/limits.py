@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 EXTENSION = "EIGENFIELD_eigen_textures"
-VERSION = "1.10"  # of the format without its codecs; a reader takes any 1.x
+VERSION = "1.11"  # of the format without its codecs; a reader takes any 1.x
 
 MAX_FILE = 2**32 - 1  # bytes: glTF's length is a uint32
 MAX_JSON = 64 * 2**20  # bytes of the JSON chunk

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+COLOUR_STEP = 2.0**-10  # of the gains and offsets that a file keeps of colours that are mixed
+
 
 @dataclass(frozen=True, eq=False)
 class Basis:
@@ -81,11 +83,13 @@ class Appearance:
             are drawn as they are.
         colours: (Nc, 2, 3) float32 gains and offsets of R, G, B, or None: each camera's map became gain * map + offset,
             so its own view is (drawn - offset) / gain. Gain 1 and offset 0 for held-out cameras.
+        mixed_colours: Whether a view between cameras has their exposures by its view weights, and not the common one.
     """
 
     planes: tuple[Plane, ...]
     to_rgb: NDArray[np.float32] | None = None
     colours: NDArray[np.float32] | None = None
+    mixed_colours: bool = True
 
     @property
     def atlas(self) -> tuple[int, int]:

@@ -235,7 +235,7 @@ def _drawn_by_others(
             left = residual(known, model, MEAN_WANTED)
             fit_textures(known, model, scales, left, BETWEEN_ITERATIONS, mean_only=True)
         block = principal_block(known, model, scales, len(others) - 1, (0, grid[0], 0, grid[1]), work)
-        weights = np.concatenate([block.weights, _interpolation(rig, others, left_out) @ block.weights])
+        weights = np.concatenate([block.weights, interpolation(rig, others, left_out) @ block.weights])
         model = replace(model, blocks=[replace(block, weights=weights.astype(np.float32))])
         found = residual(data, model, NOTHING_WANTED)
     at = range(len(others), len(order))
@@ -259,8 +259,14 @@ def others_around(rig: Rig, left_out: Sequence[int]) -> set[int]:
     return taken - set(left_out)
 
 
-def _interpolation(rig: Rig, others: Sequence[int], left_out: Sequence[int]) -> NDArray[np.float64]:
-    """(left out, others): what each camera left out takes of the others."""
+def interpolation(rig: Rig, others: Sequence[int], left_out: Sequence[int]) -> NDArray[np.float64]:
+    """(left out, others): what each camera left out takes of the others, all counted among the encoded ones.
+
+    Args:
+        rig: The rig.
+        others: Cameras.
+        left_out: Other cameras.
+    """
     places = rig.view_plane.coordinates([camera.centre for camera in rig.encoded_cameras])
     known, matrix = places[list(others)], np.zeros((len(left_out), len(others)))
     triangles = delaunay_triangles(known)

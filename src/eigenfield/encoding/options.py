@@ -24,7 +24,7 @@ ATLAS_MAX_SIDE_TEXELS = 16384
 DENSITY_LIMITS = 0.01, 100.0  # atlas texels per photograph pixel along one axis
 FIT_MAX_DENSITY = 1.5  # likewise, with a fit
 SUBSAMPLE_MIN_OBSERVATIONS = 50  # from which every second pixel each way is enough for weights, and for chroma
-MAP_OPTIONS = ("align", "max_angle", "uv_ssim", "harmonise", "keep_maps", "codec")  # options that a fit has no use for
+MAP_OPTIONS = ("align", "max_angle", "uv_ssim", "keep_maps", "codec")  # options that a fit has no use for
 FIT_OPTIONS = ("target", "preset", "fallback")  # options that the paper's way has no use for
 UNKNOWN_CHOICE_TEXTS = {
     "fit": "no fit is called",
@@ -113,9 +113,10 @@ class EncodeOptions(Options):
     )
     harmonise: str | None = option(
         "Take the cameras' differences of exposure and white balance out of the textures; affine fits offsets too. "
-        "Captured views are drawn with their own exposure again.",
-        choices=("gain", "affine"),
-        metavar="[gain|affine]",
+        "Views are drawn with the exposures of the cameras around them.  [default: affine where held-out photographs "
+        "say that it pays, else none; without a fit none]",
+        choices=("none", "gain", "affine"),
+        metavar="[none|gain|affine]",
         bare="gain",
     )
     metres_per_unit: float | None = option(
@@ -139,7 +140,7 @@ class EncodeOptions(Options):
     fit: str | None = option(
         "photographs: fit the textures until the drawn pictures match the photographs. none: project the photographs "
         "into the textures, as the paper does; faster, larger, less sharp. --align, --max-angle, --uv-ssim, "
-        "--harmonise, --codec and --keep-maps are about texture maps, which a fit does not make.  [default: "
+        "--codec and --keep-maps are about texture maps, which a fit does not make.  [default: "
         "photographs, unless one of these is given]",
         choices=("none", "photographs"),
     )

@@ -76,6 +76,14 @@ class CaptureViews:
         """(No,) the camera of each of `observations`, whose rows of texture maps and weights these are."""
         return self.rig.encoded[cameras_of(self.observations)]
 
+    def for_all_cameras(self, colours: NDArray[np.float32]) -> NDArray[np.float32]:
+        """(Nc, 2, C) gains and offsets of all cameras, from those of `observations`: held-out ones have 1 and 0, since
+        nothing of their photographs may be known."""
+        found = np.zeros((len(self.rig.cameras), *colours.shape[1:]), np.float32)
+        found[:, 0] = 1
+        found[self.taken_by] = colours
+        return found
+
     @property
     def observation_names(self) -> list[str]:
         """Of the cameras that took `observations`."""

@@ -106,7 +106,7 @@ class Session:
     def picture(self, index: int, samples: int | None = None) -> Picture:
         """The picture drawn from a camera.
 
-        A harmonised scene gives an encoded camera its own exposure; that of a held-out camera is unknown.
+        A harmonised scene gives an encoded camera its own exposure, and a held-out one what those around it have.
 
         Args:
             index: Of the camera.
@@ -132,9 +132,9 @@ class Session:
         values, seen = texture_map(
             self.atlas, self.scene.rig.cameras[index], photograph.pixels, photograph.mask, self.max_angle
         )
-        colour = camera_colour(self.scene, index)
-        if colour is not None:
-            values = harmonised_map(values, seen, colour)
+        colours = self.scene.appearance.colours
+        if colours is not None:
+            values = harmonised_map(values, seen, colours[index])
         if self.reference is None or index == self.scene.rig.reference:
             return values, seen
         return align_map(self.atlas, values, seen, *self.reference)

@@ -32,6 +32,7 @@ class CameraList:
         cameras: Nc of them.
         held_out: (Nc,) bool.
         colours: (Nc, 2, 3) float32 gains and offsets; None where the file has none.
+        mixed_colours: As of `Appearance`.
         payload: The stream of intrinsics and poses; None where they are plain.
     """
 
@@ -39,6 +40,7 @@ class CameraList:
     cameras: tuple[Camera, ...]
     held_out: NDArray[np.bool_]
     colours: NDArray[np.float32] | None
+    mixed_colours: bool
     payload: Payload | None
 
     @property
@@ -118,13 +120,31 @@ def read_cameras(document: Document, entry: Value) -> CameraList:
     poses, refuse = poses.reshape(count, 3, 4), partial(_refuse, entry, names)
     _check_calibration(refuse, intrinsics, poses, sizes)
     cameras = cameras_of(intrinsics, poses, sizes)
-    colours = None
-    if entry.has("colour"):
+    colours, key = None, "codedColour" if entry.has("codedColour") else "colour"
+    if key == "codedColour":
+        colours = _decode_colours(document, entry["codedColour"], held_out)
+    elif entry.has("colour"):
         colours = _table(document, entry["colour"], FLOAT, count, 6).reshape(count, 2, 3)
+    if colours is not None:
         gain, offset = colours[:, 0], colours[:, 1]
         good = (gain >= 1 / limits.MAX_GAIN) & (gain <= limits.MAX_GAIN) & (np.abs(offset) <= limits.MAX_OFFSET)
-        refuse("colour", ~good.all(axis=1), "has a gain or an offset outside their range")
-    return CameraList(tuple(names), cameras, held_out, colours, stream)
+        bad = np.flatnonzero(~good.all(axis=1))
+        if len(bad):
+            what = f"camera {quote(names[bad[0]])} has a gain or an offset outside their range"
+            entry[key].fail("camera-colour", what)
+    return CameraList(tuple(names), cameras, held_out, colours, not entry.has("colour"), stream)
+
+
+def _decode_colours(document: Document, entry: Value, held_out: NDArray[np.bool_]) -> NDArray[np.float32]:
+    """(Nc, 2, 3) from the stream of the encoded cameras' gains and offsets; 1 and 0 of the others."""
+    stream = read_stream(document, entry, "colours")
+    own = CODECS[stream.codec].decode(stream.data, entry.where)
+    if own.shape != (int((~held_out).sum()), 6):
+        entry.fail("camera-count", f"a stream of {own.shape} numbers, 6 for each encoded camera expected")
+    colours = np.zeros((len(held_out), 2, 3), np.float32)
+    colours[:, 0] = 1
+    colours[~held_out] = own.reshape(-1, 2, 3)
+    return colours
 
 
 def _read_names(document: Document, entry: Value) -> list[str]:

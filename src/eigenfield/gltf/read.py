@@ -146,7 +146,9 @@ def _scene(
     return EncodedScene(
         proxy=Proxy(mesh, sheets=None if sheets is None else sheets.value),
         rig=Rig(given.names, given.cameras, given.held_out, layout.reference, view_plane, layout.triangles),
-        appearance=Appearance(tuple(plane.value for plane in planes), layout.to_rgb, given.colours),
+        appearance=Appearance(
+            tuple(plane.value for plane in planes), layout.to_rgb, given.colours, given.mixed_colours
+        ),
         settings=layout.settings,
         scores=layout.scores,
         generator=layout.generator,

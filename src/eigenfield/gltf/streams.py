@@ -37,6 +37,7 @@ class Place:
 PLACES = {
     "mesh": Place("mesh", "mesh", "mesh-1", "mesh"),
     "cameras": Place("cameras/coded", "cameras", "cameras-1", "other", bare=True),
+    "colours": Place("cameras/codedColour", "weights", "weights-1", "other", bare=True),
     "names": Place("cameras/codedNames", "names", "names-1", "other"),
     "triangles": Place("viewPlane/codedTriangles", "triangles", "triangles-1", "other", bare=True),
     "mean": Place("planes/*/mean", "picture", None, "mean"),

@@ -303,7 +303,7 @@ def _version(scene: Scene, needs: Sequence[str], named: bool) -> str:
     """The first version of the format with all that the file uses. named: whether a stream names its codec."""
     found = {FEATURES[need] for need in needs} | {"1.7" if named else "1.0"}
     if scene.appearance.colours is not None:
-        found.add("1.1")
+        found.add("1.11" if scene.appearance.mixed_colours else "1.1")
     if scene.residual is not None:
         found |= {CODECS[scene.residual.codec].since, "1.5" if scene.residual.smooth_edges else "1.0"}
     return max(found, key=minor)

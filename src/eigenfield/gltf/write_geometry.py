@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding.codecs import encoder
+from eigenfield.core.appearance import COLOUR_STEP
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Payload
 from eigenfield.core.scene import Scene
@@ -87,7 +88,7 @@ def write_cameras(scene: Scene, buffer: Buffer, stream: Payload | None) -> dict[
     else:
         made["sizes"] = buffer.accessor(sizes.ravel(), UINT32, "SCALAR")
     if scene.appearance.colours is not None:
-        made["colour"] = buffer.accessor(scene.appearance.colours.ravel(), FLOAT, "SCALAR")
+        made |= _colours(scene.appearance.colours, scene, buffer)
     if scene.rig.held_out.any():
         made["heldOut"] = np.flatnonzero(scene.rig.held_out).tolist()
     if stream is not None:
@@ -99,6 +100,16 @@ def write_cameras(scene: Scene, buffer: Buffer, stream: Payload | None) -> dict[
         made["intrinsics"] = buffer.accessor(intrinsics.ravel(), FLOAT, "SCALAR")
         made["poses"] = buffer.accessor(poses.ravel(), FLOAT, "SCALAR")
     return _names(scene.rig.names, None if stream is None else buffer) | made
+
+
+def _colours(colours: NDArray[np.float32], scene: Scene, buffer: Buffer) -> dict[str, Any]:
+    """Gains and offsets of all cameras, or coded those of the encoded ones where views mix them."""
+    if not scene.appearance.mixed_colours:
+        return {"colour": buffer.accessor(colours.ravel(), FLOAT, "SCALAR")}
+    codec = PLACES["colours"].codec
+    assert codec is not None
+    stream, _ = encoder(codec)(colours[scene.rig.encoded].reshape(-1, 6), COLOUR_STEP)
+    return {"codedColour": write_stream(Payload(codec, stream), "colours", buffer)}
 
 
 def _names(names: Sequence[str], buffer: Buffer | None) -> dict[str, Any]:

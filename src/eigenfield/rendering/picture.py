@@ -9,10 +9,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.coding.limits import MAX_GAIN
 from eigenfield.core.errors import OptionError
 from eigenfield.core.scene import Scene
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.imaging.png import png_bytes
+from eigenfield.rendering.weights import ViewWeights
 from eigenfield.runtime.files import write_bytes
 
 # Of a pixel's samples: all, of up to 4 x 4. The coded opacity of what is opaque is a few hundredths off.
@@ -72,13 +74,42 @@ class Picture:
 
 
 def camera_colour(scene: Scene, index: int) -> NDArray[np.float32] | None:
-    """(2, 3) gain and offset that harmonised a camera; None where the scene is not harmonised.
+    """(2, 3) gain and offset of a captured camera that its view weights do not mix, else None.
 
     Args:
         scene: The scene.
         index: Of the camera.
     """
-    return None if scene.appearance.colours is None else scene.appearance.colours[index]
+    colours, mixed = scene.appearance.colours, scene.appearance.mixed_colours
+    return None if colours is None or mixed else colours[index]
+
+
+def colour_changes(scene: Scene) -> NDArray[np.float64] | None:
+    """(No, 6) what draws each observation in its camera's own exposure: the factors of R, G, B, less 1, and what is
+    added. None where views are drawn in the common exposure.
+
+    Args:
+        scene: The scene.
+    """
+    colours = scene.appearance.colours
+    if colours is None or not scene.appearance.mixed_colours:
+        return None
+    gain, offset = np.moveaxis(colours[scene.rig.encoded].astype(np.float64), 1, 0)
+    return np.tile(np.concatenate([1 / gain - 1, -offset / gain], axis=1), (len(scene.times), 1))
+
+
+def mixed_colour(changes: NDArray[np.float64] | None, weights: ViewWeights) -> NDArray[np.float32] | None:
+    """(2, 3) gain and offset of a view, which are mixed by its weights as the textures are; None for None.
+
+    Args:
+        changes: Of `colour_changes`.
+        weights: Of the view.
+    """
+    if changes is None:
+        return None
+    scale, bias = weights.blend(changes).reshape(2, 3)
+    gain = 1 / np.maximum(1 + scale, 1 / MAX_GAIN)  # weights that continue beyond a triangle may be negative
+    return np.stack([gain, -bias * gain]).astype(np.float32)
 
 
 def undo_colour(

@@ -33,7 +33,7 @@ export interface SceneDocument {
   reference: number;
   calibration: Stream<"cameras"> | { intrinsics: Accessor; poses: Accessor };
   sizes: Accessor | [number, number]; // of each photograph, or of all
-  colour: Accessor | null;
+  colour: Accessor | Stream<"weights"> | null; // a stream is of the encoded cameras, and views mix its colours
   origin: [number, number, number];
   right: [number, number, number];
   up: [number, number, number];
@@ -94,7 +94,8 @@ export function readDocument(json: Json): SceneDocument {
   const planes = readPlanes(extension, encoded, preview, accessor, viewOf);
   const colours = readColours(extension, planes);
   const colour = cameras.key("colour");
-  if (colour.exists && colours.length < 3) throw colour.wrong("needs three channels");
+  const codedColour = cameras.key("codedColour");
+  if ((colour.exists || codedColour.exists) && colours.length < 3) throw colour.wrong("needs three channels");
 
   const viewPlane = extension.key("viewPlane");
   const [triangles, codedTriangles] = [viewPlane.key("triangles"), viewPlane.key("codedTriangles")];
@@ -110,7 +111,11 @@ export function readDocument(json: Json): SceneDocument {
     reference: extension.key("reference").integer(0, count - 1),
     calibration: calibrationOf(cameras, count, accessor, viewOf),
     sizes: sizesOf(cameras, count, accessor),
-    colour: colour.exists ? accessor(colour, "SCALAR", [FLOAT], 6 * count) : null,
+    colour: codedColour.exists
+      ? streamOf("weights", codedColour, viewOf)
+      : colour.exists
+        ? accessor(colour, "SCALAR", [FLOAT], 6 * count)
+        : null,
     ...readViewPlane(viewPlane),
     triangles: codedTriangles.exists
       ? streamOf("triangles", codedTriangles, viewOf)

@@ -12,7 +12,7 @@ import {
 import { SceneError, asSceneError } from "./errors.js";
 import { medianFootprint } from "./footprint.js";
 import { Composer, type Recipe } from "./composer.js";
-import { basesOf, planeCoordinates, ranksOf, type SceneInfo, type Vector } from "./info.js";
+import { basesOf, planeCoordinates, ranksOf, type CaptureCamera, type SceneInfo, type Vector } from "./info.js";
 import { makeMaps } from "./maps.js";
 import { FILTERS, VIEWS, makeMaterial, type Filter, type SurfaceMaterial } from "./material.js";
 import type { EigenfieldOptions } from "./options.js";
@@ -57,6 +57,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
   /** What is composed has its side over this: for slow devices, while something moves. */
   coarser: 1 | 2 | 4 = 1;
   camera: number | null = null;
+  /** A camera whose exposure a view of a harmonised scene has. Without one: see `SceneInfo.mixedColours`. */
   exposure: number | null = null;
   view: keyof typeof VIEWS = "picture";
   eigen = 0;
@@ -74,6 +75,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
   private readonly textures: Textures;
   private readonly counts: number[]; // eigen textures of each basis
   private readonly composers = new Map<number, Composer>(); // by `coarser`, each when it is first asked for
+  private readonly encoded: CaptureCamera[];
   private readonly rowOf: Int32Array; // of each camera among the encoded, -1 if it is held out
   private readonly gains = new Map<number, number>();
   private readonly detail: number; // of an atlas, along a side of the photographs' pixels
@@ -95,6 +97,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     this.counts = basesOf(scene).map(({ count }) => count);
     this.filter = options.filter ?? "bicubic";
     this.weightMode = info.facesPlane ? "ray" : "eye";
+    this.encoded = info.cameras.filter((_, i) => !info.heldOut[i]);
     let row = 0;
     this.rowOf = Int32Array.from(scene.heldOut, (out) => (out ? -1 : row++));
     this.textures = new Textures(parts, geometryBytes(mesh), options);
@@ -226,6 +229,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     const weights = captured === null ? this.componentWeights(x, y) : this.cameraWeights(captured);
     const rays = captured === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(eye);
     this.setView();
+    this.setExposure(captured, [x, y]);
     const bicubic = FILTERS[this.filter];
     if (this.material.defines.BICUBIC !== bicubic) {
       this.material.defines.BICUBIC = bicubic;
@@ -277,14 +281,40 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     };
   }
 
+  /** Gives a view at a place of the view plane its exposure: a camera's own, or mixed by the weights that textures have. */
+  private setExposure(captured: number | null, place: [number, number]): void {
+    const { cameras, heldOut, mixedColours, viewPlane } = this.info;
+    const wanted = this.exposure ?? (mixedColours || this.showsErrors ? captured : null);
+    const own = wanted === null ? undefined : cameras[wanted];
+    let parts: [CaptureCamera | undefined, number][] = [[own, 1]];
+    if (mixedColours && (wanted === null || heldOut[wanted])) {
+      const at = own ? planeCoordinates(viewPlane, own.centre) : place;
+      const { camera, weight } = this.parts.weights.at(...at, this.mixing);
+      parts = [0, 1, 2, 3].map((i) => [this.encoded[camera[i] ?? 0], weight[i] ?? 0]);
+    }
+    const [scale, bias] = [
+      [1, 1, 1],
+      [0, 0, 0],
+    ];
+    for (const [one, part] of parts) {
+      if (!one?.gain || !one.offset) continue;
+      for (let i = 0; i < 3; i++) {
+        const factor = 1 / (one.gain[i] ?? 1);
+        scale[i] = (scale[i] ?? 1) + part * (factor - 1);
+        bias[i] = (bias[i] ?? 0) - part * factor * (one.offset[i] ?? 0);
+      }
+    }
+    this.material.uniforms.exposureScale.value.fromArray(scale);
+    this.material.uniforms.exposureBias.value.fromArray(bias);
+  }
+
+  private get showsErrors(): boolean {
+    return this.view === "error" && this.photograph !== null && this.camera !== null;
+  }
+
   private setView(): void {
     const { uniforms } = this.material;
-    const errors = this.view === "error" && this.photograph !== null && this.camera !== null;
-    const wanted = this.exposure ?? (errors ? this.camera : null);
-    const { gain = null, offset = null } = (wanted === null ? undefined : this.info.cameras[wanted]) ?? {};
-    const scale = (gain ?? [1, 1, 1]).map((value) => 1 / value);
-    uniforms.exposureScale.value.fromArray(scale);
-    uniforms.exposureBias.value.fromArray(scale.map((value, i) => -(offset?.[i] ?? 0) * value));
+    const errors = this.showsErrors;
     const shown = this.view === "error" && !errors ? "picture" : this.view;
     const one = this.shownEigen;
     uniforms.shown.value = VIEWS[shown === "eigen" && one >= this.loaded ? "mean" : shown];

@@ -60,6 +60,7 @@ export interface SceneInfo {
   planes: PlaneInfo[];
   vertices: number;
   triangles: number;
+  mixedColours: boolean; // a view has the exposures of the cameras around it, by its weights, and not the common one
   sheets: number; // that are drawn one over the other; 0: the mesh is one opaque surface
   facesPlane: boolean; // the cameras look across the view plane; else weights by the ray make no sense
 }
@@ -76,7 +77,7 @@ export async function readCameras(scene: SceneDocument, bytes: ViewBytes): Promi
     readNames(scene, bytes),
     readCalibration(scene, bytes),
     readSizes(scene, bytes),
-    scene.colour ? readNumbers(scene.colour, scene.views, bytes) : null,
+    readExposures(scene, bytes),
   ]);
   return names.map((name, i) => {
     const [fx = 0, fy = 0, skew = 0, cx = 0, cy = 0] = lenses.numbers.subarray(5 * i, 5 * i + 5);
@@ -91,6 +92,22 @@ export async function readCameras(scene: SceneDocument, bytes: ViewBytes): Promi
     const [gain, offset] = colour ? coloursOf([...colour.subarray(6 * i, 6 * i + 6)], scene, name) : [null, null];
     return { name, K, R, t, centre: centreOf(R, t), width, height, gain, offset };
   });
+}
+
+/** Gain and offset of R, G, B of all cameras; of held-out ones 1 and 0. */
+async function readExposures({ colour, heldOut, views }: SceneDocument, bytes: ViewBytes): Promise<Numbers | null> {
+  if (!colour || "type" in colour) return colour && readNumbers(colour, views, bytes);
+  const { cameras, components, values } = await colour.codec.decode(
+    new Uint8Array(await bytes(colour.view)),
+    colour.where,
+  );
+  if (components !== 6 || cameras !== heldOut.filter((out) => !out).length) {
+    throw damaged(colour.where, `${cameras} x ${components} colours`);
+  }
+  let row = 0;
+  return Float32Array.from(
+    heldOut.flatMap((out) => (out ? [1, 1, 1, 0, 0, 0] : [...values.subarray(6 * row, 6 * ++row)])),
+  );
 }
 
 async function readNames({ names, heldOut }: SceneDocument, bytes: ViewBytes): Promise<string[]> {
@@ -261,6 +278,7 @@ export function sceneInfo(
       bases: bases.map(({ count, size, grid }) => ({ textures: count, size, grid })),
     })),
     ...mesh,
+    mixedColours: scene.colour !== null && !("type" in scene.colour),
     sheets: scene.sheets?.faces.length ?? 0,
     facesPlane: Math.abs(dot(forward, normal)) > 0.7,
   };

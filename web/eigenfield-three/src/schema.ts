@@ -228,6 +228,8 @@ export interface CamerasJson {
   size?: [number, number];
   /** Accessor: gain of R, G, B and offset of R, G, B of each camera. */
   colour?: number;
+  /** The same of each encoded camera, coded as weights; views between the cameras mix them. */
+  codedColour?: number | CodedWeightsJson;
 }
 
 /** A stream of intrinsics and poses. */

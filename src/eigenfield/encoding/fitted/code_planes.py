@@ -66,18 +66,23 @@ class CodedBasis:
 
 
 def code_mean(
-    mean: NDArray[np.float32], step: float, coder: Coder, precision: NDArray[np.float32] | None = None
+    mean: NDArray[np.float32],
+    step: float,
+    coder: Coder,
+    precision: NDArray[np.float32] | None = None,
+    white: float = 1.0,
 ) -> tuple[NDArray[np.float32], PicturePayload]:
     """(H, W, C) float32 as its file gives it back, and the picture.
 
-    One step for all channels. A photograph's means have the codes 0..MAX_CODE for 0..1. The overshoot of a filter is
-    clipped, for codes twice as coarse need 2 to 3 % more bytes.
+    One step for all channels. A photograph's means have the codes 0..MAX_CODE for 0..white, as far as they go. The
+    overshoot of a filter is clipped, for codes twice as coarse need 2 to 3 % more bytes.
 
     Args:
         mean: (H, W, C) float32.
         step: Of the quantiser, in the values' unit, where the precision is 1.
         coder: Of the picture.
         precision: (h, w) in 0..1, how finely each place is coded; None: all alike.
+        white: Value of the brightest that a photograph shows, 1 or more.
     """
     picture: Payload | None = None
     share = np.ones((1, 1, 1), np.float32)
@@ -87,7 +92,9 @@ def code_mean(
         share = spread_precision(fineness, *mean.shape[:2])
         mean = mean * share
     if mean.shape[2] in (1, 3):
-        affine = Affine(np.full(mean.shape[2], 1 / MAX_CODE), np.zeros(mean.shape[2]))
+        top = min(white, float(mean.max()))
+        unit = 1 / MAX_CODE if top <= 1 else math.ceil(top / MAX_CODE * 1e6) / 1e6
+        affine = Affine(np.full(mean.shape[2], unit), np.zeros(mean.shape[2]))
     else:  # differences of colours, to both sides of 0
         unit = _unit(float(mean.min()), float(mean.max()))
         affine = Affine(np.full(mean.shape[2], unit), np.full(mean.shape[2], float(ZERO_CODE)))
@@ -156,6 +163,7 @@ def coded_plane(
     step: float,
     coder: Coder,
     precision: NDArray[np.float32] | None = None,
+    white: float = 1.0,
 ) -> Coded[Plane]:
     """A plane of coded bases with its mean coded, as its files give it back.
 
@@ -165,8 +173,9 @@ def coded_plane(
         step: As `code_mean`.
         coder: As `code_mean`.
         precision: As `code_mean`.
+        white: As `code_mean`.
     """
-    values, picture = code_mean(mean, step, coder, precision)
+    values, picture = code_mean(mean, step, coder, precision, white)
     payloads = Payloads.merge(coded.payloads for coded in bases) | {mean_key(values): [picture]}
     return Coded(Plane(values, tuple(coded.basis for coded in bases)), payloads)
 

@@ -15,6 +15,7 @@ from eigenfield.core.progress import Progress, begin_step
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import EncodedScene
 from eigenfield.encoding.fitted.colour import to_rgb
+from eigenfield.encoding.fitted.exposures import EXPOSURE_MODEL, fit_exposures
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data
 from eigenfield.encoding.fitted.planes import Fits, fitted_textures, open_fits
 from eigenfield.encoding.options import PRESETS, EncodeOptions, resolved_value
@@ -49,11 +50,15 @@ class FittedEncoder:
         options = self.plan.options
         coder = {"coder": "libaom"} if self.fits.patient else {}
         own = {"fit": options.fit, "fitted": {"quality": quality, **coder, "psnr": self.fits.psnr_figures()}}
+        colours = self.data.observations.colours
+        if colours is not None:
+            own["harmonise"] = options.harmonise or EXPOSURE_MODEL
         planes = self.fits.code_planes(quality, self.plan.views.grid, self.progress)
         return self.plan.scene(
             tuple(plane.value for plane in planes.values()),
             own,
             payloads=Payloads.merge(plane.payloads for plane in planes.values()),
+            colours=None if colours is None else self.plan.views.for_all_cameras(colours),
             to_rgb=to_rgb(),
         )
 
@@ -80,9 +85,11 @@ def open_encoder(
     cameras, observations = views.rig.encoded_cameras, views.observations
     asked = fitted_textures(len(observations)) if options.textures is None else options.textures
     textures, preset = component_count(asked, len(observations)), PRESETS[resolved_value(options.preset)]
-    size = plan.atlas[1], plan.atlas[0]
+    size, colours = (plan.atlas[1], plan.atlas[0]), fit_exposures(plan, work, progress)
     with (
-        open_fit_data(cameras, observations, plan.proxy, size, work, progress, views.rig.encoded_reference) as data,
+        open_fit_data(
+            cameras, observations, plan.proxy, size, work, progress, views.rig.encoded_reference, colours
+        ) as data,
         open_fits(data, plan.density, textures, preset, work, progress) as fits,
     ):
         if warn:

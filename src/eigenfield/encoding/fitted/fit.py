@@ -23,7 +23,7 @@ from eigenfield.core.payloads import Coded, Payload
 from eigenfield.core.progress import Progress
 from eigenfield.encoding.fitted.code_planes import CodedBasis, coded_plane, with_weights
 from eigenfield.encoding.fitted.coverage import fill_unseen
-from eigenfield.encoding.fitted.kernels import forward, squares_of, target
+from eigenfield.encoding.fitted.kernels import forward, squares_of
 from eigenfield.encoding.fitted.model import AtlasComposer, Block, PlaneModel, make_composer
 from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.encoding.fitted.passes import MINUS, psnr_of
@@ -244,7 +244,8 @@ def code_plane(
     left = residual(pixels.fitted, model, MEAN_WANTED, fit.composer)
     fit_textures(pixels.fitted, model, scales, left, FIT_CLOSING_ITERATIONS, mean_only=True)
     mean = np.ascontiguousarray(model.mean.transpose(1, 2, 0))
-    plane = coded_plane(mean, bases, rate.mean_step, rate.coder, precision)
+    white = pixels.every.white(model.matrix)
+    plane = coded_plane(mean, bases, rate.mean_step, rate.coder, precision, white)
     tick(last=True)
     return plane
 
@@ -264,14 +265,13 @@ def coded_psnr(fit: OpenFit, plane: Plane) -> float:
 @one_blas_thread
 def _drawn_psnr(data: FitData, model: PlaneModel, composer: AtlasComposer) -> float:
     """dB of PSNR_MAX_OBSERVATIONS photographs, evenly spread, as the renderers draw the model."""
-    mean, matrix = composer.fine_mean(model.mean), (model.matrix / np.float32(255)).astype(np.float32)
+    mean = composer.fine_mean(model.mean)
 
     def measure(index: int) -> tuple[float, float]:
-        footprint, image, texture = data.footprint(index), data.blank(index, model.channels), mean
+        footprint, image, texture = data.footprint(index), data.target(index, model.matrix), mean
         if any(block.count for block in model.blocks):
             texture = np.zeros_like(mean)
             composer.grid.up(model.sums(slice(index, index + 1))[0], texture, mean)
-        target(*footprint, data.observations.codes_of(index), matrix, image)
         forward(*footprint, data.size, texture, MINUS, image)
         return squares_of(footprint[0], image, data.observations.mask(index))
 

@@ -78,8 +78,8 @@ def share_of(count, shares, at):
 
 @kernel()
 def target(counts, coordinates, shares, codes, matrix, image):
-    """image (C, h, w) = matrix (C, 3) times the codes (h, w, 3) uint8, and times the part of a pixel that shows the
-    surface: what `forward` is to draw."""
+    """image (C, h, w) = matrix (C, 4) times the codes (h, w, 3) uint8 and 1, and times the part of a pixel that shows
+    the surface: what `forward` is to draw."""
     at = 0
     for row in range(counts.shape[0]):
         for pixel in range(counts.shape[1]):
@@ -95,6 +95,7 @@ def target(counts, coordinates, shares, codes, matrix, image):
                         matrix[k, 0] * np.float32(codes[row, pixel, 0])
                         + matrix[k, 1] * np.float32(codes[row, pixel, 1])
                         + matrix[k, 2] * np.float32(codes[row, pixel, 2])
+                        + matrix[k, 3]
                     )
                 image[k, row, pixel] = value
 

@@ -1,5 +1,7 @@
 """The photographs that a fit is held against: decoded once, beside the footprints of their cameras."""
 
+# mypy: disable-error-code="no-untyped-call"
+
 from __future__ import annotations
 
 import contextlib
@@ -23,10 +25,13 @@ from eigenfield.encoding.fitted.footprints import (
     sample_corner,
     subsampled_footprints,
 )
+from eigenfield.encoding.fitted.kernels import target
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.rendering.software.drawing import make_surface, median_footprint
 from eigenfield.runtime.files import scratch_array
 from eigenfield.runtime.parallel import tracked_map
+
+MAX_WEIGHT_RATIO = 4.0  # of one photograph's pixels to the median's
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,9 +43,12 @@ class DecodedObservations:
         shapes: (h, w) of each observation.
         codes: (pixels of all, 3) uint8, R, G, B, observation by observation.
         offsets: (No + 1,) where the pixels of each observation begin.
-        masks: (pixels of all,) uint8, 255 where a pixel counts, 0 where not; None: all count.
+        masks: (pixels of all,) uint8, 0 where a pixel does not count, else what it counts for, 255 for whole; None:
+            all count.
         robust: (pixels of all,) uint8, 255 times mask times robust (IRLS) weight, which `render_and_backproject`
             updates; None: the masks alone count.
+        colours: (No, 2, 3) float32 gains and offsets of R, G, B, by which what is fitted to are the photographs in a
+            common exposure; None: the photographs as they are.
     """
 
     cameras: NDArray[np.int64]
@@ -49,6 +57,7 @@ class DecodedObservations:
     offsets: NDArray[np.int64]
     masks: NDArray[np.uint8] | None = None
     robust: NDArray[np.uint8] | None = None
+    colours: NDArray[np.float32] | None = None
 
     def __len__(self) -> int:
         return len(self.shapes)
@@ -61,7 +70,7 @@ class DecodedObservations:
         return self._part(self.codes, index)
 
     def mask(self, index: int) -> NDArray[np.uint8]:
-        """(h, w) 255 where the pixels of an observation count, or (0, 0) where all do."""
+        """(h, w) `masks` of an observation, or (0, 0) where all count."""
         return np.zeros((0, 0), np.uint8) if self.masks is None else self._part(self.masks, index)[..., 0]
 
     def weights(self, index: int) -> NDArray[np.uint8]:
@@ -96,9 +105,31 @@ class FitData:
         """(h, w) counts, (n, 2) texel coordinates and (n,) or (0,) shares of the camera of an observation."""
         return self.footprints.of(self.observations.camera_of(index))
 
+    def white(self, matrix: NDArray[np.float32]) -> float:
+        """What white of the darkest photograph is in the common exposure, in the channel of most; 1 without colours.
+
+        Args:
+            matrix: (C, 3) from R, G, B.
+        """
+        colours = self.observations.colours
+        return 1.0 if colours is None else max(1.0, float((colours.sum(axis=1) @ matrix.T).max()))
+
     def blank(self, index: int, channels: int) -> NDArray[np.float32]:
         """(channels, h, w) zeros, as large as an observation."""
         return np.zeros((channels, *self.observations.shapes[index]), np.float32)
+
+    def target(self, index: int, matrix: NDArray[np.float32]) -> NDArray[np.float32]:
+        """(C, h, w): what is to be drawn of an observation, in the common exposure.
+
+        Args:
+            index: Of the observation.
+            matrix: (C, 3) from R, G, B.
+        """
+        image, colours = self.blank(index, len(matrix)), self.observations.colours
+        gain, offset = (np.float32(1), np.zeros(3, np.float32)) if colours is None else colours[index]
+        affine = np.concatenate([matrix * gain / np.float32(255), (matrix @ offset)[:, None]], axis=1)
+        target(*self.footprint(index), self.observations.codes_of(index), affine.astype(np.float32), image)
+        return image
 
 
 @contextlib.contextmanager
@@ -110,6 +141,7 @@ def open_fit_data(
     work: Path | None = None,
     progress: Progress | None = None,
     reference: int = 0,
+    colours: NDArray[np.float32] | None = None,
 ) -> Iterator[FitData]:
     """Decode every photograph once, and rasterise the mesh in each camera, into scratch files of 4 bytes a pixel of the
     photographs and about 9 a pixel of the cameras: memory does not grow with their number.
@@ -122,12 +154,13 @@ def open_fit_data(
         work: Folder for the scratch files.
         progress: Reports the photographs that are decoded.
         reference: Index of the scene's reference camera in `cameras`.
+        colours: As of `DecodedObservations`; errors then count as in the photographs' own exposures.
 
     Raises:
         CaptureError: A photograph cannot be read.
         OutputError: `disk-full`.
     """
-    with _open_observations(cameras, observations, work, progress) as decoded:
+    with _open_observations(cameras, observations, colours, work, progress) as decoded:
         surface = make_surface(proxy.mesh, *atlas)
         detail = median_footprint(surface, cameras[reference])
         with open_footprints(surface, cameras, detail, proxy.sheets, work) as footprints:
@@ -136,11 +169,15 @@ def open_fit_data(
 
 @contextlib.contextmanager
 def _open_observations(
-    cameras: Sequence[Camera], observations: Observations, work: Path | None, progress: Progress | None
+    cameras: Sequence[Camera],
+    observations: Observations,
+    colours: NDArray[np.float32] | None,
+    work: Path | None,
+    progress: Progress | None,
 ) -> Iterator[DecodedObservations]:
     by, total = cameras_of(observations), len(observations)
     shapes = tuple((cameras[camera].height, cameras[camera].width) for camera in by)
-    offsets = offsets_of([h * w for h, w in shapes])
+    offsets, whole = offsets_of([h * w for h, w in shapes]), _whole_weights(total, colours)
     with (
         scratch_array((int(offsets[-1]), 3), np.uint8, work) as codes,
         scratch_array((int(offsets[-1]),), np.uint8, work) as masks,
@@ -150,11 +187,22 @@ def _open_observations(
             photograph = observations.photograph(index)
             mask, part = photograph.mask, slice(offsets[index], offsets[index + 1])
             codes[part] = to_codes(photograph.pixels).reshape(-1, 3)
-            masks[part] = 255 if mask is None else np.where(mask > 0.5, 255, 0).reshape(-1)
+            masks[part] = whole[index] if mask is None else np.where(mask > 0.5, whole[index], 0).reshape(-1)
             return mask is not None
 
         masked = tracked_map(put, range(total), "photographs", progress)
-        yield DecodedObservations(by, shapes, codes, offsets, masks if any(masked) else None)
+        few = any(masked) or bool((whole < 255).any())
+        yield DecodedObservations(by, shapes, codes, offsets, masks if few else None, colours=colours)
+
+
+def _whole_weights(count: int, colours: NDArray[np.float32] | None) -> NDArray[np.uint8]:
+    """(No,) what a pixel of each observation counts for at most, 255 for whole: an error in the common exposure is
+    1 / gain of it in the photograph's own. The brightest counts whole, or those MAX_WEIGHT_RATIO above the median."""
+    if colours is None:
+        return np.full(count, 255, np.uint8)
+    squares = (1 / np.square(colours[:, 0].astype(np.float64))).mean(axis=1)
+    most = min(squares.max(), MAX_WEIGHT_RATIO * float(np.median(squares)))
+    return np.rint(255 * np.clip(squares / most, 1 / 255, 1)).astype(np.uint8)
 
 
 @contextlib.contextmanager
@@ -200,7 +248,8 @@ def open_subsampled(data: FitData, step: int, work: Path | None = None) -> Itera
                 if given.masks is not None:
                     masks[part] = given.mask(index)[taken].reshape(-1)
             few = None if given.masks is None else masks
-            yield FitData(DecodedObservations(given.cameras, shapes, codes, offsets, few), footprints)
+            made = replace(given, shapes=shapes, codes=codes, offsets=offsets, masks=few, robust=None)
+            yield FitData(made, footprints)
 
 
 @contextlib.contextmanager

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.encoding.fitted.footprints import Footprint
-from eigenfield.encoding.fitted.kernels import adjoint, forward, robust_weights, squares_of, target
+from eigenfield.encoding.fitted.kernels import adjoint, forward, robust_weights, squares_of
 from eigenfield.encoding.fitted.model import AtlasComposer, PlaneModel, sum_up
 from eigenfield.encoding.fitted.normal_kernels import multiply, multiply_both
 from eigenfield.encoding.fitted.observations import FitData
@@ -86,7 +86,7 @@ def render_and_backproject(
     squares, pixels = np.zeros(len(data)), np.zeros(len(data))
     coarse = any(block.count for block in blocks)
     for_coarse = coarse and (for_textures or for_weights)
-    matrix, sign = (model.matrix / np.float32(255)).astype(np.float32), MINUS if photographs else PLUS
+    sign = MINUS if photographs else PLUS
     fine_mean = composer.fine_mean(mean) if composer is not None and mean is not None else None
     # What is drawn goes back to where it came from, and nearly every pixel shows a single point
     symmetric = not photographs and composer is None and not len(data.footprints.shares)
@@ -119,9 +119,7 @@ def render_and_backproject(
                 if symmetric:
                     _multiply(footprint, size, weight, mean, None if sums is None else sums[at], added, back[at])
                     continue
-                image = data.blank(index, model.channels)
-                if photographs:
-                    target(*footprint, observations.codes_of(index), matrix, image)
+                image = data.target(index, model.matrix) if photographs else data.blank(index, model.channels)
                 if composer is not None and fine_mean is not None:
                     texture = fine_mean
                     if sums is not None:

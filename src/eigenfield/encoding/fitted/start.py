@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.encoding.fitted.kernels import adjoint, forward, target
+from eigenfield.encoding.fitted.kernels import adjoint, forward
 from eigenfield.encoding.fitted.model import Block, PlaneModel, Rectangle
 from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.encoding.fitted.passes import MINUS, PASS_TASKS
@@ -88,9 +88,7 @@ def residual_energy(data: FitData, model: PlaneModel) -> tuple[NDArray[np.float3
 
 def residual_image(data: FitData, model: PlaneModel, index: int) -> NDArray[np.float32]:
     """(C, h, w): what is left of a photograph."""
-    footprint, image = data.footprint(index), data.blank(index, model.channels)
-    matrix = (model.matrix / np.float32(255)).astype(np.float32)
-    target(*footprint, data.observations.codes_of(index), matrix, image)
+    footprint, image = data.footprint(index), data.target(index, model.matrix)
     forward(*footprint, data.size, model.mean, MINUS, image)
     if any(block.count for block in model.blocks):
         forward(*footprint, data.size, model.sums(slice(index, index + 1))[0], MINUS, image)

@@ -37,7 +37,7 @@ from eigenfield.core.progress import Progress
 from eigenfield.core.proxy import Proxy
 from eigenfield.encoding.fitted.colour import split_matrix
 from eigenfield.encoding.fitted.fit import FIT_MEAN_ITERATIONS, fit_mean
-from eigenfield.encoding.fitted.kernels import adjoint, forward, target
+from eigenfield.encoding.fitted.kernels import adjoint, forward
 from eigenfield.encoding.fitted.model import PlaneModel
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_on_proxy, open_subsampled
 from eigenfield.encoding.fitted.passes import MINUS, psnr_of
@@ -243,11 +243,9 @@ def _step_equations(
     points, steps = movable.spread @ places, movable.spread @ movable.lines
     slopes = np.stack([np.gradient(mean, axis=1)[covered], np.gradient(mean, axis=0)[covered]], axis=1)
     tangents, faces = _tangents(mesh, movable.lattice, movable.shape), movable.owners[covered]
-    matrix = (model.matrix / np.float32(255)).astype(np.float32)
 
     def backproject(index: int) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
-        footprint, weight, image = data.footprint(index), observations.weights(index), data.blank(index, 1)
-        target(*footprint, observations.codes_of(index), matrix, image)
+        footprint, weight, image = data.footprint(index), observations.weights(index), data.target(index, model.matrix)
         forward(*footprint, data.size, model.mean, MINUS, image)
         asked, seen, errors = (np.zeros_like(model.mean) for _ in range(3))
         adjoint(*footprint, data.size, image, weight, asked)

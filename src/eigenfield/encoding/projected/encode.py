@@ -23,7 +23,7 @@ from eigenfield.encoding.projected.mean import Mean, mean_map
 from eigenfield.encoding.projected.project import RESAMPLING, TextureMaps, texture_maps
 from eigenfield.encoding.projected.spread import Spreader, make_spreader
 from eigenfield.encoding.projected.uv_measure import smallest_count
-from eigenfield.encoding.views import CaptureViews, nothing_seen_error
+from eigenfield.encoding.views import nothing_seen_error
 from eigenfield.imaging.png import png_bytes
 from eigenfield.runtime.files import output_errors, write_bytes
 from eigenfield.runtime.parallel import tracked_map
@@ -56,9 +56,9 @@ def encode_projected(
     if workers is not None:
         made = maps_on_workers(workers, *given, work, max_angle, progress)
     with texture_maps(*given, max_angle=max_angle, made=made, work=work, progress=progress) as maps:
-        if options.harmonise is not None:
+        if options.harmonise not in (None, "none"):
             own["harmonise"] = options.harmonise
-            colours = _for_all_cameras(harmonise_maps(maps, options.harmonise, progress), views)
+            colours = views.for_all_cameras(harmonise_maps(maps, options.harmonise, progress))
         if options.align:
             reference = views.taken_by.tolist().index(views.rig.reference)
             align_maps(maps, reference, progress)
@@ -96,14 +96,6 @@ def _basis_of(
         pictures[index] = spreader(compact[index])
     ones, zeros = np.ones((count, maps.channels), np.float32), np.zeros((count, maps.channels), np.float32)
     return Basis(pictures, ones, zeros, weights)
-
-
-def _for_all_cameras(fitted: NDArray[np.float32], views: CaptureViews) -> NDArray[np.float32]:
-    """(Nc, 2, 3) gains and offsets of all cameras: of a held-out one nothing may be known, so it has 1 and 0."""
-    colours = np.zeros((len(views.rig.cameras), 2, 3), np.float32)
-    colours[:, 0] = 1
-    colours[views.taken_by] = fitted
-    return colours
 
 
 def write_maps(

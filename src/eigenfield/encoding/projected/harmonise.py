@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from eigenfield.core.appearance import COLOUR_STEP
 from eigenfield.core.progress import Progress
 from eigenfield.encoding.projected.project import TextureMaps
 from eigenfield.runtime.parallel import parallel_map, tracked_map
@@ -78,6 +79,36 @@ class HarmoniseTuning:
 HARMONISE_TUNING = HarmoniseTuning()
 
 
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """What observations show of the same parts of the surface.
+
+    Attributes:
+        values: (No, m, C) averages over square cells of the atlas.
+        weights: (No, m, C) how much each counts: the part of the cell that charts cover where the camera sees the cell
+            and no texel of it is at an end of the range, else 0.
+        blocks: (m,) the block of the surface in which each cell lies.
+    """
+
+    values: Numbers
+    weights: Numbers
+    blocks: NDArray[np.int64]
+
+    def fit(self, model: str) -> NDArray[np.float32]:
+        """(No, 2, C) gains and offsets of `fit_colours`, channel by channel, as a file keeps them."""
+        channels = range(self.values.shape[2])
+        with threadpool_limits(1, "blas"):
+            fits = parallel_map(
+                lambda c: fit_colours(self.values[..., c], self.weights[..., c], self.blocks, model), channels
+            )
+        return (np.rint(np.stack(fits, axis=2) / COLOUR_STEP) * COLOUR_STEP).astype(np.float32)
+
+    @property
+    def sharing(self) -> list[NDArray[np.bool_]]:
+        """(No,) for each channel: which observations have enough in common with others."""
+        return [_sharing(self.weights[..., c]) for c in range(self.values.shape[2])]
+
+
 def harmonise_maps(maps: TextureMaps, model: str = "gain", progress: Progress | None = None) -> NDArray[np.float32]:
     """Fit the cameras' colours to their common mean and change all maps in place; the values are not cut to 0..1.
 
@@ -92,12 +123,9 @@ def harmonise_maps(maps: TextureMaps, model: str = "gain", progress: Progress | 
         (No, 2, C) float32, gains then offsets. In each channel the gains have the geometric mean 1 and the offsets the
         mean 0 over the cameras that have something in common with others; the rest keep (1, 0), with a warning.
     """
-    values, weights, blocks = _cells(maps, progress)
-    channels = range(maps.channels)
-    with threadpool_limits(1, "blas"):
-        fits = parallel_map(lambda c: fit_colours(values[..., c], weights[..., c], blocks, model), channels)
-    colours = np.stack(fits, axis=2).astype(np.float32)
-    left = maps.count - int(np.any([_sharing(weights[..., c]) for c in channels], axis=0).sum())
+    cells = average_cells(maps, progress)
+    colours = cells.fit(model)
+    left = maps.count - int(np.any(cells.sharing, axis=0).sum())
     if left:
         log.warning("%d of %d cameras share too little with others: their colours stay", left, maps.count)
     gains = colours[:, 0]
@@ -236,12 +264,14 @@ def _blocks(positions: Numbers) -> NDArray[np.int64]:
     return np.asarray(quarter[:, 0] * HARMONISE_TUNING.blocks_per_axis + quarter[:, 1], np.int64)
 
 
-def _cells(maps: TextureMaps, progress: Progress | None) -> tuple[Numbers, Numbers, NDArray[np.int64]]:
-    """(No, m, C) averages over square cells of the atlas and (No, m, C) how much each counts: the part of the cell that
-    charts cover where the camera sees the cell and no texel of it is at an end of the range, else 0. (m,) the block of
-    the surface in which the cell lies.
+def average_cells(maps: TextureMaps, progress: Progress | None = None) -> Cells:
+    """The cells of texture maps.
 
     Averages, since single texels differ from camera to camera by what calibration and proxy are off.
+
+    Args:
+        maps: Of all observations.
+        progress: Reports each.
     """
     atlas = maps.atlas
     most = min(HARMONISE_TUNING.max_cells, max(HARMONISE_TUNING.max_numbers // maps.count, 64))
@@ -266,4 +296,4 @@ def _cells(maps: TextureMaps, progress: Progress | None) -> tuple[Numbers, Numbe
 
     tracked_map(average, range(maps.count), "colours", progress)
     place = np.stack([np.bincount(cell, atlas.position[:, axis], len(texels)) for axis in range(3)], axis=1)
-    return values, weights, _blocks(place / texels[:, None])
+    return Cells(values, weights, _blocks(place / texels[:, None]))

@@ -14,10 +14,10 @@ from eigenfield.core.proxy import Sheets
 from eigenfield.core.scene import Scene
 from eigenfield.rendering.checks import TEXTURE_FILTERS, check_filter, check_textures
 from eigenfield.rendering.opengl.composer import GLSL_HEAD, Composer, set_uniforms, shader
-from eigenfield.rendering.picture import Picture
+from eigenfield.rendering.picture import Picture, colour_changes, mixed_colour
 from eigenfield.rendering.software.drawing import RENDER_ONE_SAMPLE_PX, make_surface, median_footprint
 from eigenfield.rendering.software.renderer import BLACK, background_of
-from eigenfield.rendering.weights import ViewWeights
+from eigenfield.rendering.weights import ViewWeights, view_weights
 
 OPENGL_VERSION = 330  # OpenGL 3.3: texture arrays, and GLSL that reads as WebGL2's does
 
@@ -79,6 +79,8 @@ class OpenGLRenderer:
         """
         check_filter(filter)
         self._scene = scene
+        self._weights = weights
+        self._changes = colour_changes(scene)
         self._composer: Composer | None = None
         self._multisample = multisample
         self._dtype = "f1" if scene.proxy.sheets is None else "f2"  # 8 bits are too few to blend sheets in
@@ -171,6 +173,8 @@ class OpenGLRenderer:
         largest = max((basis.count for plane in self._scene.appearance.planes for basis in plane.bases), default=0)
         self._composer.compose(largest if textures is None else min(textures, largest), weights, camera.centre)
         drawn, resolved, alone = self._frames(camera.width, camera.height)
+        if colour is None:
+            colour = self._mixed_colour(camera, weights)
         gain, offset = (np.ones(3), np.zeros(3)) if colour is None else np.asarray(colour, np.float64)
         clip = _clip_matrix(camera, self._middle, self._radius)
         set_uniforms(self._program, toClip=clip.T, exposureScale=1 / gain, exposureBias=-offset / gain)
@@ -185,6 +189,13 @@ class OpenGLRenderer:
         if resolved is not drawn:
             self.context.copy_framebuffer(resolved, drawn)
         return resolved
+
+    def _mixed_colour(self, camera: Camera, weights: ViewWeights | None) -> NDArray[np.float32] | None:
+        """The exposure of a view; where points look up weights of their own, that of the camera's place."""
+        if weights is None and self._changes is not None:
+            x, y = self._scene.rig.view_plane.coordinates(camera.centre)[0]
+            weights = view_weights(self._scene, (float(x), float(y)), self._weights)
+        return None if weights is None else mixed_colour(self._changes, weights)
 
     def _draw_sheets(self, drawn: Any, alone: Any, sheets: Sheets) -> None:
         """Draw sheets over `drawn`, each into `alone` first."""

@@ -18,7 +18,7 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.core.scene import Scene
 from eigenfield.rendering.checks import check_filter, check_textures
 from eigenfield.rendering.novel import novel_camera
-from eigenfield.rendering.picture import Picture, camera_colour, undo_colour
+from eigenfield.rendering.picture import Picture, camera_colour, colour_changes, mixed_colour, undo_colour
 from eigenfield.rendering.software import drawing
 from eigenfield.rendering.software.composite import compose_scene, make_buffers, make_composite
 from eigenfield.rendering.software.sheets import make_stack, set_up_sheets, shade_sheets
@@ -59,6 +59,7 @@ class Renderer:
             scene: The scene.
         """
         self.channels = scene.appearance.channels
+        self._changes = colour_changes(scene)
         self._surface = drawing.make_surface(scene.proxy.mesh, *scene.appearance.atlas)
         self._detail = drawing.median_footprint(self._surface, scene.rig.cameras[scene.rig.reference])
         sheets, used = scene.proxy.sheets, self._surface.used
@@ -91,12 +92,13 @@ class Renderer:
             samples: k of k x k samples a pixel, 1 to 16. Default: one, but four at edges (decision 24), or more in a
                 picture smaller than the photographs.
             colour: (2, 3) gain and offset of R, G, B that harmonised a captured camera (`camera_colour`): the surface
-                gets that camera's own exposure. Default: the scene's common exposure.
+                gets that camera's own exposure. Default: what the weights mix, or the scene's common exposure.
 
         Raises:
             OptionError: `filter`, `samples`, `textures`, `background`.
         """
         image, coverage = self._draw(camera, weights, filter, background, textures, samples, np.float32)
+        colour = mixed_colour(self._changes, weights) if colour is None else colour
         if colour is not None:
             image = undo_colour(image, coverage, background_of(background, self.channels), colour)
         return Picture(image, coverage)
@@ -112,7 +114,7 @@ class Renderer:
         samples: int | None = None,
         colour: NDArray[np.float32] | None = None,
     ) -> NDArray[np.uint8]:
-        """(H, W, C) uint8: `draw(...).to_uint8()`. Without a `colour` no picture of floats is made.
+        """(H, W, C) uint8: `draw(...).to_uint8()`. Without colours no picture of floats is made.
 
         Args:
             camera: As of `draw`.
@@ -126,7 +128,7 @@ class Renderer:
         Raises:
             OptionError: As `draw`.
         """
-        if colour is not None:
+        if colour is not None or self._changes is not None:
             options: dict[str, Any] = {"background": background, "textures": textures, "samples": samples}
             return self.draw(camera, weights, filter=filter, colour=colour, **options).to_uint8()
         return self._draw(camera, weights, filter, background, textures, samples, np.uint8)[0]
@@ -272,8 +274,8 @@ def render(
 ) -> Picture:
     """Draw a view; the reference camera's if neither `at` nor `camera` is given.
 
-    In a harmonised scene a captured camera's picture has that camera's own exposure, a viewpoint's the common one. May
-    be called from several threads.
+    In a harmonised scene a captured camera's picture has that camera's own exposure, and a viewpoint's is mixed of
+    those around it by the same weights as the textures. May be called from several threads.
 
     Args:
         scene: The scene.
@@ -336,7 +338,7 @@ def viewpoint(
 def viewpoint_colour(
     scene: Scene, *, at: tuple[float, float] | None = None, camera: str | None = None
 ) -> NDArray[np.float32] | None:
-    """The `colour` of `Renderer.draw` for a view: a captured camera's own, None for a place.
+    """The `colour` of `Renderer.draw` for a view: that of `camera_colour` for a captured camera, None for a place.
 
     Args:
         scene: The scene.
