@@ -1733,12 +1733,12 @@ function ci(e) {
 function li(e) {
 	let t = new K(e, ""), n = t.key("extensions").key(xe), r = fi(n), i = Mr(t), a = Pr(t, i), o = Nr(i);
 	pi(t);
-	let s = gi(t, o), c = n.key("cameras"), { count: l, names: u } = _i(c, o), d = bi(c, l), f = d.filter((e) => !e).length, p = Vr(n, f, s, a, o), m = Hr(n, p), h = c.key("colour");
-	if (h.exists && m.length < 3) throw h.wrong("needs three channels");
-	let g = n.key("viewPlane"), [_, v] = [g.key("triangles"), g.key("codedTriangles")], y = n.key("generator"), b = n.key("mesh");
+	let s = gi(t, o), c = n.key("cameras"), { count: l, names: u } = _i(c, o), d = bi(c, l), f = d.filter((e) => !e).length, p = Vr(n, f, s, a, o), m = Hr(n, p), h = c.key("colour"), g = c.key("codedColour");
+	if ((h.exists || g.exists) && m.length < 3) throw h.wrong("needs three channels");
+	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), x = n.key("mesh");
 	return {
 		version: r,
-		generator: y.exists ? y.text(R) : "",
+		generator: b.exists ? b.text(R) : "",
 		planes: p,
 		colours: m,
 		names: u,
@@ -1746,15 +1746,15 @@ function li(e) {
 		reference: n.key("reference").integer(0, l - 1),
 		calibration: xi(c, l, a, o),
 		sizes: Si(c, l, a),
-		colour: h.exists ? a(h, "SCALAR", [q], 6 * l) : null,
-		...Ci(g),
-		triangles: v.exists ? Fr("triangles", v, o) : _.exists ? hi(a(_, "SCALAR", [Dr, Or], null), 2 * L) : null,
+		colour: g.exists ? Fr("weights", g, o) : h.exists ? a(h, "SCALAR", [q], 6 * l) : null,
+		...Ci(_),
+		triangles: y.exists ? Fr("triangles", y, o) : v.exists ? hi(a(v, "SCALAR", [Dr, Or], null), 2 * L) : null,
 		settings: wi(n.key("settings")),
 		scores: wi(n.key("scores")),
 		views: i,
-		mesh: b.exists ? Fr("mesh", b, o) : null,
+		mesh: x.exists ? Fr("mesh", x, o) : null,
 		sheets: ei(n.key("sheets"), o),
-		shown: b.exists && !t.key("meshes").exists ? null : ui(t, a),
+		shown: x.exists && !t.key("meshes").exists ? null : ui(t, a),
 		preview: s
 	};
 }
@@ -1899,15 +1899,15 @@ function wi(e) {
 var Ti = 1e-6;
 async function Ei(e, t) {
 	let [n, { lenses: r, poses: i }, a, o] = await Promise.all([
-		Di(e, t),
-		ki(e, t),
+		Oi(e, t),
 		Ai(e, t),
-		e.colour ? Ir(e.colour, e.views, t) : null
+		ji(e, t),
+		Di(e, t)
 	]);
 	return n.map((t, n) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
 		if (!(s > Ti && c > Ti)) throw M(r.where, `focal lengths of "${t}"`);
-		let { R: f, t: p } = ji([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
+		let { R: f, t: p } = Mi([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
 		if (!m || !h || Math.max(m, h) > 65535 || m * h > ke) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
@@ -1925,13 +1925,13 @@ async function Ei(e, t) {
 				0,
 				1
 			]
-		], [_, v] = o ? Mi([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
+		], [_, v] = o ? Ni([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
 		return {
 			name: t,
 			K: g,
 			R: f,
 			t: p,
-			centre: Ui(f, p),
+			centre: Wi(f, p),
 			width: m,
 			height: h,
 			gain: _,
@@ -1939,25 +1939,39 @@ async function Ei(e, t) {
 		};
 	});
 }
-async function Di({ names: e, heldOut: t }, n) {
+async function Di({ colour: e, heldOut: t, views: n }, r) {
+	if (!e || "type" in e) return e && Ir(e, n, r);
+	let { cameras: i, components: a, values: o } = await e.codec.decode(new Uint8Array(await r(e.view)), e.where);
+	if (a !== 6 || i !== t.filter((e) => !e).length) throw M(e.where, `${i} x ${a} colours`);
+	let s = 0;
+	return Float32Array.from(t.flatMap((e) => e ? [
+		1,
+		1,
+		1,
+		0,
+		0,
+		0
+	] : [...o.subarray(6 * s, 6 * ++s)]));
+}
+async function Oi({ names: e, heldOut: t }, n) {
 	if (Array.isArray(e)) return e;
 	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : vi(r);
 	if (i) throw M(e.where, i);
 	return r;
 }
-async function Oi(e, t, n) {
+async function ki(e, t, n) {
 	return {
 		numbers: await Ir(e, t.views, n),
 		where: e.where
 	};
 }
-async function ki(e, t) {
+async function Ai(e, t) {
 	let { calibration: n, heldOut: r } = e;
 	if ("intrinsics" in n) {
 		let { intrinsics: r, poses: i } = n;
 		return {
-			lenses: await Oi(r, e, t),
-			poses: await Oi(i, e, t)
+			lenses: await ki(r, e, t),
+			poses: await ki(i, e, t)
 		};
 	}
 	let { view: i, codec: a, where: o } = n, s = await a.decode(new Uint8Array(await t(i)), o), c = s.poses.length / 12;
@@ -1971,15 +1985,15 @@ async function ki(e, t) {
 		poses: l(s.poses)
 	};
 }
-async function Ai(e, t) {
-	if (!Array.isArray(e.sizes)) return Oi(e.sizes, e, t);
+async function ji(e, t) {
+	if (!Array.isArray(e.sizes)) return ki(e.sizes, e, t);
 	let [n, r] = e.sizes;
 	return {
 		numbers: Uint32Array.from({ length: 2 * e.heldOut.length }, (e, t) => t % 2 ? r : n),
 		where: "its cameras' size"
 	};
 }
-function ji(e, t, n) {
+function Mi(e, t, n) {
 	let r = (t) => [
 		e[4 * t] ?? NaN,
 		e[4 * t + 1] ?? NaN,
@@ -1997,19 +2011,19 @@ function ji(e, t, n) {
 		let a = Y(i[e], i[r]) - +(e === r);
 		if (!(Math.abs(a) <= 2e-4)) throw M(t, `the pose of "${n}" is no rotation`);
 	}
-	if (!(Y(Wi(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
+	if (!(Y(Gi(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
 	return {
 		R: i,
 		t: a
 	};
 }
-function Mi(e, t, n) {
+function Ni(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
 	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw M(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
-async function Ni(e, t) {
-	let n = Fi(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => Pi(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
+async function Pi(e, t) {
+	let n = Ii(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => Fi(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
 	for (let e of i) {
 		let t = e.length / r;
 		for (let n = 0; n < r; n++) o.set(e.subarray(n * t, (n + 1) * t), n * a + s);
@@ -2017,26 +2031,26 @@ async function Ni(e, t) {
 	}
 	return o;
 }
-async function Pi({ weights: e, count: t }, n, r, i) {
+async function Fi({ weights: e, count: t }, n, r, i) {
 	if (!e) return /* @__PURE__ */ new Float32Array();
 	if ("type" in e) return Ir(e, r.views, i);
 	let { view: a, codec: o, where: s } = e, { cameras: c, components: l, values: u } = o.decode(new Uint8Array(await i(a)), s);
 	if (c === n && l === t) return Lr(u, s);
 	throw M(s, `${c} x ${l} weights, and ${n} encoded cameras x ${t} textures`);
 }
-function Fi(e) {
+function Ii(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
 }
-function Ii(e) {
-	return Math.max(0, ...Fi(e).map(({ count: e }) => e));
+function Li(e) {
+	return Math.max(0, ...Ii(e).map(({ count: e }) => e));
 }
-function Li(e, t) {
-	let n = [...t.slice(0, e.planes.length), ...Fi(e).map(({ grid: e }) => e)];
+function Ri(e, t) {
+	let n = [...t.slice(0, e.planes.length), ...Ii(e).map(({ grid: e }) => e)];
 	return [Math.max(...n.map(([e]) => e)), Math.max(...n.map(([, e]) => e))];
 }
-async function Ri(e, t) {
+async function zi(e, t) {
 	if (!e.triangles) return /* @__PURE__ */ new Uint32Array();
-	let { where: n } = e.triangles, r = await zi(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
+	let { where: n } = e.triangles, r = await Bi(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
 		if (Math.max(t, a, o) >= i) throw M(n, `no encoded camera ${Math.max(t, a, o)}`);
@@ -2044,11 +2058,11 @@ async function Ri(e, t) {
 	}
 	return r;
 }
-async function zi(e, t, n) {
+async function Bi(e, t, n) {
 	return "type" in e ? Uint32Array.from(await Ir(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
 }
-function Bi(e, t, n, r, i, a) {
-	let { right: o, up: s } = e, c = Wi(o, s), l = [
+function Vi(e, t, n, r, i, a) {
+	let { right: o, up: s } = e, c = Gi(o, s), l = [
 		0,
 		0,
 		0
@@ -2076,8 +2090,8 @@ function Bi(e, t, n, r, i, a) {
 		settings: e.settings,
 		scores: e.scores,
 		metresPerUnit: typeof u == "number" && u > 0 && u <= 1e30 ? u : null,
-		bytes: Vi(e, i),
-		size: Li(e, n),
+		bytes: Hi(e, i),
+		size: Ri(e, n),
 		planes: e.planes.map(({ channels: e, bases: t }, r) => ({
 			channels: e,
 			mean: n[r] ?? [1, 1],
@@ -2088,13 +2102,14 @@ function Bi(e, t, n, r, i, a) {
 			}))
 		})),
 		...a,
+		mixedColours: e.colour !== null && !("type" in e.colour),
 		sheets: e.sheets?.faces.length ?? 0,
 		facesPlane: Math.abs(Y(l, c)) > .7
 	};
 }
-function Vi(e, t) {
-	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(Ii(e)).fill(0);
-	for (let { pictures: t } of Fi(e)) {
+function Hi(e, t) {
+	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(Li(e)).fill(0);
+	for (let { pictures: t } of Ii(e)) {
 		let e = 0;
 		for (let { view: n, textures: i } of t) {
 			let t = r(n);
@@ -2104,7 +2119,7 @@ function Vi(e, t) {
 			}
 		}
 	}
-	let c = i(Fi(e).flatMap((e) => e.weights ? [e.weights.view] : [])), l = i([...Object.values(e.shown ?? {}), ...e.mesh ? [e.mesh] : []].map(({ view: e }) => e)), u = e.sheets ? r(e.sheets.opacity.mean.view) : 0;
+	let c = i(Ii(e).flatMap((e) => e.weights ? [e.weights.view] : [])), l = i([...Object.values(e.shown ?? {}), ...e.mesh ? [e.mesh] : []].map(({ view: e }) => e)), u = e.sheets ? r(e.sheets.opacity.mean.view) : 0;
 	return {
 		total: t,
 		mesh: l,
@@ -2115,7 +2130,7 @@ function Vi(e, t) {
 		textures: s
 	};
 }
-function Hi(e, t) {
+function Ui(e, t) {
 	let { origin: n, extent: r } = e, i = [
 		t[0] - n[0],
 		t[1] - n[1],
@@ -2123,7 +2138,7 @@ function Hi(e, t) {
 	];
 	return [r[0] > 0 ? Y(i, e.right) / r[0] : 0, r[1] > 0 ? Y(i, e.up) / r[1] : 0];
 }
-function Ui(e, t) {
+function Wi(e, t) {
 	let n = (n) => -(e[0][n] * t[0] + e[1][n] * t[1] + e[2][n] * t[2]);
 	return [
 		n(0),
@@ -2134,7 +2149,7 @@ function Ui(e, t) {
 function Y(e, t) {
 	return e[0] * t[0] + e[1] * t[1] + e[2] * t[2];
 }
-function Wi(e, t) {
+function Gi(e, t) {
 	return [
 		e[1] * t[2] - e[2] * t[1],
 		e[2] * t[0] - e[0] * t[2],
@@ -2142,7 +2157,7 @@ function Wi(e, t) {
 	];
 }
 // eigenfield-three/src/cameras.ts
-function Gi(e, t, n) {
+function Ki(e, t, n) {
 	let { info: r } = e, i = r.cameras.filter((e, t) => !r.heldOut[t]), a = r.cameras[r.reference];
 	if (!a) throw RangeError(`no camera ${r.reference}`);
 	let { width: o, height: s } = a, c = [
@@ -2181,7 +2196,7 @@ function Gi(e, t, n) {
 	e.viewWeights(t, n, "delaunay").forEach((e, t) => {
 		let n = i[t];
 		if (!e || !n) return;
-		let r = Ki(n, o, s);
+		let r = qi(n, o, s);
 		for (let t of [
 			0,
 			1,
@@ -2192,7 +2207,7 @@ function Gi(e, t, n) {
 			2
 		]) t < 2 && (c[t][i] += e * r[t][i]), l[t][i] += e * n.R[t][i];
 	});
-	let u = Ji(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [qi(t) * m[0], qi(n) * m[1]], _ = [
+	let u = Yi(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Ji(t) * m[0], Ji(n) * m[1]], _ = [
 		0,
 		1,
 		2
@@ -2209,7 +2224,7 @@ function Gi(e, t, n) {
 		offset: null
 	};
 }
-function Ki({ K: e, width: t, height: n }, r, i) {
+function qi({ K: e, width: t, height: n }, r, i) {
 	let a = Math.max(r / t, i / n), [o, s] = [(r - a * t) / 2, (i - a * n) / 2];
 	return [
 		[
@@ -2229,16 +2244,16 @@ function Ki({ K: e, width: t, height: n }, r, i) {
 		]
 	];
 }
-function qi(e) {
+function Ji(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Ji(e) {
+function Yi(e) {
 	let t = e;
 	for (let e = 0; e < 50; e++) {
 		let e = [
-			Wi(t[1], t[2]),
-			Wi(t[2], t[0]),
-			Wi(t[0], t[1])
+			Gi(t[1], t[2]),
+			Gi(t[2], t[0]),
+			Gi(t[0], t[1])
 		], n = Y(t[0], e[0]);
 		if (!(n > 1e-12)) break;
 		let r = t.map((t, r) => t.map((t, i) => (t + e[r][i] / n) / 2)), i = Math.max(...r.flatMap((e, n) => e.map((e, r) => Math.abs(e - t[n][r]))));
@@ -2246,24 +2261,24 @@ function Ji(e) {
 	}
 	return t;
 }
-function Yi(e, t, n, r, i = 1) {
+function Xi(e, t, n, r, i = 1) {
 	let a = n.width / n.height, o = i * Math.min(1, a / r), s = i * Math.min(1, r / a), c = {
 		left: (1 - o) / 2,
 		top: (1 - s) / 2,
 		width: o,
 		height: s
 	};
-	return Xi(e, t, n), Zi(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
+	return Zi(e, t, n), Qi(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
 }
-function Xi(e, t, n) {
+function Zi(e, t, n) {
 	let { R: r, centre: i } = n, a = new x().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
 	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new A()), t.updateMatrixWorld(!0);
 }
-function Zi(e, t, n, r) {
-	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Qi(e, n);
+function Qi(e, t, n, r) {
+	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = $i(e, n);
 	t.near = d, t.far = f, t.projectionMatrix.set(l * i, -l * a, -(2 * r.left - 1 + l * o), 0, 0, u * s, -(1 - 2 * r.top - u * c), 0, 0, 0, -(f + d) / (f - d), -2 * f * d / (f - d), 0, 0, -1, 0), t.projectionMatrixInverse.copy(t.projectionMatrix).invert();
 }
-function Qi(e, t) {
+function $i(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
@@ -2273,19 +2288,19 @@ function Qi(e, t) {
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
 // eigenfield-three/src/footprint.ts
-var $i = 256;
-function ea(e, t, n) {
+var ea = 256;
+function ta(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / $i)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / ea)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => ta(t, i.getX(e), i.getY(e), i.getZ(e))), l = na(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => na(t, i.getX(e), i.getY(e), i.getZ(e))), l = ra(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = na(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = ra(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -2295,7 +2310,7 @@ function ea(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function ta({ K: e, R: t, t: n }, r, i, a) {
+function na({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -2303,36 +2318,36 @@ function ta({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function na(e) {
+function ra(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/memory.ts
-var ra = 4 / 3, ia = 4, aa = 8, oa = 2, sa = 2 ** 20;
-function ca() {
+var ia = 4 / 3, aa = 4, oa = 8, sa = 2, ca = 2 ** 20;
+function la() {
 	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
-	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && la(e) ? Math.min(t ?? 4, 6) * 128 * sa : Math.min(t ?? 8, 8) * 256 * sa;
+	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && ua(e) ? Math.min(t ?? 4, 6) * 128 * ca : Math.min(t ?? 8, 8) * 256 * ca;
 }
-function la(e) {
+function ua(e) {
 	return (e?.maxTouchPoints ?? 0) > 1;
 }
 function X([e, t], n) {
 	return [Math.ceil(e / n), Math.ceil(t / n)];
 }
-function ua(e, t) {
+function da(e, t) {
 	let [n, r] = X(e, t);
 	return n * r;
 }
-function da(e) {
+function fa(e) {
 	return Math.ceil(e / 4);
 }
-function fa(e, t) {
-	return t * pa(e);
-}
-function pa(e) {
-	return Math.max(1, Math.ceil(e / 4));
+function pa(e, t) {
+	return t * ma(e);
 }
 function ma(e) {
+	return Math.max(1, Math.ceil(e / 4));
+}
+function ha(e) {
 	let { atlas: t, means: n, bases: r } = e, i = [
 		t,
 		...n.map(({ size: e }) => e),
@@ -2340,14 +2355,14 @@ function ma(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-function ha(e, t) {
+function ga(e, t) {
 	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = [
 		1,
 		2,
 		4,
 		8,
 		16
-	].find((n) => Math.max(...e.atlas) / n <= t.side && ga(e, n) <= t.memory / 2) ?? 16, o = ga(e, a) + e.geometry, s = (t, n) => o + va(e, t, n), c = (n, r) => s(n, r) + xa(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
+	].find((n) => Math.max(...e.atlas) / n <= t.side && _a(e, n) <= t.memory / 2) ?? 16, o = _a(e, a) + e.geometry, s = (t, n) => o + ya(e, t, n), c = (n, r) => s(n, r) + Sa(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
 		1,
 		2,
 		4
@@ -2361,68 +2376,68 @@ function ha(e, t) {
 	};
 	return {
 		...p,
-		limitation: Sa(p, n, e, t)
+		limitation: Ca(p, n, e, t)
 	};
 }
-function ga(e, t) {
-	let n = e.means.map((e) => _a(e) * da(e.channels) * ua(e.size, t)), r = ma(e).map((n) => {
-		let r = n.join() === e.atlas.join() ? ra : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
-		return aa * ua(n, t) * (r + +!!i);
+function _a(e, t) {
+	let n = e.means.map((e) => va(e) * fa(e.channels) * da(e.size, t)), r = ha(e).map((n) => {
+		let r = n.join() === e.atlas.join() ? ia : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
+		return oa * da(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function _a({ tenBits: e }) {
-	return e ? aa : ia;
+function va({ tenBits: e }) {
+	return e ? oa : aa;
 }
-function va({ bases: e, rays: t }, n, r) {
+function ya({ bases: e, rays: t }, n, r) {
 	return e.reduce((e, i) => {
 		let a = Math.min(r, i.count);
 		if (!a) return e;
-		let o = t ? pa(a) * 129 * 129 * aa : 0;
-		return e + _a(i) * fa(a, i.channels) * ua(i.size, n) + o;
+		let o = t ? ma(a) * 129 * 129 * oa : 0;
+		return e + va(i) * pa(a, i.channels) * da(i.size, n) + o;
 	}, 0);
 }
-function ya({ means: e, bases: t }, n, r) {
-	return ba([...e.filter(({ pieces: e, tenBits: t }) => e > 1 || t).map(({ size: e }) => X(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => X(e, r))]);
+function ba({ means: e, bases: t }, n, r) {
+	return xa([...e.filter(({ pieces: e, tenBits: t }) => e > 1 || t).map(({ size: e }) => X(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => X(e, r))]);
 }
-function ba(e) {
+function xa(e) {
 	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
 }
-function xa(e, t) {
-	let [n, r] = ya({
+function Sa(e, t) {
+	let [n, r] = ba({
 		means: [],
 		bases: e.bases
 	}, 1, t);
-	return (ia + (e.bases.some(({ tenBits: e }) => e) ? oa : 0)) * n * r;
+	return (aa + (e.bases.some(({ tenBits: e }) => e) ? sa : 0)) * n * r;
 }
-function Sa(e, t, n, r) {
+function Ca(e, t, n, r) {
 	let i = [];
 	if (e.usable < t && i.push(`${e.usable} of ${t} eigen textures are drawn`), e.usable && e.scaleDown > 1 && i.push(`eigen textures have 1/${e.scaleDown} of their size`), e.meanDown > 1 && i.push(`the mean texture has 1/${e.meanDown} of its size`), !i.length) return null;
-	let a = ga(n, 1) + va(n, 1, t) + xa(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${Ca(a)} MB of graphics memory and ${Ca(r.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${wa(i.join(", "))}: ${o}.`;
-}
-function Ca(e) {
-	return (e / 1e6).toFixed(+(e < 1e7));
+	let a = _a(n, 1) + ya(n, 1, t) + Sa(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${wa(a)} MB of graphics memory and ${wa(r.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${Ta(i.join(", "))}: ${o}.`;
 }
 function wa(e) {
+	return (e / 1e6).toFixed(+(e < 1e7));
+}
+function Ta(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var Ta = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of four passes. All\n// draw into textures whose row 0 is v = 0. All but the first add R, G, B and opacity to what is there, which is cleared\n// to zeros before:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n//   finerOpacity  in a scene with sheets, once for all of the atlas: the opacity of the sheets\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum; or the opacity, in the first channel, at a density of its own\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n\n// The opacity in `coarse` at texture coordinates of the atlas.\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Ea = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", Da = 2, Oa = `
+var Ea = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of four passes. All\n// draw into textures whose row 0 is v = 0. All but the first add R, G, B and opacity to what is there, which is cleared\n// to zeros before:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n//   finerOpacity  in a scene with sheets, once for all of the atlas: the opacity of the sheets\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum; or the opacity, in the first channel, at a density of its own\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n\n// The opacity in `coarse` at texture coordinates of the atlas.\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Da = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", Oa = 2, ka = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${Ea}${Ta}`, ka = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", Aa = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", ja = `${Oa}
+${Da}${Ea}`, Aa = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", ja = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", Ma = `${ka}
 in vec3 point;
 out vec4 place;
 void main() { place = placeOf(point); }
-`, Ma = "sumTextures", Na = "finerValue", Pa = "finerOpacity";
-function Fa(n, r, i) {
+`, Na = "sumTextures", Pa = "finerValue", Fa = "finerOpacity";
+function Ia(n, r, i) {
 	let o = new O({
 		glslVersion: h,
-		vertexShader: ka,
-		fragmentShader: `${Oa}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
+		vertexShader: Aa,
+		fragmentShader: `${ka}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
 		uniforms: {
 			rectangle: { value: new ae(...r) },
 			...i
@@ -2458,7 +2473,7 @@ function Fa(n, r, i) {
 	let c = new S(s, o);
 	return c.frustumCulled = !1, c;
 }
-function Ia([e, t], n) {
+function La([e, t], n) {
 	return new oe(e, t, {
 		type: g,
 		depthBuffer: !1,
@@ -2467,29 +2482,29 @@ function Ia([e, t], n) {
 		magFilter: n ? y : w
 	});
 }
-function La(e, t) {
-	let n = Wi(e.right, e.up), r = [
+function Ra(e, t) {
+	let n = Gi(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
 		t[2] - e.origin[2]
 	];
-	return [...Hi(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
+	return [...Ui(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
 }
-function Ra(t, n, r) {
+function za(t, n, r) {
 	let i = t.geometry.getAttribute("position"), a = t.geometry.getAttribute("uv"), o = new Float32Array(3 * i.count), s = new Float32Array(2 * i.count);
-	for (let e = 0; e < i.count; e++) o.set(La(n, [
+	for (let e = 0; e < i.count; e++) o.set(Ra(n, [
 		i.getX(e),
 		i.getY(e),
 		i.getZ(e)
 	]), 3 * e), s.set([a.getX(e), a.getY(e)], 2 * e);
-	let c = Array.from({ length: 5 }, (e, t) => t - Da), l = c.flatMap((e) => c.map((t) => new ie(t, e)));
+	let c = Array.from({ length: 5 }, (e, t) => t - Oa), l = c.flatMap((e) => c.map((t) => new ie(t, e)));
 	l.sort((e, t) => t.lengthSq() - e.lengthSq());
 	let d = new v();
 	d.setAttribute("position", new e(s, 2)), d.setAttribute("onPlane", new e(o, 3)), d.setIndex(t.geometry.index ? new e(t.geometry.index.array, 1) : null), d.instanceCount = l.length, d.boundingSphere = new te();
 	let f = new O({
 		glslVersion: h,
-		vertexShader: Aa.replace("SHIFTS", String(l.length)),
-		fragmentShader: ja,
+		vertexShader: ja.replace("SHIFTS", String(l.length)),
+		fragmentShader: Ma,
 		uniforms: {
 			texel: { value: new ie(2 / r.width, 2 / r.height) },
 			shifts: { value: l }
@@ -2509,7 +2524,7 @@ function Ra(t, n, r) {
 	};
 }
 // eigenfield-three/src/composer.ts
-var za = {
+var Ba = {
 	version: 0,
 	mean: !0,
 	opacity: !0,
@@ -2518,7 +2533,7 @@ var za = {
 	weights: /* @__PURE__ */ new Float64Array(),
 	eye: null,
 	maps: null
-}, Ba = class {
+}, Va = class {
 	opacity;
 	down;
 	mesh;
@@ -2529,14 +2544,14 @@ var za = {
 	camera = new n();
 	constructor(e, t, n, r, i, a) {
 		this.opacity = n, this.down = r, this.mesh = i, this.plane = a;
-		let [o, ...s] = ma({
+		let [o, ...s] = ha({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), c = (e, n) => {
-			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(Ha), a = new k();
+			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(Ua), a = new k();
 			return i.forEach(({ quad: e }, t) => a.add(Object.assign(e, { renderOrder: t }))), {
-				target: Ia(X(e, r), n),
+				target: La(X(e, r), n),
 				scene: a,
 				steps: i,
 				places: null
@@ -2544,7 +2559,7 @@ var za = {
 		}, l = c(o ?? e, !0);
 		this.grids = s.map((e) => c(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = Fa(Na, [
+			let t = Ia(Pa, [
 				0,
 				0,
 				1,
@@ -2558,36 +2573,36 @@ var za = {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && Ga(this.composed, n) || (this.composed = n, Ja(e, t, () => {
+		this.composed && Ka(this.composed, n) || (this.composed = n, Ya(e, t, () => {
 			n.opacity && !this.opacityDrawn && this.drawOpacity(e);
 			for (let t of this.grids) {
 				n.eye && !t.places && t.steps.some(({ part: e }) => e.basis) && this.findPlaces(e, t);
-				for (let e of t.steps) Ua(e, t.places?.texture ?? null, n);
+				for (let e of t.steps) Wa(e, t.places?.texture ?? null, n);
 				this.draw(e, t.scene, t.target, this.opacityDrawn && t === this.grids.at(-1));
 			}
 		}));
 	}
 	dispose() {
-		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.dispose(), Va(n);
+		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.dispose(), Ha(n);
 	}
 	drawOpacity(e) {
 		let t = this.grids.at(-1);
 		if (!this.opacity || !t) return;
-		let n = Ia(X(this.opacity.grid, this.down), !1), r = Ha(this.opacity);
-		for (let e of r) Ua(e, null, za);
+		let n = La(X(this.opacity.grid, this.down), !1), r = Ua(this.opacity);
+		for (let e of r) Wa(e, null, Ba);
 		let [i, a] = [new k(), new k()];
-		i.add(...r.map(({ quad: e }) => e)), a.add(Fa(Pa, [
+		i.add(...r.map(({ quad: e }) => e)), a.add(Ia(Fa, [
 			0,
 			0,
 			1,
 			1
 		], { coarse: { value: n.texture } })), this.draw(e, i, n), this.draw(e, a, t.target);
-		for (let e of [i, a]) Va(e);
+		for (let e of [i, a]) Ha(e);
 		n.dispose(), this.opacityDrawn = !0;
 	}
 	findPlaces(e, t) {
-		t.places = Ia([t.target.width, t.target.height], !1);
-		let { scene: n, free: r } = Ra(this.mesh, this.plane, t.places);
+		t.places = La([t.target.width, t.target.height], !1);
+		let { scene: n, free: r } = za(this.mesh, this.plane, t.places);
 		this.draw(e, n, t.places), r();
 	}
 	draw(e, t, n, r = !1) {
@@ -2596,17 +2611,17 @@ var za = {
 		r && i.colorMask(!0, !0, !0, !1), e.clear(!0, !1, !1), r && i.colorMask(!0, !0, !0, !0), e.render(t, this.camera);
 	}
 };
-function Va(e) {
+function Ha(e) {
 	for (let { geometry: t, material: n } of e.children) t.dispose(), n.dispose();
 }
-function Ha(e) {
+function Ua(e) {
 	let t = e.colours.length, [n, r] = [e.scale.length / (4 * t), Math.floor(64 / t)], i = [];
 	for (let a = 0; a < n; a += r) {
 		let o = Array.from({ length: 64 }, (t, n) => new A(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), s = e.basis ? 1 : 4, c = Fa(Ma, e.rectangle, {
+		])), s = e.basis ? 1 : 4, c = Ia(Na, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(a * t / s) },
 			sharing: { value: s },
@@ -2630,42 +2645,42 @@ function Ha(e) {
 	}
 	return i;
 }
-function Ua({ part: e, first: t, groups: n, quad: r }, i, a) {
+function Wa({ part: e, first: t, groups: n, quad: r }, i, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Wa(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Ga(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
 	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", u ? i : null), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function Wa(e, t, n, r) {
+function Ga(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function Ga(e, t) {
+function Ka(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
-var Ka = new i(0), qa = new i();
-function Ja(e, t, n) {
+var qa = new i(0), Ja = new i();
+function Ya(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(qa), e.setClearColor(Ka, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(qa, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(Ja), e.setClearColor(qa, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(Ja, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/maps.ts
-function Ya(e, t, n, i, a) {
+function Xa(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? pa(t) : 0;
+		u += e, d += t ? ma(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -2684,20 +2699,20 @@ function Ya(e, t, n, i, a) {
 	return p.format = D, p.type = g, p.minFilter = p.magFilter = y, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
 }
 // ../src/eigenfield/rendering/shaders/surface.glsl?raw
-var Xa = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/renderer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B and opacity at texture coordinates; nothing is cut off.\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What is seen of a value of the surface.\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\n\n// What an opaque surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\n\n// What a sheet adds to the sheets behind it at texture coordinates: R, G, B times its opacity, and its opacity. It is\n// blended with the factors ONE and ONE_MINUS_SRC_ALPHA. Colours are not cut off: those of all sheets together count.\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", Za = {
+var Za = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/renderer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B and opacity at texture coordinates; nothing is cut off.\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What is seen of a value of the surface.\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\n\n// What an opaque surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\n\n// What a sheet adds to the sheets behind it at texture coordinates: R, G, B times its opacity, and its opacity. It is\n// blended with the factors ONE and ONE_MINUS_SRC_ALPHA. Colours are not cut off: those of all sheets together count.\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", Qa = {
 	bilinear: 0,
 	bicubic: 1
-}, Qa = {
+}, $a = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, $a = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", eo = $a.replace("void main", "invariant gl_Position;\nvoid main"), to = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", no = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", ro = `${to}
-${Ea}${Xa}
+}, eo = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", to = eo.replace("void main", "invariant gl_Position;\nvoid main"), no = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", ro = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", io = `${no}
+${Da}${Za}
 uniform float shownGain;       // of the eigen texture around mid grey
 in vec2 surfaceUv;
 vec3 eigenColour(vec3 value) { return clamp(0.5 + shownGain * value, 0.0, 1.0); }
-`, io = `${ro}${no}
+`, ao = `${io}${ro}
 in vec3 surfacePlace;
 out vec4 fragment;
 void main() {
@@ -2707,7 +2722,7 @@ void main() {
   if (shown == 3) colour = errorColour(colour, surfacePlace);
   fragment = vec4(colour, 1.0);
 }
-`, ao = `${ro}
+`, oo = `${io}
 layout(location = 0) out vec4 fragment;
 layout(location = 1) out vec4 solid;
 vec3 threeBytes(float depth) {
@@ -2721,47 +2736,47 @@ void main() {
   float depth = (gl_FragCoord.z - gl_DepthRange.near) / gl_DepthRange.diff;
   solid = colour.a < 0.5 ? vec4(0.0) : vec4(threeBytes(depth), 1.0);
 }
-`, oo = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", so = {
+`, so = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", co = {
 	blending: a,
 	blendSrc: E,
 	blendDst: ee
-}, co = {
+}, lo = {
 	depthWrite: !1,
 	stencilWrite: !0,
 	stencilFunc: d,
 	stencilZPass: _
 };
-function lo(e, t) {
+function uo(e, t) {
 	let n = {
 		composed: { value: null },
 		finest: { value: 1 },
 		exposureScale: { value: new A(1, 1, 1) },
 		exposureBias: { value: new A() },
-		shown: { value: Qa.picture },
+		shown: { value: $a.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new x() }
 	}, r = new O({
 		glslVersion: h,
-		vertexShader: t ? eo : $a,
-		fragmentShader: t ? ao : io,
+		vertexShader: t ? to : eo,
+		fragmentShader: t ? oo : ao,
 		uniforms: n,
-		defines: { BICUBIC: Za.bicubic },
+		defines: { BICUBIC: Qa.bicubic },
 		side: e ? u : m,
 		...t ? {
-			...so,
-			...co
+			...co,
+			...lo
 		} : {}
 	});
 	return r.name = "eigen textures", r;
 }
-function uo(e) {
+function fo(e) {
 	let { side: t } = e;
 	return new O({
 		name: "depth of sheets",
 		glslVersion: h,
-		vertexShader: eo,
-		fragmentShader: oo,
+		vertexShader: to,
+		fragmentShader: so,
 		colorWrite: !1,
 		side: t,
 		stencilWrite: !0,
@@ -2769,41 +2784,41 @@ function uo(e) {
 	});
 }
 // eigenfield-three/src/gpu.ts
-function fo(e) {
+function po(e) {
 	let t = e.getContext();
 	if (!(t instanceof WebGL2RenderingContext)) throw new j("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
 	if ((t.getExtension("EXT_color_buffer_float") ?? t.getExtension("EXT_color_buffer_half_float")) || t.isContextLost()) return t;
 	throw new j("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
 }
-function po(e, t) {
+function mo(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function mo(e, [t, n], r, i, a) {
-	return _o(e, e.TEXTURE_2D_ARRAY, () => {
+function ho(e, [t, n], r, i, a) {
+	return vo(e, e.TEXTURE_2D_ARRAY, () => {
 		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, a ? e.RGBA16F : e.RGBA8, t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function ho(e, t, n) {
+function go(e, t, n) {
 	let { width: r, height: i } = n;
-	vo(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
+	yo(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
 }
-function go(e, [t, n], r = !1) {
-	return _o(e, e.TEXTURE_2D, () => {
+function _o(e, [t, n], r = !1) {
+	return vo(e, e.TEXTURE_2D, () => {
 		e.texStorage2D(e.TEXTURE_2D, 1, r ? e.RG8 : e.RGBA8, t, n), e.texParameteri(e.TEXTURE_2D, e.TEXTURE_MIN_FILTER, e.NEAREST);
 	});
 }
-function _o(e, t, n) {
+function vo(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return vo(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return yo(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function vo(e, t, n, r) {
+function yo(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -2817,9 +2832,9 @@ function vo(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-var yo = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", bo = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform vec2 size; // of what is drawn\nuniform highp sampler2D precisions;\nuniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nvoid main() {\n  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);\n  if (nodes.x == 0) stored = vec4(code);\n  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / 4.0, -65504.0, 65504.0));\n}\n";
-function xo(e, t) {
-	let n = To(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], [a, o, s, c, l] = [
+var bo = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", xo = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform vec2 size; // of what is drawn\nuniform highp sampler2D precisions;\nuniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nvoid main() {\n  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);\n  if (nodes.x == 0) stored = vec4(code);\n  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / 4.0, -65504.0, 65504.0));\n}\n";
+function So(e, t) {
+	let n = Eo(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], [a, o, s, c, l] = [
 		"factors",
 		"size",
 		"precisions",
@@ -2827,7 +2842,7 @@ function xo(e, t) {
 		"zero"
 	].map((t) => e.getUniformLocation(n, t)), u = ({ picture: t, rows: u }, d, f, p, m) => {
 		e.useProgram(n), e.uniform2f(o ?? null, t.width, u), e.uniform1i(s ?? null, +!!m), e.uniform2i(c ?? null, m?.precision.width ?? 0, m?.precision.height ?? 0), e.uniform1f(l ?? null, m?.zero ?? 0), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.viewport(0, 0, t.width, u);
-		for (let { channel: n, layer: r, component: i } of f) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, d, 0, r), So(t) ? e.uniform4f(a ?? null, 255, 65280, 0, 0) : e.uniform4fv(a ?? null, [
+		for (let { channel: n, layer: r, component: i } of f) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, d, 0, r), Co(t) ? e.uniform4f(a ?? null, 255, 65280, 0, 0) : e.uniform4fv(a ?? null, [
 			0,
 			1,
 			2,
@@ -2836,13 +2851,13 @@ function xo(e, t) {
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let { picture: s, row: c, rows: l } = n, d = So(s) ? t.codes : t.picture;
+			let { picture: s, row: c, rows: l } = n, d = Co(s) ? t.codes : t.picture;
 			if (!d) return;
-			let f = () => Eo(e, 0, d, () => {
-				So(s) ? wo(e, s, c, l) : Co(e, s, c, l), Do(e, () => u(n, r, i, a, o));
+			let f = () => Do(e, 0, d, () => {
+				Co(s) ? To(e, s, c, l) : wo(e, s, c, l), Oo(e, () => u(n, r, i, a, o));
 			});
-			o ? Eo(e, 1, t.precision, () => {
-				Co(e, o.precision, 0, o.precision.height), f();
+			o ? Do(e, 1, t.precision, () => {
+				wo(e, o.precision, 0, o.precision.height), f();
 			}) : f();
 		},
 		free() {
@@ -2850,30 +2865,30 @@ function xo(e, t) {
 		}
 	};
 }
-function So(e) {
+function Co(e) {
 	return "data" in e;
 }
-function Co(e, t, n, r) {
+function wo(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function wo(e, { data: t, width: n, stride: r }, i, a) {
+function To(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
-function To(e) {
+function Eo(e) {
 	let t = e.createProgram();
-	for (let [n, r] of [[e.VERTEX_SHADER, yo], [e.FRAGMENT_SHADER, bo]]) {
+	for (let [n, r] of [[e.VERTEX_SHADER, bo], [e.FRAGMENT_SHADER, xo]]) {
 		let i = e.createShader(n);
 		i && (e.shaderSource(i, r), e.compileShader(i), e.attachShader(t, i), e.deleteShader(i));
 	}
 	return e.linkProgram(t), t;
 }
-function Eo(e, t, n, r) {
+function Do(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), vo(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), yo(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function Do(e, t) {
+function Oo(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -2888,7 +2903,7 @@ function Do(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/parts.ts
-function Oo(e, t, n) {
+function ko(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -2898,7 +2913,7 @@ function Oo(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = Ao(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = jo(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -2926,7 +2941,7 @@ function Oo(e, t, n) {
 						n + e[1] / i[1]
 					],
 					colours: f,
-					...Mo(l, u, h),
+					...No(l, u, h),
 					basis: {
 						ready: m,
 						column: o,
@@ -2934,11 +2949,11 @@ function Oo(e, t, n) {
 					}
 				});
 			}
-			o += p, s += h ? pa(h) : 0;
+			o += p, s += h ? ma(h) : 0;
 		}
 	}), r;
 }
-function ko({ planes: e, sheets: t }, { means: n, needs: r }) {
+function Ao({ planes: e, sheets: t }, { means: n, needs: r }) {
 	let i = n[e.length], a = r.means[e.length]?.size;
 	return !t || !i || !a ? null : {
 		stored: i,
@@ -2954,12 +2969,12 @@ function ko({ planes: e, sheets: t }, { means: n, needs: r }) {
 			0,
 			0
 		]],
-		...Ao(t.opacity),
+		...jo(t.opacity),
 		basis: null
 	};
 }
-function Ao({ mean: e, channels: t, precision: n }) {
-	let { scale: r, zero: i } = e, a = n ? 4 : jo([e]), o = {
+function jo({ mean: e, channels: t, precision: n }) {
+	let { scale: r, zero: i } = e, a = n ? 4 : Mo([e]), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
 	};
@@ -2969,11 +2984,11 @@ function Ao({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function jo(e) {
+function Mo(e) {
 	return Kr(e) ? 1 : 255;
 }
-function Mo(e, t, n) {
-	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = jo(e), o = 4 * t * pa(n), s = {
+function No(e, t, n) {
+	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = Mo(e), o = 4 * t * ma(n), s = {
 		scale: new Float32Array(o),
 		bias: new Float32Array(o)
 	};
@@ -2984,7 +2999,7 @@ function Mo(e, t, n) {
 	return s;
 }
 // eigenfield-three/src/sheet-stack.ts
-var No = "sheets", Po = 16, Fo = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Io = `${to}${no}
+var Po = "sheets", Fo = 16, Io = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Lo = `${no}${ro}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -3009,7 +3024,7 @@ void main() {
   gl_FragDepth = depth;
   fragment = colour;
 }
-`, Lo = new ae(), Ro = class {
+`, Ro = new ae(), zo = class {
 	scene = new k();
 	camera = new n();
 	sheets;
@@ -3021,16 +3036,16 @@ void main() {
 		e.forEach((e, n) => {
 			for (let i of [0, 1]) t.addGroup(r, 3 * e, 2 * n + i);
 			r += 3 * e;
-		}), this.depth = uo(n), this.depth.transparent = n.transparent = !0, this.sheets = new S(t, e.flatMap(() => [this.depth, n])), this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (t, n, r, i, a, o) => {
+		}), this.depth = fo(n), this.depth.transparent = n.transparent = !0, this.sheets = new S(t, e.flatMap(() => [this.depth, n])), this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (t, n, r, i, a, o) => {
 			let { materialIndex: s = 0 } = o, c = e.length - 1 - (s >> 1);
 			t.getContext().depthRange(c / e.length, (c + 1) / e.length);
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
 		let { shown: i, photograph: a, toPhotograph: o } = n.uniforms;
 		this.screen = new O({
-			name: No,
+			name: Po,
 			glslVersion: h,
-			vertexShader: Fo,
-			fragmentShader: Io,
+			vertexShader: Io,
+			fragmentShader: Lo,
 			uniforms: {
 				shown: i,
 				photograph: a,
@@ -3044,11 +3059,11 @@ void main() {
 				toPlace: { value: new x() }
 			},
 			transparent: !0,
-			...so
+			...co
 		});
 	}
 	get bytes() {
-		return this.target ? Po * this.target.width * this.target.height : 0;
+		return this.target ? Fo * this.target.width * this.target.height : 0;
 	}
 	attach(n, r) {
 		for (let e of [n.material].flat()) e.visible = !1;
@@ -3069,7 +3084,7 @@ void main() {
 			boundingSphere: a
 		});
 		let s = new S(o, this.screen);
-		s.name = No, s.raycast = () => void 0, s.onBeforeRender = (e, t, i) => {
+		s.name = Po, s.raycast = () => void 0, s.onBeforeRender = (e, t, i) => {
 			r(e, i), this.draw(e, i, n);
 		}, n.add(s);
 	}
@@ -3077,11 +3092,11 @@ void main() {
 		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
 	}
 	draw(e, t, n) {
-		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Lo);
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Ro);
 		if (!a || !o) return;
-		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = zo(a, o));
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Bo(a, o));
 		let { target: s } = this;
-		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), Ja(e, t, () => {
+		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), Ya(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
 		}), e.getContext().depthRange(0, 1);
 		let { uniforms: c } = this.screen, l = (e, t) => {
@@ -3090,7 +3105,7 @@ void main() {
 		l("sheets", s.textures[0]), l("solid", s.textures[1]), l("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
 	}
 };
-function zo(e, t) {
+function Bo(e, t) {
 	let n = new l(e, t, re);
 	n.format = c;
 	let r = new oe(e, t, {
@@ -3104,21 +3119,21 @@ function zo(e, t) {
 	return i && (i.type = ne), r;
 }
 // eigenfield-three/src/pieces.ts
-function Bo(e) {
+function Vo(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
 // eigenfield-three/src/strength.ts
-var Vo = 128, Ho = .98;
-async function Uo(e, t, n, r) {
+var Ho = 128, Uo = .98;
+async function Wo(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = qr(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Vo, Vo).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = qr(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Ho, Ho).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, Vo, Vo);
-		let { data: u } = d.getImageData(0, 0, Vo, Vo);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, Ho, Ho);
+		let { data: u } = d.getImageData(0, 0, Ho, Ho);
 		(l ? [
 			0,
 			1,
@@ -3127,30 +3142,30 @@ async function Uo(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), Bo(u), f.sort((e, t) => e - t);
-	let p = f[Math.floor(Ho * f.length)] ?? 0;
+	}), Vo(u), f.sort((e, t) => e - t);
+	let p = f[Math.floor(Uo * f.length)] ?? 0;
 	return p > 0 ? .45 / p : 1;
 }
 // eigenfield-three/src/means.ts
-async function Wo(e, t, n = 1) {
-	let { mean: r, meanSize: i } = e, a = e.precision && await Go(await t(e.precision.view), e.precision);
+async function Go(e, t, n = 1) {
+	let { mean: r, meanSize: i } = e, a = e.precision && await Ko(await t(e.precision.view), e.precision);
 	return {
 		pieces: await r.codec.decode(await t(r.view), r, i, n),
 		precision: a
 	};
 }
-async function Go(e, t) {
+async function Ko(e, t) {
 	let { type: n } = Qn(e) ?? {}, { mimeType: r } = t.codec;
 	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
 	if (!i) throw M(t.where, "no picture");
 	return i.picture;
 }
-function Ko({ pieces: e, precision: t }) {
-	Bo(e), t?.close();
+function qo({ pieces: e, precision: t }) {
+	Vo(e), t?.close();
 }
 // eigenfield-three/src/textures.ts
-var qo = 3, Jo = class {
+var Jo = 3, Yo = class {
 	parts;
 	options;
 	means;
@@ -3185,7 +3200,7 @@ var qo = 3, Jo = class {
 			tenBits: Kr([t])
 		}));
 		this.needs = {
-			atlas: Li(r, i),
+			atlas: Ri(r, i),
 			means: s,
 			bases: o,
 			rays: a,
@@ -3220,7 +3235,7 @@ var qo = 3, Jo = class {
 		});
 	}
 	dispose() {
-		this.detach(), this.disposed = !0, this.decoded?.forEach(Ko), this.decoded = null;
+		this.detach(), this.disposed = !0, this.decoded?.forEach(qo), this.decoded = null;
 	}
 	detach() {
 		let e = this.renderer?.getContext();
@@ -3237,20 +3252,20 @@ var qo = 3, Jo = class {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		let n = fo(e);
+		let n = po(e);
 		if (n.isContextLost()) return;
 		let { packer: r, plan: i } = this.makeRoom(n);
 		if (this.plan = i, this.packer = r, this.onPlan(i), await this.loadMeans(n, t, i.meanDown), t !== this.turn) return;
 		let a = this.entries.filter(({ first: e }) => e < i.usable), o = [], s = 0;
 		try {
 			for (let e of a) {
-				for (; o.length < qo && s < a.length;) o.push(this.decode(a[s++], i.scaleDown));
+				for (; o.length < Jo && s < a.length;) o.push(this.decode(a[s++], i.scaleDown));
 				let n = await o[0] ?? [];
-				if (o.shift(), t === this.turn && this.pack(n, e, r, i.usable), Bo(n), t !== this.turn) return;
+				if (o.shift(), t === this.turn && this.pack(n, e, r, i.usable), Vo(n), t !== this.turn) return;
 				this.onTexture();
 			}
 		} finally {
-			for (let e of o) e.then(Bo).catch(() => void 0);
+			for (let e of o) e.then(Vo).catch(() => void 0);
 		}
 		r.free(), this.packer = null, this.onComplete();
 	}
@@ -3277,13 +3292,13 @@ var qo = 3, Jo = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs, r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
-		for (let i = this.options.memory ?? ca();; i /= 2) {
-			let a = ha(this.needs, po(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, tenBits: r }) => mo(e, X(t, o), da(n), l, r)), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
+		for (let i = this.options.memory ?? la();; i /= 2) {
+			let a = ga(this.needs, mo(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, tenBits: r }) => ho(e, X(t, o), fa(n), l, r)), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return mo(e, a ? X(t, s) : [1, 1], a ? fa(a, n) : 1, l, i);
-			})], d = ya(this.needs, o, s), f = go(e, d), p = [...t, ...n].some(({ tenBits: e }) => e), m = p ? go(e, d, !0) : null, h = go(e, ba(r));
+				return ho(e, a ? X(t, s) : [1, 1], a ? pa(a, n) : 1, l, i);
+			})], d = ba(this.needs, o, s), f = _o(e, d), p = [...t, ...n].some(({ tenBits: e }) => e), m = p ? _o(e, d, !0) : null, h = _o(e, xa(r));
 			if (f && h && (m || !p) && u.every((e) => e !== null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = u[t] ?? null), {
-				packer: xo(e, {
+				packer: So(e, {
 					picture: f,
 					codes: m,
 					precision: h
@@ -3301,15 +3316,15 @@ var qo = 3, Jo = class {
 	}
 	async loadMeans(e, t, n) {
 		let { scene: r, bytes: i } = this.parts, a = di(r), { decoded: o } = this;
-		this.decoded = null, (!o || n > 1) && (o?.forEach(Ko), o = await Promise.all(a.map((e) => Wo(e, i, n)))), o.forEach((n, r) => {
+		this.decoded = null, (!o || n > 1) && (o?.forEach(qo), o = await Promise.all(a.map((e) => Go(e, i, n)))), o.forEach((n, r) => {
 			let i = this.means[r]?.sourceTexture, o = a[r]?.mean;
-			t === this.turn && o && i instanceof WebGLTexture && this.putMean(e, n, o, i), Ko(n);
+			t === this.turn && o && i instanceof WebGLTexture && this.putMean(e, n, o, i), qo(n);
 		}), t === this.turn && (this.hasMeans = !0, this.version += 1);
 	}
 	putMean(e, t, n, r) {
 		let { pieces: i, precision: a } = t, o = Kr([n]), [s] = i;
 		if (s && i.length === 1 && !o && "close" in s.picture) {
-			ho(e, r, s.picture);
+			go(e, r, s.picture);
 			return;
 		}
 		let c = o ? 255 * qr(n) : 1;
@@ -3330,7 +3345,7 @@ var qo = 3, Jo = class {
 		let { basis: n, picture: r } = e, i = this.parts.bytes(r.view).then((e) => r.codec.decode(e, r, n.size, t));
 		return i.catch(() => void 0), i;
 	}
-}, Yo = 1.5, Xo = .001, Zo = class extends f {
+}, Xo = 1.5, Zo = .001, Qo = class extends f {
 	parts;
 	mesh;
 	info;
@@ -3353,6 +3368,7 @@ var qo = 3, Jo = class {
 	textures;
 	counts;
 	composers = /* @__PURE__ */ new Map();
+	encoded;
 	rowOf;
 	gains = /* @__PURE__ */ new Map();
 	detail;
@@ -3362,15 +3378,15 @@ var qo = 3, Jo = class {
 		super(), this.parts = e;
 		let { scene: n, info: r, meshes: i } = e, [a] = i;
 		if (!a) throw Error("a field needs a mesh");
-		this.mesh = a, this.info = r, this.total = Ii(n), this.counts = Fi(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
+		this.mesh = a, this.info = r, this.total = Li(n), this.counts = Ii(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye", this.encoded = r.cameras.filter((e, t) => !r.heldOut[t]);
 		let o = 0;
-		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new Jo(e, ts(a), t);
+		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new Yo(e, ns(a), t);
 		let s = [a.material].flat().some((e) => e.side !== m);
-		this.material = lo(s, n.sheets !== null), this.stack = n.sheets && new Ro(n.sheets.faces, a.geometry, this.material), this.complete = new Promise((e, t) => {
+		this.material = uo(s, n.sheets !== null), this.stack = n.sheets && new zo(n.sheets.faces, a.geometry, this.material), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0);
 		let c = r.cameras[r.reference];
-		this.detail = c ? ea(a.geometry, c, [1, 1]) : 0, this.listen();
+		this.detail = c ? ta(a.geometry, c, [1, 1]) : 0, this.listen();
 		for (let e of i) {
 			let t = (t, n) => this.prepare(t, n, e);
 			this.stack ? this.stack.attach(e, t) : (e.material = this.material, e.onBeforeRender = (e, n, r) => t(e, r));
@@ -3403,7 +3419,7 @@ var qo = 3, Jo = class {
 		let t = this.rowOf[e] ?? -1, n = this.info.cameras[e], r = this.columns;
 		if (t >= 0) return Float64Array.from(this.parts.omega.subarray(t * r, (t + 1) * r));
 		if (!n) throw RangeError(`no camera ${e}`);
-		return this.componentWeights(...Hi(this.info.viewPlane, n.centre));
+		return this.componentWeights(...Ui(this.info.viewPlane, n.centre));
 	}
 	restore(e) {
 		this.textures.attach(e);
@@ -3417,7 +3433,7 @@ var qo = 3, Jo = class {
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return Yo * Math.max(1, this.detail * Math.sqrt(e * t) / n);
+		return Xo * Math.max(1, this.detail * Math.sqrt(e * t) / n);
 	}
 	get columns() {
 		return this.counts.reduce((e, t) => e + t, 0);
@@ -3434,9 +3450,9 @@ var qo = 3, Jo = class {
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = es(t, n), [i, a] = Hi(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
-		this.setView();
-		let l = Za[this.filter];
+		let r = ts(t, n), [i, a] = Ui(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
+		this.setView(), this.setExposure(o, [i, a]);
+		let l = Qa[this.filter];
 		this.material.defines.BICUBIC !== l && (this.material.defines.BICUBIC = l, this.material.needsUpdate = !0), this.material.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
@@ -3444,8 +3460,8 @@ var qo = 3, Jo = class {
 		if (!r) return;
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
 		if (!s) {
-			let { scene: e } = this.parts, t = ko(e, this.textures);
-			s = new Ba(i, Oo(e, this.textures, r), t, o, this.mesh, a), this.composers.set(o, s);
+			let { scene: e } = this.parts, t = Ao(e, this.textures);
+			s = new Va(i, ko(e, this.textures, r), t, o, this.mesh, a), this.composers.set(o, s);
 		}
 		s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
 	}
@@ -3454,27 +3470,50 @@ var qo = 3, Jo = class {
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.material.uniforms.shown.value, r = n === Qa.eigen ? this.shownEigen : null;
+		let n = this.material.uniforms.shown.value, r = n === $a.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			opacity: this.textures.hasMeans && this.stack !== null,
 			only: r,
-			count: n === Qa.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === $a.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && La(this.info.viewPlane, t),
+			eye: t && Ra(this.info.viewPlane, t),
 			maps: t && this.mapsOf(this.mixing)
 		};
 	}
-	setView() {
-		let { uniforms: e } = this.material, t = this.view === "error" && this.photograph !== null && this.camera !== null, n = this.exposure ?? (t ? this.camera : null), { gain: r = null, offset: i = null } = (n === null ? void 0 : this.info.cameras[n]) ?? {}, a = (r ?? [
+	setExposure(e, t) {
+		let { cameras: n, heldOut: r, mixedColours: i, viewPlane: a } = this.info, o = this.exposure ?? (i || this.showsErrors ? e : null), s = o === null ? void 0 : n[o], c = [[s, 1]];
+		if (i && (o === null || r[o])) {
+			let e = s ? Ui(a, s.centre) : t, { camera: n, weight: r } = this.parts.weights.at(...e, this.mixing);
+			c = [
+				0,
+				1,
+				2,
+				3
+			].map((e) => [this.encoded[n[e] ?? 0], r[e] ?? 0]);
+		}
+		let [l, u] = [[
 			1,
 			1,
 			1
-		]).map((e) => 1 / e);
-		e.exposureScale.value.fromArray(a), e.exposureBias.value.fromArray(a.map((e, t) => -(i?.[t] ?? 0) * e));
-		let o = this.view === "error" && !t ? "picture" : this.view, s = this.shownEigen;
-		e.shown.value = Qa[o === "eigen" && s >= this.loaded ? "mean" : o], o === "eigen" && (e.shownGain.value = this.gainOf(s)), t && this.aimPhotograph();
+		], [
+			0,
+			0,
+			0
+		]];
+		for (let [e, t] of c) if (e?.gain && e.offset) for (let n = 0; n < 3; n++) {
+			let r = 1 / (e.gain[n] ?? 1);
+			l[n] = (l[n] ?? 1) + t * (r - 1), u[n] = (u[n] ?? 0) - t * r * (e.offset[n] ?? 0);
+		}
+		this.material.uniforms.exposureScale.value.fromArray(l), this.material.uniforms.exposureBias.value.fromArray(u);
+	}
+	get showsErrors() {
+		return this.view === "error" && this.photograph !== null && this.camera !== null;
+	}
+	setView() {
+		let { uniforms: e } = this.material, t = this.showsErrors, n = this.view === "error" && !t ? "picture" : this.view, r = this.shownEigen;
+		e.shown.value = $a[n === "eigen" && r >= this.loaded ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r)), t && this.aimPhotograph();
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -3482,7 +3521,7 @@ var qo = 3, Jo = class {
 	aimPhotograph() {
 		let e = this.camera === null ? void 0 : this.info.cameras[this.camera], { photograph: t } = this;
 		if (!e || !t) return;
-		let { K: n, R: r, t: i, width: a, height: o } = e, s = new x().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new x().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !ns(t.image), u = new x().makeScale(1 / a, (l ? -1 : 1) / o, 1);
+		let { K: n, R: r, t: i, width: a, height: o } = e, s = new x().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new x().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !rs(t.image), u = new x().makeScale(1 / a, (l ? -1 : 1) / o, 1);
 		l && (u.elements[13] = 1), this.material.uniforms.toPhotograph.value.multiplyMatrices(u, c.multiply(s)), this.material.uniforms.photograph.value = t;
 	}
 	gainOf(e) {
@@ -3493,7 +3532,7 @@ var qo = 3, Jo = class {
 		for (let { channels: t, bases: a } of n.planes) {
 			let o = n.colours.slice(i, i += t), s = a.find(({ count: t }) => t > e);
 			if (!(!s || e < 0)) {
-				Uo(s, e, o, r).then((t) => {
+				Wo(s, e, o, r).then((t) => {
 					this.gains.set(e, t), this.dispatchEvent({ type: "texture" });
 				}).catch(() => void 0);
 				break;
@@ -3503,13 +3542,13 @@ var qo = 3, Jo = class {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= Xo * Math.max(...r);
+		return Math.abs(i) <= Zo * Math.max(...r);
 	}
 	mapsOf(e) {
 		let { usable: t } = this;
 		if (this.maps?.mixing === e && this.maps.usable === t) return this.maps.texture;
 		this.maps?.texture.dispose();
-		let n = Ya(this.parts.weights, e, this.parts.omega, this.counts, t);
+		let n = Xa(this.parts.weights, e, this.parts.omega, this.counts, t);
 		return this.maps = {
 			texture: n,
 			mixing: e,
@@ -3517,33 +3556,33 @@ var qo = 3, Jo = class {
 		}, n;
 	}
 	fail(e) {
-		if (rs(e)) return;
+		if (is(e)) return;
 		let t = de(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
 		this.dispatchEvent({
 			type: "error",
 			error: new j(t.code, r, t.where)
 		});
 	}
-}, Qo = new x(), $o = new A();
-function es(e, t) {
-	return $o.setFromMatrixPosition(e.matrixWorld).applyMatrix4(Qo.copy(t.matrixWorld).invert()), [
-		$o.x,
-		$o.y,
-		$o.z
+}, $o = new x(), es = new A();
+function ts(e, t) {
+	return es.setFromMatrixPosition(e.matrixWorld).applyMatrix4($o.copy(t.matrixWorld).invert()), [
+		es.x,
+		es.y,
+		es.z
 	];
 }
-function ts(e) {
+function ns(e) {
 	let { attributes: t, index: n } = e.geometry;
 	return Object.values(t).reduce((e, t) => e + t.array.byteLength, 0) + (n?.array.byteLength ?? 0);
 }
-function ns(e) {
+function rs(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
-function rs(e) {
+function is(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var is = class {
+var as = class {
 	received = 0;
 	chunks = [];
 	waiters = [];
@@ -3586,53 +3625,53 @@ var is = class {
 		}
 		return n.buffer;
 	}
-}, as = 1179937895, os = 1313821514, ss = 5130562;
-async function cs(e) {
+}, os = 1179937895, ss = 1313821514, cs = 5130562;
+async function ls(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof j && t.code === "truncated" ? ps(e.received === 0) : t;
+		throw t instanceof j && t.code === "truncated" ? ms(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== as) throw ps(!1);
+	if (new DataView(t).getUint32(0, !0) !== os) throw ms(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
 	if (r !== 2) throw new j("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
 	if (i < 20) throw M("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== os) throw M("16", "it does not begin with JSON");
+	if (a.getUint32(4, !0) !== ss) throw M("16", "it does not begin with JSON");
 	if (o > Se) throw M("12", `${o} bytes of JSON`);
 	if (20 + o > i) throw M("12", "a chunk longer than the file");
-	let s = us(await e.read(20, 20 + o));
+	let s = ds(await e.read(20, 20 + o));
 	return {
 		length: i,
 		text: s,
-		json: ds(s, "20"),
-		binary: () => ls(e, 20 + o, i)
+		json: fs(s, "20"),
+		binary: () => us(e, 20 + o, i)
 	};
 }
-async function ls(e, t, n) {
+async function us(e, t, n) {
 	let r = t;
 	for (let t = 1; t < 64 && r + 8 <= n; t++) {
 		let t = new DataView(await e.read(r, r + 8)), i = t.getUint32(0, !0);
 		if (r + 8 + i > n) throw M(String(r), "a chunk longer than the file");
-		if (t.getUint32(4, !0) === ss) return r + 8;
+		if (t.getUint32(4, !0) === cs) return r + 8;
 		r += 8 + i;
 	}
 	throw M(String(t), "no binary chunk");
 }
-function us(e) {
+function ds(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
 		throw M("20", "its JSON is not UTF-8");
 	}
 }
-function ds(e, t) {
-	if (fs(e) > 64) throw M(t, "its JSON is nested too deep");
+function fs(e, t) {
+	if (ps(e) > 64) throw M(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
 		throw M(t, "its JSON cannot be read");
 	}
 }
-function fs(e) {
+function ps(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3643,20 +3682,20 @@ function fs(e) {
 	}
 	return n;
 }
-function ps(e) {
+function ms(e) {
 	return new j("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/packed.ts
-var ms = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", hs = 4;
-async function gs(e, t) {
+var hs = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", gs = 4;
+async function _s(e, t) {
 	let n = new K(e, ""), r = n.key("extensions").key(xe), i = r.key("packed");
 	if (!i.exists) return e;
 	fi(r);
 	let a = Mr(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < hs) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, hs)).getUint32(0, !0);
-	if (hs + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new K(ds(await vs(await t(o.offset + hs, s), i.where), i.where), i.where).object(), u = _s(new K(c, `${i.where}/lengths`), o, hs + s), { packed: d, ...f } = r.object();
+	if (!o || o.length < gs) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, gs)).getUint32(0, !0);
+	if (gs + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new K(fs(await ys(await t(o.offset + gs, s), i.where), i.where), i.where).object(), u = vs(new K(c, `${i.where}/lengths`), o, gs + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
 		bufferViews: [...n.key("bufferViews").items(I).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
@@ -3669,7 +3708,7 @@ async function gs(e, t) {
 		}
 	};
 }
-function _s(e, t, n) {
+function vs(e, t, n) {
 	let r = n, i = e.items(I).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
@@ -3681,8 +3720,8 @@ function _s(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function vs(e, t) {
-	let n = new TextEncoder().encode(ms), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function ys(e, t) {
+	let n = new TextEncoder().encode(hs), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -3701,8 +3740,8 @@ async function vs(e, t) {
 	}
 }
 // eigenfield-three/src/proxy.ts
-var ys = 65535;
-function bs(e, t) {
+var bs = 65535;
+function xs(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
 	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
 	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
@@ -3712,46 +3751,46 @@ function bs(e, t) {
 	}
 	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
 }
-async function xs({ view: n, codec: r, where: i }, a) {
+async function Ss({ view: n, codec: r, where: i }, a) {
 	let { positions: o, uv: s, indices: c } = r.decode(new Uint8Array(await a(n)), i);
 	if (!c.length) throw M(i, "a mesh without faces");
 	let l = new t();
 	l.setAttribute("position", new e(o, 3)), l.setAttribute("uv", new e(s, 2));
-	let u = o.length / 3 <= ys;
+	let u = o.length / 3 <= bs;
 	return l.setIndex(new e(u ? Uint16Array.from(c) : c, 1)), l;
 }
-function Ss(e) {
+function Cs(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/grid.ts
-function Cs(e) {
+function ws(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = ws(e, n, r) ?? (n === r ? null : ws(e, r, n));
+		let r = t / n, i = Ts(e, n, r) ?? (n === r ? null : Ts(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function ws(e, t, n) {
-	let [r, i] = [Es(e, 0), Es(e, 1)];
-	if (t === 1 && Ds(i) > 0 || n === 1 && Ds(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => Os(i, e) - Os(i, t));
+function Ts(e, t, n) {
+	let [r, i] = [Ds(e, 0), Ds(e, 1)];
+	if (t === 1 && Os(i) > 0 || n === 1 && Os(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => ks(i, e) - ks(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Os(r, e) - Os(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => ks(r, e) - ks(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return Ts(n, t, (e, t) => Os(r, o(t, e))) && Ts(t, n, (e, t) => Os(i, o(e, t))) ? {
+	return Es(n, t, (e, t) => ks(r, o(t, e))) && Es(t, n, (e, t) => ks(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function Ts(e, t, n) {
+function Es(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -3761,33 +3800,33 @@ function Ts(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function Es(e, t) {
+function Ds(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function Ds(e) {
+function Os(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var Os = (e, t) => e[t] ?? 0, ks = 1e-6, As = 32, js = class {
+var ks = (e, t) => e[t] ?? 0, As = 1e-6, js = 32, Ms = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = Cs(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = ws(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(Ms(e), this.isLine ? 0 : Ms(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(Ns(e), this.isLine ? 0 : Ns(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => Hs(e, t, this.places) : e === "bilinear" && this.grid ? Ws(this.places, this.grid) : Fs(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => Us(e, t, this.places) : e === "bilinear" && this.grid ? Gs(this.places, this.grid) : Is(this.places, this.triangles);
 	}
 };
-function Ms(e) {
+function Ns(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Ns(e) {
+function Ps(e) {
 	let t = {
 		camera: [
 			0,
@@ -3807,7 +3846,7 @@ function Ns(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function Ps(e, t, n, r, i, a) {
+function Fs(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -3815,49 +3854,49 @@ function Ps(e, t, n, r, i, a) {
 		m
 	];
 }
-function Fs(e, t) {
+function Is(e, t) {
 	if (!t.length) {
-		let t = Vs(e, Bs(e));
-		return (n, r) => zs(n, r, e, t);
+		let t = Hs(e, Vs(e));
+		return (n, r) => Bs(n, r, e, t);
 	}
-	let n = Ls(e, t, 3), r = Rs(t);
+	let n = Rs(e, t, 3), r = zs(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * As + $(i)] ?? []) {
+		for (let r of n[$(a) * js + $(i)] ?? []) {
 			let [n, l, u] = [
-				Is(t, r, 0),
-				Is(t, r, 1),
-				Is(t, r, 2)
-			], d = Ps(i, a, e, n, l, u), f = Math.min(...d);
+				Ls(t, r, 0),
+				Ls(t, r, 1),
+				Ls(t, r, 2)
+			], d = Fs(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? zs(i, a, e, r) : Ns(c.map((e, n) => [Is(t, o, n), e]));
+		return s < -1e-9 ? Bs(i, a, e, r) : Ps(c.map((e, n) => [Ls(t, o, n), e]));
 	};
 }
-var Is = (e, t, n) => e[3 * t + n] ?? 0;
+var Ls = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * As)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * js)));
 }
-function Ls(e, t, n) {
+function Rs(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * As + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * js + t]?.push(i);
 	}
 	return r;
 }
-function Rs(e) {
+function zs(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [Is(e, n, r), Is(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [Ls(e, n, r), Ls(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -3866,7 +3905,7 @@ function Rs(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function zs(e, t, n, r) {
+function Bs(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -3881,12 +3920,12 @@ function zs(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return Ns([[o, 1 - c], [s, c]]);
+	return Ps([[o, 1 - c], [s, c]]);
 }
-function Bs(e) {
+function Vs(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function Vs(e, t) {
+function Hs(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -3907,7 +3946,7 @@ function Vs(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function Hs(e, t, n) {
+function Us(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -3921,12 +3960,12 @@ function Hs(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || Us(n, r, i, a) <= ks) return zs(e, t, n, Vs(n, [
+	if (a < 0 || Ws(n, r, i, a) <= As) return Bs(e, t, n, Hs(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = Ps(e, t, n, r, i, a);
+	let [l, u, d] = Fs(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -3942,15 +3981,15 @@ function Hs(e, t, n) {
 		]
 	};
 }
-function Us(e, t, n, r) {
+function Ws(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function Ws(e, t) {
+function Gs(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = Vs(e, Bs(e));
-		return (n, r) => zs(n, r, e, t);
+		let t = Hs(e, Vs(e));
+		return (n, r) => Bs(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -3959,7 +3998,7 @@ function Ws(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = Ls(e, o.flat(), 4), c = [];
+	let s = Rs(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -3967,12 +4006,12 @@ function Ws(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * As + $(t)] ?? []) {
-			let s = o[a], c = s ? Gs(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * js + $(t)] ?? []) {
+			let s = o[a], c = s ? Ks(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return zs(t, n, e, l);
-		let [a, c] = Ks(t, n, e, r);
+		if (!r || i < -1e-9) return Bs(t, n, e, l);
+		let [a, c] = qs(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -3984,7 +4023,7 @@ function Ws(e, t) {
 		};
 	};
 }
-function Gs(e, t, n, r) {
+function Ks(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -3992,7 +4031,7 @@ function Gs(e, t, n, r) {
 	}
 	return i;
 }
-function Ks(e, t, n, r) {
+function qs(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -4010,14 +4049,14 @@ function Ks(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = qs(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [qs(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Js(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [Js(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function qs(e) {
+function Js(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var Js = class {
+var Ys = class {
 	parser;
 	options;
 	name = xe;
@@ -4028,9 +4067,9 @@ var Js = class {
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
-		this.options.renderer && fo(this.options.renderer);
+		this.options.renderer && po(this.options.renderer);
 		let { json: e } = this.parser;
-		me(e), Object.assign(e, await gs(e, (e, t) => this.read(e, t))), this.scene = li(e), this.scene.shown || Ys(e);
+		me(e), Object.assign(e, await _s(e, (e, t) => this.read(e, t))), this.scene = li(e), this.scene.shown || Xs(e);
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
@@ -4051,25 +4090,25 @@ var Js = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = Xs(e, this.parser), [r] = n;
+		let n = Zs(e, this.parser), [r] = n;
 		if (!r) throw M("/meshes/0", "no node shows it");
-		t.shown && bs(r.geometry, t.shown);
+		t.shown && xs(r.geometry, t.shown);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
 			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ue(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await xs(t.mesh, i);
+		}, a = t.mesh && await Ss(t.mesh, i);
 		if (a) {
 			r.geometry.dispose();
 			for (let e of n) e.geometry = a;
 		}
 		t.sheets && ti(t.sheets, r.geometry);
 		let [o, s, c, l] = await Promise.all([
-			Promise.all(di(t).map((e) => Wo(e, i))),
+			Promise.all(di(t).map((e) => Go(e, i))),
 			Ei(t, i),
-			Ni(t, i),
-			Ri(t, i)
-		]), u = s.filter((e, n) => !t.heldOut[n]), d = new js(Float64Array.from(u.flatMap((e) => Hi(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = Bi(t, s, f, d.grid, this.fileBytes(), Ss(r.geometry)), m = {
+			Pi(t, i),
+			zi(t, i)
+		]), u = s.filter((e, n) => !t.heldOut[n]), d = new Ms(Float64Array.from(u.flatMap((e) => Ui(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = Vi(t, s, f, d.grid, this.fileBytes(), Cs(r.geometry)), m = {
 			scene: t,
 			info: p,
 			meshes: n,
@@ -4080,7 +4119,7 @@ var Js = class {
 			weights: d,
 			bytes: i
 		};
-		e.userData.eigenfield = new Zo(m, this.options);
+		e.userData.eigenfield = new Qo(m, this.options);
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -4088,50 +4127,50 @@ var Js = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function Ys(e) {
+function Xs(e) {
 	let [t] = e.nodes;
 	t && (t.mesh = 0), e.meshes = [{ primitives: [{
 		attributes: {},
 		material: 0
 	}] }], e.materials = [{ doubleSided: !0 }];
 }
-function Xs(e, t) {
+function Zs(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		Zs(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		Qs(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function Zs(e) {
+function Qs(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function Qs(e, t = {}) {
+async function $s(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new is(), i = new AbortController(), a = () => {
+	let r = new as(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = tc(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = nc(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
-		let e = await cs(r);
+		let e = await ls(r);
 		if (!ci(e.json)) return {
-			gltf: await ec(r, e, o),
+			gltf: await tc(r, e, o),
 			field: null
 		};
-		let i = await $s(r, e, t);
+		let i = await ec(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
 			gltf: i,
-			field: a instanceof Zo ? a : null
+			field: a instanceof Qo ? a : null
 		};
 	} catch (e) {
 		throw i.abort(), n?.throwIfAborted(), de(e);
 	}
 }
-async function $s(e, t, n) {
+async function ec(e, t, n) {
 	let r = new ce(), i = t.binary();
 	i.catch(() => void 0);
 	let a = {
@@ -4141,12 +4180,12 @@ async function $s(e, t, n) {
 			return e.read(r, r + n);
 		}
 	};
-	return r.register((e) => new Js(e, {
+	return r.register((e) => new Ys(e, {
 		...n,
 		stream: a
 	})), r.parseAsync(t.text, "");
 }
-async function ec(e, t, n) {
+async function tc(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -4158,25 +4197,25 @@ async function ec(e, t, n) {
 		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function tc(e, t, n, r) {
+async function nc(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? nc(e) : await rc(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? rc(e) : await ic(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : ic(t.received, e);
+			throw n.aborted ? e : ac(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function nc(e) {
+function rc(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function rc(e, t) {
+async function ic(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -4187,7 +4226,7 @@ async function rc(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function ic(e, t) {
+function ac(e, t) {
 	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { Zo as EigenField, Js as EigenfieldPlugin, No as SHEETS, j as SceneError, ca as defaultMemory, Qs as loadEigenfield, Gi as novelCamera, Yi as placeCamera, pe as refuseAddresses };
+export { Qo as EigenField, Ys as EigenfieldPlugin, Po as SHEETS, j as SceneError, la as defaultMemory, $s as loadEigenfield, Ki as novelCamera, Xi as placeCamera, pe as refuseAddresses };
