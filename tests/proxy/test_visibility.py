@@ -17,9 +17,16 @@ from eigenfield.proxy.surface.fusion import fuse_depth_maps
 from eigenfield.proxy.surface.poisson import poisson_surface
 from eigenfield.proxy.surface.trim import trim_surface
 from eigenfield.proxy.surface.visibility import add_weak_points, visible_surface
-from eigenfield.proxy.surface.visibility_kernels import CAMERA_WEIGHT, SOURCE, back_slots, cast_votes, cut
+from eigenfield.proxy.surface.visibility_kernels import (
+    CAMERA_WEIGHT,
+    SOURCE,
+    SURE_NOISES,
+    back_slots,
+    cast_votes,
+    cut,
+)
 from eigenfield.runtime import parallel
-from support.surfaces import ball_before_wall, depth_views, looking, nine_cameras, truth
+from support.surfaces import ball_before_wall, depth_views, looking, nine_cameras, square, truth
 
 
 @pytest.fixture(scope="module")
@@ -29,23 +36,29 @@ def cameras():
 
 @pytest.fixture(scope="module")
 def views(cameras):
-    return depth_views(ball_before_wall(), cameras)
+    """Depth maps with noise: points that lie exactly in a plane have no Delaunay triangulation of their own."""
+    rng = np.random.default_rng(0)
+    true = depth_views(ball_before_wall(), cameras)
+    noise = [rng.normal(scale=0.001, size=view.inverse_depth.shape) for view in true]
+    return [
+        replace(view, inverse_depth=(view.inverse_depth * (1 + off)).astype(np.float32))
+        for view, off in zip(true, noise, strict=True)
+    ]
 
 
 @pytest.fixture(autouse=True)
 def few_vertices(monkeypatch):
-    monkeypatch.setattr(visibility, "VISIBILITY_TUNING", replace(visibility.VISIBILITY_TUNING, max_vertices=4_000))
+    monkeypatch.setattr(visibility, "VISIBILITY_TUNING", replace(visibility.VISIBILITY_TUNING, max_vertices=8_000))
 
 
-def with_patch(views, factor):
-    """Depth maps whose inverse depth is multiplied in a square of 1.4 on the wall."""
+def with_patch(views, behind):
+    """Depth maps with others, such as of what lies behind, in a square of 1.4 on the wall."""
     result = []
-    for view in views:
+    for view, other in zip(views, behind, strict=True):
         x, y = np.meshgrid(np.arange(view.camera.width) + 0.5, np.arange(view.camera.height) + 0.5)
         rays = np.stack([x, y, np.ones_like(x)], axis=-1) @ np.linalg.inv(view.camera.K).T
         world = (rays / np.maximum(view.inverse_depth, 1e-9)[..., None] - view.camera.t) @ view.camera.R
-        patch = in_patch(world)
-        result.append(replace(view, inverse_depth=np.where(patch, factor * view.inverse_depth, view.inverse_depth)))
+        result.append(replace(view, inverse_depth=np.where(in_patch(world), other, view.inverse_depth)))
     return result
 
 
@@ -107,12 +120,19 @@ def test_a_line_of_sight_votes_for_the_faces_that_it_crosses():
 
     front, at = crossed(towards)
     rear, beyond = crossed(-towards / length * behind * noise)
-    for t, u, distance in [*zip(front[1:], front, at, strict=False), *zip(rear, rear[1:], beyond, strict=False)]:
+    flow = 2 * (1 - np.exp(-0.5 * SURE_NOISES**2))  # from the camera as far as the line is sure
+    sure = at >= SURE_NOISES * noise
+    steps = [*zip(front[1:], front, at, flow * sure, strict=False)]
+    steps += [*zip(rear, rear[1:], beyond, 0 * beyond, strict=False)]
+    for t, u, distance, known in steps:
         slot = int(np.flatnonzero(neighbours[t] == u)[0])
-        assert capacity[t, slot] == pytest.approx(2 * (1 - np.exp(-0.5 * (distance / noise) ** 2)), abs=2e-2)
-    assert (capacity > 0).sum() == len(at) + len(beyond)
-    assert excess[front[-1]] == 2 * CAMERA_WEIGHT and excess[rear[-1]] == -2
-    assert (excess != 0).sum() == 2
+        cost = 2 * (1 - np.exp(-0.5 * (distance / noise) ** 2))
+        assert capacity[t, slot] == pytest.approx(cost - known, abs=2e-2)
+        assert capacity[u, back[t, slot]] == known
+    assert (capacity > 0).sum() == len(steps) + sure.sum()
+    assert 0 < sure.sum() < len(at)
+    true = {front[-1]: 2 * CAMERA_WEIGHT - flow, front[int(sure.argmax())]: flow, rear[-1]: -2}
+    assert np.flatnonzero(excess).tolist() == sorted(true) and all(excess[t] == value for t, value in true.items())
 
 
 def test_the_surface_is_where_the_views_see_it_and_faces_them(views, cameras):
@@ -128,22 +148,23 @@ def test_the_surface_is_where_the_views_see_it_and_faces_them(views, cameras):
 
 
 def test_what_no_view_knows_is_closed_and_what_they_see_through_is_open(views):
-    hole, open_air = with_patch(views, 0.0), with_patch(views, 0.5)
+    far = [rasterise_view(square(9, 3.0), view.camera).inverse_depth for view in views]
+    hole, open_air = with_patch(views, [0] * len(views)), with_patch(views, far)
     bare = fuse_depth_maps(hole)
-    assert not in_patch(bare.positions).any()
+    assert not in_patch(bare.positions, 0.6).any()
     closed = add_weak_points(bare, hole, 0.005)
     added = closed.positions[len(bare) :]
     middle = looking(np.array([2.0, 0, -5.0]), (2, 0, 1.2), width=20, height=20)
-    assert in_patch(added).sum() > 20 and np.abs(added[in_patch(added), 2] - 1.2).max() < 0.03
+    assert in_patch(added).sum() > 20 and np.abs(added[in_patch(added), 2] - 1.2).max() < 0.1
     assert camera_coverage(trim_surface(poisson_surface(closed), closed), [middle])[0] == 1
     seen_through = add_weak_points(bare, open_air, 0.005).positions
-    assert not (in_patch(seen_through, 0.6) & (seen_through[:, 2] < 2)).any()
+    assert not (in_patch(seen_through, 0.5) & (seen_through[:, 2] < 1.4)).any()
 
 
 def test_near_and_far_stay_apart(views):
     fused = fuse_depth_maps(views)
     added = add_weak_points(fused, views, 0.005).positions[len(fused) :]
-    assert (truth(added) < 0.05).all()  # between the ball's rim and the wall there is nothing
+    assert (truth(added) < 0.1).all()  # between the ball's rim and the wall there is nothing
 
 
 def test_the_surface_does_not_depend_on_threads(views):

@@ -1,4 +1,4 @@
-"""From photographs with known cameras to a surface: a depth map a view, fused, closed, trimmed and simplified.
+"""From photographs with known cameras to a surface: a depth map a view, fused, closed by visibility, and simplified.
 
 There are two passes. The coarse one covers all depths that the cameras can resolve, unless points of structure from
 motion are given. In the fine one each view covers the range of the points that it sees.

@@ -59,7 +59,7 @@ class VisibilityTuning:
     """
 
     max_pixels: int = 800_000
-    max_vertices: int = 50_000
+    max_vertices: int = 100_000
     cell_growth_power: float = 0.4
     behind_noises: float = 3.0
     face_weight: float = 1.0
