@@ -2,8 +2,8 @@
 
     EIGENFIELD_DATA=captures python benchmarks/proxy.py [CASE ...]
 
-Depth maps and calibrations stand beside true ones; a whole capture is one `eigenfield encode --fit none` from a folder
-of photographs to a scene, and what that is worth. Results go to benchmarks/results/proxy-NAME.json.
+Depth maps, surfaces and calibrations stand beside true ones; a whole capture is one `eigenfield encode --fit none` from
+a folder of photographs to a scene, and what that is worth. Results go to benchmarks/results/proxy-NAME.json.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import functools
 import json
+import os
 import tempfile
 import time
 import tomllib
@@ -24,9 +25,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 import measure
-from eigenfield.calibration import align_similarity, calibration_error
+from eigenfield.calibration import align_similarity, calibration_error, triangulate_points
 from eigenfield.capture import open_capture
+from eigenfield.capture.holdout import held_out_cameras
 from eigenfield.capture.photographs.read import decode
+from eigenfield.core.camera import Camera
+from eigenfield.core.mesh import Mesh
+from eigenfield.imaging.raster import rasterise_view
+from eigenfield.proxy import read_mesh, surface_from_views
+from eigenfield.proxy.background import fill_background
 from eigenfield.stereo import depth_range, estimate_depth
 
 BORDER = 15  # pixels that the HCI benchmark leaves out on every side
@@ -162,6 +169,47 @@ def caliscope(data: Path) -> dict[str, Any]:
     }
 
 
+def surface_cube(data: Path) -> dict[str, Any]:
+    """The surface of the cube beside COLMAP's mesh, in all photographs' cameras at half their size.
+
+    Fractions of the pixels that COLMAP's mesh shows: those that our surface covers without its background, and those
+    in which the whole surface's depth differs by less than 1 and 2 %, or by more than a tenth.
+    """
+    capture = open_capture(data / "cube_colmap_mesh")
+    theirs = read_mesh(data / "cube_colmap_mesh" / "proxy.obj")
+    cameras = [camera.resize(camera.width // 2, camera.height // 2) for camera in capture.cameras]
+    true = [rasterise_view(theirs, camera).inverse_depth for camera in cameras]
+    result: dict[str, Any] = {}
+    for name, rule in (("all", None), ("every_4", "every:4")):
+        held = held_out_cameras(rule, capture.names, np.zeros((len(cameras), 2)))
+        field = capture.subset(np.flatnonzero(~held).tolist())
+        started, work = time.perf_counter(), _cpu_seconds()
+        mesh = surface_from_views(field, triangulate_points(field), background=False).mesh
+        taken = time.perf_counter() - started, _cpu_seconds() - work
+        whole = fill_background(mesh, field.cameras)
+        parts = [_beside(mesh, whole, camera, depth) for camera, depth in zip(cameras, true, strict=True)]
+        result[name] = {key: round(float(np.mean([part[key] for part in parts])), 4) for key in parts[0]}
+        result[name] |= {"seconds": round(taken[0], 1), "cpu_seconds": round(taken[1], 1)}
+    return result
+
+
+def _beside(mesh: Mesh, whole: Mesh, camera: Camera, true: NDArray[np.float32]) -> dict[str, float]:
+    shown = true > 0
+    drawn = rasterise_view(whole, camera).inverse_depth[shown]
+    off = np.abs(true[shown] / np.maximum(drawn, 1e-12) - 1)
+    return {
+        "covered": float((rasterise_view(mesh, camera).face[shown] >= 0).mean()),
+        "within_1_percent": float((off < 0.01).mean()),
+        "within_2_percent": float((off < 0.02).mean()),
+        "off_by_a_tenth": float(((drawn > 0) & (off > 0.1)).mean()),
+    }
+
+
+def _cpu_seconds() -> float:
+    used = os.times()
+    return used.user + used.system + used.children_user + used.children_system
+
+
 def _centre(camera: dict[str, Any]) -> np.ndarray:
     return -np.array(camera["rotation"]).T @ np.array(camera["translation"])
 
@@ -211,6 +259,7 @@ CASES: dict[str, Callable[[Path], dict[str, Any]]] = {
     "cameras-temple": lambda data: against_truth(data / "temple_ring16"),
     "cameras-stereo-chart": stereo_chart,
     "cameras-caliscope": caliscope,
+    "surface-cube": surface_cube,
     **{f"scene-{name}": functools.partial(scene, case=case) for name, case in SCENES.items()},
 }
 

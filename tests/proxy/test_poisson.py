@@ -10,7 +10,7 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.imaging.graph import face_edges
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy.background import camera_coverage, fill_background, join_meshes
-from eigenfield.proxy.surface.fusion import DepthView, OrientedPoints, fuse_depth_maps
+from eigenfield.proxy.surface.fusion import OrientedPoints, fuse_depth_maps
 from eigenfield.proxy.surface.multiview import surface_from_views
 from eigenfield.proxy.surface.poisson import poisson_surface
 from eigenfield.proxy.surface.trim import (
@@ -62,27 +62,6 @@ def test_the_surface_is_true_covers_and_is_manifold(whole, points, scene, camera
     assert np.bincount(number).max() == 2
     assert np.abs(mesh.vertices).max() < 4.4  # Poisson's closed balloon is cut
     assert (mesh.face_normals()[mesh.face_areas() > 0] @ [0, 0, -1]).mean() > 0.5
-
-
-@pytest.mark.parametrize("seen", ["nothing", pytest.param("the air", marks=pytest.mark.slow)])
-def test_a_bare_patch_stays_unless_depth_maps_look_through_it(points, scene, cameras, seen):
-    bare = (np.abs(points.positions[:, :2] - [2.0, 0]) < 0.75).all(axis=1) & (points.positions[:, 2] > 1.1)
-    fewer = OrientedPoints(points.positions[~bare], points.normals[~bare], points.spacing[~bare])
-    mesh = poisson_surface(fewer)
-    views = []
-    for view in depth_views(scene, cameras):  # the depth maps have nothing there, or something far behind
-        inverse = view.inverse_depth.copy()
-        x, y = np.meshgrid(np.arange(view.camera.width) + 0.5, np.arange(view.camera.height) + 0.5)
-        rays = np.stack([x, y, np.ones_like(x)], axis=-1) @ np.linalg.inv(view.camera.K).T
-        world = (rays / np.maximum(inverse, 1e-9)[..., None] - view.camera.t) @ view.camera.R
-        patch = (np.abs(world[..., :2] - [2.0, 0]) < 0.7).all(axis=-1) & (world[..., 2] > 1.1)
-        inverse[patch] *= 0 if seen == "nothing" else 0.5
-        views.append(DepthView(view.camera, inverse))
-    middle = looking(np.array([2.0, 0, -5.0]), (2, 0, 1.2), width=20, height=20)
-    plain = camera_coverage(trim_surface(mesh, fewer), [middle])[0]
-    assert plain < 0.5
-    kept = camera_coverage(trim_surface(mesh, fewer, views=views), [middle])[0]
-    assert kept == 1 if seen == "nothing" else kept < 0.5
 
 
 def test_simplification_reports_its_error(points, cameras, whole):

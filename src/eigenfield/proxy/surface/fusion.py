@@ -9,6 +9,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,12 @@ from numpy.typing import NDArray
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.progress import Progress, track
-from eigenfield.proxy.surface.fusion_kernels import confirm_points, estimate_normals, select_finest
+from eigenfield.proxy.surface.fusion_kernels import (
+    FUSION_LEVELS_PER_OCTAVE,
+    confirm_points,
+    estimate_normals,
+    select_finest,
+)
 from eigenfield.runtime.parallel import parallel_map, pieces
 from eigenfield.stereo.reference_view import INDEX_FROM_PIXEL
 
@@ -64,10 +70,13 @@ class OrientedPoints:
     def __len__(self) -> int:
         return len(self.positions)
 
+    def __getitem__(self, chosen: NDArray[np.bool_] | NDArray[np.int64]) -> OrientedPoints:
+        return OrientedPoints(self.positions[chosen], self.normals[chosen], self.spacing[chosen])
+
 
 @dataclass(frozen=True, eq=False)
-class _StackedViews:
-    """All views, one after the other, as the kernels read them."""
+class StackedViews:
+    """All views, one after the other, as the kernels read them: see `fusion_kernels`."""
 
     layout: NDArray[np.int64]
     projections: NDArray[np.float64]
@@ -77,6 +86,14 @@ class _StackedViews:
     normals: NDArray[np.float32]
     level: NDArray[np.int16]
     inside: NDArray[np.uint8]
+
+    def spacing(self, pixels: NDArray[np.int64]) -> NDArray[np.float64]:
+        """(n,) widths of pixels on the surface, the middle of each level's range.
+
+        Args:
+            pixels: (n,) of all views' pixels.
+        """
+        return np.asarray(2.0 ** ((self.level[pixels] + 0.5) / FUSION_LEVELS_PER_OCTAVE))
 
 
 def fuse_depth_maps(
@@ -101,7 +118,7 @@ def fuse_depth_maps(
     """
     if not views:
         raise ProxyError("surface-no-points", "there are no depth maps", remedy="give at least three photographs")
-    stack = _stack_views(views)
+    stack = stack_views(views)
     if not stack.inside.any():
         raise ProxyError(
             "surface-masked", "the masks hide every pixel", remedy="white counts, black is left out: invert the masks?"
@@ -139,8 +156,7 @@ def fuse_depth_maps(
             f"no point is confirmed by {FUSION_MIN_AGREEING_VIEWS + 1} of the {len(views)} views",
             remedy="check calibration and masks (`eigenfield inspect CAPTURE`); photographs must overlap, with texture",
         )
-    spacing = (2.0 ** ((stack.level[chosen] + 0.5) / 2.0)).astype(np.float32)  # the middle of each level's range
-    points = OrientedPoints(mean[chosen], stack.normals[chosen], spacing)
+    points = OrientedPoints(mean[chosen], stack.normals[chosen], stack.spacing(chosen).astype(np.float32))
     log.info("fusion: %d points from %d views", len(points), len(views))
     return subsample_points(points, limit)
 
@@ -162,14 +178,41 @@ def subsample_points(points: OrientedPoints, limit: int) -> OrientedPoints:
     return result
 
 
-def _merge_cells(points: OrientedPoints, factor: float) -> OrientedPoints:
-    size = 2.0 ** np.ceil(np.log2(points.spacing.astype(np.float64)))
-    cell = np.floor((points.positions - points.positions.min(axis=0)) / (factor * size)[:, None]).astype(np.int64)
-    octant = (points.normals > 0) @ np.array([1, 2, 4])
-    key = np.column_stack([np.log2(size).astype(np.int64), octant, cell])
+def join_points(*parts: OrientedPoints) -> OrientedPoints:
+    """Several sets of points as one.
+
+    Args:
+        parts: In order.
+    """
+    return OrientedPoints(
+        np.concatenate([part.positions for part in parts]),
+        np.concatenate([part.normals for part in parts]),
+        np.concatenate([part.spacing for part in parts]),
+    )
+
+
+def sort_cells(
+    positions: NDArray[np.float64], spacing: NDArray[np.floating[Any]], factor: float, *apart: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+    """The order (n,) that sorts points into cells, the start (c,) of each cell in it, and (n,) sizes.
+
+    Args:
+        positions: (n, 3).
+        spacing: (n,) of the points; a point's size is the next power of 2.
+        factor: Width of a cell in units of its points' size.
+        apart: (n,) integers: points that differ in one have different cells.
+    """
+    size = 2.0 ** np.ceil(np.log2(spacing.astype(np.float64)))
+    cell = np.floor((positions - positions.min(axis=0)) / (factor * size)[:, None]).astype(np.int64)
+    key = np.column_stack([np.log2(size).astype(np.int64), *apart, cell])
     order = np.lexsort(key.T[::-1])
     fresh = np.append(True, (np.diff(key[order], axis=0) != 0).any(axis=1))
-    starts = np.flatnonzero(fresh)
+    return order, np.flatnonzero(fresh), size
+
+
+def _merge_cells(points: OrientedPoints, factor: float) -> OrientedPoints:
+    octant = (points.normals > 0) @ np.array([1, 2, 4])
+    order, starts, size = sort_cells(points.positions, points.spacing, factor, octant)
     count = np.diff(np.append(starts, len(order)))
 
     def average(values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -181,12 +224,17 @@ def _merge_cells(points: OrientedPoints, factor: float) -> OrientedPoints:
     return OrientedPoints(average(points.positions), normals.astype(np.float32), spacing.astype(np.float32))
 
 
-def _stack_views(views: Sequence[DepthView]) -> _StackedViews:
+def stack_views(views: Sequence[DepthView]) -> StackedViews:
+    """Depth maps with the normals of their pixels, for the kernels.
+
+    Args:
+        views: Depth maps.
+    """
     layout = np.zeros((len(views), 3), np.int64)
     layout[:, 1:] = [view.inverse_depth.shape for view in views]
     layout[1:, 0] = np.cumsum(layout[:, 1] * layout[:, 2])[:-1]
     total = int((layout[:, 1] * layout[:, 2]).sum())
-    stack = _StackedViews(
+    stack = StackedViews(
         layout,
         np.stack([INDEX_FROM_PIXEL @ view.camera.matrix for view in views]),
         np.stack([view.camera.R.T @ np.linalg.inv(INDEX_FROM_PIXEL @ view.camera.K) for view in views]),

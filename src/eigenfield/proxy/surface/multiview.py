@@ -1,4 +1,4 @@
-"""From photographs with known cameras to a surface: a depth map a view, fused, closed, trimmed and simplified.
+"""From photographs with known cameras to a surface: a depth map a view, fused, closed by visibility, and simplified.
 
 There are two passes. The coarse one covers all depths that the cameras can resolve, unless points of structure from
 motion are given. In the fine one each view covers the range of the points that it sees.
@@ -28,6 +28,7 @@ from eigenfield.proxy.surface.fusion import DepthView, fuse_depth_maps
 from eigenfield.proxy.surface.neighbours import choose_neighbours, frustum_points, inside_frame, spread_views
 from eigenfield.proxy.surface.poisson import poisson_surface
 from eigenfield.proxy.surface.trim import SurfaceError, simplify_with_error, trim_by_masks, trim_surface
+from eigenfield.proxy.surface.visibility import add_weak_points
 from eigenfield.runtime.parallel import tracked_map
 from eigenfield.runtime.parts import Parts
 
@@ -142,9 +143,8 @@ def surface_from_views(
     fused = fuse_depth_maps(views, tolerance=tolerance, limit=limit, progress=progress)
     masked = any(picture.mask is not None for picture in pictures)
     middle = cameras[_central_camera(cameras)]
-    # masked pixels have no depth that could contradict a patch: nothing without points stays there
-    walls = () if masked else views
-    mesh = trim_surface(poisson_surface(fused, progress=progress), fused, views=walls, tolerance=tolerance)
+    supported = add_weak_points(fused, views, tolerance, progress=progress)
+    mesh = trim_surface(poisson_surface(supported, progress=progress), supported)
     if masked:
         mesh = trim_by_masks(mesh, [p.camera for p in pictures], [p.mask for p in pictures])
     closed = (not masked) if background is None else background

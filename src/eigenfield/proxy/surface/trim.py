@@ -8,24 +8,21 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import binary_dilation, maximum_filter
+from scipy.ndimage import binary_dilation
 from scipy.spatial import KDTree
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.proxy.atlas.unwrap import simplify_mesh
-from eigenfield.proxy.surface.fusion import DepthView, OrientedPoints
+from eigenfield.proxy.surface.fusion import OrientedPoints
 from eigenfield.proxy.surface.neighbours import project_inside
 from eigenfield.proxy.topology import face_patches, fill_holes, make_manifold, remove_islands
-from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger("eigenfield.proxy")
 
 TRIM_SUPPORT_SPACINGS = 4.0  # distance at which points support a surface
 TRIM_MAX_GAP_SPACINGS = 30.0  # size of holes that are closed
-TRIM_MAX_WALL_SPACINGS = 120.0  # size of patches without points that stay if no view sees through them
-TRIM_MIN_SEEN_THROUGH_VIEWS = 2  # depth maps that must see something behind a point
 TRIM_MIN_ISLAND_FRACTION = 0.005  # of the area: smaller patches are dropped
 SURFACE_DISTANCE_SAMPLES = 200_000  # on a surface, to find the triangles near a point
 SURFACE_ERROR_PROBES = 20_000  # points at which the error of a simplification is measured
@@ -52,21 +49,12 @@ class SurfaceError:
         return f"{100 * self.relative:.3f} % of the scene, {self.pixels:.2f} px (95 % under {self.pixels_p95:.2f} px)"
 
 
-def trim_surface(
-    mesh: Mesh,
-    points: OrientedPoints,
-    *,
-    views: Sequence[DepthView] = (),
-    tolerance: float = 0.01,
-) -> Mesh:
+def trim_surface(mesh: Mesh, points: OrientedPoints) -> Mesh:
     """Remove what no points support and close small holes; no small islands and nothing non-manifold remains.
 
     Args:
         mesh: The closed surface.
         points: The points that it was reconstructed from.
-        views: Depth maps. With them, larger unsupported patches stay too if no two depth maps see through them: bare
-            walls have no points.
-        tolerance: Relative; a view sees through a patch if it sees something farther by more than twice this.
 
     Raises:
         ProxyError: `surface-empty`: nothing remains.
@@ -75,9 +63,6 @@ def trim_surface(
     gap_size = TRIM_MAX_GAP_SPACINGS * spacing
     supported = np.asarray(_has_support(mesh, points)[mesh.faces].all(axis=1), np.bool_)
     kept = supported | _small_patches(mesh, ~supported, gap_size)
-    if views:
-        solid = ~supported & ~_seen_through(mesh, views, tolerance)[mesh.faces].any(axis=1)
-        kept |= _small_patches(mesh, solid, TRIM_MAX_WALL_SPACINGS * spacing)
     result = make_manifold(remove_islands(Mesh(mesh.vertices, mesh.faces[kept]), TRIM_MIN_ISLAND_FRACTION))
     result = remove_islands(fill_holes(result, gap_size), TRIM_MIN_ISLAND_FRACTION)
     if len(result.faces) == 0:
@@ -211,21 +196,6 @@ def _has_support(mesh: Mesh, points: OrientedPoints) -> NDArray[np.bool_]:
     edge = float(np.median(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)))
     distance, nearest = KDTree(points.positions).query(mesh.vertices)
     return distance <= TRIM_SUPPORT_SPACINGS * np.maximum(points.spacing[nearest], edge / 2)
-
-
-def _seen_through(mesh: Mesh, views: Sequence[DepthView], tolerance: float) -> NDArray[np.bool_]:
-    """(n,) vertices behind which at least TRIM_MIN_SEEN_THROUGH_VIEWS depth maps see something, all around them."""
-    positions = mesh.vertices.astype(np.float64)
-
-    def behind(view: DepthView) -> NDArray[np.bool_]:
-        nearest = maximum_filter(np.where(view.inverse_depth > 0, view.inverse_depth, np.inf), 3)
-        pixels, depth, inside = project_inside(view.camera, positions)
-        column, row = pixels[inside].astype(np.int64).T
-        result = np.zeros(len(positions), np.bool_)
-        result[inside] = nearest[row, column] * depth[inside] < 1 - 2 * tolerance
-        return result
-
-    return np.asarray(np.sum(parallel_map(behind, views), axis=0) >= TRIM_MIN_SEEN_THROUGH_VIEWS)
 
 
 def _small_patches(mesh: Mesh, which: NDArray[np.bool_], size: float) -> NDArray[np.bool_]:
