@@ -24,7 +24,7 @@ from eigenfield.evaluation.image import covered_pixels
 from eigenfield.evaluation.session import Session, start_session
 from eigenfield.gltf import save
 from eigenfield.imaging.metrics import PSNR_MAX_DECIBELS, psnr, psnr_luma, to_codes
-from eigenfield.rendering import camera_colour, draw_texture
+from eigenfield.rendering import draw_texture
 from eigenfield.rendering.picture import undo_colour
 from eigenfield.rendering.software.drawing import make_surface, median_footprint
 from evidence.displacement import LIMIT, displacement, moved_back
@@ -188,7 +188,7 @@ def own_maps(session: Session, chosen: Sequence[int]) -> Pictures:
     """Each camera drawn from its own texture map T(c), filled with the mean where it does not see (equation 2): what
     all components together give back."""
     assert session.atlas is not None
-    atlas, scene = session.atlas, session.scene
+    atlas, scene, colours = session.atlas, session.scene, session.scene.appearance.colours
     gutter = make_spreader(atlas, np.ones(atlas.count, bool))
     mean = mean_at(scene.appearance.planes[0].mean, atlas)
     surface = make_surface(scene.proxy.mesh, atlas.height, atlas.width)
@@ -199,10 +199,9 @@ def own_maps(session: Session, chosen: Sequence[int]) -> Pictures:
         values, seen = session.texture(index, session.photograph(index))
         texture = _whole(gutter, np.where(seen[:, None] > 0, values, mean))
         drawn = draw_texture(scene.proxy.mesh, texture, camera, detail=detail)  # sampled as the renderer does
-        colour = camera_colour(scene, index)
         image = drawn.image
-        if colour is not None:
-            image = undo_colour(image, drawn.coverage, np.zeros(3, np.float32), colour)
+        if colours is not None:
+            image = undo_colour(image, drawn.coverage, np.zeros(3, np.float32), colours[index])
         pictures[index] = to_codes(image)
     return pictures
 
