@@ -198,6 +198,7 @@ test("textures of a part of the atlas are said to have its size", async () => {
   const planes = await page.evaluate(() => window.eigenfield.field.info.planes);
   const parts = planes.flatMap(({ bases }) => bases).filter(({ size, grid }) => size.join() !== grid.join());
   assert.ok(parts.length > 0);
+  await page.locator(".facts").waitFor();
   const text = await page.locator(".facts").innerText();
   for (const { textures, size } of parts) assert.ok(text.includes(`${textures} eigen textures of ${size.join(" × ")}`), text);
   await close();
