@@ -202,10 +202,8 @@ def find_harmful(capture: Capture, looks: Mapping[int, PhotographLook], progress
     exposed = sum(harm.kind == "exposure" for harm in found)
     if exposed <= HARM_TUNING.exposure_max_part * len(indices):
         return found
-    words = (
-        "%d of %d photographs differ from their neighbours by more than %.1f stops: fix the exposure, or encode with "
-    )
-    log.warning(words + "--fit none --harmonise affine", exposed, len(indices), HARM_TUNING.exposure_stops)
+    words = "%d of %d photographs differ from their neighbours by more than %.1f stops: fix the exposure, or "
+    log.warning(words + "encode with --harmonise affine", exposed, len(indices), HARM_TUNING.exposure_stops)
     return [harm for harm in found if harm.kind != "exposure"]  # none of these is the exception
 
 

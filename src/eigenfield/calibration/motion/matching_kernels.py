@@ -79,7 +79,7 @@ def find_best_two_on_lines(
                 for k in range(left.shape[1]):
                     inner += np.int32(left[i, k]) * np.int32(right[j, k])
                 s = np.float32(inner)
-                if s > runner:
+                if s > runner:  # as in `find_best_two`, which takes twice as long with a function for both
                     if s > best:
                         runner, best, at = best, s, j
                     else:

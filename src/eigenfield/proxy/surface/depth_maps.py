@@ -236,9 +236,8 @@ def _second_map(
     )
     cameras = [pictures[index].camera for index in job.others]
     agreeing = _count_agreeing(reference, planes[..., 0], cameras, depths, tolerance)
-    weight = (16.0 ** np.maximum(4 * agreeing / len(cameras) - 1, 0) - 1).astype(
-        np.float32
-    )  # half where half of the maps agree
+    share = agreeing / len(cameras)
+    weight = (16.0 ** np.maximum(4 * share - 1, 0) - 1).astype(np.float32)  # half where half of the maps agree
     guide = unpack_pictures(halve_pictures(own.pixels[None]))[0].astype(np.float32)
     planes[..., 0] = smooth_depth(
         planes[..., 0], weight, guide, half_confidence=15.0, depth_scale=DEPTH_SMOOTHING_SCALE_LABELS
