@@ -41,6 +41,9 @@ from eigenfield.proxy.relief.find_lattice import relief_lattice, relief_proxy
 log = logging.getLogger("eigenfield.encode")
 
 CAMERA_ROUNDING_LIMIT_PX = 0.02  # by which float32 cameras may move the mesh without a warning
+# Of the usual density, for a surface that is no relief before cameras in no array: fewer of them see a texel, and they
+# agree less well. Chosen on Cube, Temple and Fountain
+SCATTERED_DENSITY_RATIO = 0.7
 CAPPED_DENSITY_RATIO = 0.98  # of the density asked for that a capped atlas may have without a warning
 
 
@@ -180,13 +183,20 @@ def plan_encoding(
         CaptureError, ProxyError, OptionError, OutputError: As `encode`.
     """
     begin_step(progress, "mesh")
-    views, options = select_views(capture, asked), _for_one_quality(asked)
-    return _at_its_quality(_prepare(proxy, views, options, work, progress, warn), asked)
+    return _at_its_quality(_prepare(proxy, select_views(capture, asked), asked, work, progress, warn), asked)
 
 
 def _for_one_quality(asked: EncodeOptions) -> EncodeOptions:
     """The resolved options; with a target for the preset's quality, from which the search may lead elsewhere."""
     return replace(asked, target=None).resolved()
+
+
+def _for_surface(asked: EncodeOptions, views: CaptureViews) -> EncodeOptions:
+    """As `_for_one_quality`, with the density of a surface that is no relief."""
+    options = _for_one_quality(asked)
+    if options.fit == "none" or asked.density is not None or views.grid is not None:
+        return options
+    return replace(options, density=SCATTERED_DENSITY_RATIO * resolved_value(options.density))
 
 
 def _simplifies(options: EncodeOptions) -> bool:
@@ -197,18 +207,18 @@ def _simplifies(options: EncodeOptions) -> bool:
 def _prepare(
     proxy: str | os.PathLike[str] | Mesh | Proxy,
     views: CaptureViews,
-    options: EncodeOptions,
+    asked: EncodeOptions,
     work: Path | None,
     progress: Progress | None,
     warn: bool,
 ) -> PreparedProxy:
     """The proxy with an atlas and as many triangles as asked for; for a fit, moved to where the photographs agree."""
-    cameras, given = views.rig.cameras, proxy
+    cameras, given, options = views.rig.cameras, proxy, _for_one_quality(asked)
     if isinstance(proxy, Proxy):
         if proxy.sheets is not None:
             return _prepare_sheets(proxy, views, options, work, progress)
         proxy = proxy.mesh
-    triangles = _triangles_by_pictures(views, options) if _simplifies(options) else options.triangles
+    triangles = _triangles_by_pictures(views, _for_surface(asked, views)) if _simplifies(options) else options.triangles
     mesh = prepare_proxy(proxy, cameras, origin=views.capture.origin, triangles=triangles, progress=progress)
     _warn_of_rounding(views.capture.cameras, cameras, mesh)
     if warn and not isinstance(given, Proxy):
@@ -271,7 +281,9 @@ def _triangles_by_pictures(views: CaptureViews, options: EncodeOptions) -> Calla
 
 def _at_its_quality(prepared: PreparedProxy, asked: EncodeOptions) -> EncodePlan:
     """The plan with a prepared proxy: the atlas's size and, for a fit, mesh and cameras as they are coded."""
-    options, views, proxy = _for_one_quality(asked), prepared.views, prepared.proxy
+    views, proxy = prepared.views, prepared.proxy
+    relief = proxy.lattice is not None or proxy.sheets is not None
+    options = _for_one_quality(asked) if relief else _for_surface(asked, views)
     atlas = _atlas_size(options, proxy.mesh, views.rig)
     if options.fit == "none":
         return EncodePlan(asked, options, prepared, views, Proxy(proxy.mesh), Payloads(), atlas)
