@@ -61,7 +61,7 @@ def code_block_rd(block: Block, grid: tuple[int, int], scales: Scales, rate: Rat
         rate: How finely it is coded.
         lambda_: Of the plane.
     """
-    step = component_step(scales, rate)
+    step = rate.texture_step * _coarsening(scales)
     coded = code_basis(_basis_of(block, grid), step, rate.trial or rate.coder)
     errors, sizes = _effects(coded, block, scales)
     count = int(np.argmin(np.cumsum([0.0, *(errors + lambda_ * sizes)])))  # of the strongest
@@ -73,21 +73,16 @@ def code_block_rd(block: Block, grid: tuple[int, int], scales: Scales, rate: Rat
     return code_basis(_basis_of(few, grid), step, rate.coder)
 
 
-def component_step(scales: Scales, rate: Rate) -> float:
-    """The step of the quantiser of a plane's components, which is coarser on sheets.
+def _coarsening(scales: Scales) -> float:
+    """How much coarser the components of sheets are coded than those of an opaque surface.
 
     For the same error in the pictures, steps are in inverse proportion to the root of a texel's noise, were its errors
     independent of those of the texels behind. They are partly alike: half of that, in octaves, is best (Fern).
-
-    Args:
-        scales: Of the data that it was fitted to.
-        rate: How finely it is coded.
     """
     if not scales.soft:
-        return rate.texture_step
+        return 1.0
     usual = scales.usual * scales.mean.size / scales.coarse.size
-    noise = max(float(scales.coarse_noise[scales.coarse > 0].mean()), 1e-12)
-    return rate.texture_step * float((usual / noise) ** 0.25)
+    return float((usual / max(float(scales.coarse_noise[scales.coarse > 0].mean()), 1e-12)) ** 0.25)
 
 
 def _effects(coded: CodedBasis, block: Block, scales: Scales) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
