@@ -228,7 +228,7 @@ def code_plane(
     bases: list[CodedBasis] = []
     lambda_ = plane_lambda(scales, rate)
     for block in open_loop.blocks:
-        if grid is None and not scales.soft:  # an array's cameras see nearly the same; on sheets it takes 5 % more bytes
+        if grid is None and not scales.soft:  # an array's cameras see the same; sheets lose
             block = rotate_components(block, rate.texture_step)
         coded = code_block_rd(block, model.grid, scales, rate, lambda_)
         if not coded.count:
