@@ -131,6 +131,6 @@ def test_the_density_is_what_a_quality_pays_for():
 def test_chroma_gets_less_dense_later_than_luma():
     luma, chroma = PLANE_PRESETS
     for density, share in ((0.9, 1.1 / 0.9), (1.2, 1.4 / 1.2), (1.4, 1.5 / 1.4), (1.5, 1.0), (2.0, 1.0), (0.01, 2.0)):
-        assert luma.settings((800, 960), density, 20).mean == (800, 960)
-        found = chroma.settings((800, 960), density, 20)
+        assert luma.settings((800, 960), density, 20, scattered=False).mean == (800, 960)
+        found = chroma.settings((800, 960), density, 20, scattered=False)
         assert found.mean == plane_size((800, 960), 0.5 * share) and found.grid == plane_size((800, 960), 0.3 * share)

@@ -59,6 +59,7 @@ class PlaneSettings:
         grid: (rows, columns) of the components.
         textures: N.
         local: number of components of each region's own.
+        scattered: whether the cameras stand in no array.
     """
 
     matrix: NDArray[np.float32]
@@ -66,6 +67,7 @@ class PlaneSettings:
     grid: tuple[int, int]
     textures: int
     local: int = 0
+    scattered: bool = False
 
 
 @dataclass(frozen=True)
@@ -164,6 +166,8 @@ def fit_plane(
     scales = measure_scales(fitted, model)
     if not scales.mean.any():
         raise nothing_seen_error()
+    if settings.scattered:
+        scales = scales.for_scattered_cameras()
     mean_alone = fit_mean(fitted, model, scales)
     tick()
     count = min(settings.textures, len(fitted) - 1)

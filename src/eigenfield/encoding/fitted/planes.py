@@ -61,19 +61,20 @@ class PlanePreset:
     ahead: float
     sheet_steps: tuple[float, float]
 
-    def settings(self, size: tuple[int, int], density: float, textures: int) -> PlaneSettings:
+    def settings(self, size: tuple[int, int], density: float, textures: int, scattered: bool) -> PlaneSettings:
         """What the plane of a fit is to be.
 
         Args:
             size: (rows, columns) of the atlas.
             density: Its texels per photograph pixel along one axis.
             textures: Luma's number, also of each region's own.
+            scattered: Whether the cameras stand in no array.
         """
         count = round(self.textures * textures)
         wanted = max(min(density + self.ahead, FIT_MAX_DENSITY), density)
         finer = min(wanted / density, 1 / self.mean_share)
         mean, grid = plane_size(size, finer * self.mean_share), plane_size(size, finer * self.texture_share)
-        return PlaneSettings(self.matrix, mean, grid, count, count)
+        return PlaneSettings(self.matrix, mean, grid, count, count, scattered)
 
     def rate(self, step: float, soft: bool = False, patient: bool = False) -> Rate:
         """How finely the plane is coded.
@@ -159,6 +160,7 @@ def open_fits(
     data: FitData,
     density: float,
     textures: int,
+    scattered: bool,
     preset: Preset,
     work: Path | None = None,
     progress: Progress | None = None,
@@ -169,6 +171,7 @@ def open_fits(
         data: What they are fitted to, which stays open.
         density: Texels of its atlas for a pixel, along an axis.
         textures: Luma's number.
+        scattered: Whether the cameras stand in no array.
         preset: What the fit aims at.
         work: Folder for scratch files.
         progress: Reports the steps.
@@ -185,7 +188,9 @@ def open_fits(
                 pixels = Pixels(data, robust, robust)
             else:
                 pixels = Pixels(data, some if plane.subsampled else data, some)
-            return fit_plane(pixels, plane.settings(data.size, density, textures), plane.name, turns, work, progress)
+            return fit_plane(
+                pixels, plane.settings(data.size, density, textures, scattered), plane.name, turns, work, progress
+            )
 
         patient = preset.patient and aom_program() is not None
         if preset.patient:

@@ -12,7 +12,7 @@ maps.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -29,6 +29,10 @@ from eigenfield.runtime.parallel import even_pieces, parallel_map
 MEAN_SMOOTHNESS_RATIO = 0.004  # of the median diagonal entry of a seen texel
 SHEET_SMOOTHNESS_RATIO = 0.02  # likewise, of the mean of sheets: 0.1 dB held out (Fern)
 TEXTURE_SMOOTHNESS_RATIO = 0.0025  # likewise
+# The least strengths where cameras stand in no array, in pixels that a texel answers for: a texel that few photographs
+# see is no surer for that. Chosen on Cube, Temple and Fountain
+MEAN_MIN_SMOOTHNESS = 0.1
+TEXTURE_MIN_SMOOTHNESS = 0.2
 WEIGHT_RIDGE_RATIO = 1e-5  # of the mean diagonal entry
 
 
@@ -57,6 +61,12 @@ class Scales:
     def soft(self) -> bool:
         """Whether they are of sheets with an opacity."""
         return self.mean_noise is not self.mean
+
+    def for_scattered_cameras(self) -> Scales:
+        """The same, at least as smooth as cameras in no array need it; sheets are smooth enough."""
+        mean, components = self.smooth
+        least = max(mean, MEAN_MIN_SMOOTHNESS), max(components, TEXTURE_MIN_SMOOTHNESS)
+        return self if self.soft else replace(self, smooth=least)
 
     @classmethod
     def opaque(cls, mean: NDArray[np.float32], coarse: NDArray[np.float32], smooth: tuple[float, float]) -> Scales:
