@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
+from eigenfield.calibration.harm import HARM_TUNING
 from eigenfield.capture import Capture, LightField
 from eigenfield.capture.photographs.colour import encode_srgb
 from eigenfield.core.camera import Camera
@@ -17,7 +18,6 @@ from eigenfield.imaging.colour import linear_of_srgb
 from eigenfield.runtime.parallel import parallel_map
 
 FRAME_MAX_TOTAL_PIXELS = 120_000_000  # of all photographs together; larger captures are reduced for depth estimation
-FRAME_EXPOSURE_STOPS = 1.5  # by which a photograph is brought to the others' brightness; sound captures differ by 0.5
 FRAME_EXPOSURE_QUANTILE = 0.75  # of all photographs' brightness, which the others get: dark ones lose less than bright
 FRAME_DARKEST_CODE = 4  # a darker median says nothing about exposure
 
@@ -65,12 +65,18 @@ def read_pictures(capture: Capture) -> NDArray[np.uint8]:
 
 
 def _level_exposures(pictures: NDArray[np.uint8]) -> None:
-    """Bring photographs whose exposure is far from the others' to theirs, in place."""
+    """Bring photographs whose exposure is far from the others' to theirs, in place.
+
+    A few are exceptions: they stay as they are, so that an array leaves them out.
+    """
     green = np.array([np.median(picture[::2, ::2, 1]) for picture in pictures])
     stops = np.log2(linear_of_srgb(np.maximum(green, FRAME_DARKEST_CODE) / 255))
     lacking = np.quantile(stops, FRAME_EXPOSURE_QUANTILE) - stops
+    far = np.abs(lacking) > HARM_TUNING.exposure_stops
+    if far.mean() <= HARM_TUNING.exposure_max_part:
+        return
     linear = linear_of_srgb(np.arange(256) / 255)
-    for index in np.flatnonzero(np.abs(lacking) > FRAME_EXPOSURE_STOPS):
+    for index in np.flatnonzero(far):
         codes = encode_srgb((linear * 2.0 ** lacking[index]).astype(np.float32))
         pictures[index] = np.rint(codes * 255).astype(np.uint8)[pictures[index]]
 
