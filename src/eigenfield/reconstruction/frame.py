@@ -10,11 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
+from eigenfield.calibration.harm import HARM_TUNING
 from eigenfield.capture import Capture, LightField
+from eigenfield.capture.photographs.colour import encode_srgb
 from eigenfield.core.camera import Camera
+from eigenfield.imaging.colour import linear_of_srgb
 from eigenfield.runtime.parallel import parallel_map
 
 FRAME_MAX_TOTAL_PIXELS = 120_000_000  # of all photographs together; larger captures are reduced for depth estimation
+FRAME_EXPOSURE_QUANTILE = 0.75  # of all photographs' brightness, which the others get: dark ones lose less than bright
+FRAME_DARKEST_CODE = 4  # a darker median says nothing about exposure
 
 
 def common_frame(capture: Capture) -> tuple[tuple[int, int], tuple[int, int]]:
@@ -41,7 +46,9 @@ def _fit_to_frame(picture: NDArray[Any], whole: tuple[int, int], small: tuple[in
 
 
 def read_pictures(capture: Capture) -> NDArray[np.uint8]:
-    """(n, H, W, 3) uint8 photographs without lens distortion, in their common frame.
+    """(n, H, W, 3) uint8 photographs without lens distortion, in their common frame and about one exposure.
+
+    The cameras look about one way and show about the same. So exposures follow from the photographs' medians.
 
     Args:
         capture: The photographs.
@@ -53,7 +60,25 @@ def read_pictures(capture: Capture) -> NDArray[np.uint8]:
         result[index] = _fit_to_frame(np.rint(capture.photograph(index).pixels * 255).astype(np.uint8), whole, small)
 
     parallel_map(fill, range(len(capture)))
+    _level_exposures(result)
     return result
+
+
+def _level_exposures(pictures: NDArray[np.uint8]) -> None:
+    """Bring photographs whose exposure is far from the others' to theirs, in place.
+
+    A few are exceptions: they stay as they are, so that an array leaves them out.
+    """
+    green = np.array([np.median(picture[::2, ::2, 1]) for picture in pictures])
+    stops = np.log2(linear_of_srgb(np.maximum(green, FRAME_DARKEST_CODE) / 255))
+    lacking = np.quantile(stops, FRAME_EXPOSURE_QUANTILE) - stops
+    far = np.abs(lacking) > HARM_TUNING.exposure_stops
+    if far.mean() <= HARM_TUNING.exposure_max_part:
+        return
+    linear = linear_of_srgb(np.arange(256) / 255)
+    for index in np.flatnonzero(far):
+        codes = encode_srgb((linear * 2.0 ** lacking[index]).astype(np.float32))
+        pictures[index] = np.rint(codes * 255).astype(np.uint8)[pictures[index]]
 
 
 def filled_pictures(capture: Capture) -> NDArray[np.uint8]:

@@ -31,6 +31,9 @@ class MappingTuning:
         outlier_spreads: Spreads of the residuals beyond which a point is dropped, one a round.
         outlier_range_pixels: Bounds of that limit.
         loss_range_pixels: Bounds of the loss function's scale.
+        focal_range_sides: Focal lengths that are believed, in longer sides of the photograph. Where nearly all lies on
+            one plane and cameras are parallel, any focal length explains the matches.
+        max_distortion: Absolute value of the radial coefficient that is believed.
         sigma_per_median: Standard deviation of a normal distribution over its median absolute deviation.
     """
 
@@ -42,6 +45,8 @@ class MappingTuning:
     outlier_spreads: tuple[float, ...] = (4.0, 3.5, 3.0)
     outlier_range_pixels: tuple[float, float] = (0.5, 4.0)
     loss_range_pixels: tuple[float, float] = (0.15, 1.5)
+    focal_range_sides: tuple[float, float] = (0.1, 10.0)
+    max_distortion: float = 1.0
     sigma_per_median: float = 1.4826
 
 
@@ -204,7 +209,8 @@ def _register_leftovers(
 
 
 def _adjust_and_filter(model: Any, fixed: bool) -> None:
-    """Bundle adjustment to convergence under Cauchy's loss; then drop outlier points and views that see too few points.
+    """Bundle adjustment to convergence under Cauchy's loss; then drop outlier points, and views that see too few points
+    or whose lens cannot be.
 
     The loss scale and the limit follow the residuals, whose spread differs tenfold between captures. A fixed limit of
     four pixels lets in enough wrong matches to rotate the cameras of a small photograph by a degree.
@@ -230,7 +236,8 @@ def _adjust_and_filter(model: Any, fixed: bool) -> None:
         observations.filter_all_points3D(limit, MAPPING_TUNING.min_angle_degrees)
         for image_id in sorted(model.reg_image_ids()):
             image = model.image(image_id)
-            if image.num_points3D < MAPPING_TUNING.min_observations:
+            bogus = image.camera.has_bogus_params(*MAPPING_TUNING.focal_range_sides, MAPPING_TUNING.max_distortion)
+            if image.num_points3D < MAPPING_TUNING.min_observations or (bogus and not fixed):
                 observations.deregister_frame(image.frame_id)
         if model.num_reg_images() < MAPPING_TUNING.min_views:
             return
