@@ -224,6 +224,18 @@ def fit_and_code(data: FitData, rounds: int) -> tuple[Plane, float, float]:
     return plane, fit.uncoded, coded_psnr(fit, plane)
 
 
+def test_what_few_cameras_in_no_array_see_is_smoother(world):
+    data, _, _ = world
+    fits = [
+        fit_plane(Pixels(data, data, data), replace(settings_of(), scattered=on), "test", Turns(1)) for on in (0, 1)
+    ]
+    rough = [np.square(np.diff(fit.model.mean)).sum() for fit in fits]
+    assert rough[1] < rough[0]
+    mean, components = fits[1].scales.smooth
+    assert mean > 2 * fits[0].scales.smooth[0] and components > 2 * fits[0].scales.smooth[1]
+    assert fits[1].uncoded > fits[0].uncoded - 1
+
+
 def test_a_fit_beats_its_start_and_is_what_is_drawn(world):
     data, _, _ = world
     (_, start, _), (plane, uncoded, coded) = (fit_and_code(data, rounds) for rounds in (0, 3))

@@ -12,6 +12,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.encoding import EncodeOptions
 from eigenfield.encoding.geometry.triangle_count import _loss, _points, _view, triangle_count_rd
+from eigenfield.encoding.options import density_for_quality
 from eigenfield.encoding.plan import plan_encoding
 from eigenfield.proxy import simplify_mesh, unwrap_mesh
 from support.captures import write_capture
@@ -105,6 +106,22 @@ def test_large_photographs_are_looked_at_smaller():
     view = _view(wall, camera, 0, grey)
     assert view.grey.size <= 1 << 20 and view.pixels == pytest.approx(2400 * 2000 / (1 << 20))
     assert view.grey.shape == (view.camera.height, view.camera.width) == view.inverse_depth.shape
+
+
+def test_a_surface_before_cameras_in_no_array_has_fewer_texels(tmp_path):
+    given = unwrap_mesh(ball(radius=1.5, level=2))
+    grid = nine_cameras()
+    away = np.random.default_rng(1).uniform(-1, 1, (9, 3))
+    scattered = [replace(camera, t=camera.t + offset) for camera, offset in zip(grid, away, strict=True)]
+    density = {}
+    for name, cameras in (("grid", grid), ("scattered", scattered)):
+        field = open_capture(write_capture(tmp_path / name, tuple(cameras), given))
+        plan = plan_encoding(field, given, EncodeOptions(quality=89, triangles=len(given.faces)))
+        density[name] = plan.options.density
+        asked = plan_encoding(field, given, EncodeOptions(quality=89, density=1.2, triangles=len(given.faces)))
+        assert asked.options.density == 1.2
+    assert density["grid"] == density_for_quality(89)
+    assert density["scattered"] == pytest.approx(0.7 * density["grid"])
 
 
 @pytest.mark.slow
