@@ -34,6 +34,7 @@ from eigenfield.encoding.fitted.passes import psnr_of, render_and_backproject
 from eigenfield.encoding.fitted.planes import fitted_textures
 from eigenfield.encoding.fitted.rate import Rate
 from eigenfield.encoding.fitted.solve import fit_textures, fit_weights, measure_scales, residual, whiten
+from eigenfield.encoding.fitted.start import _residual_map
 from eigenfield.encoding.options import PRESETS
 from eigenfield.evaluation import evaluate
 from eigenfield.gltf import encode_scene, parts, save, validate
@@ -234,6 +235,22 @@ def test_what_few_cameras_in_no_array_see_is_smoother(world):
     mean, components = fits[1].scales.smooth
     assert mean > 2 * fits[0].scales.smooth[0] and components > 2 * fits[0].scales.smooth[1]
     assert fits[1].uncoded > fits[0].uncoded - 1
+
+
+def test_what_a_camera_in_no_array_does_not_see_fades_to_the_mean(world):
+    data, _, _ = world
+    masks = np.full(len(data.observations.codes), 255, np.uint8)
+    h, w = data.observations.shapes[0]
+    masks[: h * w].reshape(h, w)[:, w // 2 :] = 0  # the first camera sees the left half
+    half = replace(data, observations=replace(data.observations, masks=masks))
+    model = PlaneModel(RGB, np.zeros((3, SIDE, SIDE), np.float32), (64, 64), [])
+    cut, fading = (
+        _residual_map(half, model, 0, np.float32(0.2), on)[:, 16:48].mean(axis=(0, 1)) for on in (False, True)
+    )
+    last = int(np.flatnonzero(np.abs(cut) > 1e-6).max())  # of the columns that its pixels reach
+    beyond = fading[last + 1 : last + 12]
+    assert (cut[last + 1 :] == 0).all() and beyond[0] > 0.6 * fading[last - 1]
+    assert (np.diff(beyond) <= 0).all() and beyond[-1] < 0.05
 
 
 def test_a_fit_beats_its_start_and_is_what_is_drawn(world):

@@ -173,9 +173,9 @@ def fit_plane(
     count = min(settings.textures, len(fitted) - 1)
     if count:
         rows, columns = settings.grid
-        model.blocks = [principal_block(fitted, model, scales, count, (0, rows, 0, columns), work)]
+        model.blocks = [principal_block(fitted, model, scales, count, (0, rows, 0, columns), settings.scattered, work)]
         whiten(model, scales)
-        _add_regions(pixels, model, scales, min(settings.local, len(fitted) - 1), work)
+        _add_regions(pixels, model, scales, min(settings.local, len(fitted) - 1), settings.scattered, work)
     tick()
     reached, variance = -math.inf, None
     for number in range(turns.rounds if count else 0):
@@ -198,12 +198,14 @@ def fit_plane(
     return OpenFit(name, pixels, model, scales, composer, mean_alone, uncoded)
 
 
-def _add_regions(pixels: Pixels, model: PlaneModel, scales: Scales, count: int, work: Path | None) -> None:
+def _add_regions(
+    pixels: Pixels, model: PlaneModel, scales: Scales, count: int, scattered: bool, work: Path | None
+) -> None:
     """Add `count` components for each rectangle of which the model leaves much more than its share."""
     if not count:
         return
     for rectangle in find_regions(*residual_energy(pixels.weighed, model)):
-        model.blocks.append(principal_block(pixels.fitted, model, scales, count, rectangle, work))
+        model.blocks.append(principal_block(pixels.fitted, model, scales, count, rectangle, scattered, work))
         log.info("%d components of their own for rows %d to %d, columns %d to %d", count, *rectangle)
     whiten(model, scales)
 

@@ -18,10 +18,14 @@ from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.encoding.fitted.passes import MINUS, PASS_TASKS
 from eigenfield.encoding.fitted.products import combine, one_blas_thread, weighted_gram
 from eigenfield.encoding.fitted.solve import Scales
+from eigenfield.encoding.projected.spread import push_pull
 from eigenfield.runtime.files import scratch_array
 from eigenfield.runtime.parallel import even_pieces, parallel_map
 
 MAP_MIN_SHARE_RATIO = 0.2  # of a texel's median share in one picture: residuals are divided by no smaller one
+# Of the mean, in texels that a camera in no array does not see: what it sees goes on beyond its border and fades within
+# about 16 texels. Chosen on Temple
+FADE_WEIGHT = 0.02
 REGION_BLOCK_TEXELS = 8  # side of a block: rectangles are made of whole blocks
 REGION_EXCESS_RATIO = 2.0  # of the mean squared error over all pixels: only what lies above it speaks for a region
 REGION_MIN_ERROR_RATIO = 0.1  # of all squared error that a region must have in excess
@@ -31,12 +35,20 @@ REGION_MAX_PIXEL_RATIO = 0.4  # of the pixels seen
 
 @one_blas_thread
 def principal_block(
-    data: FitData, model: PlaneModel, scales: Scales, count: int, rectangle: Rectangle, work: Path | None = None
+    data: FitData,
+    model: PlaneModel,
+    scales: Scales,
+    count: int,
+    rectangle: Rectangle,
+    scattered: bool,
+    work: Path | None = None,
 ) -> Block:
     """Eigen textures of what the model leaves of the photographs.
 
     Each observation's residual is put into the texture by the transpose of drawing, divided by what the observation
-    has there (not seen: zero, which is the mean, as equation 2 fills it).
+    has there. What it does not see is zero, which is the mean, as equation 2 fills it. Where cameras stand in no array
+    the residual fades to that: with nearly as many components as cameras, what is not seen stays as it begins, and a
+    step at the border of a photograph takes bytes and shows in the views between.
 
     Args:
         data: No observations.
@@ -44,6 +56,7 @@ def principal_block(
         scales: Of these data.
         count: Of eigen textures.
         rectangle: Of the grid, which they fill.
+        scattered: Whether the cameras stand in no array.
         work: Folder for a scratch file of 4 bytes an observation and number.
     """
     top, bottom, left, right = rectangle
@@ -54,7 +67,7 @@ def principal_block(
     with scratch_array((len(data), size), np.float32, work) as maps:
 
         def put(index: int) -> None:
-            found = _residual_map(data, model, index, floor)
+            found = _residual_map(data, model, index, floor, scattered)
             maps[index] = found[:, top:bottom, left:right].reshape(-1)
 
         parallel_map(put, range(len(data)))
@@ -95,14 +108,22 @@ def residual_image(data: FitData, model: PlaneModel, index: int) -> NDArray[np.f
     return image
 
 
-def _residual_map(data: FitData, model: PlaneModel, index: int, floor: np.float32) -> NDArray[np.float32]:
+def _residual_map(
+    data: FitData, model: PlaneModel, index: int, floor: np.float32, scattered: bool
+) -> NDArray[np.float32]:
     """(C, h, w): what is left of a photograph, on the grid."""
     footprint, weight = data.footprint(index), data.observations.weights(index)
     image = residual_image(data, model, index)
     back, part = np.zeros((model.channels, *model.grid), np.float32), np.zeros((1, *model.grid), np.float32)
     adjoint(*footprint, data.size, image, weight, back)
     adjoint(*footprint, data.size, np.ones((1, *image.shape[1:]), np.float32), weight, part)
-    return np.asarray(back / np.maximum(part, floor), np.float32)
+    found = np.asarray(back / np.maximum(part, floor), np.float32)
+    if not scattered:
+        return found
+    seen = part[0] > floor / 2
+    known = np.ascontiguousarray(np.where(seen, found, np.float32(0)).transpose(1, 2, 0))
+    filled = push_pull(known, np.where(seen, np.float32(1), np.float32(FADE_WEIGHT)))
+    return np.where(seen, found, filled.transpose(2, 0, 1))
 
 
 def find_regions(energy: NDArray[np.float32], seen: NDArray[np.float32]) -> list[Rectangle]:

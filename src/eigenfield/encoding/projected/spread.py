@@ -68,8 +68,8 @@ def push_pull(picture: NDArray[np.float32], weight: NDArray[np.float32]) -> NDAr
     bilinear enlargement of the coarser level.
 
     Args:
-        picture: (H, W, C), zero where the weight is.
-        weight: (H, W), 0 or 1.
+        picture: (H, W, C), times the weight.
+        weight: (H, W), 0 to 1; what has less than 1 takes the rest from around.
     """
     height, width = picture.shape[:2]
     if min(height, width) == 1 or (weight >= 1).all():
