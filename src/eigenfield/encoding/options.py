@@ -95,8 +95,8 @@ class EncodeOptions(Options):
     )
     density: float | None = option(
         "Atlas texels per photograph pixel along one axis, in the central camera (side at most 4096, texels at "
-        "most twice the photographs' pixels).  [default: 0.9 to 1.5, what the quality pays for; 0.7 of it on a surface "
-        "that is no relief, unless cameras stand on a grid; without a fit 1.5]",
+        "most twice the photographs' pixels).  [default: 0.9 to 1.5, what the quality pays for; 0.7 of it where "
+        "cameras look around and stand on no grid; without a fit 1.5]",
         metavar="D",
     )
     atlas: int | tuple[int, int] | None = option("Side of the atlas outright, or WIDTHxHEIGHT.", metavar="N")

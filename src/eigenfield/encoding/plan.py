@@ -194,7 +194,7 @@ def _for_one_quality(asked: EncodeOptions) -> EncodeOptions:
 def _for_surface(asked: EncodeOptions, views: CaptureViews) -> EncodeOptions:
     """As `_for_one_quality`, with the density of a surface that is no relief."""
     options = _for_one_quality(asked)
-    if options.fit == "none" or asked.density is not None or views.grid is not None:
+    if options.fit == "none" or asked.density is not None or not views.scattered:
         return options
     return replace(options, density=SCATTERED_DENSITY_RATIO * resolved_value(options.density))
 

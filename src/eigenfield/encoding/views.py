@@ -18,6 +18,7 @@ from eigenfield.core.observations import CalibratedObservations, Observations, c
 from eigenfield.core.rig import Rig
 from eigenfield.core.viewplane import find_grid, fit_view_plane
 from eigenfield.encoding.options import EncodeOptions
+from eigenfield.reconstruction.array import looks_one_way
 from eigenfield.rendering import delaunay_triangles
 
 ODD_ENCODED_RATIO = 1 / 4  # of a grid's cameras, by --hold-out odd
@@ -57,6 +58,11 @@ class CaptureViews:
             return None
         firsts = range(0, len(self.observations), len(self.rig.encoded))
         return np.concatenate([np.where(still < 0, -1, still + first) for first in firsts])
+
+    @cached_property
+    def scattered(self) -> bool:
+        """Whether the cameras, held-out ones too, neither look one way nor stand on a grid: few of them see a texel."""
+        return not looks_one_way(self.rig.cameras) and grid_of(self.coordinates) is None
 
     @cached_property
     def observations(self) -> Observations:

@@ -90,7 +90,7 @@ def open_encoder(
         open_fit_data(
             cameras, observations, plan.proxy, size, work, progress, views.rig.encoded_reference, colours
         ) as data,
-        open_fits(data, plan.density, textures, views.grid is None, preset, work, progress) as fits,
+        open_fits(data, plan.density, textures, views.scattered, preset, work, progress) as fits,
     ):
         if warn:
             mean = fits.planes[0][1].mean_alone

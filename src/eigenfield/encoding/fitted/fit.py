@@ -59,7 +59,7 @@ class PlaneSettings:
         grid: (rows, columns) of the components.
         textures: N.
         local: number of components of each region's own.
-        scattered: whether the cameras stand in no array.
+        scattered: as `CaptureViews.scattered`.
     """
 
     matrix: NDArray[np.float32]
@@ -127,6 +127,7 @@ class OpenFit:
         composer: by which renderers draw it.
         mean_alone: what the mean left before there were textures.
         uncoded: dB of its channels, mean over PSNR_MAX_OBSERVATIONS, what is drawn not rounded.
+        scattered: as of its settings.
     """
 
     name: str
@@ -136,6 +137,7 @@ class OpenFit:
     composer: AtlasComposer
     mean_alone: MeanAlone
     uncoded: float
+    scattered: bool
 
 
 def fit_plane(
@@ -195,7 +197,7 @@ def fit_plane(
     composer = make_composer(surface, model)
     uncoded = _drawn_psnr(pixels.every, model, composer)
     tick(last=True)
-    return OpenFit(name, pixels, model, scales, composer, mean_alone, uncoded)
+    return OpenFit(name, pixels, model, scales, composer, mean_alone, uncoded, settings.scattered)
 
 
 def _add_regions(
@@ -234,7 +236,7 @@ def code_plane(
     bases: list[CodedBasis] = []
     lambda_ = plane_lambda(scales, rate)
     for block in open_loop.blocks:
-        if grid is None and not scales.soft:  # an array's cameras see the same; sheets lose
+        if fit.scattered and not scales.soft:  # an array's cameras see the same; sheets lose
             block = rotate_components(block, rate.texture_step)
         coded = code_block_rd(block, model.grid, scales, rate, lambda_)
         if not coded.count:
