@@ -234,7 +234,9 @@ def _drawn_by_others(
             scales = replace(scales, smooth=(BETWEEN_SMOOTHNESS * scales.smooth[0], scales.smooth[1]))
             left = residual(known, model, MEAN_WANTED)
             fit_textures(known, model, scales, left, BETWEEN_ITERATIONS, mean_only=True)
-        block = principal_block(known, model, scales, len(others) - 1, (0, grid[0], 0, grid[1]), False, work)
+        block = principal_block(
+            known, model, scales, len(others) - 1, (0, grid[0], 0, grid[1]), scattered=False, work=work
+        )
         weights = np.concatenate([block.weights, interpolation(rig, others, left_out) @ block.weights])
         model = replace(model, blocks=[replace(block, weights=weights.astype(np.float32))])
         found = residual(data, model, NOTHING_WANTED)

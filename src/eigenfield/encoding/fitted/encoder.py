@@ -86,11 +86,12 @@ def open_encoder(
     asked = fitted_textures(len(observations)) if options.textures is None else options.textures
     textures, preset = component_count(asked, len(observations)), PRESETS[resolved_value(options.preset)]
     size, colours = (plan.atlas[1], plan.atlas[0]), fit_exposures(plan, work, progress)
+    scattered = views.scattered and plan.proxy.sheets is None
     with (
         open_fit_data(
             cameras, observations, plan.proxy, size, work, progress, views.rig.encoded_reference, colours
         ) as data,
-        open_fits(data, plan.density, textures, views.scattered, preset, work, progress) as fits,
+        open_fits(data, plan.density, textures, scattered, preset, work, progress) as fits,
     ):
         if warn:
             mean = fits.planes[0][1].mean_alone

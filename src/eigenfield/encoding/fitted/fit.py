@@ -59,7 +59,7 @@ class PlaneSettings:
         grid: (rows, columns) of the components.
         textures: N.
         local: number of components of each region's own.
-        scattered: as `CaptureViews.scattered`.
+        scattered: whether few of the photographs see a texel of an opaque surface (`CaptureViews.scattered`).
     """
 
     matrix: NDArray[np.float32]
@@ -236,7 +236,7 @@ def code_plane(
     bases: list[CodedBasis] = []
     lambda_ = plane_lambda(scales, rate)
     for block in open_loop.blocks:
-        if fit.scattered and not scales.soft:  # an array's cameras see the same; sheets lose
+        if fit.scattered:  # the cameras of an array see nearly the same: there it gains nothing
             block = rotate_components(block, rate.texture_step)
         coded = code_block_rd(block, model.grid, scales, rate, lambda_)
         if not coded.count:

@@ -68,7 +68,7 @@ class PlanePreset:
             size: (rows, columns) of the atlas.
             density: Its texels per photograph pixel along one axis.
             textures: Luma's number, also of each region's own.
-            scattered: As `CaptureViews.scattered`.
+            scattered: As of `PlaneSettings`.
         """
         count = round(self.textures * textures)
         wanted = max(min(density + self.ahead, FIT_MAX_DENSITY), density)
@@ -171,7 +171,7 @@ def open_fits(
         data: What they are fitted to, which stays open.
         density: Texels of its atlas for a pixel, along an axis.
         textures: Luma's number.
-        scattered: As `CaptureViews.scattered`.
+        scattered: As of `PlaneSettings`.
         preset: What the fit aims at.
         work: Folder for scratch files.
         progress: Reports the steps.

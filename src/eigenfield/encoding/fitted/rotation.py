@@ -67,11 +67,10 @@ def _coefficients(textures: NDArray[np.float32]) -> NDArray[np.float32]:
     (count, channels), side = textures.shape[:2], ROTATION_BLOCK_TEXELS
     rows, columns = (length // side for length in textures.shape[2:])
     whole = textures[:, :, : rows * side, : columns * side].reshape(count, channels, rows, side, columns, side)
-    blocks = whole.transpose(0, 1, 2, 4, 3, 5).reshape(count, channels * rows * columns, side, side)
-    held = np.flatnonzero(np.abs(blocks).max(axis=(0, 2, 3)) > 0)
-    some = held[:: max(1, -(-len(held) // ROTATION_MAX_BLOCKS))]
-    found = dctn(blocks[:, some], axes=(2, 3), norm="ortho")
-    return np.ascontiguousarray(found.reshape(count, len(some) * side * side), np.float32)
+    held = np.argwhere(whole.any(axis=(0, 3, 5)))
+    channel, row, column = held[:: max(1, -(-len(held) // ROTATION_MAX_BLOCKS))].T
+    found = dctn(whole.transpose(0, 1, 2, 4, 3, 5)[:, channel, row, column], axes=(2, 3), norm="ortho")
+    return np.ascontiguousarray(found.reshape(count, len(row) * side * side), np.float32)
 
 
 def _best_angle(first: NDArray[np.float32], second: NDArray[np.float32]) -> float:

@@ -11,7 +11,7 @@ from eigenfield.runtime.jit import kernel
 
 @kernel()
 def rotated_cost(first, second, cosine, sine):
-    """Sum of log(1 + x^2) over two components, (m,) each, turned by an angle: about the bits that they take, twice."""
+    """Sum of log(1 + x^2) over two components, (m,) each, turned by an angle: in proportion to their bits."""
     c, s = np.float32(cosine), np.float32(sine)
     total = 0.0
     product = 1.0

@@ -63,10 +63,9 @@ class Scales:
         return self.mean_noise is not self.mean
 
     def for_scattered_cameras(self) -> Scales:
-        """The same, at least as smooth as cameras in no array need it; sheets are smooth enough."""
+        """The same, at least as smooth as cameras in no array need it."""
         mean, components = self.smooth
-        least = max(mean, MEAN_MIN_SMOOTHNESS), max(components, TEXTURE_MIN_SMOOTHNESS)
-        return self if self.soft else replace(self, smooth=least)
+        return replace(self, smooth=(max(mean, MEAN_MIN_SMOOTHNESS), max(components, TEXTURE_MIN_SMOOTHNESS)))
 
     @classmethod
     def opaque(cls, mean: NDArray[np.float32], coarse: NDArray[np.float32], smooth: tuple[float, float]) -> Scales:

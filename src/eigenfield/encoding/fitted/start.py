@@ -56,7 +56,7 @@ def principal_block(
         scales: Of these data.
         count: Of eigen textures.
         rectangle: Of the grid, which they fill.
-        scattered: As `CaptureViews.scattered`.
+        scattered: As of `PlaneSettings`.
         work: Folder for a scratch file of 4 bytes an observation and number.
     """
     top, bottom, left, right = rectangle
