@@ -29,7 +29,7 @@ from eigenfield.encoding.fitted.planes import byte_lambda, coded_opacity
 from eigenfield.encoding.fitted.surface import fit_surface
 from eigenfield.encoding.geometry.coded import DEPTH_ERROR_PX, coded_cameras, coded_mesh
 from eigenfield.encoding.geometry.simplify_relief import simplify_proxy_rd
-from eigenfield.encoding.geometry.triangle_count import triangle_count_rd
+from eigenfield.encoding.geometry.simplify_surface import simplify_surface_rd
 from eigenfield.encoding.options import EncodeOptions, resolved_value
 from eigenfield.encoding.projected.atlas import atlas_side, texels_per_pixel
 from eigenfield.encoding.views import CaptureViews, grid_of, select_views, usual_reference
@@ -218,8 +218,15 @@ def _prepare(
         if proxy.sheets is not None:
             return _prepare_sheets(proxy, views, options, work, progress)
         proxy = proxy.mesh
-    triangles = _triangles_by_pictures(views, _for_surface(asked, views)) if _simplifies(options) else options.triangles
-    mesh = prepare_proxy(proxy, cameras, origin=views.capture.origin, triangles=triangles, progress=progress)
+    simplified = _simplified_by_pictures(views, _for_surface(asked, views)) if _simplifies(options) else None
+    mesh = prepare_proxy(
+        proxy,
+        cameras,
+        origin=views.capture.origin,
+        triangles=options.triangles,
+        simplified=simplified,
+        progress=progress,
+    )
     _warn_of_rounding(views.capture.cameras, cameras, mesh)
     if warn and not isinstance(given, Proxy):
         path = None if isinstance(given, Mesh) else Path(given)
@@ -264,19 +271,19 @@ def _at_usual_reference(views: CaptureViews, options: EncodeOptions, mesh: Mesh)
     return views if options.reference else views.with_reference(usual_reference(views, mesh.vertices))
 
 
-def _triangles_by_pictures(views: CaptureViews, options: EncodeOptions) -> Callable[[Mesh], int | None]:
-    """A function from a mesh as it was read to its number of triangles by rate and distortion at the options' quality.
+def _simplified_by_pictures(views: CaptureViews, options: EncodeOptions) -> Callable[[Mesh], Mesh | None]:
+    """A function from a mesh as it was read to the mesh simplified by rate and distortion at the options' quality.
 
     It returns None for a relief, which is simplified when it is coded.
     """
 
-    def triangles(mesh: Mesh) -> int | None:
+    def simplified(mesh: Mesh) -> Mesh | None:
         if mesh.uv is not None and relief_lattice(mesh, views.rig.cameras, DEPTH_ERROR_PX) is not None:
             return None
         lambda_ = byte_lambda(resolved_value(options.quality)) / resolved_value(options.density) ** 2
-        return triangle_count_rd(mesh, views.rig.encoded_cameras, views.observations, lambda_)
+        return simplify_surface_rd(mesh, views.rig.encoded_cameras, views.observations, lambda_)
 
-    return triangles
+    return simplified
 
 
 def _at_its_quality(prepared: PreparedProxy, asked: EncodeOptions) -> EncodePlan:

@@ -35,7 +35,8 @@ def prepare_proxy(
     cameras: Sequence[Camera],
     *,
     origin: NDArray[np.float64] | None = None,
-    triangles: int | Callable[[Mesh], int | None] | None = None,
+    triangles: int | None = None,
+    simplified: Callable[[Mesh], Mesh | None] | None = None,
     progress: Progress | None = None,
 ) -> Mesh:
     """Read (or check) a mesh, make sure that a camera sees it, and give it an atlas.
@@ -44,7 +45,8 @@ def prepare_proxy(
         path_or_mesh: A mesh file, or a mesh in the cameras' world.
         cameras: All cameras.
         origin: (3,) the origin of the cameras' world in that of a mesh file. None: they are the same.
-        triangles: As in `unwrap_mesh`, or a function that returns it for the mesh.
+        triangles: As in `unwrap_mesh`.
+        simplified: Returns the mesh with fewer triangles and without UVs, or None where all are to stay.
         progress: Called for each step.
 
     Raises:
@@ -56,8 +58,10 @@ def prepare_proxy(
     _check_seen(mesh, cameras, path)
     mesh = without_far_vertices(mesh, cameras, path)
     try:
-        count = triangles(mesh) if callable(triangles) else triangles
-        return unwrap_mesh(mesh, triangles=count, cameras=cameras, progress=progress)
+        simpler = None if simplified is None else simplified(mesh)
+        if simpler is not None:
+            log.warning("the mesh is simplified from %d to %d triangles", len(mesh.faces), len(simpler.faces))
+        return unwrap_mesh(simpler or mesh, triangles=triangles, cameras=cameras, progress=progress)
     except ProxyError as error:
         raise ProxyError(error.code, error.message, path=path, remedy=error.remedy) from error
 

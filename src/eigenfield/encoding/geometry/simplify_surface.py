@@ -1,4 +1,4 @@
-"""The number of triangles of a mesh by rate and distortion.
+"""A mesh that is no relief, simplified by rate and distortion.
 
 A mesh of photogrammetry has more than its pictures need: each takes bytes of the mesh, and makes charts smaller.
 Where a simplified mesh puts a pixel's point elsewhere, a texture of what the other cameras see is off: by what they see
@@ -85,8 +85,10 @@ class _Points:
         return np.ones(len(self.world), np.int64) + sum(there for _, there, _, _ in self.beside)
 
 
-def triangle_count_rd(mesh: Mesh, cameras: Sequence[Camera], observations: Observations, lambda_: float) -> int | None:
-    """The number of triangles of least rate-distortion cost, by `proxy.simplify_mesh`.
+def simplify_surface_rd(
+    mesh: Mesh, cameras: Sequence[Camera], observations: Observations, lambda_: float
+) -> Mesh | None:
+    """The mesh with the triangles of least rate-distortion cost, by `proxy.simplify_mesh`.
 
     Args:
         mesh: To be simplified.
@@ -95,7 +97,7 @@ def triangle_count_rd(mesh: Mesh, cameras: Sequence[Camera], observations: Obser
         lambda_: Squared error for one byte, for each pixel that a texel is seen in, at one texel a pixel.
 
     Returns:
-        The number; None where that of the mesh, at most PROXY_DEFAULT_TRIANGLES, is best.
+        The mesh without UVs; None where as many as it has, at most PROXY_DEFAULT_TRIANGLES, are best.
     """
     chosen = spread_cameras(cameras, TRIANGLE_MAX_CAMERAS)
     some = select_cameras(observations, chosen)
@@ -111,22 +113,31 @@ def triangle_count_rd(mesh: Mesh, cameras: Sequence[Camera], observations: Obser
         return None  # one camera determines no depth
     times = len({view.time for view in views})  # a texel is seen about as often at each
     lambda_ *= share * times * float(np.median(seen)) * TRIANGLE_BYTES
-    plain = weld_vertices(mesh)
-    best = most = min(len(plain.faces), PROXY_DEFAULT_TRIANGLES)
-    least, count = lambda_ * most, float(most)
+    whole = weld_vertices(mesh)
+    most = min(len(whole.faces), PROXY_DEFAULT_TRIANGLES)
+    best, least, simpler, count = None, lambda_ * most, whole, float(most)
     # Fewer than of a mesh that is worse may still be better
     while (count := count / TRIANGLE_COUNT_RATIO) >= TRIANGLE_MIN_COUNT and lambda_ * count < least:
-        if count >= len(plain.faces):  # more went than was asked for
+        if count >= len(simpler.faces):  # more went than was asked for
             continue
-        try:
-            plain = simplify_mesh(plain, int(count))
-        except ProxyError:  # nothing is left
+        # The library's collapses are good for an open mesh after a few rounds, for a closed one at once
+        tried = [one for start in (whole, simpler) if (one := _simplified(start, int(count))) is not None]
+        if not tried:
             break
-        cost = lambda_ * len(plain.faces) + REMAINING_LOSS_RATIO * share * _loss(plain, views, samples)
-        log.debug("%d triangles: cost %.4g, of it bytes %.4g", len(plain.faces), cost, lambda_ * len(plain.faces))
+        loss, simpler = min(((_loss(one, views, samples), one) for one in tried), key=lambda pair: pair[0])
+        cost = lambda_ * len(simpler.faces) + REMAINING_LOSS_RATIO * share * loss
+        log.debug("%d triangles: cost %.4g, of it bytes %.4g", len(simpler.faces), cost, lambda_ * len(simpler.faces))
         if cost < least:
-            best, least = len(plain.faces), cost
-    return best if best <= TRIANGLE_MAX_KEPT_RATIO * most else None
+            best, least = simpler, cost
+    return best if best is not None and len(best.faces) <= TRIANGLE_MAX_KEPT_RATIO * most else None
+
+
+def _simplified(mesh: Mesh, triangles: int) -> Mesh | None:
+    """None where nothing is left."""
+    try:
+        return simplify_mesh(mesh, triangles)
+    except ProxyError:
+        return None
 
 
 def _view(mesh: Mesh, camera: Camera, time: int, grey: NDArray[np.float32]) -> _View:
