@@ -51,7 +51,7 @@ def render_many(
         scene: The scene, or its file.
         at: (n, 2) view-plane coordinates: an array, or a sequence of pairs.
         cameras: Names of capture cameras.
-        resolution: As of `render`, and so are the next five.
+        resolution: (width, height), and the next five: as of `render`.
         weights: `delaunay`, `nearest3` or `bilinear`.
         filter: `bilinear` or `bicubic`.
         background: One number, or one for each channel.

@@ -285,14 +285,16 @@ def render(
         camera: Name of a capture camera.
         resolution: (width, height). Default: the camera's own.
         weights: `delaunay`, `nearest3` or `bilinear`.
-        filter: As of `Renderer.draw`.
-        background: As of `Renderer.draw`.
-        textures: As of `Renderer.draw`.
-        samples: As of `Renderer.draw`.
+        filter: `bilinear` or `bicubic` (Catmull-Rom).
+        background: One number, or one for each channel, 0..1.
+        textures: Number of eigen textures of each basis. Default: all.
+        samples: k of k x k samples a pixel, 1 to 16. Default: one, but four at edges, or more in a picture smaller than
+            the photographs.
         time: Index of the instant.
 
     Raises:
-        OptionError: `unknown-camera`, `viewpoint`, `time`, `weights-mode`, `no-grid`, `resolution`; as `Renderer.draw`.
+        OptionError: `unknown-camera`, `viewpoint`, `time`, `weights-mode`, `no-grid`, `resolution`, `filter`,
+            `background`, `textures`, `samples`.
         FormatError: The file is no scene.
     """
     found = as_scene(scene)
