@@ -265,7 +265,7 @@ def test_a_notebook_shows_progress_unless_told_otherwise(nine, monkeypatch):
     ("name", "arguments", "named", "says"),
     [
         ("render", [3], {}, "scene of render is 3; give a Scene or a path"),
-        ("render_many", [None], {}, "scene of render_many is a NoneType; give a Scene or a path"),
+        ("render_many", [None], {}, "scene of render_many is None; give a Scene or a path"),
         ("render", [None], {"ressolution": 3}, "unexpected keyword argument 'ressolution'"),
         ("load", [3], {}, "path of load is 3; give a path"),
         ("load", [tiny_scene()], {}, "path of load is a Scene; give a path"),

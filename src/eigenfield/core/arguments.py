@@ -153,7 +153,7 @@ def in_words(hint: Any) -> str:
 
 
 def _shown(value: object) -> str:
-    text = repr(value) if isinstance(value, str | int | float | Iterable) else ""
+    text = repr(value) if value is None or isinstance(value, str | int | float | Iterable) else ""
     return text if 0 < len(text) <= 40 else kind_in_words(value)
 
 

@@ -17,6 +17,7 @@ from eigenfield.proxy.meshes.read import check_mesh
 from eigenfield.proxy.relief.find_lattice import relief_proxy
 
 S = TypeVar("S", bound=Scene)
+SHAPES = "give (n, 3), (m, 3) and (n, 2)"  # what an error says of vertices, faces and texture coordinates
 EXCHANGE_UV_SLACK = 1e-4  # of the atlas, by which texture coordinates may be rounded beyond it
 
 
@@ -58,14 +59,19 @@ def _raw(mesh: Mesh) -> RawMesh:
     if mesh.uv is None:
         remedy = "give it those of the scene's mesh, or encode the photographs with it"
         raise ProxyError("proxy-no-uv", "the mesh has no texture coordinates", remedy=remedy)
-    vertices, faces, uv = np.asarray(mesh.vertices), np.asarray(mesh.faces), np.asarray(mesh.uv)
-    if vertices.shape != (len(vertices), 3) or faces.shape != (len(faces), 3) or uv.shape != (len(vertices), 2):
+    try:
+        vertices, faces, uv = np.asarray(mesh.vertices, float), np.asarray(mesh.faces), np.asarray(mesh.uv, float)
+    except (TypeError, ValueError):
+        message = "vertices, faces and texture coordinates are no arrays of numbers"
+        raise ProxyError("proxy-shape", message, remedy=SHAPES) from None
+    count = vertices.shape[:1]
+    if (vertices.shape, faces.shape, uv.shape) != ((*count, 3), (*faces.shape[:1], 3), (*count, 2)):
         message = f"vertices {vertices.shape}, faces {faces.shape} and texture coordinates {uv.shape} make no mesh"
-        raise ProxyError("proxy-shape", message, remedy="give (n, 3), (m, 3) and (n, 2)")
+        raise ProxyError("proxy-shape", message, remedy=SHAPES)
     if faces.dtype.kind not in "iu":
         message = f"faces of {faces.dtype} are no indices of vertices"
         raise ProxyError("proxy-shape", message, remedy="give whole numbers")
     if not ((uv >= -EXCHANGE_UV_SLACK) & (uv <= 1 + EXCHANGE_UV_SLACK)).all():
         message = "texture coordinates lie outside the atlas"
         raise ProxyError("proxy-uv", message, remedy="give numbers from 0 to 1, v down")
-    return RawMesh(vertices.astype(np.float64), faces.astype(np.int64), uv.astype(np.float64).clip(0, 1))
+    return RawMesh(vertices, faces.astype(np.int64), uv.clip(0, 1))
