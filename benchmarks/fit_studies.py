@@ -33,7 +33,7 @@ import eigenfield as ef
 import measure
 from eigenfield import LightField
 from eigenfield.core.proxy import Proxy
-from eigenfield.core.scene import EncodedScene
+from eigenfield.core.scene import Scene
 from eigenfield.encoding import EncodeOptions, plan
 from eigenfield.encoding import options as encode_options
 from eigenfield.encoding.fitted import encoder, fit, planes, rate
@@ -174,7 +174,7 @@ class Views:
     photographs: list[NDArray[np.uint8]]
     covered: list[NDArray[np.bool_]]
 
-    def point(self, scene: EncodedScene, path: Path) -> dict[str, Any]:
+    def point(self, scene: Scene, path: Path) -> dict[str, Any]:
         """Bytes and textures of the scene's file, and the means of KEYS over its views."""
         save(scene, path, overwrite=True)
         of_views = range(len(self.photographs)), self.photographs, self.counted(path), self.field.names
@@ -211,7 +211,7 @@ class Fit:
     def whole(self) -> FittedEncoder:
         return self._opened.enter_context(_fitted(self.plan, self.data, self.work))
 
-    def without(self, name: str) -> EncodedScene:
+    def without(self, name: str) -> Scene:
         """The scene coded at the default's quality without a part."""
         part = PARTS[name]
         if name in CODING:

@@ -21,7 +21,7 @@ FLOORS = [  # from the ground up; rooms of one floor do not know each other
     ["reconstruction", "rendering"],
     ["encoding"],
     ["evaluation", "viewer", "demo"],
-    ["batches"],
+    ["batches", "api"],
     ["cli"],
     ["__init__", "__main__"],
 ]

@@ -17,8 +17,7 @@ from PIL import Image
 import eigenfield as ef
 from eigenfield.capture import open_any
 from eigenfield.proxy import read_mesh
-from eigenfield.rendering import viewpoint
-from eigenfield.viewer.exports.maps import view_map
+from eigenfield.rendering import texture
 
 ROOT = Path(__file__).parents[1]
 BPY = Path(os.environ.get("EIGENFIELD_BPY") or ROOT / "build/bpy/bin/python")
@@ -108,7 +107,7 @@ def test_what_is_encoded_is_drawn_in_blender_as_it_was_rendered(folder):
     listing = json.loads((folder / "scene.textures/eigenfield.json").read_text())
     for name, eye in (("texture", (0.1, 0.05)), ("corner", (0.3, -0.15)), ("reopened", (0.3, -0.15))):
         at = np.array(eye) / listing["viewPlane"]["extent"]
-        wanted = view_map(scene, viewpoint(scene, at=(float(at[0]), float(at[1])))[1]).clip(0, 1)
+        wanted = texture(scene, at=(float(at[0]), float(at[1]))).clip(0, 1)
         off = np.abs(np.load(folder / f"{name}.npy") - wanted)
         assert np.quantile(off, 0.999) < 4 / 255  # means and textures of 8 bits; a mean beyond 1 is cut
     assert np.abs(np.load(folder / "texture.npy") - np.load(folder / "corner.npy")).max() > 12 / 255

@@ -8,6 +8,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+from itertools import groupby
 from pathlib import Path
 from typing import NamedTuple
 
@@ -93,7 +94,7 @@ def prepare(page: str, place: Path) -> None:
     if page == "viewer":
         shutil.copytree(capture, place / "photographs")
         ef.save(ef.encode(capture, proxy=capture / "proxy.ply", fit="none"), place / "scene.glb")
-    elif page in ("exports", "publish", "measure-and-compare"):
+    elif page in ("exports", "publish", "measure-and-compare", "scene-as-numpy"):
         for name in ("tarot", "fern", *([] if page == "measure-and-compare" else ["scene"])):
             shutil.copy(ROOT / "docs/scene.glb", place / f"{name}.glb")
 
@@ -104,11 +105,12 @@ def prepare(page: str, place: Path) -> None:
 )
 def test_the_blocks_run(path, tmp_path):
     prepare(path.stem, tmp_path)
-    for block in run_of(path):
-        if block.language == "sh":
-            run_shell(block.text, tmp_path)
-        elif block.language == "python":
-            done = subprocess.run([sys.executable, "-c", block.text], cwd=tmp_path, capture_output=True, text=True)
+    for language, several in groupby(run_of(path), lambda block: block.language):
+        text = "\n".join(block.text for block in several)  # what a block names, those below it use
+        if language == "sh":
+            run_shell(text, tmp_path)
+        elif language == "python":
+            done = subprocess.run([sys.executable, "-c", text], cwd=tmp_path, capture_output=True, text=True)
             assert done.returncode == 0, done.stderr
     assert not (tmp_path / "scenes/failed.txt").exists()
 

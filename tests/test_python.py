@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import inspect
 import io
+import pickle
 import shutil
 import sys
 import types
 import urllib.request
-from dataclasses import replace
+from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -18,11 +19,13 @@ from PIL import Image
 import eigenfield as ef
 from eigenfield.core import notebook
 from eigenfield.core.arguments import checked
+from eigenfield.core.scene import Residual
 from support import charts
 from support.captures import write_array, write_capture
 from support.motion import photographed
 from support.program import call
 from support.scenes import tiny_scene
+from support.soft_scenes import coded_soft_scene
 
 
 def error(function, *arguments, **named) -> str:
@@ -34,6 +37,11 @@ def error(function, *arguments, **named) -> str:
 @pytest.fixture(scope="module")
 def nine(tmp_path_factory) -> Path:
     return write_capture(tmp_path_factory.mktemp("python") / "nine")
+
+
+@pytest.fixture(scope="module")
+def small(nine) -> ef.EncodedScene:
+    return ef.encode(nine, nine / "proxy.ply", fit="none", textures=2, atlas=64)
 
 
 @pytest.mark.parametrize(
@@ -68,6 +76,80 @@ def test_a_scene_and_a_picture_show_themselves_briefly():
     assert len(repr(ef.render(scene))) < 80
 
 
+def within(value) -> list:
+    """A value and all that its fields and sequences hold."""
+    if isinstance(value, tuple):
+        return [one for each in value[:2] for one in within(each)]
+    if not is_dataclass(value):
+        return []
+    return [value, *(one for field in fields(value) if field.init for one in within(getattr(value, field.name)))]
+
+
+def test_whatever_holds_arrays_shows_itself_in_one_line(nine, tmp_path):
+    write_array(tmp_path / "photos", side=3)
+    scene = coded_soft_scene()
+    residual = Residual(bytes(10**5), (40, 48), np.arange(9), (1.0, 2.0), False, True, "av1")
+    scene = replace(scene, residual=residual)
+    capture, array = ef.open(nine), ef.open(tmp_path / "photos")
+    found = within(scene)[1:] + within(capture) + within(array) + [scene.payloads]
+    assert {"Mesh", "Rig", "Appearance", "Plane", "Basis", "Sheets", "Camera", "ViewPlane", "Residual", "View",
+            "LightField", "PhotoSet", "GridLayout"} <= {type(one).__name__ for one in found}  # fmt: skip
+    assert [one for one in map(repr, found) if "\n" in one or len(one) > 360] == []
+    assert repr(scene.mesh) == "Mesh(vertices=float32 (289, 3), faces=int32 (468, 3), uv=float32 (289, 2))"
+    assert repr(scene.rig).startswith("Rig(names=9 str, cameras=9 Camera, held_out=bool (9,), reference=4")
+    assert repr(scene.proxy) == "Proxy(mesh=Mesh(...), lattice=None, sheets=Sheets(...))"
+    assert "video=100,000 bytes" in repr(residual)
+    assert repr(capture).startswith("LightField(root=") and "views=9 View, problems=()" in repr(capture)
+    assert "t=[0.5, 0.5, 3.0], width=" in repr(scene.cameras[0])
+
+
+def test_a_loaded_scene_has_its_parts_at_hand(small, tmp_path):
+    small.save(tmp_path / "a.glb")
+    scene = ef.load(tmp_path / "a.glb")
+    assert scene.mesh is scene.proxy.mesh and scene.cameras is scene.rig.cameras and scene.names is scene.rig.names
+    scene.save(tmp_path / "b.glb")
+    assert (tmp_path / "b.glb").read_bytes() == (tmp_path / "a.glb").read_bytes()
+    picture = scene.render(at=(0.3, -0.2))
+    np.testing.assert_array_equal(picture.image, ef.render(scene, at=(0.3, -0.2)).image)
+    (one,) = scene.render_many(at=[(0.3, -0.2)])
+    np.testing.assert_array_equal(one.image, picture.image)
+    (plane,) = scene.appearance.planes
+    np.testing.assert_allclose(scene.mean, plane.mean, atol=1e-6)
+    expected = plane.mean + np.einsum("n,nhwc->hwc", plane.bases[0].weights[3], plane.bases[0].values())
+    np.testing.assert_allclose(scene.texture(scene.names[3]), expected, atol=1e-5)
+    with pytest.raises(ef.OptionError, match="no camera is called nobody"):
+        scene.texture("nobody")
+    for again in (small, replace(scene, scores={}), pickle.loads(pickle.dumps(scene)), scene.with_mesh(scene.mesh)):
+        assert type(again) is ef.EncodedScene and again.mean.shape == (64, 64, 3)
+    assert inspect.signature(ef.load).parameters.keys() == {"path"} and "Read a scene" in ef.load.__doc__
+
+
+def test_a_path_stands_for_a_scene(nine, small, tmp_path):
+    path, other = tmp_path / "a.glb", tmp_path / "b.glb"
+    small.save(path)
+    scene = ef.load(path)
+    for given in (path, str(path)):
+        np.testing.assert_array_equal(ef.render(given, at=(0, 0)).image, scene.render(at=(0, 0)).image)
+        assert len(list(ef.render_many(given, cameras=scene.names[:2]))) == 2
+        ef.save(given, other, overwrite=True)
+        assert other.read_bytes() == path.read_bytes()
+    figures = ef.evaluate(path, nine, png_maps="none")
+    assert figures["bytes"]["total"] == path.stat().st_size
+    assert figures["image"] == ef.evaluate(scene, nine, png_maps="none")["image"]
+    text = tmp_path / "text.glb"
+    text.write_text("no scene")
+    for function in (
+        ef.render,
+        ef.render_many,
+        lambda it: ef.save(it, tmp_path / "c.glb"),
+        lambda it: ef.evaluate(it, nine),
+    ):
+        for wrong, says in ((tmp_path / "no.glb", "no.glb: does not exist; check the name"), (text, "does not begin")):
+            with pytest.raises(ef.FormatError, match=says) as caught:
+                function(wrong)
+            assert "\n" not in str(caught.value)
+
+
 def test_a_picture_is_shown_in_a_notebook_and_saved(tmp_path):
     picture = ef.render(tiny_scene())
     picture.save(tmp_path / "a.png")
@@ -98,8 +180,8 @@ def test_a_scene_is_exported_and_viewed(tmp_path):
         ef.view(tmp_path / "nothing.glb", browser=False)
 
 
-def test_a_scene_is_viewed_beside_its_photographs(nine, tmp_path, caplog):
-    scene = ef.encode(nine, nine / "proxy.ply", fit="none", textures=2, atlas=64)
+def test_a_scene_is_viewed_beside_its_photographs(nine, small, tmp_path, caplog):
+    scene = small
     bare = shutil.copytree(nine / "images", tmp_path / "bare")  # photographs alone: the cameras are the scene's
     for capture, place in ((nine, {}), (ef.open(nine), {}), (bare, {"format": "folder"})):
         with (
@@ -121,7 +203,7 @@ def test_cameras_are_found_as_the_command_line_finds_them(tmp_path, monkeypatch)
     monkeypatch.setattr("eigenfield.calibration.motion.features.FEATURE_MIN_MEDIAN_COUNT", 0)  # of small photographs
     photographed(tmp_path / "photos")
     found = ef.calibrate(tmp_path / "photos", tmp_path / "ours", progress=None)
-    assert len(found.light_field) == 5
+    assert len(found.light_field) == 5 and "\n" not in repr(found) and len(repr(found)) < 400
     assert call("calibrate", tmp_path / "photos", "-q", "-o", tmp_path / "theirs") == 0
     for name in ("transforms.json", "report.json"):
         assert (tmp_path / "ours" / name).read_bytes() == (tmp_path / "theirs" / name).read_bytes()
@@ -135,6 +217,7 @@ def test_a_rig_is_calibrated_by_a_chart_as_on_the_command_line(tmp_path):
     board = {"chart": "checkerboard", "board": "9x6", "square": "25mm"}
     found = ef.calibrate(tmp_path / "charts", tmp_path / "ours", inverted=False, **board)
     assert [report.reason for report in found.reports] == [None] * 2 and found.unit == "mm"
+    assert all("\n" not in text and len(text) < 400 for text in map(repr, (found, *found.reports)))
     words = [word for name, value in board.items() for word in (f"--{name}", value)]
     assert call("calibrate", tmp_path / "charts", "--not-inverted", "-q", "-o", tmp_path / "theirs", *words) == 0
     for name in ("transforms.json", "report.json"):
@@ -181,9 +264,11 @@ def test_a_notebook_shows_progress_unless_told_otherwise(nine, monkeypatch):
 @pytest.mark.parametrize(
     ("name", "arguments", "named", "says"),
     [
-        ("render", ["scene.glb"], {}, "scene of render is 'scene.glb'; give a Scene"),
+        ("render", [3], {}, "scene of render is 3; give a Scene or a path"),
+        ("render_many", [None], {}, "scene of render_many is None; give a Scene or a path"),
         ("render", [None], {"ressolution": 3}, "unexpected keyword argument 'ressolution'"),
-        ("load", [3], {}, "path of load is 3"),
+        ("load", [3], {}, "path of load is 3; give a path"),
+        ("load", [tiny_scene()], {}, "path of load is a Scene; give a path"),
         ("save", [3, "a.glb"], {}, "scene of save is 3"),
         ("open", [None], {}, "path of open_any"),
         ("open", ["a"], {"grid": "3x3"}, "grid of open_any is '3x3'; give (a whole number, a whole number) or None"),
@@ -205,10 +290,10 @@ def test_a_notebook_shows_progress_unless_told_otherwise(nine, monkeypatch):
         ("encode", ["a"], {"preste": "small"}, "did you mean preset?"),
         ("encode", ["a"], {"fit_spheres": 3}, "fit_spheres of encode is 3; give a sequence, each a text"),
         ("encode", ["a"], {"work": 3}, "work of encode is 3"),
-        ("encode", ["a", "b.ply", 3], {}, "options of encode is 3; give a EncodeOptions or None"),
+        ("encode", ["a", "b.ply", 3], {}, "options of encode is 3; give an EncodeOptions or None"),
         ("encode", ["a"], {"textures": "many"}, "textures is a str; give a whole number"),
         ("encode", ["a"], {"quality": 101}, "quality"),
-        ("encode", ["a"], {"target": 300_000}, "target is a int; give a Target"),
+        ("encode", ["a"], {"target": 300_000}, "target is an int; give a Target"),
         ("encode", ["a"], {"target": ef.Target(size="1 MB")}, "a target size of 1 MB"),
         ("encode", ["a", "b.ply"], {"surface": "relief"}, "leave out one of the two"),
     ],
@@ -264,7 +349,19 @@ def test_weights_of_an_unknown_kind_are_refused_wherever_the_eye_is():
 
 
 def test_every_parameter_of_a_public_function_is_documented():
-    for name in ("open", "save", "export", "encode", "reconstruct", "calibrate", "render", "view", "evaluate", "batch"):
+    for name in (
+        "open",
+        "save",
+        "export",
+        "encode",
+        "reconstruct",
+        "calibrate",
+        "render",
+        "render_many",
+        "view",
+        "evaluate",
+        "batch",
+    ):
         function = getattr(ef, name)
         for parameter in inspect.signature(function).parameters:
             assert f"\n        {parameter}: " in function.__doc__, (name, parameter)

@@ -3,8 +3,8 @@
     import eigenfield as ef
 
     scene = ef.encode("photos/")
-    ef.save(scene, "scene.glb")
-    picture = ef.render(ef.load("scene.glb"), at=(0.3, -0.2))
+    scene.save("scene.glb")
+    picture = ef.load("scene.glb").render(at=(0.3, -0.2))
 
 Everything is loaded when it is first used.
 """
@@ -14,10 +14,12 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from eigenfield.core import notebook as _notebook
 from eigenfield.core.version import __version__
 
 if TYPE_CHECKING:
+    from eigenfield.api import EncodedScene as EncodedScene
+    from eigenfield.api import encode as encode
+    from eigenfield.api import load as load
     from eigenfield.batches import BatchResult as BatchResult
     from eigenfield.batches import batch as batch
     from eigenfield.calibration import calibrate as calibrate
@@ -34,18 +36,16 @@ if TYPE_CHECKING:
     from eigenfield.core.errors import WorkerError as WorkerError
     from eigenfield.core.mesh import Mesh as Mesh
     from eigenfield.core.progress import Progress as Progress
-    from eigenfield.core.scene import EncodedScene as EncodedScene
     from eigenfield.core.scene import Scene as Scene
     from eigenfield.encoding import EncodeOptions as EncodeOptions
     from eigenfield.encoding import Target as Target
-    from eigenfield.encoding import encode as encode
     from eigenfield.evaluation import evaluate as evaluate
-    from eigenfield.gltf import load as load
     from eigenfield.gltf import save as save
     from eigenfield.gltf import validate as validate
     from eigenfield.reconstruction import Reconstruction as Reconstruction
     from eigenfield.reconstruction import reconstruct as reconstruct
     from eigenfield.rendering import render as render
+    from eigenfield.rendering import render_many as render_many
     from eigenfield.runtime.parallel import set_threads as set_threads
     from eigenfield.viewer import view as view
     from eigenfield.viewer.exports import export as export
@@ -58,7 +58,7 @@ _HOME = {  # a room, or a name in a room where that is another
     "CaptureError": "core.errors",
     "EigenfieldError": "core.errors",
     "EncodeOptions": "encoding",
-    "EncodedScene": "core.scene",
+    "EncodedScene": "api",
     "FormatError": "core.errors",
     "LightField": "capture",
     "Mesh": "core.mesh",
@@ -73,13 +73,14 @@ _HOME = {  # a room, or a name in a room where that is another
     "WorkerError": "core.errors",
     "batch": "batches",
     "calibrate": "calibration",
-    "encode": "encoding",
+    "encode": "api",
     "evaluate": "evaluation",
     "export": "viewer.exports",
-    "load": "gltf",
+    "load": "api",
     "open": "capture:open_any",
     "reconstruct": "reconstruction",
     "render": "rendering",
+    "render_many": "rendering",
     "save": "gltf",
     "set_threads": "runtime.parallel",
     "validate": "gltf",
@@ -95,14 +96,6 @@ def __getattr__(name: str) -> Any:
     value = getattr(importlib.import_module(f"eigenfield.{room}"), inner or name)
     globals()[name] = value
     return value
-
-
-def _show(scene: Any) -> str:
-    shown: str = importlib.import_module("eigenfield.viewer").scene_html(scene)
-    return shown
-
-
-_notebook.show = _show
 
 
 def __dir__() -> list[str]:

@@ -153,7 +153,7 @@ def test_instants_without_cameras_have_them_found_once(tmp_path):
         ("", "holds no captures"),
         ('[[capture]]\npath = "a"\nproxy = "m.ply"\nlayers = 3\n', "layers is for making a proxy"),
         ('[[capture]]\npath = "a"\nname = 1979-05-27\n', "name is a date; give a text"),
-        ('[[capture]]\npath = "a"\nalso = 3\n', "a: also is a int; give a sequence"),
+        ('[[capture]]\npath = "a"\nalso = 3\n', "a: also is an int; give a sequence"),
         ('[[capture]]\npath = "a"\nblind = "no"\n', "a: blind is a str; give True or False"),
         (
             '[[capture]]\npath = "a"\ndensity = 1' + "0" * 400,

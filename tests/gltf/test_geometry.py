@@ -15,7 +15,7 @@ from eigenfield.core.errors import FormatError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Payloads, cameras_key, mesh_key
 from eigenfield.core.proxy import Proxy
-from eigenfield.core.scene import EncodedScene
+from eigenfield.core.scene import Scene
 from eigenfield.encoding.geometry.coded import CAMERA_STEP_PX, DEPTH_ERROR_PX, MESH_STEP_PX, coded_cameras, coded_mesh
 from eigenfield.gltf import parts, save, validate
 from eigenfield.gltf.coarse import coarse_mesh
@@ -33,7 +33,7 @@ from support.soft_scenes import soft_scene
 from support.surfaces import ball, relief
 
 
-def coded_scene() -> EncodedScene:
+def coded_scene() -> Scene:
     """Nine cameras on a grid before a bumpy square."""
     return coded(replace(tiny_scene(3, 4, 9, 64), proxy=Proxy(bumpy_square(40))), np.arange(9).reshape(3, 3))
 
@@ -195,7 +195,7 @@ def test_the_mesh_for_other_viewers_is_coarse_and_textured():
     assert coarse_mesh(bumpy_square(4), 128).faces.shape == bumpy_square(4).faces.shape
 
 
-def measured_scene() -> EncodedScene:
+def measured_scene() -> Scene:
     """Names with measured positions, as Stanford's have, of which no pattern is short."""
     scene = coded_scene()
     places = np.random.default_rng(4).normal(size=(9, 2, 24)).round(6)

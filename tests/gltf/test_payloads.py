@@ -14,7 +14,7 @@ import pytest
 import eigenfield as ef
 from eigenfield.core.payloads import Payloads, cameras_key, mean_key, mesh_key, size_of, textures_key, weights_key
 from eigenfield.core.proxy import Proxy
-from eigenfield.core.scene import EncodedScene, Scene
+from eigenfield.core.scene import Scene
 from eigenfield.gltf import encode_scene, read_scene, save, store_scores
 from eigenfield.gltf.cached import cached_payloads
 from eigenfield.rendering import renderer_of, view_weights
@@ -68,7 +68,7 @@ def of_the_same_arrays(scene):
 def test_what_is_not_edited_keeps_its_bytes(scene, data, way, tmp_path, caplog):
     path = tmp_path / "scene.glb"
     made = way(scene)
-    assert isinstance(made, EncodedScene)
+    assert isinstance(made, Scene)
     with caplog.at_level(logging.INFO, "eigenfield.format"):
         save(made, path)
     assert path.read_bytes() == data

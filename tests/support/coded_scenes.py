@@ -16,7 +16,7 @@ from eigenfield.coding.codecs import encoder
 from eigenfield.coding.pictures.pictures_10bit import svt_coder
 from eigenfield.coding.pictures.stacking import encode
 from eigenfield.core.payloads import Affine, Payload, Payloads, PicturePayload, mean_key
-from eigenfield.core.scene import EncodedScene, Scene
+from eigenfield.core.scene import Scene
 from eigenfield.encoding.fitted.code_planes import code_basis, code_opacity, coded_plane, with_weights
 from eigenfield.encoding.geometry.coded import DEPTH_ERROR_PX, coded_cameras, coded_mesh
 from eigenfield.gltf import save
@@ -30,12 +30,12 @@ GRID = np.arange(25).reshape(5, 5)
 STEP = 2e-3  # of pictures, in the photographs' range
 
 
-def coded_scene(weights_codec: str = "weights-1") -> EncodedScene:
+def coded_scene(weights_codec: str = "weights-1") -> Scene:
     """The scene of `viewer_scenes`, as its streams and pictures keep it: one plane of R, G and B."""
     return coded(scene(), GRID, weights_codec)
 
 
-def coded(plain: Scene, grid: np.ndarray, weights_codec: str = "weights-1") -> EncodedScene:
+def coded(plain: Scene, grid: np.ndarray, weights_codec: str = "weights-1") -> Scene:
     """A scene of one plane and basis, whose cameras stand on `grid`, with everything coded that can be."""
     views = coded_cameras(plain.rig.cameras, plain.proxy.mesh, grid)
     (plane,) = plain.appearance.planes
@@ -59,7 +59,7 @@ def coded(plain: Scene, grid: np.ndarray, weights_codec: str = "weights-1") -> E
     return encoded(scene, payloads)
 
 
-def fitted_scene() -> EncodedScene:
+def fitted_scene() -> Scene:
     """Luma and chroma fitted to nine photographs."""
     with tempfile.TemporaryDirectory() as work:
         folder = write_capture(Path(work) / "nine", cameras(3, 3), bumpy_square(24))
@@ -67,7 +67,7 @@ def fitted_scene() -> EncodedScene:
         return ef.encode(capture, proxy=folder / "proxy.ply", fit="photographs", textures=6)
 
 
-def precise_scene() -> EncodedScene:
+def precise_scene() -> Scene:
     """The layered scene with means of 10 bits, of which one precision says how finely both are coded."""
     layered = kept_as_png(layered_scene())  # its textures
     precision = np.random.default_rng(2).uniform(0.4, 1, (3, 5)).astype(np.float32)
@@ -82,7 +82,7 @@ def precise_scene() -> EncodedScene:
     )
 
 
-def shallow(made: EncodedScene) -> EncodedScene:
+def shallow(made: Scene) -> Scene:
     """The scene with a mean of 8 bits that is said to have 10."""
     (plane,) = made.appearance.planes
     height, width, channels = plane.mean.shape

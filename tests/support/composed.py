@@ -4,7 +4,7 @@ with reference pictures for the tests of the web viewer."""
 from __future__ import annotations
 
 import json
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +17,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Affine, Payloads, PicturePayload, mean_key, textures_key
 from eigenfield.core.proxy import Proxy
-from eigenfield.core.scene import EncodedScene, Scene
+from eigenfield.core.scene import Scene
 from eigenfield.gltf import save
 from eigenfield.rendering import ViewWeights, draw_texture, view_weights, viewpoint
 from support.scenes import smooth_pictures
@@ -161,7 +161,7 @@ def write(folder: Path) -> None:
     listing.write_text(json.dumps(pictures, indent=1), encoding="utf-8")
 
 
-def kept_as_png(made: Scene) -> EncodedScene:
+def kept_as_png(made: Scene) -> Scene:
     """The scene of 8-bit codes with PNG pictures: of each basis the first texture alone, the rest in one picture."""
     payloads = Payloads()
     for plane in made.appearance.planes:
@@ -173,10 +173,9 @@ def kept_as_png(made: Scene) -> EncodedScene:
     return encoded(made, payloads)
 
 
-def encoded(made: Scene, payloads: Payloads) -> EncodedScene:
+def encoded(made: Scene, payloads: Payloads) -> Scene:
     """The scene with what parts of it were coded to."""
-    known = {one.name: getattr(made, one.name) for one in fields(made) if one.init}
-    return EncodedScene(**known | {"payloads": known.get("payloads", Payloads()) | payloads})
+    return replace(made, payloads=made.payloads | payloads)
 
 
 def png_picture(basis: Basis, part: slice) -> PicturePayload:

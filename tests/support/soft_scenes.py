@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.proxy import Proxy, Sheets
-from eigenfield.core.scene import EncodedScene, Scene
+from eigenfield.core.scene import Scene
 from support.coded_scenes import coded
 from support.scenes import bumpy_square, tiny_scene
 
@@ -23,7 +23,7 @@ def soft_scene(channels: int = 3) -> Scene:
     return replace(scene, proxy=Proxy(*_mesh()))
 
 
-def coded_soft_scene() -> EncodedScene:
+def coded_soft_scene() -> Scene:
     """The same with everything coded that can be."""
     return coded(soft_scene(), np.arange(9).reshape(3, 3))
 

@@ -22,10 +22,10 @@ from eigenfield.gltf import encode_scene, save
 from eigenfield.gltf.axes import capture_to_gltf
 from eigenfield.gltf.container import parse_glb
 from eigenfield.proxy import read_mesh
-from eigenfield.rendering import RenderJob, draw_texture, renderer_of, view_weights
+from eigenfield.rendering import RenderJob, draw_texture, mean_texture, renderer_of, view_weights
+from eigenfield.rendering import texture as texture_of
 from eigenfield.rendering.weights import encoded_places
 from eigenfield.viewer import exports
-from eigenfield.viewer.exports.maps import camera_maps, mean_map
 from eigenfield.viewer.exports.quilt import quilt_views
 from support.composed import layered_scene
 from support.scenes import tiny_scene
@@ -111,12 +111,12 @@ def test_eigen_textures_beside_the_obj_make_every_camera_s_map(scene, tmp_path):
     listing = json.loads((tmp_path / "it" / "eigenfield.json").read_text(encoding="utf-8"))
     mean = pixels(tmp_path / "it" / listing["mean"])
     assert list(listing["weights"]) == [scene.rig.names[i] for i in scene.rig.encoded]
-    for row, weights in enumerate(listing["weights"].values()):
+    for name, weights in listing["weights"].items():
         texture = mean.astype(float)
         for weight, entry in zip(weights, listing["textures"], strict=True):
             codes = np.round(pixels(tmp_path / "it" / entry["file"]) * 255)
             texture += weight * (codes - entry["zero"]) * entry["scale"]
-        np.testing.assert_allclose(texture, camera_maps(scene)(row, None), atol=1e-5)
+        np.testing.assert_allclose(texture, texture_of(scene, name), atol=1e-5)
     places = np.array(listing["places"])
     np.testing.assert_allclose(places, encoded_places(scene))
     assert listing["triangles"] == scene.rig.triangles.tolist() and listing["sheets"] == []
@@ -138,17 +138,16 @@ def test_planes_become_eigen_textures_of_red_green_and_blue_beside_the_obj(fitte
     listing = json.loads((tmp_path / "it" / "eigenfield.json").read_text(encoding="utf-8"))
     mean = pixels(tmp_path / "it" / listing["mean"])
     assert mean.shape == (*made.appearance.atlas, 3) and (pixels(tmp_path / "alone.png") == mean).all()
-    np.testing.assert_allclose(mean, mean_map(made).clip(0, 1), atol=0.51 / 255)
+    np.testing.assert_allclose(mean, mean_texture(made).clip(0, 1), atol=0.51 / 255)
     bases = [basis for plane in made.appearance.planes for basis in plane.bases]
     assert len(listing["textures"]) == sum(basis.count for basis in bases)
-    maps = camera_maps(made)
-    for row, weights in enumerate(listing["weights"].values()):
-        texture, off = mean_map(made).astype(float), 1e-5
+    for name, weights in listing["weights"].items():
+        texture, off = mean_texture(made).astype(float), 1e-5
         for weight, entry in zip(weights, listing["textures"], strict=True):
             codes = np.round(pixels(tmp_path / "it" / entry["file"]) * 255)
             texture += weight * (codes - entry["zero"]) * entry["scale"]
             off += 0.501 * abs(weight) * max(entry["scale"])  # half a code
-        np.testing.assert_allclose(texture, maps(row, None), atol=off)
+        np.testing.assert_allclose(texture, texture_of(made, name), atol=off)
     exports.write_obj_folder(made, tmp_path / "one", textures=1)
     kept = sum(basis.count > 0 for basis in bases)
     assert len(list((tmp_path / "one").glob("eigen_*.png"))) == kept
@@ -159,7 +158,7 @@ def test_a_fitted_scene_makes_a_colmap_model_of_its_colours(fitted, tmp_path):
     model = pycolmap.Reconstruction(tmp_path / "model" / "sparse" / "0")
     colours = np.array([point.color for point in model.points3D.values()])
     assert len(colours) > 100
-    wanted = 255 * mean_map(fitted).reshape(-1, 3)
+    wanted = 255 * mean_texture(fitted).reshape(-1, 3)
     assert np.abs(colours.mean(axis=0) - wanted.mean(axis=0)).max() < 12
 
 
@@ -189,7 +188,7 @@ def test_sheets_have_their_opacity_as_alpha(tmp_path):
     assert np.array_equal(*means) and {one.shape for one in (*maps, *means)} == {(96, 96, 4)}
     for one in (*maps, *means):
         np.testing.assert_array_equal(one[..., 3], means[0][..., 3])
-    np.testing.assert_allclose(means[0][..., :3], mean_map(scene).clip(0, 1), atol=0.51 / 255)
+    np.testing.assert_allclose(means[0][..., :3], mean_texture(scene).clip(0, 1), atol=0.51 / 255)
     opacity = cv2.resize(scene.proxy.sheets.opacity, (96, 96))  # of 128 columns
     np.testing.assert_allclose(means[0][..., 3], opacity, atol=0.15)
     assert np.abs(means[0][..., 3] - opacity).mean() < 0.01
@@ -222,7 +221,7 @@ def test_a_plain_glb_is_the_proxy_with_its_mean_upright_and_in_metres(scene, tmp
     scene = replace(scene, settings={**scene.settings, "metresPerUnit": 0.25, "origin": [100.0, 0.0, 0.0]})
     exports.write_glb(scene, tmp_path / "a.glb", draco=draco)
     (mesh,), picture, mode = opened(tmp_path / "a.glb")
-    np.testing.assert_array_equal(picture, np.rint(255 * mean_map(scene).clip(0, 1)).astype(np.float32) / 255)
+    np.testing.assert_array_equal(picture, np.rint(255 * mean_texture(scene).clip(0, 1)).astype(np.float32) / 255)
     assert mode in (None, "OPAQUE") and mesh.faces.shape == scene.proxy.mesh.faces.shape
     turn = capture_to_gltf(scene.rig.view_plane)
     found = read_mesh(tmp_path / "a.glb")  # by our own reader, which places it as its node says
@@ -244,13 +243,12 @@ def test_a_plain_glb_has_the_texture_of_a_viewpoint(fitted, tmp_path, image, mos
     exports.write_glb(fitted, tmp_path / "a.glb", at=(0.6, -0.4), image=image)
     _, picture, _ = opened(tmp_path / "a.glb")
     place = view_weights(fitted, (0.6, -0.4))
-    maps, encoded = camera_maps(fitted), fitted.rows().tolist()
     expected = sum(
-        value * maps(encoded.index(row), None)
+        value * texture_of(fitted, fitted.names[row])
         for row, value in zip(place.rows.tolist(), place.values.tolist(), strict=True)
     )
     assert np.abs(picture - expected.clip(0, 1)).mean() < most
-    assert np.abs(expected - mean_map(fitted)).max() > 0.01  # it is not the mean's
+    assert np.abs(expected - mean_texture(fitted)).max() > 0.01  # it is not the mean's
 
 
 def test_sheets_of_a_plain_glb_are_blended_back_to_front(tmp_path):

@@ -16,8 +16,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+import eigenfield as ef
 from eigenfield.core.errors import OutputError
-from eigenfield.gltf import encode_scene, load, outline, save
+from eigenfield.gltf import encode_scene, outline, save
 from eigenfield.viewer import notebook, page, page_html, scene_html, single_file
 from eigenfield.viewer.page import page_title
 from support.http_client import write_build
@@ -200,7 +201,7 @@ def frame(html):
 def test_a_loaded_scene_shows_its_file(tmp_path):
     path = tmp_path / "scene.glb"
     save(tiny_scene(), path)
-    scene = load(path)
+    scene = ef.load(path)
     data = path.read_bytes()
     path.write_bytes(b"replaced")
     attributes = frame(scene._repr_html_())
@@ -241,7 +242,7 @@ def test_what_is_shown_of_a_scene_lives_as_long_as_the_scene():
 def test_an_outline_is_the_scene_without_its_planes(tmp_path):
     path = tmp_path / "scene.glb"
     save(tiny_scene(), path)
-    whole, (part, data) = load(path), outline(path)
+    whole, (part, data) = ef.load(path), outline(path)
     assert part.appearance.planes == () and part.rig.names == whole.rig.names and part.settings == whole.settings
     assert np.array_equal(part.proxy.mesh.vertices, whole.proxy.mesh.vertices)
     assert data == path.read_bytes()

@@ -13,7 +13,7 @@ from typing import Any, get_type_hints
 
 from eigenfield.capture import open_any
 from eigenfield.capture.readers.text import excerpt
-from eigenfield.core.arguments import in_words, matches
+from eigenfield.core.arguments import in_words, kind_in_words, matches
 from eigenfield.core.errors import EigenfieldError, OptionError
 from eigenfield.encoding import EncodeOptions, Target
 from eigenfield.encoding.estimated import reconstruction_settings, refuse_unused
@@ -233,7 +233,7 @@ def _checked(given: dict[str, Any], base: Path) -> CaptureJob:
 
 def _check_type(key: str, value: Any) -> None:
     if value is not None and key in TYPES and not matches(value, TYPES[key]):
-        raise OptionError("option-type", f"{key} is a {type(value).__name__}", remedy=f"give {in_words(TYPES[key])}")
+        raise OptionError("option-type", f"{key} is {kind_in_words(value)}", remedy=f"give {in_words(TYPES[key])}")
 
 
 def _refuse_same_names(jobs: Sequence[CaptureJob], source: Path | None) -> None:

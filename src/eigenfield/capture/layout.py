@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.brief import brief_repr
+
 
 @dataclass(frozen=True, eq=False)
 class GridLayout:
@@ -34,6 +36,8 @@ class GridLayout:
     rectified: bool | None = None
     exact: bool = False
     focal: float | None = None
+
+    __repr__ = brief_repr
 
     def subset(self, indices: Sequence[int]) -> GridLayout:
         """The layout of some of the shots."""

@@ -16,6 +16,7 @@ from eigenfield.capture.photographs.decoded import decode_with_mask, size_on_dis
 from eigenfield.capture.photographs.kinds import is_linear
 from eigenfield.capture.photographs.lens import Lens, remove_lens
 from eigenfield.capture.photographs.read import read_header
+from eigenfield.core.brief import brief_repr
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError
 from eigenfield.core.observations import Photograph
@@ -105,6 +106,8 @@ class View:
     bounds: tuple[float, float] | None = None
     exposure: float | None = None
 
+    __repr__ = brief_repr
+
 
 @dataclass(frozen=True, eq=False)
 class LightField(StillCapture):
@@ -125,6 +128,8 @@ class LightField(StillCapture):
     format: str
     layout: GridLayout | None = None
     origin: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
+
+    __repr__ = brief_repr
 
     @property
     def cameras(self) -> tuple[Camera, ...]:

@@ -11,6 +11,7 @@ from eigenfield.capture.lightfield import LightField, PhotographSource, StillCap
 from eigenfield.capture.photographs.decoded import decode_with_mask
 from eigenfield.capture.photographs.kinds import is_linear
 from eigenfield.capture.photographs.lens import Lens
+from eigenfield.core.brief import brief_repr
 from eigenfield.core.camera import Camera
 from eigenfield.core.observations import Photograph
 
@@ -62,6 +63,8 @@ class PhotoSet(StillCapture):
     layout: GridLayout | None
     problems: tuple[str, ...]
     format: str
+
+    __repr__ = brief_repr
 
     @property
     def light_field(self) -> None:

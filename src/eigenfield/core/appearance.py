@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.brief import brief_repr
+
 COLOUR_STEP = 2.0**-10  # of the gains and offsets that a file keeps of colours that are mixed
 
 
@@ -31,6 +33,8 @@ class Basis:
     weights: NDArray[np.float32]
     grid: tuple[int, int] | None = None
     corner: tuple[int, int] = (0, 0)
+
+    __repr__ = brief_repr
 
     @property
     def count(self) -> int:
@@ -67,6 +71,8 @@ class Plane:
     mean: NDArray[np.float32]
     bases: tuple[Basis, ...]
 
+    __repr__ = brief_repr
+
     @property
     def sizes(self) -> list[tuple[int, int]]:
         """(rows, columns) of the mean's atlas, then of each basis's."""
@@ -90,6 +96,8 @@ class Appearance:
     to_rgb: NDArray[np.float32] | None = None
     colours: NDArray[np.float32] | None = None
     mixed_colours: bool = True
+
+    __repr__ = brief_repr
 
     @property
     def atlas(self) -> tuple[int, int]:

@@ -26,7 +26,8 @@ _ARGUMENTS = {"as": "kind", "primitive": "primitives", "fit-sphere": "fit_sphere
 _on_command_line: ContextVar[bool] = ContextVar("on_command_line", default=False)
 _BAD_NAMES = errno.ENAMETOOLONG, errno.ELOOP  # which even asking whether there is such a file raises
 _NUMBERS = {int: Integral, float: Real}  # NumPy's numbers too
-_WORDS = {int: "a whole number", float: "a number", str: "a text", bool: "True or False", type(None): "None"}
+_WORDS = {int: "a whole number", float: "a number", str: "a text", bool: "True or False", type(None): "None",
+          os.PathLike: "a path"}  # fmt: skip
 
 
 def checked(function: Callable[P, R]) -> Callable[P, R]:
@@ -141,14 +142,29 @@ def in_words(hint: Any) -> str:
     """
     origin, inner = get_origin(hint) or hint, get_args(hint)
     if origin in (Union, types.UnionType):
-        return " or ".join(dict.fromkeys(map(in_words, inner)))
+        is_path = any(get_origin(each) is os.PathLike for each in inner)
+        kinds = (each for each in inner if not (is_path and each is str))  # which is a path, too
+        return " or ".join(dict.fromkeys(map(in_words, kinds)))
     if origin is tuple and inner[-1:] != (...,):
         return f"({', '.join(map(in_words, inner))})"
     if origin in (tuple, Sequence):
         return f"a sequence, each {in_words(inner[0])}"
-    return _WORDS.get(origin, f"a {getattr(origin, '__name__', origin)}")
+    return _WORDS.get(origin) or _with_article(getattr(origin, "__name__", str(origin)))
 
 
 def _shown(value: object) -> str:
-    text = repr(value) if isinstance(value, str | int | float | Iterable) else ""
-    return text if 0 < len(text) <= 40 else f"a {type(value).__name__}"
+    text = repr(value) if value is None or isinstance(value, str | int | float | Iterable) else ""
+    return text if 0 < len(text) <= 40 else kind_in_words(value)
+
+
+def kind_in_words(value: object) -> str:
+    """The name of a value's type with its article, for a message.
+
+    Args:
+        value: Any value.
+    """
+    return _with_article(type(value).__name__)
+
+
+def _with_article(name: str) -> str:
+    return f"{'an' if name[0] in 'AEIOaeio' else 'a'} {name}"

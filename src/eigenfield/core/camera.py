@@ -9,6 +9,7 @@ from typing import NoReturn
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from eigenfield.core.brief import brief_repr
 from eigenfield.core.errors import CaptureError
 
 CAMERA_ROTATION_TOLERANCE = 1e-4  # of singular values; calibrations are often printed with six digits
@@ -33,6 +34,8 @@ class Camera:
     t: NDArray[np.float64]
     width: int
     height: int
+
+    __repr__ = brief_repr
 
     @staticmethod
     def from_matrices(K: ArrayLike, R: ArrayLike, t: ArrayLike, width: int, height: int, name: str) -> Camera:

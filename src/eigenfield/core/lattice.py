@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from eigenfield.core.brief import brief_repr
+
 
 @dataclass(frozen=True, eq=False)
 class Lattice:
@@ -21,6 +23,8 @@ class Lattice:
     matrix: NDArray[np.float64]
     flat: bool
     fine: int = 0
+
+    __repr__ = brief_repr
 
     def points(self, steps: NDArray[np.int64] | NDArray[np.float64]) -> NDArray[np.float64]:
         """(n, 3) lattice coordinates, whole or between, to world positions. The order of the sums is part of the

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.brief import brief_repr
+
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
@@ -22,6 +24,8 @@ class Mesh:
     vertices: NDArray[np.float32]
     faces: NDArray[np.int32]
     uv: NDArray[np.float32] | None = None
+
+    __repr__ = brief_repr
 
     def part(self, faces: NDArray[np.bool_] | slice) -> Mesh:
         """Some of its faces, with the vertices that they have.

@@ -1,4 +1,4 @@
-"""What a notebook shows: a scene, by a hook set from above so that plain data imports no viewer, and progress."""
+"""Progress in a notebook."""
 
 from __future__ import annotations
 
@@ -6,12 +6,10 @@ import html
 import importlib
 import sys
 import time
-from collections.abc import Callable
 from typing import Any
 
 NOTEBOOK_UPDATE_SECONDS = 0.1  # between two updates of a bar
 
-show: Callable[[Any], str] | None = None  # from a scene to HTML; set by `eigenfield/__init__.py`
 _bars: dict[str, tuple[Any, float]] = {}  # by stage: where it is displayed, and when it was last updated
 
 

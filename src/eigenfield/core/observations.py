@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.brief import brief_repr
 from eigenfield.core.camera import Camera
 
 
@@ -23,6 +24,8 @@ class Photograph:
 
     pixels: NDArray[np.float32]
     mask: NDArray[np.float32] | None
+
+    __repr__ = brief_repr
 
     @staticmethod
     def of(pixels: NDArray[np.float32], mask: NDArray[np.float32] | None) -> Photograph:

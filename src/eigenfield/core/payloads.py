@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.appearance import Basis
+from eigenfield.core.brief import brief_repr
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 
@@ -35,6 +36,8 @@ class Affine:
     scale: NDArray[np.float64]
     zero: NDArray[np.float64]
 
+    __repr__ = brief_repr
+
 
 @dataclass(frozen=True, eq=False)
 class Payload:
@@ -47,6 +50,8 @@ class Payload:
 
     codec: str
     data: bytes
+
+    __repr__ = brief_repr
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +67,8 @@ class PicturePayload(Payload):
     count: int = 1
     affine: Affine | None = None
     precision: Payload | None = None
+
+    __repr__ = brief_repr
 
 
 class Payloads(Mapping[Key, tuple[Payload, ...]]):
@@ -95,6 +102,9 @@ class Payloads(Mapping[Key, tuple[Payload, ...]]):
     def bytes(self) -> int:
         """Bytes of all payloads together."""
         return sum(map(size_of, self._found.values()))
+
+    def __repr__(self) -> str:
+        return f"Payloads of {len(self)} parts, {self.bytes:,} bytes"
 
 
 @dataclass(frozen=True, eq=False)

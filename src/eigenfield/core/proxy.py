@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.brief import brief_repr
 from eigenfield.core.lattice import Lattice
 from eigenfield.core.mesh import Mesh
 
@@ -27,6 +28,8 @@ class Sheets:
     faces: tuple[int, ...]
     opacity: NDArray[np.float32]
 
+    __repr__ = brief_repr
+
 
 @dataclass(frozen=True, eq=False)
 class Proxy:
@@ -42,6 +45,8 @@ class Proxy:
     mesh: Mesh
     lattice: Lattice | None = None
     sheets: Sheets | None = None
+
+    __repr__ = brief_repr
 
 
 def opaque_mesh(proxy: Proxy) -> Mesh:

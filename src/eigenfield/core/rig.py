@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.brief import brief_repr
 from eigenfield.core.camera import Camera
 from eigenfield.core.viewplane import ViewPlane
 
@@ -30,6 +31,8 @@ class Rig:
     reference: int
     view_plane: ViewPlane
     triangles: NDArray[np.int32]
+
+    __repr__ = brief_repr
 
     @property
     def encoded(self) -> NDArray[np.int64]:

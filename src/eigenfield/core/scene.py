@@ -11,10 +11,12 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from eigenfield.core import notebook
 from eigenfield.core.appearance import Appearance
+from eigenfield.core.brief import brief_repr
+from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.forks import renew_in_child
+from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Payloads
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
@@ -52,6 +54,8 @@ class Residual:
     smooth_edges: bool = False
     codec: str = "video-1"
 
+    __repr__ = brief_repr
+
     @property
     def frame(self) -> tuple[int, int]:
         """(rows, columns) of the video's frames."""
@@ -74,6 +78,9 @@ class Scene:
         generator: Name and version of the program that made it.
         residual: Difference of captured views to their renderings, or None. It improves no other view.
         times: The instants of its observations, in seconds; one for a still scene.
+        payloads: What mesh, opacity, cameras, means, eigen textures, weights and the picture for other viewers were
+            coded to, each under the key of its content. `save` writes them byte for byte for parts that are unchanged,
+            and codes the others. Parts that are not coded, or that a file holds as plain numbers, have none.
     """
 
     proxy: Proxy
@@ -84,7 +91,23 @@ class Scene:
     generator: str = ""
     residual: Residual | None = None
     times: tuple[float, ...] = (0.0,)
+    payloads: Payloads = field(default_factory=Payloads)
     _derived: dict[str, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
+
+    @property
+    def mesh(self) -> Mesh:
+        """The mesh of the proxy, with UVs."""
+        return self.proxy.mesh
+
+    @property
+    def cameras(self) -> tuple[Camera, ...]:
+        """(Nc,) the cameras of the rig, encoded or held out."""
+        return self.rig.cameras
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """(Nc,) the names of the cameras: those of their photographs."""
+        return self.rig.names
 
     def rows(self, cameras: ArrayLike | None = None, time: int = 0) -> NDArray[np.int64]:
         """The rows of the weights for the observations of some cameras at one instant.
@@ -140,25 +163,6 @@ class Scene:
             f"proxy: {len(mesh.vertices):,} vertices, {len(mesh.faces):,} triangles{layers}\n"
             f"appearance: {self.appearance.textures} eigen textures, atlas {columns}x{rows}{more}"
         )
-
-    def _repr_html_(self) -> str | None:
-        """The viewer in a frame, for notebooks."""
-        return None if notebook.show is None else notebook.show(self)
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class EncodedScene(Scene):
-    """A scene with the payloads of its parts, as `encode` and `load` return it.
-
-    `dataclasses.replace`, copies and pickles keep the payloads. `save` writes them byte for byte for parts that are
-    unchanged, and encodes parts that were edited.
-
-    Attributes:
-        payloads: Of mesh, opacity, cameras, means, eigen textures, weights and the picture for other viewers, each
-            under the key of its content. Parts that are not coded, or that a file holds as plain numbers, have none.
-    """
-
-    payloads: Payloads = field(default_factory=Payloads)
 
 
 def check_scale(metres_per_unit: float | None) -> None:

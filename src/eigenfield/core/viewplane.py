@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from eigenfield.core.brief import brief_repr
 from eigenfield.core.camera import Camera
 
 VIEW_PLANE_LINE_RATIO = 0.02  # of the smaller to the larger extent, up to which an array is a line
@@ -28,6 +29,8 @@ class ViewPlane:
     right: NDArray[np.float64]
     up: NDArray[np.float64]
     extent: NDArray[np.float64]
+
+    __repr__ = brief_repr
 
     @property
     def is_line(self) -> bool:
@@ -89,6 +92,8 @@ class Grid:
     rows: int
     columns: int
     index: NDArray[np.int64]
+
+    __repr__ = brief_repr
 
 
 def find_grid(coordinates: ArrayLike) -> Grid | None:

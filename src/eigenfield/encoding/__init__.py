@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from eigenfield.core.mesh import Mesh
     from eigenfield.core.observations import CalibratedObservations
     from eigenfield.core.proxy import Proxy
-    from eigenfield.core.scene import EncodedScene
+    from eigenfield.core.scene import Scene
     from eigenfield.runtime.tasks import Workers
 
 __all__ = ["EncodeOptions", "Target", "encode"]
@@ -46,7 +46,7 @@ def encode(
     workers: Workers | None = None,
     progress: Progress | None = notebook_progress,
     **changes: Any,
-) -> EncodedScene:
+) -> Scene:
     """Encode photographs on a proxy mesh, as `eigenfield encode` does: fitted to them, or projected as in the paper.
 
     Options about texture maps choose the paper's way, with a warning, where neither was asked for.

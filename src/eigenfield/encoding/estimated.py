@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from eigenfield.capture import Capture, LightField, PhotoSet, open_any, open_capture
+from eigenfield.core.arguments import kind_in_words
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import CalibratedObservations
@@ -97,7 +98,7 @@ def estimate(
         opened = open_any(given, work=None if folder is None else folder / "frames")
         _warn(opened.problems)
     else:
-        raise OptionError("capture", f"a {type(given).__name__} makes no proxy", remedy="give the proxy, or a folder")
+        raise OptionError("capture", f"{kind_in_words(given)} makes no proxy", remedy="give the proxy, or a folder")
     check_selection(opened, options)
     made = reconstruct(opened, work=folder, workers=workers, progress=progress, **settings)
     _warn(made.light_field.problems[len(opened.problems) :])
@@ -119,7 +120,7 @@ def calibrated(given: Given, proxy: str | os.PathLike[str] | Mesh | Proxy) -> Ca
         refuse_no_mesh(Path(proxy))
     elif not isinstance(proxy, Mesh | Proxy):
         remedy = "give a mesh file, a Mesh or a Proxy, or leave it out"
-        raise OptionError("proxy", f"a {type(proxy).__name__} is no proxy", remedy=remedy)
+        raise OptionError("proxy", f"{kind_in_words(proxy)} is no proxy", remedy=remedy)
     if isinstance(given, str | os.PathLike):
         opened = open_capture(given)
         _warn(opened.problems)
@@ -127,7 +128,7 @@ def calibrated(given: Given, proxy: str | os.PathLike[str] | Mesh | Proxy) -> Ca
     if isinstance(given, PhotoSet):
         raise OptionError("capture", "these photographs have no cameras", remedy="leave out the proxy, or calibrate")
     if not hasattr(given, "cameras"):
-        raise OptionError("capture", f"a {type(given).__name__} is no capture", remedy="give a folder, or `ef.open` it")
+        raise OptionError("capture", f"{kind_in_words(given)} is no capture", remedy="give a folder, or `ef.open` it")
     return given
 
 

@@ -9,7 +9,7 @@ import os
 from dataclasses import dataclass, replace
 from typing import TypedDict, TypeVar, get_type_hints
 
-from eigenfield.core.arguments import in_words, matches
+from eigenfield.core.arguments import in_words, kind_in_words, matches
 from eigenfield.core.errors import OptionError
 from eigenfield.encoding.fields import Options, document_options, option, options_of
 from eigenfield.encoding.target import Target
@@ -226,7 +226,7 @@ class EncodeOptions(Options):
         for name, kind in get_type_hints(type(self)).items():
             value = getattr(self, name)
             if not matches(value, kind):
-                raise OptionError("option-type", f"{name} is a {type(value).__name__}", remedy=f"give {in_words(kind)}")
+                raise OptionError("option-type", f"{name} is {kind_in_words(value)}", remedy=f"give {in_words(kind)}")
 
     def _check_file(self) -> None:
         from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, check_codec

@@ -22,7 +22,7 @@ from eigenfield.core.payloads import Coded, Payloads, mesh_key, size_of
 from eigenfield.core.progress import Progress, begin_step
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
-from eigenfield.core.scene import EncodedScene
+from eigenfield.core.scene import Scene
 from eigenfield.core.version import __version__
 from eigenfield.encoding.fitted.opacity import fit_opacity
 from eigenfield.encoding.fitted.planes import byte_lambda, coded_opacity
@@ -117,7 +117,7 @@ class EncodePlan:
         payloads: Payloads | None = None,
         colours: NDArray[np.float32] | None = None,
         to_rgb: NDArray[np.float32] | None = None,
-    ) -> EncodedScene:
+    ) -> Scene:
         """The scene with these planes.
 
         Args:
@@ -147,7 +147,7 @@ class EncodePlan:
                 "pixels": sum(sizes),
             },
         }
-        made = EncodedScene(
+        made = Scene(
             proxy=replace(self.proxy, lattice=None),
             rig=rig,
             appearance=Appearance(planes=planes, colours=colours, to_rgb=to_rgb),

@@ -20,7 +20,7 @@ from eigenfield.evaluation.exclusion import ExcludedCircle
 from eigenfield.evaluation.image import summarise_scores
 from eigenfield.evaluation.session import CameraScores, PictureScores, Session, start_session
 from eigenfield.evaluation.spread import MeasureJob, measure_on
-from eigenfield.gltf import parts
+from eigenfield.gltf import load, parts
 from eigenfield.runtime.parallel import parallel_stream
 from eigenfield.runtime.tasks import Workers
 
@@ -29,7 +29,7 @@ EVALUATION_SCHEMA = "eigenfield.evaluate/1"
 
 @checked
 def evaluate(
-    scene: Scene,
+    scene: Scene | str | os.PathLike[str],
     capture: str | os.PathLike[str] | Capture,
     *,
     path: str | os.PathLike[str] | None = None,
@@ -46,9 +46,9 @@ def evaluate(
     """Measure a scene against its photographs; docs/measures.md defines every score. The result is JSON-able.
 
     Args:
-        scene: The scene.
+        scene: The scene, or its file.
         capture: Its photographs, or their folder; where they have no cameras, they take the scene's by name.
-        path: The scene's file, for `bytes` and `ratio`; both are None without it.
+        path: The scene's file, for `bytes` and `ratio`; both are None without it. Default: the file that `scene` is.
         curve: Measure UV scores for every number of textures, of "all" cameras or a "sample" of 16; "none": do not.
         textures: Use only so many textures.
         filter: "bicubic" or "bilinear", for drawing.
@@ -66,6 +66,9 @@ def evaluate(
         OutputError: As `measure_on`.
     """
     started = time.monotonic()
+    if not isinstance(scene, Scene):
+        path = scene if path is None else path
+        scene = load(scene)
     opened = open_any(capture) if isinstance(capture, str | os.PathLike) else capture
     photographs = with_scene_cameras(scene, opened)
     settings: dict[str, Any] = {

@@ -20,7 +20,7 @@ from eigenfield.core.payloads import (
     textures_key,
     weights_key,
 )
-from eigenfield.core.scene import EncodedScene, Scene
+from eigenfield.core.scene import Scene
 from eigenfield.runtime.parallel import parallel_map
 
 
@@ -49,7 +49,7 @@ class CachedPayloads:
 def cached_payloads(scene: Scene) -> CachedPayloads:
     """The payloads of a scene's parts, found by their content. Those that are left over are taken to be of the parts
     that have changed, in the order of the scene."""
-    if not isinstance(scene, EncodedScene) or not scene.payloads:
+    if not scene.payloads:
         return CachedPayloads({}, {})
     parts = _parts(scene)
     keys = dict(zip(parts, parallel_map(lambda key: key(), parts.values()), strict=True))

@@ -29,7 +29,7 @@ from eigenfield.core.payloads import (
 )
 from eigenfield.core.proxy import Proxy, Sheets
 from eigenfield.core.rig import Rig
-from eigenfield.core.scene import EncodedScene, Scene
+from eigenfield.core.scene import Scene
 from eigenfield.gltf.container import read_file
 from eigenfield.gltf.document import Document
 from eigenfield.gltf.findings import Finding, Findings
@@ -69,7 +69,7 @@ def layout_of(data: bytes) -> tuple[Document, FileLayout]:
 
 
 @checked
-def load(path: str | os.PathLike[str]) -> EncodedScene:
+def load(path: str | os.PathLike[str]) -> Scene:
     """Read a scene: float32 means, uint8 or uint16 textures with their scale and zero, and their payloads.
 
     Limits are checked before memory is taken.
@@ -82,7 +82,16 @@ def load(path: str | os.PathLike[str]) -> EncodedScene:
         return read_scene(read_file(Path(path)))
 
 
-def read_scene(data: bytes) -> EncodedScene:
+def as_scene(scene: Scene | str | os.PathLike[str]) -> Scene:
+    """The scene itself, or what `load` reads from its file.
+
+    Raises:
+        FormatError: As `load`.
+    """
+    return scene if isinstance(scene, Scene) else load(scene)
+
+
+def read_scene(data: bytes) -> Scene:
     """The scene in a file of these bytes.
 
     Raises:
@@ -103,7 +112,7 @@ def outline(path: str | os.PathLike[str]) -> tuple[Scene, bytes]:
         return _scene_of(data, pictures=False), data
 
 
-def _scene_of(data: bytes, pictures: bool) -> EncodedScene:
+def _scene_of(data: bytes, pictures: bool) -> Scene:
     document, layout = layout_of(data)
     bases = [basis for plane in layout.planes or () for basis in plane.bases]
     if layout.lost:
@@ -128,7 +137,7 @@ def _preview(document: Document, layout: FileLayout) -> Payload | None:
 
 def _scene(
     layout: FileLayout, planes: Sequence[Coded[Plane]], sheets: Coded[Sheets] | None, preview: Payload | None
-) -> EncodedScene:
+) -> Scene:
     mesh, given, view_plane = layout.mesh, layout.cameras, layout.view_plane
     assert mesh is not None and given is not None and view_plane is not None
     assert layout.triangles is not None and layout.reference is not None
@@ -143,7 +152,7 @@ def _scene(
         sources = [next(key for key in plane.payloads if key[0] == "mean") for plane in planes]
         sources += [] if sheets is None else [*sheets.payloads]
         payloads |= {preview_key(sources, layout.to_rgb, given.colours is not None): [preview]}
-    return EncodedScene(
+    return Scene(
         proxy=Proxy(mesh, sheets=None if sheets is None else sheets.value),
         rig=Rig(given.names, given.cameras, given.held_out, layout.reference, view_plane, layout.triangles),
         appearance=Appearance(

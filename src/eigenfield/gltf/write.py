@@ -34,6 +34,7 @@ from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, Glb, file_head, json_
 from eigenfield.gltf.fallback import make_fallback, with_fallback
 from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.layout import read_layout, unpacked_document
+from eigenfield.gltf.read import as_scene
 from eigenfield.gltf.streams import FEATURES, codec_entry, minor
 from eigenfield.gltf.writable import check_writable
 from eigenfield.gltf.write_geometry import (
@@ -55,7 +56,7 @@ DEFAULT_AVIF_QUALITY = 70  # of the eigen textures
 
 @checked
 def save(
-    scene: Scene,
+    scene: Scene | str | os.PathLike[str],
     path: str | os.PathLike[str],
     *,
     codec: str | None = None,
@@ -66,11 +67,11 @@ def save(
 ) -> None:
     """Write `scene` as a .glb, atomically.
 
-    Parts of an `EncodedScene` whose content has not changed since they were coded keep their bytes. One line of the log
-    lists the parts that are coded anew, and the bytes that this costs; as a warning where the file grows by it.
+    Parts whose content has not changed since they were coded keep their bytes. One line of the log lists the parts that
+    are coded anew, and the bytes that this costs; as a warning where the file grows by it.
 
     Args:
-        scene: To be written.
+        scene: To be written, or the file of one.
         path: Of the .glb.
         codec: "png", "webp" (both keep every code of 8 bits) or "avif" (lossy), for all pictures. Without codec and
             quality, pictures that are coded already (by a fit, or read from a file) stay as they are, and the rest
@@ -88,6 +89,7 @@ def save(
     """
     path = Path(path)
     refuse_output(path, overwrite)
+    scene = as_scene(scene)
     if fallback is not None:
         scene = with_fallback(scene, fallback)
     blocks, anew = _blocks(scene, codec, quality, progress, path)

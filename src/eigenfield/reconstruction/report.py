@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.brief import brief_repr
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.proxy import AtlasStatistics, atlas_statistics
@@ -30,6 +31,8 @@ class ProxyReport:
     coverage: NDArray[np.float64]
     error: SurfaceError | None
     atlas: AtlasStatistics
+
+    __repr__ = brief_repr
 
     def lines(self, names: Sequence[str]) -> list[str]:
         """Lines of text.

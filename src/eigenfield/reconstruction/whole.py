@@ -19,6 +19,7 @@ from eigenfield.capture.lightfield import PhotographSource
 from eigenfield.capture.survey import refuse_one_place
 from eigenfield.capture.writers.save import save_calibration
 from eigenfield.core.arguments import checked
+from eigenfield.core.brief import brief_repr
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.notebook import notebook_progress
@@ -83,6 +84,8 @@ class Reconstruction:
     seconds: dict[str, float]
     report: ProxyReport
     hold_out: str | None = None
+
+    __repr__ = brief_repr
 
 
 @checked

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from eigenfield.core.brief import brief_repr
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import signed_areas
 from eigenfield.core.scene import Scene
@@ -34,6 +35,8 @@ class ViewWeights:
 
     rows: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
     values: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         if self.rows.ndim != 1 or self.rows.shape != self.values.shape:

@@ -28,6 +28,7 @@ from eigenfield.calibration.charts.pictures import ChartCamera, ChartPictures, f
 from eigenfield.calibration.charts.rig import RigSolution, solve_rig
 from eigenfield.capture.lightfield import LightField, View
 from eigenfield.capture.photographs.lens import Lens
+from eigenfield.core.brief import brief_repr
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError
 from eigenfield.core.progress import Progress
@@ -82,6 +83,8 @@ class CameraReport:
     focal_deviation: float
     reason: str | None = None
 
+    __repr__ = brief_repr
+
 
 @dataclass(frozen=True, eq=False)
 class ChartCalibration:
@@ -104,6 +107,8 @@ class ChartCalibration:
     rms: float
     median: float
     problems: tuple[str, ...]
+
+    __repr__ = brief_repr
 
     def light_field(self, folder: str | os.PathLike[str]) -> LightField:
         """The cameras as views of photographs to come, one a camera.

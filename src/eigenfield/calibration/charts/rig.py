@@ -22,6 +22,7 @@ from eigenfield.calibration.charts.bundle import BoardObservation, RigEstimate, 
 from eigenfield.calibration.charts.corners import DetectedCorners
 from eigenfield.calibration.charts.intrinsics import board_pose
 from eigenfield.calibration.charts.lens_models import project_points
+from eigenfield.core.brief import brief_repr
 
 log = logging.getLogger("eigenfield.calibration")
 
@@ -54,6 +55,8 @@ class RigSolution:
     inliers: tuple[BoardObservation, ...]
     outliers: tuple[BoardObservation, ...]
     focal_deviations: F64
+
+    __repr__ = brief_repr
 
 
 @dataclass(frozen=True, eq=False)

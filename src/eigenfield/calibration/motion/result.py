@@ -18,6 +18,7 @@ from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.photoset import PhotoSet, Shot
 from eigenfield.capture.points import SparsePoints
+from eigenfield.core.brief import brief_repr
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import one_line
 
@@ -64,6 +65,8 @@ class SfmResult:
     light_field: LightField
     points: SparsePoints
     report: tuple[ViewReport, ...]
+
+    __repr__ = brief_repr
 
 
 def assemble(

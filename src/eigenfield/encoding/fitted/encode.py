@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from eigenfield.core.progress import Progress
-from eigenfield.core.scene import EncodedScene
+from eigenfield.core.scene import Scene
 from eigenfield.encoding.between import is_measured
 from eigenfield.encoding.fitted.encoder import FittedEncoder, open_encoder
 from eigenfield.encoding.fitted.observations import FitData
@@ -34,7 +34,7 @@ FIGURES_MAX_BYTES = 16  # that the PSNR of two planes takes more than its placeh
 TARGET_MAX_OBSERVATIONS = 48  # evenly spread, over which a PSNR or SSIM is measured
 
 
-def encode_fitted(plan: EncodePlan, work: Path | None = None, progress: Progress | None = None) -> EncodedScene:
+def encode_fitted(plan: EncodePlan, work: Path | None = None, progress: Progress | None = None) -> Scene:
     """A scene whose drawn pictures match the plan's photographs as far as its quality, or its target, allows.
 
     Its planes are coded already: `save` keeps their bytes.
@@ -54,7 +54,7 @@ def encode_fitted(plan: EncodePlan, work: Path | None = None, progress: Progress
         return encoder.encode(resolved_value(plan.options.quality))
 
 
-def reach_target(plan: EncodePlan, target: Target, work: Path | None, progress: Progress | None) -> EncodedScene:
+def reach_target(plan: EncodePlan, target: Target, work: Path | None, progress: Progress | None) -> Scene:
     """The scene whose file reaches the target, or with a warning the nearest.
 
     Mesh and atlas belong to a quality. Where the target is met at one that has clearly others than the plan's, there is
@@ -89,7 +89,7 @@ def reach_target(plan: EncodePlan, target: Target, work: Path | None, progress: 
 
 
 def _other_plan(
-    plan: EncodePlan, found: Attempt[EncodedScene], work: Path | None, progress: Progress | None
+    plan: EncodePlan, found: Attempt[Scene], work: Path | None, progress: Progress | None
 ) -> EncodePlan | None:
     """The plan for the quality that was found, where its mesh or atlas differs enough for a second fit; else None."""
     if abs(found.quality - resolved_value(plan.options.quality)) <= REFIT_MAX_NEAR_QUALITIES:
@@ -100,12 +100,12 @@ def _other_plan(
     return other if mesh or atlas else None
 
 
-def _search(target: Target, encoder: FittedEncoder, first: int = TARGET_FIRST_QUALITY) -> Attempt[EncodedScene]:
+def _search(target: Target, encoder: FittedEncoder, first: int = TARGET_FIRST_QUALITY) -> Attempt[Scene]:
     """As `search_quality`, of what the encoder makes."""
 
     added = FIGURES_MAX_BYTES + (SCORES_MAX_BYTES if is_measured(encoder.plan) else 0)
 
-    def code(quality: int) -> Attempt[EncodedScene]:
+    def code(quality: int) -> Attempt[Scene]:
         scene = encoder.encode_without_figures(quality)
         measured = 0.0 if target.size else _mean_measure(target, scene, encoder.data)
         return Attempt(quality, len(encode_scene(scene)) + added, measured, scene)
@@ -113,12 +113,12 @@ def _search(target: Target, encoder: FittedEncoder, first: int = TARGET_FIRST_QU
     return search_quality(target, code, first)
 
 
-def _with_psnr(target: Target, found: Attempt[EncodedScene], data: FitData) -> Attempt[EncodedScene]:
+def _with_psnr(target: Target, found: Attempt[Scene], data: FitData) -> Attempt[Scene]:
     """What was found, measured too where the target is a size: for `Target.merit`."""
     return found if target.size is None else replace(found, measured=_mean_measure(target, found.result, data))
 
 
-def _mean_measure(target: Target, scene: EncodedScene, data: FitData) -> float:
+def _mean_measure(target: Target, scene: Scene, data: FitData) -> float:
     """The mean PSNR or SSIM over covered pixels of some observations, drawn as they are."""
     renderer, observations, count = Renderer(scene), data.observations, len(data)
     cameras = scene.rig.encoded_cameras
@@ -136,7 +136,7 @@ def _mean_measure(target: Target, scene: EncodedScene, data: FitData) -> float:
     return float(np.mean(values)) if values else 0.0
 
 
-def _warn_of_miss(target: Target, nearest: Attempt[EncodedScene]) -> None:
+def _warn_of_miss(target: Target, nearest: Attempt[Scene]) -> None:
     """Say that no file reaches the target, and why."""
     if target.size is not None:
         words = "%d bytes cannot be reached: the coarsest file has %d; take fewer textures, or a lower density"

@@ -13,7 +13,7 @@ from eigenfield.core.observations import CalibratedObservations
 from eigenfield.core.payloads import Payloads
 from eigenfield.core.progress import Progress, begin_step
 from eigenfield.core.proxy import Proxy
-from eigenfield.core.scene import EncodedScene
+from eigenfield.core.scene import Scene
 from eigenfield.encoding.fitted.colour import to_rgb
 from eigenfield.encoding.fitted.exposures import EXPOSURE_MODEL, fit_exposures
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data
@@ -40,11 +40,11 @@ class FittedEncoder:
     fits: Fits
     progress: Progress | None = None
 
-    def encode(self, quality: int) -> EncodedScene:
+    def encode(self, quality: int) -> Scene:
         """The scene coded at a quality, 0 to 100, with the PSNR of its planes in its settings."""
         return self.with_figures(self.encode_without_figures(quality))
 
-    def encode_without_figures(self, quality: int) -> EncodedScene:
+    def encode_without_figures(self, quality: int) -> Scene:
         """The scene coded at a quality; its settings have placeholders for the PSNR."""
         begin_step(self.progress, "code")
         options = self.plan.options
@@ -62,7 +62,7 @@ class FittedEncoder:
             to_rgb=to_rgb(),
         )
 
-    def with_figures(self, scene: EncodedScene) -> EncodedScene:
+    def with_figures(self, scene: Scene) -> Scene:
         """A scene of `encode_without_figures`, with the PSNR of each of its planes in its settings."""
         fitted = {**scene.settings["fitted"], "psnr": self.fits.psnr_figures(scene.appearance.planes)}
         return replace(scene, settings={**scene.settings, "fitted": fitted})

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.progress import Progress, begin_step
-from eigenfield.core.scene import EncodedScene
+from eigenfield.core.scene import Scene
 from eigenfield.encoding.options import DEFAULT_MAX_ANGLE, resolved_value
 from eigenfield.encoding.plan import EncodePlan
 from eigenfield.encoding.projected.agreement import disagreement_of
@@ -32,7 +32,7 @@ from eigenfield.runtime.tasks import Workers
 
 def encode_projected(
     plan: EncodePlan, work: Path | None = None, progress: Progress | None = None, workers: Workers | None = None
-) -> EncodedScene:
+) -> Scene:
     """A scene by the paper's sections 3.2 and 3.3; its textures are numbers, which `save` codes.
 
     Args:

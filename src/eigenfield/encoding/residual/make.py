@@ -14,7 +14,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.observations import CalibratedObservations
 from eigenfield.core.progress import Progress, track
-from eigenfield.core.scene import EncodedScene, Residual
+from eigenfield.core.scene import Residual, Scene
 from eigenfield.core.viewplane import find_grid, fit_view_plane
 from eigenfield.encoding.residual.colour import to_planes
 from eigenfield.encoding.residual.views import surface_colours
@@ -30,11 +30,11 @@ RESIDUAL_SVT_PRESET = 2  # 4 loses 0.1 dB at equal bytes, 1 gains 0.04 (Tarot)
 
 
 def with_residual(
-    scene: EncodedScene,
+    scene: Scene,
     capture: CalibratedObservations,
     quality: int = RESIDUAL_DEFAULT_QUALITY,
     progress: Progress | None = None,
-) -> EncodedScene:
+) -> Scene:
     """The scene with a residual.
 
     Args:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,6 +17,7 @@ from eigenfield.core.camera_names import named_camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.scene import Scene
+from eigenfield.gltf import as_scene
 from eigenfield.rendering.checks import check_filter, check_textures
 from eigenfield.rendering.novel import novel_camera
 from eigenfield.rendering.picture import Picture, camera_colour, colour_changes, mixed_colour, undo_colour
@@ -260,7 +262,7 @@ def renderer_of(scene: Scene) -> Renderer:
 
 @checked
 def render(
-    scene: Scene,
+    scene: Scene | str | os.PathLike[str],
     *,
     at: tuple[float, float] | None = None,
     camera: str | None = None,
@@ -278,25 +280,29 @@ def render(
     those around it by the same weights as the textures. May be called from several threads.
 
     Args:
-        scene: The scene.
+        scene: The scene, or its file, which is read at every call.
         at: View-plane coordinates: X right, Y up, ±1 at the array's edges.
         camera: Name of a capture camera.
         resolution: (width, height). Default: the camera's own.
         weights: `delaunay`, `nearest3` or `bilinear`.
-        filter: As of `Renderer.draw`.
-        background: As of `Renderer.draw`.
-        textures: As of `Renderer.draw`.
-        samples: As of `Renderer.draw`.
+        filter: `bilinear` or `bicubic` (Catmull-Rom).
+        background: One number, or one for each channel, 0..1.
+        textures: Number of eigen textures of each basis. Default: all.
+        samples: k of k x k samples a pixel, 1 to 16. Default: one, but four at edges, or more in a picture smaller than
+            the photographs.
         time: Index of the instant.
 
     Raises:
-        OptionError: `unknown-camera`, `viewpoint`, `time`, `weights-mode`, `no-grid`, `resolution`; as `Renderer.draw`.
+        OptionError: `unknown-camera`, `viewpoint`, `time`, `weights-mode`, `no-grid`, `resolution`, `filter`,
+            `background`, `textures`, `samples`.
+        FormatError: The file is no scene.
     """
-    view, mix = viewpoint(scene, at=at, camera=camera, weights=weights, time=time)
+    found = as_scene(scene)
+    view, mix = viewpoint(found, at=at, camera=camera, weights=weights, time=time)
     if resolution is not None:
         view = at_resolution(view, resolution)
-    colour = viewpoint_colour(scene, at=at, camera=camera)
-    return renderer_of(scene).draw(
+    colour = viewpoint_colour(found, at=at, camera=camera)
+    return renderer_of(found).draw(
         view, mix, filter=filter, background=background, textures=textures, samples=samples, colour=colour
     )
 

@@ -21,11 +21,18 @@ from eigenfield.core.proxy import opaque_mesh
 from eigenfield.core.scene import Scene
 from eigenfield.encoding.residual.views import captured_pixels, with_differences
 from eigenfield.imaging.raster import rasterise_view
-from eigenfield.rendering import RenderJob, ViewWeights, at_resolution, camera_colour, camera_weights, viewpoint
+from eigenfield.rendering import (
+    RenderJob,
+    ViewWeights,
+    at_resolution,
+    camera_colour,
+    camera_weights,
+    mean_texture,
+    viewpoint,
+)
 from eigenfield.rendering.render_jobs import png, refuse_attributes
 from eigenfield.runtime.parallel import parallel_map, pieces
 from eigenfield.viewer.exports.folder import atomic_folder, write_file, write_listing
-from eigenfield.viewer.exports.maps import mean_map
 from eigenfield.viewer.exports.names import file_names
 
 COLMAP_MAX_POINTS, COLMAP_MIN_POINTS = 50_000, 10_000
@@ -199,7 +206,7 @@ def _select_tracks(visible: NDArray[np.bool_], first: int) -> tuple[NDArray[np.i
 
 def _mean_colours(scene: Scene, uv: NDArray[np.float64]) -> NDArray[np.uint8]:
     """(n, 3) of the mean's texels at (n, 2) texture coordinates, greys repeated."""
-    mean = mean_map(scene)
+    mean = mean_texture(scene)
     size = np.array(mean.shape[1::-1])
     column, row = np.clip(uv * size, 0, size - 1).astype(np.int64).T
     texels = np.clip(np.rint(mean[row, column] * np.float32(255)), 0, 255).astype(np.uint8)

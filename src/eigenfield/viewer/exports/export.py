@@ -18,7 +18,7 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.notebook import notebook_progress
 from eigenfield.core.progress import Progress
 from eigenfield.core.scene import Scene, check_scale
-from eigenfield.gltf import encode_scene, load, outline, without_residual
+from eigenfield.gltf import as_scene, encode_scene, outline, without_residual
 from eigenfield.rendering import FLIGHT_FRAMES, RenderJob, path_points
 from eigenfield.rendering.render_jobs import refuse_flight, write_flight
 from eigenfield.runtime.files import is_numbered, refuse_existing
@@ -99,8 +99,7 @@ def export(
     _refuse(chosen, output, points, overwrite)
     if chosen == "glb" and not isinstance(scene, Scene) and output.exists() and output.samefile(scene):
         raise OptionError("output-kind", f"{output} is the scene itself", remedy="name another file")
-    loaded = scene if isinstance(scene, Scene) else load(scene)
-    job = RenderJob(loaded, **{name: value for name, value in options.items() if name in PICTURE_OPTIONS})
+    job = RenderJob(as_scene(scene), **{name: value for name, value in options.items() if name in PICTURE_OPTIONS})
     return _write(chosen, job, points, output, options, overwrite, progress)
 
 

@@ -27,9 +27,9 @@ from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, file_head, json_bytes
 from eigenfield.gltf.write_geometry import NODE_DIGITS, bounds_of, index_type, write_nodes, write_primitive
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.imaging.png import png_bytes
-from eigenfield.rendering import viewpoint
+from eigenfield.rendering import mean_texture, texture
 from eigenfield.runtime.files import write_bytes
-from eigenfield.viewer.exports.maps import alpha_added, mean_map, view_map
+from eigenfield.viewer.exports.maps import alpha_added
 
 IMAGES = ("png", "jpeg", "webp")
 JPEG_QUALITY, WEBP_QUALITY = 95, 90
@@ -66,14 +66,15 @@ def write_glb(
         OutputError: The file cannot be written.
     """
     check_image(image, draco)
-    mean = mean_map(scene) if at is None else view_map(scene, viewpoint(scene, at=at)[1])
-    picture = _picture(to_codes(alpha_added(scene)(mean)), image)
+    finish = alpha_added(scene)
+    drawn = mean_texture(scene) if at is None else texture(scene, at=at)
+    picture = _picture(to_codes(finish(drawn)), image)
     buffer = Buffer()
     write = _write_draco if draco else _write_plain
     primitives = [write(part, buffer) for part in _parts(scene.proxy)]
-    texture = buffer.view(picture)
+    view = buffer.view(picture)
     scale = scene.settings.get("metresPerUnit", 1.0) if metres_per_unit is None else metres_per_unit
-    gltf = _gltf(scene, float(scale), image, texture) | {
+    gltf = _gltf(scene, float(scale), image, view) | {
         "meshes": [{"name": "proxy", "primitives": primitives}],
         "accessors": buffer.accessors,
         "bufferViews": buffer.views,

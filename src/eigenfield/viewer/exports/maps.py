@@ -15,10 +15,10 @@ from eigenfield.core.scene import Scene
 from eigenfield.imaging.png import png_bytes
 from eigenfield.rendering.checks import check_textures
 from eigenfield.rendering.render_jobs import refuse_attributes
-from eigenfield.rendering.software.composite import compose_scene, make_buffers, make_composite
 from eigenfield.rendering.software.kernels import TILE_TEXELS
 from eigenfield.rendering.software.sheets import make_stack
-from eigenfield.rendering.software.tiles import empty_layers, read_layers, tile_shape
+from eigenfield.rendering.software.tiles import tile_shape
+from eigenfield.rendering.texture import atlas_composer
 from eigenfield.rendering.weights import ViewWeights
 from eigenfield.runtime.parallel import parallel_stream
 from eigenfield.viewer.exports.folder import atomic_folder, write_file, write_listing
@@ -50,11 +50,11 @@ def write_maps(
         OutputError: The folder cannot be written.
     """
     check_textures(textures)
-    make = camera_maps(scene)
+    finish = alpha_added(scene)
+    compose, rows = atlas_composer(scene), scene.rows()
     names = [scene.rig.names[index] for index in scene.rig.encoded]
     files = file_names(names)
-    finish = alpha_added(scene)
-    drawn = parallel_stream(lambda row: png_bytes(finish(make(row, textures))), range(len(names)))
+    drawn = parallel_stream(lambda row: png_bytes(finish(compose(ViewWeights.one(int(row)), textures))), rows)
     with atomic_folder(folder, overwrite) as part:
         for file, data in zip(files, track(drawn, "maps", len(names), progress), strict=True):
             write_file(part / file, data)
@@ -62,48 +62,16 @@ def write_maps(
         write_listing(part, "maps", {"size": [width, height], "maps": dict(zip(names, files, strict=True))})
 
 
-def camera_maps(scene: Scene) -> Callable[[int, int | None], NDArray[np.float32]]:
-    """A function of an encoded camera, counted among these, and a number of eigen textures: its (H, W, C) map, not
-    clipped.
-
-    Args:
-        scene: The scene.
-
-    Raises:
-        OptionError: `not-a-picture`.
-    """
-    compose = _composer(scene)
-    rows = scene.rows()
-    return lambda row, textures: compose(ViewWeights.one(int(rows[row])), textures)
-
-
-def mean_map(scene: Scene) -> NDArray[np.float32]:
-    """(H, W, C): the means of all planes at the atlas's size, not clipped.
-
-    Args:
-        scene: The scene.
-
-    Raises:
-        OptionError: `not-a-picture`.
-    """
-    return _composer(scene)(ViewWeights(), 0)
-
-
-def view_map(scene: Scene, weights: ViewWeights) -> NDArray[np.float32]:
-    """(H, W, C): the texture of a viewpoint over the whole atlas, not clipped.
-
-    Args:
-        scene: The scene.
-        weights: Of the viewpoint.
-
-    Raises:
-        OptionError: `not-a-picture`.
-    """
-    return _composer(scene)(weights, None)
-
-
 def alpha_added(scene: Scene) -> Callable[[NDArray[np.float32]], NDArray[np.float32]]:
-    """A function of a map (H, W, C) of one or three channels: R, G, B and opacity (H, W, 4) of sheets, else the map."""
+    """A function of a map (H, W, C): R, G, B and opacity (H, W, 4) of sheets, else the map.
+
+    Args:
+        scene: The scene.
+
+    Raises:
+        OptionError: `not-a-picture`: it has other than one or three channels.
+    """
+    refuse_attributes(scene.appearance.channels)
     if scene.proxy.sheets is None:
         return lambda picture: picture
     height, width = scene.appearance.atlas
@@ -120,9 +88,6 @@ def eigen_maps(scene: Scene, count: int) -> Iterator[tuple[NDArray[np.float32], 
     Args:
         scene: The scene.
         count: Number of eigen textures of each basis.
-
-    Raises:
-        OptionError: `not-a-picture`.
     """
     kept = [[basis.truncate(count) for basis in plane.bases] for plane in scene.appearance.planes]
     total, first, planes = sum(basis.count for bases in kept for basis in bases), 0, []
@@ -132,21 +97,7 @@ def eigen_maps(scene: Scene, count: int) -> Iterator[tuple[NDArray[np.float32], 
             alone.append(replace(basis, weights=np.eye(total, basis.count, -first, np.float32)))
             first += basis.count
         planes.append(Plane(np.zeros_like(plane.mean), tuple(alone)))
-    compose = _composer(replace(scene, appearance=replace(scene.appearance, planes=tuple(planes))))
+    compose = atlas_composer(replace(scene, appearance=replace(scene.appearance, planes=tuple(planes))))
     weights = [row for bases in kept for basis in bases for row in basis.weights.T]
     for number, row in enumerate(weights):
         yield compose(ViewWeights.one(number), None), row
-
-
-def _composer(scene: Scene) -> Callable[[ViewWeights, int | None], NDArray[np.float32]]:
-    """A function of view weights and a number of eigen textures: the (H, W, C) sum."""
-    refuse_attributes(scene.appearance.channels)
-    every = np.ones(tile_shape(scene.appearance.atlas), np.bool_)
-    composite = make_composite(scene, every)
-
-    def compose(weights: ViewWeights, textures: int | None) -> NDArray[np.float32]:
-        layers = empty_layers(*scene.appearance.atlas, scene.appearance.channels)
-        compose_scene(composite, weights, textures, every, make_buffers(composite), layers)
-        return read_layers(layers, *scene.appearance.atlas, scene.appearance.channels)
-
-    return compose

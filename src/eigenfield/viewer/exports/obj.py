@@ -20,11 +20,12 @@ from eigenfield.core.version import __version__
 from eigenfield.gltf.axes import capture_to_gltf
 from eigenfield.gltf.write_geometry import NODE_DIGITS, write_nodes
 from eigenfield.imaging.png import png_bytes
+from eigenfield.rendering import mean_texture
 from eigenfield.rendering.checks import check_textures
 from eigenfield.rendering.weights import encoded_places
 from eigenfield.runtime.files import atomic_files, refuse_existing
 from eigenfield.viewer.exports.folder import atomic_folder, write_listing
-from eigenfield.viewer.exports.maps import alpha_added, eigen_maps, mean_map
+from eigenfield.viewer.exports.maps import alpha_added, eigen_maps
 from eigenfield.viewer.exports.names import file_name
 
 CodedPicture = tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]
@@ -44,7 +45,7 @@ def write_obj(scene: Scene, output: Path, *, overwrite: bool = False) -> None:
         OptionError: `not-a-picture`.
         OutputError: A file cannot be written.
     """
-    mean = png_bytes(alpha_added(scene)(mean_map(scene)))
+    mean = png_bytes(alpha_added(scene)(mean_texture(scene)))
     targets = obj_files(output)
     with atomic_files(targets, overwrite=overwrite) as (picture, material, mesh):
         picture.write_bytes(mean)
@@ -103,7 +104,7 @@ def write_obj_folder(
         OutputError: The folder cannot be written.
     """
     check_textures(textures)
-    mean = png_bytes(alpha_added(scene)(mean_map(scene)))
+    mean = png_bytes(alpha_added(scene)(mean_texture(scene)))
     count = scene.appearance.textures if textures is None else textures
     total = sum(min(count, basis.count) for plane in scene.appearance.planes for basis in plane.bases)
     digits = max(2, len(str(total - 1)))
