@@ -19,9 +19,10 @@ from markdown_it import MarkdownIt
 
 import eigenfield as ef
 from eigenfield.calibration.charts.board import charuco
+from eigenfield.capture.writers.save import save_calibration
 from support import charts
 from support.captures import write_array, write_capture
-from support.motion import K, photographed
+from support.motion import K, film, photographed
 from test_readme import look
 
 ROOT = Path(__file__).parents[1]
@@ -86,9 +87,17 @@ def prepare(page: str, place: Path) -> None:
         lens.write("camera_matrix", K)
         lens.release()
         return
+    if page == "captures":
+        _, given = photographed(place / "photos")
+        save_calibration(given, place / "model")
+        (place / "model/sparse").rename(place / "sparse")
+        write_array(place / "grid")
+        film(place / "walk.mp4")
+        ef.export(ef.load(ROOT / "docs/scene.glb"), place / "quilt.png", kind="quilt", resolution=(96, 96))
     capture = write_capture(place / "capture")
     trimesh.load(capture / "proxy.ply", process=False).export(capture / "proxy.obj")
-    write_array(place / "photos")
+    if page != "captures":
+        write_array(place / "photos")
     for name in ("one", "two"):
         write_capture(place / "captures" / name)
     if page == "viewer":

@@ -24,7 +24,7 @@ from eigenfield.capture import (
     open_photographs,
     read_header,
 )
-from eigenfield.capture.format_table import FORMAT_NOTES, table_of_formats
+from eigenfield.capture.format_table import FORMAT_NOTES, sections_of_formats
 from eigenfield.capture.photographs.exif import read_focal_length
 from eigenfield.core.errors import CaptureError, EigenfieldError
 from eigenfield.core.observations import select_cameras
@@ -55,12 +55,12 @@ def inspect(run):
 
 def test_every_row_is_documented_and_offered(run):
     assert len({row.name for row in FORMATS}) == len(FORMATS)
-    page = Path(eigenfield.__file__).parents[2] / "docs" / "captures.md"
+    page = Path(eigenfield.__file__).parents[2] / "docs" / "capture-formats.md"
     if page.exists():  # not in an installed package
         text = page.read_text(encoding="utf-8")
-        table = table_of_formats()
-        assert text.split("\n## Formats\n\n")[1].split("\n\n")[0] == table, (
-            f"docs/captures.md needs this table:\n{table}"
+        sections = sections_of_formats()
+        assert text.split("\n## Formats\n\n")[1].split("\n\n## ")[0] == sections, (
+            f"docs/capture-formats.md needs:\n{sections}"
         )
     assert list(FORMAT_NOTES) == [row.name for row in FORMATS]
     words = " ".join(run("inspect", "--help").out.split())

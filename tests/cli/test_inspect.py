@@ -25,7 +25,7 @@ from support.captures import write_capture
 from support.named import picture, write_video
 from support.scenes import bumpy_square, row_grid
 
-DOCUMENT = Path(__file__).parents[2] / "docs" / "captures.md"
+DOCUMENT = Path(__file__).parents[2] / "docs" / "capture-formats.md"
 
 
 @pytest.fixture(scope="module")

@@ -100,7 +100,7 @@ def test_options_pages_and_extras_that_messages_name_exist():
     assert named - options - others == set()
     extras = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
     assert {name for text in TEXTS for name in re.findall(r"eigenfield\[(\w+)\]", text)} <= set(extras)
-    assert {name for text in TEXTS for name in re.findall(r"`eigenfield help (\w+)`", text)} <= set(TOPICS)
+    assert {name for text in TEXTS for name in re.findall(r"`eigenfield help ([\w-]+)`", text)} <= set(TOPICS)
     assert [text for text in TEXTS if "docs/" in text] == []  # a wheel holds them elsewhere
 
 
@@ -186,4 +186,9 @@ def test_the_help_of_encode_stands_in_groups(run):
     assert len(set(names)) == len(names) and set(names) <= {option.name for option in encode_command.params}
     out = run("encode", "--help").out
     assert [out.index(f"{title}:") for title in GROUPS] == sorted(out.index(f"{title}:") for title in GROUPS)
+    screen = "\n".join(out.splitlines()[:24])
+    assert all(word in screen for word in ("--output", "--preset", "--proxy", "--calibration", "--grid"))
+    assert (
+        out.index("--fit-sphere") < out.index("The paper's way") < min(out.index("--uv-ssim S"), out.index("--align "))
+    )
     assert all(word in out for option in encode_command.params for word in option.opts if word.startswith("--"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import av
 import cv2
 import numpy as np
 
@@ -73,6 +74,18 @@ def photographed(folder: Path) -> tuple[PhotoSet, LightField]:
         shots.append(Shot(path.name, path, WIDTH, HEIGHT))
     photos = PhotoSet(folder, tuple(shots), None, (), "folder")
     return photos, photos.with_cameras(views)
+
+
+def film(path: Path, frames: int = 48) -> None:
+    """A walk along the arc."""
+    mesh, texture = relief(), spotted(1)
+    with av.open(str(path), "w") as container:
+        stream = container.add_stream("libx264", rate=24, options={"crf": "12"})
+        stream.width, stream.height, stream.pix_fmt = WIDTH, HEIGHT, "yuv420p"
+        for camera in cameras(frames):
+            shown = np.rint(255 * draw_texture(mesh, texture, camera, samples=1).image).astype(np.uint8)
+            container.mux(stream.encode(av.VideoFrame.from_ndarray(shown, format="rgb24")))
+        container.mux(stream.encode(None))
 
 
 def picture(folder: Path, name: str, pixels: np.ndarray) -> Shot:

@@ -5,7 +5,7 @@
     photo_set = open_photographs("photos/")  # no cameras; the grid that the names state is `photo_set.layout`
     either = open_any("folder/")
 
-`docs/captures.md` describes the formats, their conventions and common pitfalls.
+`docs/capture-formats.md` describes the formats, their conventions and common pitfalls.
 """
 
 from __future__ import annotations

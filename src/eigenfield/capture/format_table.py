@@ -1,4 +1,4 @@
-"""What `docs/captures.md` says of each format: a table that is made from the readers."""
+"""What `docs/capture-formats.md` says of each format, made from the readers."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from eigenfield.capture.readers.walk import WALK_MAX_FRAMES
 
 @dataclass(frozen=True)
 class FormatNotes:
-    """A row of the table.
+    """What is said of a format.
 
     Attributes:
         found: What a folder of the format holds.
@@ -48,7 +48,8 @@ FORMAT_NOTES = {
         f"{_codes(transforms.TRANSFORMS_LENS_KEYS)} `k5` `k6` or `distortion_params`, `is_fisheye`, angles, "
         "`mask_path`, `applied_transform`; of a frame or of the file",
         "other models; other keys that look like a lens and are not 0 (`s1`, `K1`, `distortion`); `k4` of no model",
-        "camera axes OpenGL; `applied_transform` (below); `fl_x` goes before an angle that contradicts it, with a line",
+        "camera axes OpenGL; `applied_transform` ([which frame](#conventions)); `fl_x` goes before an angle that "
+        "contradicts it, with a line",
     ),
     "colmap": FormatNotes(
         "`cameras` and `images`, `.bin` or `.txt`, in `sparse/N`, `sparse`, the folder, `colmap/sparse/N`",
@@ -216,14 +217,13 @@ FORMAT_NOTES = {
 }  # fmt: skip
 
 
-def table_of_formats() -> str:
-    """The table of `docs/captures.md`, in Markdown, a row for each of `FORMATS`."""
-    lines = [
-        "| `--format` | what is found | cameras | written by (tried) | read | refused or left out, by name | traps |"
-    ]
-    lines.append("|---|---|---|---|---|---|---|")
+def sections_of_formats() -> str:
+    """A table of all `FORMATS` and a section for each, in Markdown: `docs/capture-formats.md` has them."""
+    lines = ["| `--format` | what is found |", "|---|---|"]
+    lines += [f"| [`{row.name}`](#{row.name}) | {FORMAT_NOTES[row.name].found} |" for row in FORMATS]
     for row in FORMATS:
         notes = FORMAT_NOTES[row.name]
-        cells = notes.found, notes.cameras, notes.writers, notes.reads, notes.refuses, notes.traps
-        lines.append(f"| `{row.name}` | {' | '.join(cells)} |")
+        lines += ["", f"### {row.name}", "", f"- **Written by:** {notes.writers}.", f"- **Cameras:** {notes.cameras}."]
+        lines += [f"- **Read:** {notes.reads}."]
+        lines += [f"- **Refused or left out, by name:** {notes.refuses}.", f"- **Traps:** {notes.traps}."]
     return "\n".join(lines)

@@ -161,7 +161,7 @@ def open_any(
         calibration: A calibration that lies elsewhere: its file, or its folder.
         masks: A folder of masks named as the photographs, white where they count. None: the calibration's own, if any.
         strict: Raise the first error. If False, leave out what is wrong and name it in `problems`.
-        format: The name of a format, where a capture may be read in several ways (docs/captures.md).
+        format: The name of a format, where a capture may be read in several ways (docs/capture-formats.md).
         grid: (rows, columns) of numbered photographs, in row-major order.
         frame: Frame of each video: an index from 0, or seconds ("2.5s"). None: the first.
         pattern: How names state row and column of a grid: `view_{row}_{col}.png`; `*` stands for any text.

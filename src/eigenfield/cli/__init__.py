@@ -30,18 +30,18 @@ from eigenfield.runtime.signals import STOP_SIGNALS, end_no_step
 from eigenfield.runtime.temporary import remove_temporaries
 
 VERBS = {
-    "demo": "Make a capture, encode it, draw and measure it: the whole way in one command.",
-    "calibrate": "Find the cameras of photographs, from the scene or from pictures of a chart.",
-    "inspect": "Say what a capture holds, and what is wrong with it.",
-    "proxy": "Make a proxy mesh from photographs, and their cameras.",
-    "encode": "Turn photographs into one .glb; cameras and proxy are estimated where they are not given.",
-    "batch": "Encode and measure many captures, here or on many machines; the same command goes on.",
-    "render": "Draw a viewpoint, a captured camera, or a fly-through.",
-    "view": "Look around in a scene, in a browser.",
-    "export": "Write a scene for other programs: a page, a video, OBJ, texture maps, a quilt, COLMAP.",
+    "demo": "Try the whole way, on photographs that the program draws.",
+    "inspect": "Say what a capture holds, what is wrong with it, and what to run next.",
+    "encode": "Turn photographs into one .glb.",
+    "view": "Look around in a scene, in a browser or a headset.",
+    "export": "Write a scene as a page, a video, OBJ, texture maps, a quilt or a COLMAP model.",
     "evaluate": "Measure a scene against its photographs.",
-    "info": "Show what a scene file holds: bytes by part, settings, scores.",
+    "render": "Draw one view, or a flight through a scene.",
+    "info": "Show what a scene file holds.",
     "validate": "Check a scene file and list every finding.",
+    "calibrate": "Find cameras only, from photographs of the scene or of a chart.",
+    "proxy": "Make cameras and mesh only.",
+    "batch": "Encode and measure many captures, here or on many machines.",
     "help": "Read a page of the documentation.",
     "completion": "Print the script that completes commands in bash, zsh or fish.",
 }
@@ -78,15 +78,15 @@ class _Verbs(click.Group):
     epilog="""\b
 Examples:
   eigenfield demo
-  eigenfield encode photos/ --proxy mesh.ply -o scene.glb
-  eigenfield render scene.glb --at 0.3,-0.2 -o view.png
+  eigenfield inspect photos/
+  eigenfield encode photos/ -o scene.glb
   eigenfield view scene.glb
   eigenfield evaluate scene.glb photos/""",
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
 )
 @click.version_option(__version__, prog_name="eigenfield")
 def group() -> None:
-    """Light fields as eigen textures: photographs from a camera array in, one small .glb out."""
+    """Turn photographs of a scene into one small .glb in which anyone can look around."""
 
 
 SIGNAL_RETRY_SECONDS = 0.05

@@ -88,7 +88,7 @@ def _set_traceback(context: click.Context, parameter: click.Parameter, value: bo
 common_options = together(
     click.option("--threads", type=int, metavar="N", expose_value=False, callback=_set_threads, is_eager=True,
                  help="Threads to use.  [default: all processors]"),
-    click.option("--quiet", "-q", is_flag=True, help="No progress bars, no notes; errors only."),
+    click.option("--quiet", "-q", is_flag=True, help="Show errors only: no progress bars, no notes."),
     click.option("--verbose", "-v", is_flag=True, expose_value=False, callback=_set_verbose, is_eager=True,
                  help="Say more about what is done."),
     click.option("--traceback", is_flag=True, expose_value=False, callback=_set_traceback, is_eager=True,
@@ -96,27 +96,27 @@ common_options = together(
 )  # fmt: skip
 worker_options = together(
     click.option("--workers", type=int, metavar="N",
-                 help="Do what can be spread in N processes of this machine; with --cluster, wait for N workers."),
+                 help="Share the work among N processes of this machine; with --cluster, wait for N workers."),
     click.option("--cluster", metavar="ADDRESS",
-                 help="Do it on a cluster: tcp://HOST:8786 (a Dask scheduler), slurm, or ssh:HOST,HOST."),
+                 help="Share the work on a cluster: tcp://HOST:8786 (a Dask scheduler), slurm, or ssh:HOST,HOST."),
 )  # fmt: skip
 masks_option = click.option("--masks", type=PATH, metavar="FOLDER",
-                            help="Masks named as the photographs; white counts.")  # fmt: skip
+                            help="Masks with the photographs' names: white is used, black is not.")  # fmt: skip
 grid_options = together(
     click.option("--grid", metavar="RxC", callback=_parse_grid,
-                 help="Numbered photographs are R rows of C columns, row by row."),
+                 help="Numbered photographs: R rows of C columns."),
     click.option("--pattern", metavar="NAME",
-                 help="How names state row and column of a grid, as view_{row}_{col}.png; * is any text."),
-    click.option("--frame", metavar="T", help="Frame of each video: an index from 0, or seconds (2.5s)."),
-    click.option("--frames", type=int, metavar="N", help="How many frames of the one video of a walk are taken.  "
+                 help="Where names have row and column: view_{row}_{col}.png; * is any text."),
+    click.option("--frame", metavar="T", help="Frame to take of each video: a number from 0, or seconds (2.5s)."),
+    click.option("--frames", type=int, metavar="N", help="Frames to take of the video of a walk.  "
                  "[default: by how far the camera goes]"),
 )  # fmt: skip
 _place_options = together(
     click.option("--calibration", type=PATH, metavar="PATH",
-                 help="A calibration (transforms.json, COLMAP model, ...) apart from the photographs."),
+                 help="Cameras that lie elsewhere: transforms.json, a COLMAP model, Metashape's .xml ..."),
     masks_option,
     click.option("--format", metavar="NAME",
-                 help="What the capture is, where it may be read in several ways: "
+                 help="Read the capture as this format, where several fit: "
                       "transforms, colmap, llff, middlebury, strecha, bundler, nvm, metashape, opencv, "
                       "realitycapture, deepview, projections, positions, hci, stanford, grid, numbered, video, "
                       "walk or folder."),
@@ -134,17 +134,17 @@ _mesh_options = together(  # the arguments of `reconstruct` about a mesh
                  help="Correct an array's cameras together with its depth.  "
                  "[default: where none are given, or 25 or more]"),
     click.option("--fill-background/--no-fill-background", "background", default=None,
-                 help="Close the view behind what was reconstructed.  [default: unless there are masks]"),
+                 help="Close the view behind the scene.  [default: unless there are masks]"),
     click.option("--primitive", "primitives", multiple=True, metavar="SHAPE",
-                 help="Put a shape in by hand: sphere:CX,CY,CZ,R or plane:PX,PY,PZ,NX,NY,NZ,EXTENT."),
+                 help="Add a shape to the mesh: sphere:CX,CY,CZ,R or plane:PX,PY,PZ,NX,NY,NZ,EXTENT."),
     click.option("--fit-sphere", "fit_spheres", multiple=True, metavar="VIEW:X,Y,W,H",
-                 help="Fit a sphere to the outline in a region of a photograph, and put it in."),
+                 help="Add a sphere, fitted to the outline in this region of a photograph."),
 )  # fmt: skip
 mesh_options = together(_surface_option("auto relief poisson", f"{MESH_KINDS}."), _mesh_options)
 reconstruction_options = together(  # the arguments of `reconstruct`
     _surface_option("auto relief layers poisson", f"{MESH_KINDS}; layers: soft sheets with an opacity."),
     click.option("--layers", metavar="N", default="auto", show_default=True, callback=_parse_layers,
-                 help="Number of soft sheets; 1: none; auto: what views left out choose."),
+                 help="Soft sheets: 2 to 32, or 1 for none; auto tries 4 and 8 on views left out."),
     _mesh_options,
 )  # fmt: skip
 

@@ -46,25 +46,23 @@ def parse_target_size(context: click.Context, parameter: click.Parameter, value:
     return None if value is None else parse_size(value)
 
 
-GROUPS = {  # of options in the help, the common ones first; what is named in none is of the last
-    "Common options": (
-        "output", "proxy", "preset", "target_size", "hold_out", "work", "overwrite", "quiet", "threads",
-        "workers", "cluster",
-    ),
+GROUPS = {  # of options in the help, those of every day first; the empty one has what no other names
+    "Common options": ("output", "preset", "target_size", "proxy", "calibration", "grid", "without", "overwrite"),
     "What the capture is": (
-        "calibration", "masks", "format", "grid", "pattern", "frame", "frames", "without", "reference",
-        "metres_per_unit",
-    ),
-    "Estimated cameras and mesh": (
-        "surface", "layers", "refine", "background", "primitives", "fit_spheres", "blind", "triangles",
+        "format", "pattern", "frame", "frames", "masks", "reference", "metres_per_unit",
     ),
     "Quality and size": (
-        "quality", "target_psnr", "target_ssim", "textures", "density", "atlas", "residual", "fit", "fallback",
+        "quality", "target_psnr", "target_ssim", "hold_out", "blind", "density", "atlas", "harmonise", "residual",
+        "fallback",
     ),
-    "Texture maps, as the paper makes them (--fit none)": (
-        "uv_ssim", "align", "max_angle", "harmonise", "codec", "keep_maps",
+    "Estimated cameras and mesh": (
+        "surface", "layers", "refine", "background", "primitives", "fit_spheres", "triangles",
     ),
+    "How it runs": ("work", "threads", "workers", "cluster", "quiet"),
     "Other options": (),
+    "The paper's way: texture maps instead of a fit": (
+        "fit", "textures", "uv_ssim", "align", "max_angle", "codec", "keep_maps",
+    ),
 }  # fmt: skip
 
 
@@ -72,9 +70,11 @@ class _Grouped(click.Command):
     """Shows its options by `GROUPS`."""
 
     def format_options(self, context: click.Context, formatter: click.HelpFormatter) -> None:
-        lines = {option.name: option.get_help_record(context) for option in self.get_params(context)}
+        options = [option for option in self.get_params(context) if isinstance(option, click.Option)]
+        lines = {option.name: option.get_help_record(context) for option in options}
+        named = {name for names in GROUPS.values() for name in names}
         for title, names in GROUPS.items():
-            shown = [lines.pop(name) for name in names or tuple(lines)]
+            shown = [lines[name] for name in names or (name for name in lines if name not in named)]
             with formatter.section(title):
                 formatter.write_dl([line for line in shown if line is not None])
 
@@ -84,23 +84,21 @@ class _Grouped(click.Command):
     epilog="""\b
 Examples:
   eigenfield encode photos/ -o scene.glb
+  eigenfield encode photos/ --grid 5x4 -o scene.glb
   eigenfield encode walk.mp4 --frames 60 -o scene.glb
-  eigenfield encode photos/ --grid 5x4 --hold-out every:5 -o scene.glb
+  eigenfield encode photos/ --calibration sparse/0 -o scene.glb
   eigenfield encode capture/ --proxy capture/proxy.ply -o scene.glb
-  eigenfield encode photos/ --calibration refined.json --proxy proxy.ply --atlas 1024 -o scene.glb
-  eigenfield encode photos/ --proxy mesh.obj --fit none --uv-ssim 0.98 -o scene.glb
-  eigenfield encode photos/ --proxy mesh.glb --fit none --codec png -o scene.glb
-  eigenfield encode photos/ --proxy mesh.glb --preset small -o small.glb
-  eigenfield encode photos/ --proxy mesh.glb --target-size 300kB -o small.glb
-  eigenfield encode photos/ --proxy mesh.glb --residual 70 -o archive.glb""",
+  eigenfield encode photos/ --target-size 300kB -o small.glb
+  eigenfield encode photos/ --hold-out every:5 -o scene.glb
+  eigenfield encode photos/ --residual 70 -o archive.glb
+  eigenfield encode photos/ --proxy mesh.obj --fit none --uv-ssim 0.98 -o paper.glb""",
 )
 @capture_argument()
 @click.option(
     "--proxy",
     type=PATH,
     metavar="MESH",
-    help="Triangle mesh in the cameras' world: .ply, .obj, .glb, .gltf, .stl or .off.  "
-    "[default: made from the photographs]",
+    help="Your own mesh, in the cameras' world: .ply, .obj, .glb, .gltf, .stl or .off.",
 )
 @click.option("--output", "-o", required=True, type=PATH, metavar="FILE", help="The .glb to write.")
 @capture_options
@@ -110,17 +108,16 @@ Examples:
     "--work",
     type=PATH,
     metavar="DIR",
-    help="Folder, or s3://BUCKET/NAME, that keeps finished stages of the reconstruction; the same command goes on from "
-    "there. "
-    "[default: OUTPUT with the ending .work; with --proxy its folder, for scratch files]",
+    help="Folder, or s3://BUCKET/NAME, that keeps finished steps: the same command goes on from there.  "
+    "[default: OUTPUT with the ending .work; with --proxy the folder of OUTPUT]",
 )
 @worker_options
 @reconstruction_options
 @click.option(
     "--blind",
     is_flag=True,
-    help="Held-out photographs take no part in cameras and proxy either. Where cameras are estimated, each then "
-    "registers its own against the finished points, and is left out if it cannot.",
+    help="Keep held-out photographs out of cameras and mesh, too. Where cameras are estimated, each then finds its own "
+    "in the finished scene, and is left out if it cannot.",
 )
 @click.option("--overwrite", is_flag=True, help="Replace the output if it exists.")
 @common_options
@@ -138,11 +135,11 @@ def command(
     cluster: str | None,
     **settings: Any,
 ) -> None:
-    """Turn the photographs in CAPTURE into one .glb.
+    """Turn photographs into one .glb in which you can look around.
 
-    Cameras and proxy mesh are estimated where they are not given: CAPTURE is a folder of photographs, with or without a
-    calibration, several such folders, a zip, or one video of a walk (`eigenfield inspect CAPTURE` says what is found).
-    """  # fmt: skip
+    CAPTURE is a folder of photographs, a zip of them, or a video of a walk. Cameras and mesh are estimated unless you
+    give them. `eigenfield inspect CAPTURE` says what will be used.
+    """
     from eigenfield.encoding import encode
     from eigenfield.encoding.between import score_words
     from eigenfield.encoding.estimated import reconstruction_settings, refuse_unused

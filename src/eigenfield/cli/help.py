@@ -10,14 +10,18 @@ import click
 from eigenfield.core.errors import OptionError
 
 TOPICS = {
-    "usage": "commands, options of encode, Python",
-    "captures": "what can be read, formats of calibrations",
+    "captures": "which command for which photographs, what goes wrong",
+    "usage": "commands, options of encode, scripts",
+    "time": "seconds, memory and disk",
+    "install": "extras, the first run",
+    "python": "the same in a program",
     "calibration": "how cameras are found, charts",
     "meshes": "what is read of a mesh",
     "exports": "what other programs get",
     "cluster": "many captures on many machines",
     "viewer": "keys, controls and addresses of the viewer",
     "measures": "what every figure means",
+    "capture-formats": "what is read of photographs and calibrations, inspect --json",
     "format": "the file format, codes of findings",
 }
 

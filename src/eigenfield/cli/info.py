@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import textwrap
 from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from eigenfield.gltf.layout_planes import PlaneLayout
     from eigenfield.gltf.layout_sheets import SheetsLayout
 
+LINE_MAX_CHARACTERS = 100  # of settings and scores, which are free in a file
 AXES_TEXT = (
     "cameras are world-to-camera with x right, y down, z forward; lengths are in the capture's own unit; "
     "the proxy's node turns its axes to glTF's (Y up, the array looking along -Z)"
@@ -32,10 +34,10 @@ Examples:
   eigenfield info --json scene.glb"""
 )
 @click.argument("file", type=PATH)
-@click.option("--json", "as_json", is_flag=True, help="The same as JSON.")
+@click.option("--json", "as_json", is_flag=True, help="Everything, as JSON: cameras, settings, scores.")
 @common_options
 def command(file: Path, as_json: bool, quiet: bool) -> None:
-    """Show what a scene FILE holds: bytes by part, textures, cameras, view plane, settings and scores."""
+    """Show what a scene FILE holds: bytes by part, cameras, textures, settings and scores."""
     from eigenfield.gltf import describe
 
     layout, parts = describe(file)
@@ -44,7 +46,7 @@ def command(file: Path, as_json: bool, quiet: bool) -> None:
         echo_json({"file": str(file), **facts})
         return
     click.echo(f"{file}: {parts['total']:,} bytes, format {layout.version}, by {json.dumps(layout.generator)}")
-    for line in _text_lines(facts):
+    for line in text_lines(facts):
         click.echo(line)
 
 
@@ -121,52 +123,66 @@ def _plane_facts(plane: PlaneLayout) -> dict[str, Any]:
     }
 
 
-def _text_lines(facts: dict[str, Any]) -> list[str]:
+def text_lines(facts: dict[str, Any]) -> list[str]:
+    """At most 19 lines of what a file holds; `--json` has all of it."""
     total = facts["bytes"]["total"]
-    lines = ["bytes"]
-    for name, count in facts["bytes"].items():
-        lines.append(f"  {name:10}{count:14,}{100 * count / total:8.1f} %")
-    lines.append(f"eigen         {facts['textures']} textures of the basis that has most")
-    for plane in facts["planes"]:
-        mean = plane["mean"]
-        channels = f"{plane['channels']} channel{'' if plane['channels'] == 1 else 's'}"
-        lines.append(f"mean          {_size(mean['size'])}, {channels}, {mean['type']}")
-        for basis in plane["bases"]:
-            types = f", {', '.join(basis['types'])}" if basis["types"] else ""
-            lines.append(f"basis         {basis['textures']} textures of {_size(basis['size'])}, {channels}{types}")
-    proxy = facts["proxy"]
-    lines.append(f"proxy         {proxy['vertices']:,} vertices, {proxy['triangles']:,} triangles")
+    shares = ((name, count) for name, count in facts["bytes"].items() if count and name != "total")
+    lines = [f"bytes         {', '.join(f'{name} {count:,} ({count / total:.0%})' for name, count in shares)}"]
+    cameras, proxy = facts["cameras"], facts["proxy"]
+    sizes = [f"{entry['count']} of {_size(entry['size'])}" for entry in cameras["sizes"]]
+    lines.append(
+        f"cameras       {first_names(sizes, 4)}; {cameras['encoded']} encoded, {len(cameras['held_out'])} held out"
+    )
+    if cameras["held_out"]:
+        lines.append(f"held out      {first_names(cameras['held_out'], 4)}")
+    lines.append(f"reference     {cameras['reference']}, where the first view is drawn")
+    plane = facts["view_plane"]
+    shape = f"{plane['width']:.4g} x {plane['height']:.4g}" if plane["height"] else f"a line of {plane['width']:.4g}"
+    lines.append(f"view plane    {shape} about {_vector(plane['origin'])}; X right and Y up, each from -1 to 1")
+    lines.append("axes          cameras look along z, with x right and y down; lengths are in the capture's unit")
+    lines.append(f"mesh          {proxy['vertices']:,} vertices, {proxy['triangles']:,} triangles")
     if proxy["sheets"] is not None:
         triangles, opacity = proxy["sheets"]["triangles"], proxy["sheets"]["opacity"]
-        counts = ", ".join(f"{count:,}" for count in triangles)
-        lines.append(f"sheets        {len(triangles)}, back to front of {counts} triangles; "
+        lines.append(f"sheets        {len(triangles)} of {min(triangles):,} to {max(triangles):,} triangles; "
                      f"opacity {_size(opacity['size'])}, {opacity['type']}")  # fmt: skip
-    cameras = facts["cameras"]
-    sizes = ", ".join(f"{entry['count']} of {_size(entry['size'])}" for entry in cameras["sizes"])
-    lines.append(f"cameras       {sizes}; {cameras['encoded']} encoded, {len(cameras['held_out'])} held out")
-    if cameras["held_out"]:
-        lines.append(f"held out      {first_names(cameras['held_out'], 8)}")
+    lines += [_plane_line(plane) for plane in facts["planes"][:3]]
     if cameras["harmonised"]:
-        lines.extend(
-            f"{title:14}"
-            + "; ".join(
-                f"{channel} {low:.3f} to {high:.3f}" for channel, (low, high) in cameras["harmonised"][key].items()
-            )
-            for title, key in (("harmonised by", "gain"), ("  plus", "offset"))
-        )
+        gains = [gain for bounds in cameras["harmonised"]["gain"].values() for gain in bounds]
         common = cameras["harmonised"]["between"] == "common"
-        lines.append(f"  between     {'the common exposure' if common else 'exposures mixed by the view weights'}")
-    lines.append(f"reference     {cameras['reference']}")
-    plane = facts["view_plane"]
-    shape = f"{plane['width']:g} x {plane['height']:g}" if plane["height"] else f"a line of {plane['width']:g}"
-    lines.append(f"view plane    {shape}; X from -1 to 1 to the right, Y from -1 to 1 upwards, as the cameras see it")
-    lines.append(f"              0,0 at {_vector(plane['origin'])}, X along {_vector(plane['right'])}, "
-                 f"Y along {_vector(plane['up'])}")  # fmt: skip
-    lines.append(f"axes          {facts['axes']}")
-    for name in ("settings", "scores"):
-        lines.append(name if facts[name] else f"{name:14}none")
-        lines.extend(_tree(facts[name], "  "))
-    return lines
+        between = "their common exposure" if common else "the exposures around it"
+        lines.append(
+            f"exposures     gains of {min(gains):.3f} to {max(gains):.3f}; a view between cameras has {between}"
+        )
+    settings = textwrap.wrap(_leaves(facts["settings"]), LINE_MAX_CHARACTERS, max_lines=2, placeholder=" …")
+    lines += [f"{title:14}{line}" for title, line in zip(("settings", ""), settings, strict=False)]
+    return lines + _score_lines(facts["scores"])
+
+
+def _plane_line(plane: dict[str, Any]) -> str:
+    """The textures of a plane; what it is for follows from its channels."""
+    mean, bases = plane["mean"], plane["bases"]
+    name = {1: "luma", 2: "chroma"}.get(plane["channels"], "colour")
+    counts = [f"{basis['textures']} of {_size(basis['size'])}" for basis in bases]
+    eigen = f"; eigen textures: {first_names(counts, 4)}" if counts else ""
+    types = sorted({mean["type"], *(kind for basis in bases for kind in basis["types"])})
+    return f"{name:14}mean {_size(mean['size'])}{eigen}; {', '.join(types)}"
+
+
+def _score_lines(scores: dict[str, Any]) -> list[str]:
+    """Known figures among the scores, which a file may hold in any form."""
+    image, lines = scores.get("image"), []
+    for key, title in (("encoded", "captured"), ("held_out", "held out")):
+        figures = image.get(key) if isinstance(image, dict) else None
+        if isinstance(figures, dict):
+            known = {name: figures[name] for name in ("psnr", "psnr_luma", "ssim", "cameras") if name in figures}
+            lines.append(f"{title:14}{_short(known)}")
+    if isinstance(scores.get("between"), dict):
+        lines.append(f"between       {_short(scores['between'])}")
+    return lines or ["scores        none: `eigenfield evaluate SCENE CAPTURE --store` measures them"]
+
+
+def _short(value: dict[str, Any]) -> str:
+    return textwrap.shorten(_leaves(value), LINE_MAX_CHARACTERS, placeholder=" …")
 
 
 def _size(size: list[int]) -> str:
@@ -177,19 +193,13 @@ def _vector(numbers: list[float]) -> str:
     return "(" + ", ".join(f"{number:.4g}" for number in numbers) + ")"
 
 
-def _tree(value: dict[str, Any], indent: str) -> list[str]:
-    """A JSON object as indented lines, an entry each; strings stay quoted, for they come from a file."""
-    lines = []
+def _leaves(value: dict[str, Any], below: str = "") -> str:
+    """The values of a JSON object, two levels deep, in a line; strings stay quoted, for they come from a file."""
+    leaves = []
     for key, entry in value.items():
-        name = json.dumps(key)[1:-1]
-        if isinstance(entry, dict):
-            lines.append(f"{indent}{name}")
-            lines.extend(_tree(entry, indent + "  "))
-        else:
-            lines.append(f"{indent}{name:{max(1, 26 - len(indent))}} {_leaf(entry)}")
-    return lines
-
-
-def _leaf(entry: Any) -> str:
-    text = f"{entry:.6g}" if isinstance(entry, float) else json.dumps(entry)
-    return text if len(text) <= 100 else text[:100] + "…"
+        name = below + json.dumps(key)[1:-1]
+        if not isinstance(entry, dict):
+            leaves.append(f"{name} {entry:.4g}" if isinstance(entry, float) else f"{name} {json.dumps(entry)}")
+        elif entry and not below:
+            leaves.append(_leaves(entry, f"{name}."))
+    return ", ".join(leaves) or "none"

@@ -49,15 +49,17 @@ Examples:
 )
 @capture_argument()
 @capture_options
-@click.option("--proxy", type=PATH, metavar="MESH", help="The proxy mesh to draw with --overlay.")
+@click.option("--proxy", type=PATH, metavar="MESH", help="A mesh in the cameras' world, to check against them.")
 @click.option(
     "--overlay",
     type=PATH,
     metavar="PNG",
-    help="Draw the proxy's outline over the photographs at the array's corners and centre.",
+    help="Draw the mesh's outline over the photographs at the array's corners and centre.",
 )
 @click.option("--overwrite", is_flag=True, help="Replace an existing overlay.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON; `eigenfield help captures` says what is in it.")
+@click.option(
+    "--json", "as_json", is_flag=True, help="Print JSON; `eigenfield help capture-formats` says what is in it."
+)
 @common_options
 def command(
     capture: Path,
@@ -68,9 +70,9 @@ def command(
     as_json: bool,
     quiet: bool,
 ) -> None:
-    """Say what CAPTURE holds: views or photographs without cameras, sizes, grid, extent, problems, what to run next.
+    """Say what CAPTURE holds, what is wrong with it, and what to run next.
 
-    Every photograph is decoded once, so that damaged ones are listed all together. The exit code is 0 where
+    Every photograph is decoded once, so that all damaged ones are listed together. The exit code is 0 where
     `eigenfield encode` would run (with --proxy: with this mesh), and 2 where it would end at once.
     """
     if overlay is not None and proxy is None:
@@ -159,7 +161,7 @@ def _error(error: CaptureError) -> dict[str, Any]:
 
 
 def describe(capture: Capture, damaged: list[CaptureError]) -> dict[str, Any]:
-    """The report, as `--json` prints it; `docs/captures.md` documents the keys."""
+    """The report, as `--json` prints it; `docs/capture-formats.md` documents the keys."""
     import numpy as np
 
     from eigenfield.capture.messages import Note, count_phrase

@@ -23,8 +23,7 @@ leave_out_option = click.option(
     "--leave-out",
     "without",
     metavar="NAMES",
-    help="Photographs that take no part: their names with commas between, or advised: those that `inspect` names as "
-    "harmful.",
+    help="Photographs to leave out: names with commas, or advised (those `inspect` calls harmful).",
 )
 
 

@@ -1,6 +1,6 @@
 """What an encode is expected to take, before it begins: steps, time, memory and scratch files.
 
-The costs were measured on the shared captures (docs/usage.md); they are to be right within a factor of two.
+The costs were measured on the shared captures (docs/time.md); they are to be right within a factor of two.
 """
 
 from __future__ import annotations

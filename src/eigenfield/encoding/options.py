@@ -84,89 +84,91 @@ class EncodeOptions(Options):
     """
 
     textures: int | None = option(
-        "Eigen textures, at most one less than there are cameras. A fit leaves out those that gain less than their "
-        "bytes do elsewhere, and regions of much error may get as many again.  [default: half as many as cameras, 20 "
-        "to 96; without a fit 15]",
+        "Eigen textures, fewer than there are cameras; a fit keeps those that are worth their bytes.  [default: half "
+        "as many as cameras, 20 to 96; with --fit none 15]",
         letter="-n",
         metavar="N",
     )
     uv_ssim: float | None = option(
-        "As few eigen textures as reach this SSIM in UV space, for example 0.98; without a fit.", metavar="S"
+        "Take as few eigen textures as reach this SSIM in UV space, for example 0.98.", metavar="S"
     )
     density: float | None = option(
-        "Atlas texels per photograph pixel along one axis, in the central camera (side at most 4096, texels at "
-        "most twice the photographs' pixels).  [default: 0.9 to 1.5, what the quality pays for; 0.7 of it where "
-        "cameras look around and stand on no grid; without a fit 1.5]",
+        "Texels of the atlas for each pixel of the central photograph, along one axis. The atlas has at most 4096 a "
+        "side and twice the photographs' pixels.  [default: 0.9 to 1.5 with the quality; 0.7 of it where cameras look "
+        "around and stand on no grid; with --fit none 1.5]",
         metavar="D",
     )
-    atlas: int | tuple[int, int] | None = option("Side of the atlas outright, or WIDTHxHEIGHT.", metavar="N")
+    atlas: int | tuple[int, int] | None = option(
+        "Side of the atlas in texels, or WIDTHxHEIGHT, instead of a density.", metavar="N"
+    )
     triangles: int | None = option(
-        "Triangles of the proxy, at most.  [default: a fit removes triangles until that costs more image error than it "
-        "saves bytes; with --fit none 30000, a mesh that has an atlas as it is]",
+        "Triangles of the mesh, at most.  [default: a fit removes triangles while that saves more bytes than it costs "
+        "quality; with --fit none 30000, and a mesh with an atlas stays as it is]",
         metavar="N",
     )
-    align: bool | None = option("Align the maps to the reference camera by optical flow.")
+    align: bool | None = option("Align the texture maps to the reference camera by optical flow.")
     max_angle: int | None = option(
-        "Degrees between a surface's normal and the ray to a camera from which on the camera's texture map leaves the "
-        "surface out; 90 leaves out nothing, as in the paper.  [default: 85]",
+        "Leave out of a texture map what its camera sees at this many degrees from the normal or more; 90 leaves out "
+        "nothing, as in the paper.  [default: 85]",
         limits=(1, 90),
         metavar="DEG",
     )
     harmonise: str | None = option(
-        "Take the cameras' differences of exposure and white balance out of the textures; affine fits offsets too. "
-        "Views are drawn with the exposures of the cameras around them.  [default: affine where held-out photographs "
-        "say that it pays, else none; without a fit none]",
+        "Take differences of exposure and white balance out of the textures, by a gain, or by a gain and an offset "
+        "(affine). Views get the exposure of the cameras around them.  [default: affine where photographs left out "
+        "say that it pays, else none; with --fit none none]",
         choices=("none", "gain", "affine"),
         metavar="[none|gain|affine]",
         bare="gain",
     )
     metres_per_unit: float | None = option(
-        "Metres in one unit of the cameras' world: headsets then show the real size.  [default: as the capture says]",
+        "Metres in one unit of the cameras' world, so that headsets show the real size.  "
+        "[default: as the capture says]",
         metavar="F",
     )
-    reference: str | None = option("Reference camera.  [default: nearest the centre of the array]", metavar="NAME")
+    reference: str | None = option(
+        "Camera of the first view and of --density.  [default: the one nearest the centre]", metavar="NAME"
+    )
     hold_out: str | None = option(
-        "Cameras to leave out and measure later: odd (those in odd rows or odd columns of a grid, counted from 0: "
-        "three quarters), every:K (every K-th), or names with commas between. They take no part in the textures and "
-        "in soft sheets; in cameras and an opaque surface that are estimated they do, unless --blind is given.",
+        "Leave photographs out of the textures, to measure views between the others: every:K (every K-th), odd (those "
+        "in odd rows or columns of a grid, counted from 0), or names with commas. Estimated cameras and surfaces still "
+        "use them, except soft sheets; see --blind.",
         metavar="RULE",
     )
     codec: str | None = option(
-        "Pictures of a file that is not fitted: avif is lossy, webp and png keep 8 bits exactly.  [default: avif]",
+        "How the pictures are coded: avif is lossy, webp and png keep 8 bits exactly.  [default: avif]",
         choices=("avif", "webp", "png"),
     )
     quality: int | None = option(
-        "Quality of the pictures, 0 to 100.  [default: the preset's; 70 without a fit]", limits=(0, 100), metavar="Q"
+        "Quality, 0 to 100, instead of a preset's.  [default: the preset's; with --fit none 70]",
+        limits=(0, 100),
+        metavar="Q",
     )
     fit: str | None = option(
-        "photographs: fit the textures until the drawn pictures match the photographs. none: project the photographs "
-        "into the textures, as the paper does; faster, larger, less sharp. --align, --max-angle, --uv-ssim, "
-        "--codec and --keep-maps are about texture maps, which a fit does not make.  [default: "
-        "photographs, unless one of these is given]",
+        "none: project the photographs into texture maps and decompose these, as the paper does; faster, with larger "
+        "and less sharp files. photographs: fit the textures to the photographs.  [default: photographs; none where "
+        "one of --uv-ssim, --align, --max-angle, --codec and --keep-maps is given]",
         choices=("none", "photographs"),
     )
     preset: str | None = option(
-        "How finely a fit is coded (quality 79, 89, 95) and how long it may take; --quality or a target "
-        "instead of the first. best codes with libaom, in about 10 % fewer bytes and far more time, where there is an "
-        "ffmpeg program that has it.  [default: balanced]",
+        "Small file or best pictures; best takes far longer.  [default: balanced]",
         choices=tuple(PRESETS),
     )
     target: Target | None = option("What the file is to reach, by the fit's quality (`Target`).", parts=Target)
     residual: int | None = option(
         "For archives: also keep what captured views lack, as a video of quality Q, 0 (coarse) to 100 (near-lossless); "
-        "40 unless said. Other views gain nothing by it. With few bytes a small base is best: --fit photographs "
-        "--textures 24 --quality 86, and as many bytes for the video as are left.",
+        "40 without a number. Views between the cameras gain nothing.",
         limits=(0, 100),
         metavar="[Q]",
         bare="40",
     )
     fallback: str | None = option(
-        "What viewers without eigen textures show: the middle view with at most 6 % of the file's bytes (small), with "
-        "at most 25 % (good), or nothing (none).  [default: small]",
+        "What other glTF viewers show: the middle view in at most 6 % of the file's bytes (small), in at most 25 % "
+        "(good), or nothing (none).  [default: small]",
         choices=("small", "good", "none"),
     )
     keep_maps: str | os.PathLike[str] | None = option(
-        "Also write every filled texture map and its visibility as PNG.", metavar="DIR"
+        "Also write every texture map and its visibility as PNG.", metavar="DIR"
     )
 
     def __post_init__(self) -> None:

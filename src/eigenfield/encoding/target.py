@@ -40,11 +40,9 @@ class Target(Options):
     PSNR (dB, RGB) and SSIM are means over captured cameras (docs/measures.md).
     """
 
-    size: int | None = option(
-        "The best file of at most this size (500kB, 1.5MB, 300000), by the fit's quality.", metavar="SIZE"
-    )
-    psnr: float | None = option("The smallest file with this PSNR, RGB, of captured views.", metavar="DB")
-    ssim: float | None = option("The smallest file with this SSIM of captured views.", metavar="S")
+    size: int | None = option("The best file of at most this size: 500kB, 1.5MB, 300000.", metavar="SIZE")
+    psnr: float | None = option("The smallest file whose captured views reach this PSNR, RGB.", metavar="DB")
+    ssim: float | None = option("The smallest file whose captured views reach this SSIM.", metavar="S")
 
     def check(self) -> None:
         """Raise OptionError `target` for none, several, or one out of range."""
