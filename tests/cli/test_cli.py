@@ -77,7 +77,7 @@ def test_encode_render_evaluate_info_validate(run, folder, tmp_path):
     lines = out.splitlines()
     assert re.fullmatch(rf"{re.escape(str(output))}: [0-9,]+ kB, [0-9.]+ times smaller than the photographs", lines[0])
     assert lines[1:] == [
-        f"no verdict: `eigenfield evaluate '{output}' CAPTURE` measures the file",
+        "no verdict: `eigenfield evaluate SCENE CAPTURE` measures more",
         f"look around in it: eigenfield view '{output}'",
     ]
     assert len(list((tmp_path / "maps").iterdir())) == 2 * 4 + 1

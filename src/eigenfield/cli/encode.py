@@ -237,12 +237,11 @@ def last_lines(output: Path, scene: Scene) -> list[str]:
     if ratio < 1:
         smaller = "larger than"
     figures = "".join(f", {words}" for words in score_words(scene.scores))
-    named = shell_word(address_of(output))
-    word = verdict_of_scores(scene.scores) or f"no verdict: `eigenfield evaluate {named} CAPTURE` measures the file"
+    word = verdict_of_scores(scene.scores) or "no verdict: `eigenfield evaluate SCENE CAPTURE` measures more"
     return [
         f"{output}: {total / 1e3:,.0f} kB, {smaller} the photographs{figures}",
         str(word),
-        f"look around in it: eigenfield view {named}",
+        f"look around in it: eigenfield view {shell_word(address_of(output))}",
     ]
 
 

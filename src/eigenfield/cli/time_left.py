@@ -93,9 +93,9 @@ class TimeLeft:
 
     @property
     def number(self) -> tuple[int, int]:
-        """Of the present step, from 1, and of all steps. Layers count once they begin."""
-        names = [name for name, seconds in self.seconds.items() if seconds or name == self.step]
-        return names.index(self.step or "") + 1, len(names)
+        """Of the present step, from 1, and of all. Layers, of which nothing is expected, count once they begin."""
+        at = list(self.seconds).index(self.step or "")
+        return at + 1, at + 1 + sum(seconds > 0 for seconds in list(self.seconds.values())[at + 1 :])
 
     @property
     def is_vague(self) -> bool:
