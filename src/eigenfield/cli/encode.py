@@ -265,10 +265,10 @@ def announce(
     count = threads()
     cost = expected_cost(capture, options, settings, count)
     pixels = sum(width * height for width, height in capture.sizes)
-    expected = duration_range(cost.seconds, cost.layered_seconds if cost.layered else None)
+    layered = f", or {duration_range(cost.layered_seconds)} if layers turn out to be better" if cost.layered else ""
     note(
-        f"{len(capture.sizes)} photographs, {pixels / 1e6:.1f} megapixels: {expected} "
-        f"with {count_phrase(range(count), 'thread', 'threads')}; {cost.memory / 1e9:.1f} GB of memory, "
+        f"{len(capture.sizes)} photographs, {pixels / 1e6:.1f} megapixels: {duration_range(cost.seconds)} "
+        f"with {count_phrase(range(count), 'thread', 'threads')}{layered}; {cost.memory / 1e9:.1f} GB of memory, "
         f"{cost.scratch / 1e6:.0f} MB of scratch files"
     )
     if settings is not None:

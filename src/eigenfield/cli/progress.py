@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import threading
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from typing import Any
 
@@ -16,6 +17,7 @@ from eigenfield.core.progress import Progress
 
 LINE_SECONDS = 15.0  # between two lines about a stage, where there is no terminal
 COMPILING_WORDS = "compiling for this processor, once"
+UNITS = {1: "s", 60: "min", 3600: "h"}  # of times, by their seconds
 COMPILING_SECONDS = 3.0  # after which it is said where there is no terminal
 
 
@@ -122,30 +124,30 @@ class StepProgress:
 
 def duration(seconds: float) -> str:
     """A time as a person says it: about 40 s, about 3 min."""
-    return f"about {' '.join(_number_and_unit(seconds, _unit_of(seconds)))}"
+    unit = _unit_of(seconds)
+    return f"about {_number(seconds, unit, round)} {UNITS[unit]}"
 
 
-def duration_range(low: float, high: float | None = None) -> str:
+def duration_range(seconds: float) -> str:
     """Between which times one lies: about 3 to 6 min.
 
     Args:
-        low: Seconds that are expected.
-        high: Seconds that it may take, too; None: the same.
+        seconds: That are expected.
     """
-    first, last = RANGE_LOW_RATIO * low, RANGE_HIGH_RATIO * (low if high is None else max(low, high))
-    unit = _unit_of(last)
-    (few, _), (many, name) = _number_and_unit(first, unit), _number_and_unit(last, unit)
-    return f"about {few} to {many} {name}" if few != many else f"about {many} {name}"
+    low, high = RANGE_LOW_RATIO * seconds, RANGE_HIGH_RATIO * seconds
+    unit = _unit_of(high)
+    few, many = _number(low, unit, math.floor), _number(high, unit, math.ceil)
+    return f"about {many if few == many else f'{few} to {many}'} {UNITS[unit]}"
 
 
 def _unit_of(seconds: float) -> int:
     return 1 if seconds < 90 else 60 if seconds < 5400 else 3600
 
 
-def _number_and_unit(seconds: float, unit: int) -> tuple[str, str]:
+def _number(seconds: float, unit: int, rounded: Callable[[float], float]) -> str:
     if unit == 1:
-        return f"{max(round(seconds, -1), 10):.0f}", "s"
-    return (f"{max(seconds / 60, 1):.0f}", "min") if unit == 60 else (f"{seconds / 3600:.1f}", "h")
+        return f"{max(10 * rounded(seconds / 10), 10):.0f}"
+    return f"{max(rounded(seconds / 60), 1):.0f}" if unit == 60 else f"{rounded(seconds / 360) / 10:.1f}"
 
 
 class _Bars(StepProgress):
