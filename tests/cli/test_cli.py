@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from eigenfield.cli import VERBS
+from eigenfield.cli.encode import default_output
 from eigenfield.gltf import save
 from eigenfield.imaging.png import png_bytes
 from eigenfield.runtime.files import write_bytes
@@ -43,6 +46,27 @@ def test_help_of_every_verb_ends_in_examples(run):
     assert code == 0 and all(verb in out for verb in VERBS)
 
 
+def test_the_output_has_the_captures_name_if_none_is_given(run, folder, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    words = "encode", folder, "--proxy", folder / "proxy.ply", "--atlas", 64, "-n", 1, "--fit", "none", "--quiet"
+    assert run(*words)[0] == 0 and [path.name for path in tmp_path.iterdir()] == [f"{folder.name}.glb"]
+    code, _, err = run(*words)
+    assert code == 2 and f"{folder.name}.glb: exists already" in err
+    assert run(*words, "--overwrite")[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("capture", "name"),
+    [("a/my.photos", "my.photos.glb"), ("a/walk.mp4", "walk.glb"), (".", "here.glb"), ("a/..", "here.glb"),
+     ("/", "scene.glb"), ("s3://lab/photos", "photos.glb"), ("missing", "missing.glb")],
+)  # fmt: skip
+def test_a_capture_names_its_output(capture, name, tmp_path, monkeypatch):
+    (tmp_path / "here" / "a" / "my.photos").mkdir(parents=True)
+    (tmp_path / "here" / "a" / "walk.mp4").touch()
+    monkeypatch.chdir(tmp_path / "here")
+    assert default_output(Path(capture)) == Path(name)
+
+
 def test_encode_render_evaluate_info_validate(run, folder, tmp_path):
     output = tmp_path / "my scene.glb"
     code, out, err = run(
@@ -50,7 +74,12 @@ def test_encode_render_evaluate_info_validate(run, folder, tmp_path):
         "--keep-maps", tmp_path / "maps", "--fit", "none",
     )  # fmt: skip
     assert code == 0, err
-    assert "3 eigen textures, atlas 64x64, for 4 photographs" in out
+    lines = out.splitlines()
+    assert re.fullmatch(rf"{re.escape(str(output))}: [0-9,]+ kB, [0-9.]+ times smaller than the photographs", lines[0])
+    assert lines[1:] == [
+        "no verdict: `eigenfield evaluate SCENE CAPTURE` measures more",
+        f"look around in it: eigenfield view '{output}'",
+    ]
     assert len(list((tmp_path / "maps").iterdir())) == 2 * 4 + 1
     assert run("validate", output)[0] == 0
     code, out, _ = run("info", output, "--json")

@@ -15,7 +15,8 @@ import pytest
 from eigenfield.batches.run import _Bar
 from eigenfield.capture import open_any
 from eigenfield.cli import progress as progress_module
-from eigenfield.cli.progress import StepProgress, duration, progress_bars
+from eigenfield.cli.progress import StepProgress, duration, duration_range, progress_bars
+from eigenfield.cli.time_left import TimeLeft
 from eigenfield.core.progress import tell_remaining
 from eigenfield.encoding import EncodeOptions
 from eigenfield.encoding.cost import STEPS, expected_cost
@@ -45,12 +46,12 @@ class Told(StepProgress):
 
 def test_steps_are_numbered_and_the_rest_follows_this_machines_pace(monkeypatch: pytest.MonkeyPatch) -> None:
     clock, told = Clock(monkeypatch), Told()
-    told.plan({"array": 100, "trial": 100, "mesh": 200, "fit": 600}, {"array": "depth"})
+    told.plan({"array": 300, "trial": 100, "mesh": 200, "fit": 500}, {"array": "depth"})
     told.begin("array")
-    clock.now = 200  # twice as long as was expected
+    clock.now = 600  # twice as long as was expected
     told.begin("mesh")  # no trial was needed
-    assert told.headings == ["step 1 of 4: depth, about 17 min left", "step 2 of 3: mesh, about 18 min left"]
-    clock.now = 260
+    assert told.headings == ["step 1 of 4: depth, about 11 to 28 min left", "step 2 of 3: mesh, about 18 min left"]
+    clock.now = 660
     assert told.left() == "about 17 min left"
     told.begin("mesh")  # the same once more is no new step
     assert len(told.headings) == 2
@@ -62,7 +63,7 @@ def test_layers_change_what_is_to_come(monkeypatch: pytest.MonkeyPatch) -> None:
     told.begin("trial")
     clock.now = 100
     told.begin("layers")
-    assert told.headings == ["step 1 of 3: trial, about 3 min left", "step 2 of 3: layers, about 9 min left"]
+    assert told.headings == ["step 1 of 2: trial, about 2 to 5 min left", "step 2 of 3: layers, about 5 to 14 min left"]
 
 
 def test_steps_that_were_not_foreseen_take_the_places_of_those_that_were(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -74,6 +75,14 @@ def test_steps_that_were_not_foreseen_take_the_places_of_those_that_were(monkeyp
         told.begin(step)
     steps = [heading.partition(",")[0] for heading in told.headings]
     assert steps == ["step 1 of 6: motion", "step 2 of 6: surface", "step 3 of 6: atlas", "step 4 of 4: mesh"]
+
+
+def test_steps_that_were_taken_up_do_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    Clock(monkeypatch)
+    told = Told()
+    told.plan({"surface": 500, "proxy": 20, "mesh": 30, "fit": 70}, {})
+    told.begin("mesh")
+    assert told.headings == ["step 1 of 2: mesh, about 1 to 3 min left"]
 
 
 def test_time_of_compilation_says_nothing_about_the_pace(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -88,11 +97,37 @@ def test_time_of_compilation_says_nothing_about_the_pace(monkeypatch: pytest.Mon
     assert told.headings[-1] == "step 2 of 2: fit, about 2 min left"
 
 
+def test_the_rest_is_corrected_within_a_step_by_the_part_that_is_done() -> None:
+    """Its stages take a quarter and three quarters of it, and this machine twice as long as was expected."""
+    rest = TimeLeft({"surface": 100, "fit": 100}, {}, {"surface": {"first depth": 25, "depth": 75}})
+    rest.begin("surface", 0)
+    assert rest.left(0) == 200 and rest.is_vague
+    rest.advance("first depth", 10, 10, 50)
+    pace, own = (50 + 50) / (25 + 50), (50 + 30 * 4 / 3) / (25 + 30)  # of the fit, and of the surface: trusted more
+    assert rest.left(50) == pytest.approx(100 * pace + 75 * own)
+    rest.advance("depth", 5, 10, 125)
+    assert not rest.is_vague and 220 < rest.left(125) < 275
+    assert rest.left(135) == pytest.approx(rest.left(125) - 10)
+    rest.advance("first depth", 10, 10, 130)  # of a second round: nothing goes back
+    rest.advance("other", 1, 2, 130)
+    assert rest.left(135) == pytest.approx(rest.left(125) - 10)
+    rest.advance("depth", 10, 10, 200)
+    rest.begin("fit", 200)
+    assert 150 < rest.left(200) < 200
+
+
 def test_work_without_a_plan_has_steps_without_numbers() -> None:
     told = Told()
     told.begin("draw")
     assert told.headings == ["draw"]
     assert told.left() == ""
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"), [(1, "10 s"), (20, "10 to 30 s"), (200, "2 to 5 min"), (4000, "0.7 to 1.7 h")]
+)
+def test_a_range_is_said_as_people_say_it(seconds: float, words: str) -> None:
+    assert duration_range(seconds) == f"about {words}"
 
 
 @pytest.mark.parametrize(("seconds", "words"), [(1, "10 s"), (44, "40 s"), (100, "2 min"), (7200, "2.0 h")])
@@ -208,7 +243,7 @@ def run_on_a_terminal(words: list[str]) -> str:
 def test_an_encode_says_its_cost_and_its_steps(fitted: tuple[Path, Path], tmp_path: Path) -> None:
     words = ["encode", str(fitted[0]), "--proxy", str(fitted[0] / "proxy.ply"), "-o", str(tmp_path / "out.glb")]
     shown = run_on_a_terminal([*words, "--preset", "small"])
-    assert re.search(r"9 photographs, 0.0 megapixels: about \d+ s with \d+ threads; ", shown)
+    assert re.search(r"9 photographs, 0.0 megapixels: about (\d+ to )?\d+ s with \d+ threads?; ", shown)
     for line in ("step 1 of 3: mesh, about", "step 2 of 3: fit, about", "step 3 of 3: coding, about"):
         assert line in shown
     words[-1] = str(tmp_path / "lines.glb")

@@ -227,7 +227,6 @@ def reconstruct_capture(
     for stage, took in made.seconds.items():
         if not took:
             note(f"  {STEPS[stage].words}: taken up from an earlier run", quiet)
-    note_all(made.report.lines(made.light_field.names), quiet)
     return made
 
 

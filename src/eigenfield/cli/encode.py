@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import re
 import time
 from collections.abc import Mapping
@@ -24,13 +25,17 @@ from eigenfield.cli.common import (
 )
 from eigenfield.cli.field_options import field_options, from_fields
 from eigenfield.cli.leave_out import leave_out, leave_out_option
-from eigenfield.cli.progress import StepProgress, duration, progress_bars
+from eigenfield.cli.progress import StepProgress, duration_range, progress_bars
+from eigenfield.core.shell import shell_word
 from eigenfield.encoding import EncodeOptions
 from eigenfield.encoding.target import parse_size
 
 if TYPE_CHECKING:
     from eigenfield.capture import Capture, LightField
     from eigenfield.core.progress import Progress
+    from eigenfield.core.scene import Scene
+
+log = logging.getLogger("eigenfield.encode")
 
 
 def parse_atlas(context: click.Context, parameter: click.Parameter, value: str | None) -> int | tuple[int, int] | None:
@@ -83,6 +88,7 @@ class _Grouped(click.Command):
     cls=_Grouped,
     epilog="""\b
 Examples:
+  eigenfield encode photos/
   eigenfield encode photos/ -o scene.glb
   eigenfield encode photos/ --grid 5x4 -o scene.glb
   eigenfield encode walk.mp4 --frames 60 -o scene.glb
@@ -100,7 +106,13 @@ Examples:
     metavar="MESH",
     help="Your own mesh, in the cameras' world: .ply, .obj, .glb, .gltf, .stl or .off.",
 )
-@click.option("--output", "-o", required=True, type=PATH, metavar="FILE", help="The .glb to write.")
+@click.option(
+    "--output",
+    "-o",
+    type=PATH,
+    metavar="FILE",
+    help="The .glb to write.  [default: the capture's name and .glb, in the current folder]",
+)
 @capture_options
 @leave_out_option
 @field_options(EncodeOptions, atlas=parse_atlas, target_size=parse_target_size)
@@ -124,7 +136,7 @@ Examples:
 def command(
     capture: Path,
     proxy: Path | None,
-    output: Path,
+    output: Path | None,
     place: dict[str, Any],
     without: str | None,
     work: Path | None,
@@ -139,17 +151,18 @@ def command(
 
     CAPTURE is a folder of photographs, a zip of them, or a video of a walk. Cameras and mesh are estimated unless you
     give them. `eigenfield inspect CAPTURE` says what will be used.
+    The last three lines say how small and how good the file is, and which command comes next; -v says more.
     """
     from eigenfield.encoding import encode
-    from eigenfield.encoding.between import score_words
     from eigenfield.encoding.estimated import reconstruction_settings, refuse_unused
     from eigenfield.encoding.views import check_selection
-    from eigenfield.gltf import parts, refuse_output, save
+    from eigenfield.gltf import refuse_output, save
     from eigenfield.proxy import refuse_no_mesh
     from eigenfield.reconstruction import ReconstructionSettings, check_settings
     from eigenfield.runtime.objects import find_objects
 
     started = time.monotonic()
+    output = default_output(capture) if output is None else output
     refuse_output(output, overwrite)
     if proxy is not None:
         refuse_no_mesh(proxy)
@@ -178,21 +191,55 @@ def command(
                 return opened
 
             made = reconstruct_capture(capture, place, scratch, progress, quiet, choose, workers=reached, **settings)
+            log.info("%s", "\n".join(made.report.lines(made.light_field.names)))
             scene = encode(
                 made.light_field, made.proxy, options, triangles=None, hold_out=made.hold_out, work=scratch,
                 workers=for_maps, progress=progress,
             )  # fmt: skip
         save(scene, output, **options.for_save, overwrite=overwrite, progress=progress)
-    sizes = parts(output)
+    log.info("%.0f s", time.monotonic() - started)
+    click.echo("\n".join(last_lines(output, scene)))
+
+
+def default_output(capture: Path) -> Path:
+    """The file of a capture whose output is not named: in the current folder.
+
+    Args:
+        capture: A folder, a file, or an address.
+    """
+    named = capture if capture.name not in ("", "..") else capture.resolve()
+    name = named.name if named.is_dir() else named.stem
+    return Path(f"{name or 'scene'}.glb")
+
+
+def last_lines(output: Path, scene: Scene) -> list[str]:
+    """How small and how good a file is, and the command that comes next; statistics are logged.
+
+    Args:
+        output: The file.
+        scene: That it holds.
+    """
+    from eigenfield.encoding.verdict import score_words, verdict_of_scores
+    from eigenfield.gltf import parts
+    from eigenfield.runtime.objects import address_of
+
+    total, photographs = parts(output)["total"], scene.settings["photographs"]
     width, height = scene.settings["atlas"]
-    photographs = scene.settings["photographs"]
-    click.echo(
-        f"{output}: {sizes['total'] / 1e6:.2f} MB, {scene.appearance.textures} eigen textures, "
-        f"atlas {width}x{height}, for {photographs['count']} photographs ({photographs['bytes'] / 1e6:.1f} MB), "
-        f"{len(scene.proxy.mesh.faces)} triangles, {time.monotonic() - started:.0f} s"
-    )
-    if words := score_words(scene.scores):
-        click.echo("  " + ", ".join(words))
+    log.info(
+        "%d eigen textures, atlas %dx%d, %d triangles, for %d photographs (%.1f MB)", scene.appearance.textures,
+        width, height, len(scene.proxy.mesh.faces), photographs["count"], photographs["bytes"] / 1e6,
+    )  # fmt: skip
+    ratio = photographs["bytes"] / total
+    smaller = f"{ratio:.0f} times smaller than" if ratio >= 9.5 else f"{ratio:.1f} times smaller than"
+    if ratio < 1:
+        smaller = "larger than"
+    figures = "".join(f", {words}" for words in score_words(scene.scores))
+    word = verdict_of_scores(scene.scores) or "no verdict: `eigenfield evaluate SCENE CAPTURE` measures more"
+    return [
+        f"{output}: {total / 1e3:,.0f} kB, {smaller} the photographs{figures}",
+        str(word),
+        f"look around in it: eigenfield view {shell_word(address_of(output))}",
+    ]
 
 
 def announce(
@@ -206,6 +253,7 @@ def announce(
         settings: The arguments of `reconstruct`; None: the proxy is given.
         progress: Of `progress_bars`, which then counts the steps.
     """
+    from eigenfield.capture.messages import count_phrase
     from eigenfield.encoding.cost import STEPS, expected_cost
     from eigenfield.runtime.parallel import threads
 
@@ -214,14 +262,16 @@ def announce(
     count = threads()
     cost = expected_cost(capture, options, settings, count)
     pixels = sum(width * height for width, height in capture.sizes)
-    layered = f", or {duration(cost.layered_seconds)} if layers turn out to be better" if cost.layered else ""
+    layered = f", or {duration_range(cost.layered_seconds)} if layers turn out to be better" if cost.layered else ""
     note(
-        f"{len(capture.sizes)} photographs, {pixels / 1e6:.1f} megapixels: {duration(cost.seconds)} with {count} "
-        f"threads{layered}; {cost.memory / 1e9:.1f} GB of memory, {cost.scratch / 1e6:.0f} MB of scratch files"
+        f"{len(capture.sizes)} photographs, {pixels / 1e6:.1f} megapixels: {duration_range(cost.seconds)} "
+        f"with {count_phrase(range(count), 'thread', 'threads')}{layered}; {cost.memory / 1e9:.1f} GB of memory, "
+        f"{cost.scratch / 1e6:.0f} MB of scratch files"
     )
     if settings is not None:
         note("Ctrl-C stops it; the same command goes on after the last finished step")
-    progress.plan(cost.steps, {name: step.words for name, step in STEPS.items()}, cost.layered)
+    stages = {name: step.stages for name, step in STEPS.items()}
+    progress.plan(cost.steps, {name: step.words for name, step in STEPS.items()}, cost.layered, stages)
 
 
 def _open_capture(capture: Path, place: Mapping[str, Any], scratch: Path | None, quiet: bool) -> LightField:

@@ -31,10 +31,10 @@ if TYPE_CHECKING:
     from eigenfield.core.mesh import Mesh
 
 SCHEMA = "eigenfield.inspect/1"
-NEIGHBOUR_MIN_OVERLAP = 0.6  # of a photograph
 NEIGHBOUR_MAX_STOPS = 0.3  # of exposure
 SIZES_MAX_SPREAD = 0.02  # of the greatest, up to which sizes differ by what a program cut off
-MORE_VIEWS = {"walk": "ask for more --frames, or walk more slowly there", "video": "put another camera there"}
+MORE_PHOTOGRAPHS = "take photographs nearer to each other"
+MORE_VIEWS = {"walk": "ask for more --frames, or walk more slowly", "video": "put more cameras there"}
 
 
 @click.command(
@@ -117,7 +117,9 @@ def command(
     ]
     report["blurred"] = [opened.names[harm.index] for harm in harms if harm.kind == "blurred"]
     report["next"] = _next_commands(report, capture, {**place, "proxy": proxy})
-    report["neighbours"] = _neighbours(opened, pairs) if pairs else None
+    if pairs:
+        report["neighbours"] = _neighbours(opened, pairs)
+        report["verdict"] = _verdict(opened, report["neighbours"])
     if mesh is not None and opened.light_field is not None:
         report["proxy"] = _proxy(mesh, opened, damaged, overlay, overwrite)
         from eigenfield.proxy.placement import describe_placement
@@ -206,6 +208,7 @@ def describe(capture: Capture, damaged: list[CaptureError]) -> dict[str, Any]:
         "blurred": [],
         "harmful": [],
         "neighbours": None,
+        "verdict": None,
     }
 
 
@@ -218,7 +221,7 @@ def _neighbours(capture: Capture, pairs: Sequence[NeighbourPair]) -> dict[str, A
     return {
         "pairs": len(pairs),
         "parallax": median(pair.parallax for pair in pairs),
-        "parallax_limit": NEIGHBOUR_MAX_PARALLAX_RATIO * median(max(size) for size in capture.sizes),
+        "parallax_limit": NEIGHBOUR_MAX_PARALLAX_RATIO * _side(capture),
         "widest": {
             "photographs": [capture.names[widest.first], capture.names[widest.second]],
             "parallax": widest.parallax,
@@ -226,6 +229,24 @@ def _neighbours(capture: Capture, pairs: Sequence[NeighbourPair]) -> dict[str, A
         "overlap": min(pair.overlap for pair in pairs),
         "exposure": max(abs(pair.stops) for pair in pairs),
     }
+
+
+def _side(capture: Capture) -> float:
+    """The longer side of a photograph, in pixels."""
+    from statistics import median
+
+    return float(median(max(size) for size in capture.sizes))
+
+
+def _verdict(capture: Capture, neighbours: Mapping[str, Any]) -> dict[str, str]:
+    """What the photographs promise, as the report says it."""
+    from eigenfield.encoding.verdict import verdict_beforehand
+
+    more, names = MORE_VIEWS.get(capture.format, MORE_PHOTOGRAPHS), " and ".join(neighbours["widest"]["photographs"])
+    found = verdict_beforehand(
+        neighbours["parallax"] / _side(capture), neighbours["overlap"], f"{more}, first between {names}"
+    )
+    return {"word": found.word, "says": str(found)}
 
 
 def _layout(layout: GridLayout) -> dict[str, Any]:
@@ -360,7 +381,7 @@ def report_lines(report: dict[str, Any]) -> list[str]:
     if report["array"] is not None:
         lines += _array_lines(report["array"])
     if report["neighbours"] is not None:
-        lines += _neighbour_lines(report["neighbours"], MORE_VIEWS.get(report["format"], "take more photographs there"))
+        lines += _neighbour_lines(report["neighbours"])
     lines += [f"  harmful    {one_line(one['photograph'])} {one['reason']}" for one in report["harmful"]]
     if report["harmful"]:
         lines.append("             take them again, or leave them out: encode --leave-out advised")
@@ -369,6 +390,8 @@ def report_lines(report: dict[str, Any]) -> list[str]:
     lines += [f"  note       {note}" for note in report["notes"]]
     lines.append(f"  problems   {len(report['problems']) or 'none'}")
     lines += [f"    - {problem}" for problem in report["problems"]]
+    if report["verdict"] is not None:
+        lines.append(f"  verdict    {report['verdict']['says']}")
     lines.append(f"  encode     {'would run' if report['refused'] is None else _refusal_text(report['refused'])}")
     return lines + [f"  next       {command}" for command in report["next"]]
 
@@ -416,15 +439,18 @@ def _array_lines(array: dict[str, Any]) -> list[str]:
     return [*lines, f"  cone       {array['cone']:.1f} degrees about ({place}), {array['distance']:.4g} away"]
 
 
-def _neighbour_lines(neighbours: dict[str, Any], remedy: str) -> list[str]:
+def _neighbour_lines(neighbours: dict[str, Any]) -> list[str]:
+    from eigenfield.calibration.neighbours import NEIGHBOUR_MAX_PARALLAX_RATIO
+    from eigenfield.encoding.verdict import MIN_OVERLAP
+
     parallax, limit, widest = neighbours["parallax"], neighbours["parallax_limit"], neighbours["widest"]
     names = " and ".join(widest["photographs"])
-    fine = f"up to about {limit:.0f} px is drawn well between"
-    lines = [f"  parallax   neighbours are {parallax:.3g} px apart (median); {fine}"]
+    part = NEIGHBOUR_MAX_PARALLAX_RATIO * parallax / limit
+    lines = [f"  parallax   neighbours are {parallax:.3g} px apart (median), {part:.1%} of the longer side"]
     if widest["parallax"] > limit:
-        lines.append(f"             widest: {widest['parallax']:.3g} px, between {names}; {remedy}")
+        lines.append(f"             widest: {widest['parallax']:.3g} px, between {names}")
     overlap, stops = neighbours["overlap"], neighbours["exposure"]
-    shared = "" if overlap >= NEIGHBOUR_MIN_OVERLAP else ": too little, take them nearer to each other"
+    shared = "" if overlap >= MIN_OVERLAP else ": too little, take them nearer to each other"
     lines.append(f"  overlap    neighbours show at least {overlap:.0%} of the same{shared}")
     drift = "" if stops <= NEIGHBOUR_MAX_STOPS else ": fix the exposure; `encode` takes out a gain and an offset"
     lines.append(f"  exposure   neighbours differ by at most {stops:.2f} stops{drift}")

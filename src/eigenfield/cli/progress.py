@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import threading
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from typing import Any
 
 import click
 
+from eigenfield.cli.time_left import RANGE_HIGH_RATIO, RANGE_LOW_RATIO, TimeLeft
 from eigenfield.core.progress import Progress
 
 LINE_SECONDS = 15.0  # between two lines about a stage, where there is no terminal
 COMPILING_WORDS = "compiling for this processor, once"
+UNITS = {1: "s", 60: "min", 3600: "h"}  # of times, by their seconds
 COMPILING_SECONDS = 3.0  # after which it is said where there is no terminal
 
 
@@ -33,25 +36,22 @@ def progress_bars(quiet: bool) -> Iterator[Progress | None]:
 
 
 class StepProgress:
-    """Counts steps and what they take. A run that has none is one step without a name.
-
-    Attributes:
-        planned: Expected seconds of each step, by its name, in order; empty if nothing is known.
-    """
+    """Counts steps and what they take. A run that has none is one step without a name."""
 
     def __init__(self) -> None:
-        self.planned: dict[str, float] = {}
-        self._layered: dict[str, float] = {}
         self._words: dict[str, str] = {}
         self._step: str | None = None
-        self._step_started = time.monotonic()
-        self._spent, self._expected = 0.0, 0.0  # seconds of finished steps, and what they were expected to take
+        self._rest: TimeLeft | None = None
         self._compiling_since: float | None = None
-        self._compiled = 0.0  # seconds of this step, which tell nothing about the next
+        self._compiled = 0.0  # seconds, which tell nothing about what is to come
         self._told: tuple[float, float] | None = None  # seconds that are left, and when that was said
 
     def plan(
-        self, seconds: Mapping[str, float], words: Mapping[str, str], layered: Mapping[str, float] | None = None
+        self,
+        seconds: Mapping[str, float],
+        words: Mapping[str, str],
+        layered: Mapping[str, float] | None = None,
+        stages: Mapping[str, Mapping[str, float]] | None = None,
     ) -> None:
         """Say what is to come.
 
@@ -59,30 +59,23 @@ class StepProgress:
             seconds: Expected of each step, by its name, in order.
             words: What the steps are called.
             layered: Of those that take others once the step "layers" begins.
+            stages: As of `TimeLeft`.
         """
-        self.planned, self._words, self._layered = dict(seconds), dict(words), dict(layered or {})
+        self._words, self._rest = dict(words), TimeLeft(seconds, layered or {}, stages or {})
 
     def begin(self, step: str) -> None:
-        """A step begins, and the one before has ended. Steps between them were not needed and count no longer. One that
-        was not foreseen takes the place of the next: cameras all around give a surface, where depth from one side was
-        foreseen."""
+        """A step begins, and the one before has ended."""
         if step == self._step:
             return
-        names = list(self.planned)
-        if self._step in names[:-1] and step not in names:
-            names[names.index(self._step) + 1] = step
-            self.planned = dict(zip(names, self.planned.values(), strict=True))
-        if self._step in names and step in self.planned:
-            for needless in list(self.planned)[names.index(self._step) + 1 : list(self.planned).index(step)]:
-                del self.planned[needless]
-        now = time.monotonic()
-        if self._step in self.planned:
-            self._spent += now - self._step_started - self._compiled
-            self._expected += self.planned[self._step]
-        if step == "layers":
-            self.planned |= self._layered
-        self._step, self._step_started, self._compiled = step, now, 0.0
+        self._step = step
+        if self._rest is not None:
+            self._rest.begin(step, self._worked())
         self.show_step(self.heading())
+
+    def __call__(self, stage: str, done: int, total: int) -> None:
+        """As `Progress`."""
+        if self._rest is not None:
+            self._rest.advance(stage, done, total, self._worked())
 
     def remaining(self, seconds: float) -> None:
         """About how long the rest will take, from whoever knows it better."""
@@ -91,32 +84,32 @@ class StepProgress:
     @property
     def knows_rest(self) -> bool:
         """Whether `left` says something."""
-        return bool(self.planned) or self._told is not None
+        return self._rest is not None or self._told is not None
 
     def heading(self) -> str:
         """The step's number and name, and about how long the rest will take."""
         assert self._step is not None
         words = self._words.get(self._step, self._step)
-        if self._step not in self.planned:
+        if self._rest is None or self._step not in self._rest.seconds:
             return words
-        names = list(self.planned)
-        return f"step {names.index(self._step) + 1} of {len(names)}: {words}, {self.left()}"
+        number, count = self._rest.number
+        return f"step {number} of {count}: {words}, {self.left()}"
 
     def left(self) -> str:
         """About how long the rest will take; empty if nothing is known."""
         if self._told is not None:
             seconds, since = self._told
             return duration(max(seconds - (time.monotonic() - since), 0)) + " left"
-        if self._step not in self.planned:
+        if self._rest is None or self._step not in self._rest.seconds:
             return ""
-        rest = list(self.planned.values())[list(self.planned).index(self._step) :]
-        spent = time.monotonic() - self._step_started - self._compiled
-        return duration(self._pace() * sum(rest[1:]) + max(self._pace() * rest[0] - spent, 0)) + " left"
+        seconds = self._rest.left(self._worked())
+        return (duration_range(seconds) if self._rest.is_vague else duration(seconds)) + " left"
 
-    def _pace(self) -> float:
-        """Of this machine: how much longer finished steps took than was expected, more trusted the more is known."""
-        total = sum(self.planned.values())
-        return (self._spent + 0.2 * total) / (self._expected + 0.2 * total)
+    def _worked(self) -> float:
+        """Seconds without compilation."""
+        now = time.monotonic()
+        compiling = 0.0 if self._compiling_since is None else now - self._compiling_since
+        return now - self._compiled - compiling
 
     def show_step(self, heading: str) -> None:
         """A step has begun."""
@@ -125,15 +118,36 @@ class StepProgress:
     def compiling(self, now: bool) -> None:
         """Kernels begin to be compiled, or none is any longer."""
         if self._compiling_since is not None:
-            self._compiled += time.monotonic() - max(self._compiling_since, self._step_started)
+            self._compiled += time.monotonic() - self._compiling_since
         self._compiling_since = time.monotonic() if now else None
 
 
 def duration(seconds: float) -> str:
     """A time as a person says it: about 40 s, about 3 min."""
-    if seconds < 90:
-        return f"about {max(round(seconds, -1), 10):.0f} s"
-    return f"about {seconds / 60:.0f} min" if seconds < 5400 else f"about {seconds / 3600:.1f} h"
+    unit = _unit_of(seconds)
+    return f"about {_number(seconds, unit, round)} {UNITS[unit]}"
+
+
+def duration_range(seconds: float) -> str:
+    """Between which times one lies: about 3 to 6 min.
+
+    Args:
+        seconds: That are expected.
+    """
+    low, high = RANGE_LOW_RATIO * seconds, RANGE_HIGH_RATIO * seconds
+    unit = _unit_of(high)
+    few, many = _number(low, unit, math.floor), _number(high, unit, math.ceil)
+    return f"about {many if few == many else f'{few} to {many}'} {UNITS[unit]}"
+
+
+def _unit_of(seconds: float) -> int:
+    return 1 if seconds < 90 else 60 if seconds < 5400 else 3600
+
+
+def _number(seconds: float, unit: int, rounded: Callable[[float], float]) -> str:
+    if unit == 1:
+        return f"{max(10 * rounded(seconds / 10), 10):.0f}"
+    return f"{max(rounded(seconds / 60), 1):.0f}" if unit == 60 else f"{rounded(seconds / 360) / 10:.1f}"
 
 
 class _Bars(StepProgress):
@@ -164,6 +178,7 @@ class _Bars(StepProgress):
         self._note = ""
 
     def __call__(self, stage: str, done: int, total: int) -> None:
+        super().__call__(stage, done, total)
         self._bars.update(self._task(stage), completed=done, total=total)
 
     def show_step(self, heading: str) -> None:
@@ -193,13 +208,14 @@ class _Lines(StepProgress):
         self._said_compiling = False
 
     def __call__(self, stage: str, done: int, total: int) -> None:
+        super().__call__(stage, done, total)
         now = time.monotonic()
         if stage != self._stage:
             self._stage, self._said = stage, now
         elif now - self._said >= LINE_SECONDS and done < total:
             self._said = now
-            rest = f", {self.left()}" if self._told is not None else ""
-            click.echo(f"  {stage}: {done} of {total}{rest}", err=True)
+            left = self.left()
+            click.echo(f"  {stage}: {done} of {total}" + (f", {left}" if left else ""), err=True)
 
     def show_step(self, heading: str) -> None:
         click.echo(heading, err=True)

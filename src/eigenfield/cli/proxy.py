@@ -15,6 +15,7 @@ from eigenfield.cli.common import (
     common_options,
     mesh_options,
     note,
+    note_all,
     reconstruct_capture,
 )
 from eigenfield.cli.leave_out import leave_out, leave_out_option
@@ -74,6 +75,7 @@ def command(
             capture, place, work, progress, quiet, lambda opened: leave_out(opened, without, quiet),
             layers=1, **settings,  # a file holds no layers
         )  # fmt: skip
+    note_all(made.report.lines(made.light_field.names), quiet)
     if made.calibration is not None:
         cameras = output.with_suffix(".cameras")
         save_calibration(made.light_field, cameras, overwrite=True)

@@ -1,16 +1,19 @@
 """How near a finished scene comes to photographs: to those it was made from, and between them.
 
-Photographs that were held out are drawn and compared. Where none were, mean and eigen textures are made again in a
-short way, on the finished geometry and without some photographs, and drawn at their cameras. That is a lower estimate
-of what the scene draws there: docs/measures.md compares it with held-out views. Arrays of many cameras that stand near
-each other need neither.
+Photographs that were held out are drawn and compared. Where none were, what the scene draws there is estimated:
+
+- Of few cameras, or of cameras far apart, mean and eigen textures are made again in a short way, on the finished
+  geometry and without some photographs, and drawn at their cameras. That is a lower estimate.
+- Of many cameras near each other, the finished scene draws some with the weights of those around them.
+
+docs/measures.md compares both with held-out views.
 """
 
 from __future__ import annotations
 
-import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -42,14 +45,12 @@ from eigenfield.encoding.fitted.start import principal_block
 from eigenfield.encoding.plan import EncodePlan
 from eigenfield.imaging.metrics import psnr
 from eigenfield.imaging.raster import rasterise_view, unproject
-from eigenfield.rendering import Renderer, camera_weights, delaunay_triangles
+from eigenfield.rendering import Renderer, ViewWeights, camera_weights, delaunay_triangles
 from eigenfield.rendering.weights import delaunay_weights, hull
 from eigenfield.runtime.parallel import parallel_map
 
-log = logging.getLogger("eigenfield.encode")
-
 BETWEEN_MIN_CAMERAS = 5  # encoded ones, of which some can be left out
-BETWEEN_FEW_CAMERAS = 49  # more are measured only where they are far apart
+BETWEEN_FEW_CAMERAS = 49  # of more the finished scene tells enough, unless they are far apart
 BETWEEN_PARALLAX_SIDE_PIXELS = 64  # longer side of the view in which points are taken to see how far that is
 BETWEEN_MIN_SIDE_PIXELS = 128  # of smaller photographs the short way says far too little
 BETWEEN_LEFT_OUT_RATIO, BETWEEN_MAX_LEFT_OUT = 1 / 4, 12  # of the cameras, at most
@@ -58,14 +59,13 @@ BETWEEN_DENSITIES = (0.07, 0.14, 0.28, 0.55)  # of the atlas's, one after the ot
 BETWEEN_TEXTURE_DENSITY = 0.28  # likewise
 BETWEEN_ITERATIONS = 4  # of conjugate gradients at each
 BETWEEN_SMOOTHNESS = 8.0  # of the fit's
-BETWEEN_WARN_BELOW_DB = 26.0
 MEASURED_MAX_CAMERAS = 16  # of the captured ones, evenly spread
 
 
 def measure_scene(
     scene: Scene, plan: EncodePlan, work: Path | None = None, progress: Progress | None = None
 ) -> dict[str, Any]:
-    """The scores of a scene of few cameras, or of cameras far apart, for its file (docs/measures.md); empty for others.
+    """The scores of a scene for its file (docs/measures.md); empty where `has_scores` says no.
 
     Args:
         scene: Made of the plan's photographs.
@@ -77,35 +77,36 @@ def measure_scene(
         CaptureError: A photograph cannot be read.
         OutputError: `disk-full`.
     """
-    encoded = plan.views.rig.encoded
-    if not is_measured(plan):
+    rig, encoded = plan.views.rig, plan.views.rig.encoded
+    if not has_scores(plan):
         return {}
     some = np.unique(np.linspace(0, len(encoded) - 1, min(len(encoded), MEASURED_MAX_CAMERAS)).round().astype(int))
     image = {"encoded": _drawn(scene, plan, encoded[some].tolist())}
-    held_out = np.flatnonzero(plan.views.rig.held_out).tolist()
+    held_out = np.flatnonzero(rig.held_out).tolist()
     if held_out:
         return {"image": {**image, "held_out": _drawn(scene, plan, held_out)}}
-    left_out = spread_inside(plan.views.rig)
+    left_out = spread_inside(rig)
+    if not is_sparse(plan):
+        drawn = _drawn(scene, plan, encoded[left_out].tolist(), partial(_weights_of_others, scene))
+        return {"image": image, "between": drawn}
     values = _drawn_by_others(plan, left_out, work, progress)
     worst = left_out[int(np.argmin(values))]
-    names = plan.views.rig.names
-    widest = [names[encoded[worst]], names[encoded[_farthest_neighbour(plan.views.rig, worst)]]]
-    between: dict[str, Any] = {
-        "cameras": len(left_out),
-        "psnr_luma_at_least": round(float(np.mean(values)), 2),
-        "widest": widest,
-    }
-    if between["psnr_luma_at_least"] < BETWEEN_WARN_BELOW_DB:
-        words = "views between the photographs may show errors: take more between %s and %s, nearer to each other"
-        log.warning(words + " where thin parts are", *widest)
-    return {"image": image, "between": between}
+    widest = [rig.names[encoded[worst]], rig.names[encoded[_farthest_neighbour(rig, worst)]]]
+    at_least = round(float(np.mean(values)), 2)
+    return {"image": image, "between": {"cameras": len(left_out), "psnr_luma_at_least": at_least, "widest": widest}}
 
 
-def is_measured(plan: EncodePlan) -> bool:
-    """Whether a scene of a plan gets scores: a still one of few cameras, or of cameras that are far apart."""
+def has_scores(plan: EncodePlan) -> bool:
+    """Whether a scene of a plan gets scores: a still one of five cameras or more, whose pictures are not tiny."""
     cameras, still = plan.views.rig.encoded_cameras, len(plan.views.capture.times) == 1
     large = min(min(camera.width, camera.height) for camera in cameras) >= BETWEEN_MIN_SIDE_PIXELS
-    if not still or not large or len(cameras) < BETWEEN_MIN_CAMERAS:
+    return still and large and len(cameras) >= BETWEEN_MIN_CAMERAS
+
+
+def is_sparse(plan: EncodePlan) -> bool:
+    """Whether a scene with scores has few cameras, or cameras that are far apart."""
+    cameras = plan.views.rig.encoded_cameras
+    if not has_scores(plan):
         return False
     return len(cameras) <= BETWEEN_FEW_CAMERAS or neighbour_parallax(cameras, plan.proxy) > NEIGHBOUR_MAX_PARALLAX_RATIO
 
@@ -135,21 +136,6 @@ def neighbour_parallax(cameras: Sequence[Camera], proxy: Proxy) -> float:
 
     pairs = spread_pairs(nearest_pairs(np.array([camera.centre for camera in cameras])))
     return float(np.median(parallel_map(measure, pairs)))
-
-
-def score_words(scores: Mapping[str, Any]) -> list[str]:
-    """The scores of `measure_scene` as parts of a line for people.
-
-    Args:
-        scores: Of `measure_scene`.
-    """
-    image, between = scores.get("image", {}), scores.get("between")
-    words = [f"{image['encoded']['psnr']:.1f} dB in captured views"] if image.get("encoded") else []
-    if image.get("held_out"):
-        words.append(f"{image['held_out']['psnr']:.1f} dB in held-out views")
-    if between is not None:
-        words.append(f"at least about {between['psnr_luma_at_least']:.1f} dB of luma between them")
-    return words
 
 
 def spread_inside(rig: Rig) -> list[int]:
@@ -195,19 +181,30 @@ def _farthest_neighbour(rig: Rig, index: int) -> int:
     return max(sorted(_neighbours(rig)[index]), key=lambda other: float(_gaps(rig)[index, other]))
 
 
-def _drawn(scene: Scene, plan: EncodePlan, cameras: Sequence[int]) -> dict[str, Any]:
-    """Mean PSNR of photographs, drawn as `evaluate` does."""
+def _drawn(
+    scene: Scene, plan: EncodePlan, cameras: Sequence[int], weights: Callable[[int], ViewWeights] | None = None
+) -> dict[str, Any]:
+    """Mean PSNR of photographs, drawn as `evaluate` does, or with other weights of their cameras."""
     renderer, capture = Renderer(scene), plan.views.capture
+    weights = partial(camera_weights, scene) if weights is None else weights
     of_camera = {capture.camera_of(index): index for index in range(len(capture))}
 
     def measure(camera: int) -> float | None:
-        drawn = renderer.draw(scene.rig.cameras[camera], camera_weights(scene, camera))
+        drawn = renderer.draw(scene.rig.cameras[camera], weights(camera))
         photograph = capture.photograph(of_camera[camera])
         covered = drawn.covered if photograph.mask is None else drawn.covered & (photograph.mask > 0.5)
         return psnr(drawn.image, photograph.pixels, covered)
 
     values = [value for value in parallel_map(measure, cameras) if value is not None]
     return {"cameras": len(values), "psnr": round(float(np.mean(values)), 2) if values else None}
+
+
+def _weights_of_others(scene: Scene, camera: int) -> ViewWeights:
+    """What an encoded camera's place takes of the others."""
+    rig = scene.rig
+    others = np.flatnonzero(rig.encoded != camera)
+    row = interpolation(rig, others.tolist(), [int(np.searchsorted(rig.encoded, camera))])[0]
+    return ViewWeights(scene.rows(rig.encoded[others[row != 0]], 0), row[row != 0])
 
 
 def _drawn_by_others(

@@ -1,12 +1,13 @@
 """What an encode is expected to take, before it begins: steps, time, memory and scratch files.
 
-The costs were measured on the shared captures (docs/time.md); they are to be right within a factor of two.
+The costs were measured on real captures (docs/time.md). What a machine takes corrects them (`cli.time_left`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from eigenfield.capture import Capture
@@ -19,31 +20,45 @@ from eigenfield.reconstruction.layers import LAYERS_TUNING
 
 class StepCost(NamedTuple):
     """A step's words, and the seconds that one thread needs for it: some, some for each megapixel of all photographs,
-    and some for each megapixel of one."""
+    some for each megapixel of one, and some for the square root of all megapixels. Then what part its stages take, in
+    their order, in any unit."""
 
     words: str
     fixed: float
     of_all: float = 0.0
     of_one: float = 0.0
+    of_root: float = 0.0
+    stages: Mapping[str, float] = MappingProxyType({})
 
 
 STEPS = {  # by the name with which a step begins
-    "motion": StepCost("cameras", 5, 3),
+    "motion": StepCost("cameras", 8, 3.6, stages={"features": 35, "matches": 25, "cameras": 40}),
     "array": StepCost("depth", 15, 0.5, 35),
     "relief": StepCost("surface", 8),
-    "surface": StepCost("surface", 30, 8),
-    "proxy": StepCost("atlas", 10),
+    "surface": StepCost(
+        "surface",
+        30,
+        5,
+        stages={"features": 8, "first depth": 20, "depth": 25, "fusion": 6, "visibility": 26, "surface": 15},
+    ),
+    "proxy": StepCost("atlas", 12),
     "trial": StepCost("trial of layers", 35),
     "layers": StepCost("layers", 10, 22),
     "mesh": StepCost("mesh", 5, 1),
-    "maps": StepCost("texture maps", 5, 0.7),
-    "fit": StepCost("fit", 5, 1.5),
-    "code": StepCost("coding", 6, 0.4),
+    "maps": StepCost("texture maps", 5, 0.7, stages={"texture maps": 1}),
+    "fit": StepCost("fit", 5, 1.5, stages={"fit luma": 1, "fit chroma": 1}),
+    "code": StepCost(
+        "coding", 6, 0.4, stages={"code luma": 60, "code chroma": 20, "photographs": 12, "code textures": 8}
+    ),
 }
-FEW_VIEWS = {"fit": StepCost("fit", 5, 3.5)}  # of below SUBSAMPLE_MIN_OBSERVATIONS: more rounds, and all pixels
+FEW_VIEWS = {  # of below SUBSAMPLE_MIN_OBSERVATIONS: more rounds, and all pixels
+    "mesh": StepCost("mesh", 5, of_root=8),
+    "fit": StepCost("fit", 5, of_root=32),
+    "code": StepCost("coding", 4, of_root=15),
+}
 TEXTURE_MAPS = {"mesh": StepCost("mesh", 5)}  # without a fit: its surface and triangles stay as they are
 DENSE_TRIAL = StepCost("trial of layers", 20)  # which ends with the fewest layers, as a rule
-LAYERED = {"layers": STEPS["layers"], "mesh": StepCost("mesh", 0, 25), "fit": StepCost("fit", 0, 20)}
+LAYERED = {"layers": STEPS["layers"], "mesh": StepCost("mesh", 5, 28), "fit": StepCost("fit", 5, 30)}
 DENSE_LAYERS_RATIO = 1 / 3  # of the time of layers: dense arrays have fewer
 THREADS_POWER = 0.8  # of the number of threads, by which time falls
 MEMORY_FIXED_BYTES, MEMORY_BYTES_A_PIXEL = 9e8, 50.0
@@ -91,13 +106,13 @@ def expected_cost(capture: Capture, options: EncodeOptions, settings: Mapping[st
 
     estimation, textures = [] if settings is None else _estimation(capture, settings), _textures(options)
     encoded = encoded_ratio(capture, options)
-    costs = STEPS | (TEXTURE_MAPS if "maps" in textures else {})
-    if encoded * len(sizes) < SUBSAMPLE_MIN_OBSERVATIONS:
-        costs |= FEW_VIEWS
+    few = encoded * len(sizes) < SUBSAMPLE_MIN_OBSERVATIONS
+    costs = STEPS | (TEXTURE_MAPS if "maps" in textures else FEW_VIEWS if few else {})
 
     def seconds(name: str, step: StepCost) -> float:
-        of_all = step.of_all * (encoded if name in textures else 1)
-        return share * (step.fixed + 1e-6 * pixels * (of_all + step.of_one / len(sizes)))
+        seen = 1e-6 * pixels * (encoded if name in textures else 1)
+        of_one = step.of_one * 1e-6 * pixels / len(sizes)
+        return share * (step.fixed + step.of_all * seen + of_one + step.of_root * seen**0.5)
 
     steps = {name: seconds(name, costs[name]) for name in (*estimation, *textures)}
     layered = {name: seconds(name, step) for name, step in LAYERED.items()} if "layers" in steps else {}

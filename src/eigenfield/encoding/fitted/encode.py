@@ -13,7 +13,7 @@ import numpy as np
 
 from eigenfield.core.progress import Progress
 from eigenfield.core.scene import Scene
-from eigenfield.encoding.between import is_measured
+from eigenfield.encoding.between import has_scores
 from eigenfield.encoding.fitted.encoder import FittedEncoder, open_encoder
 from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.encoding.options import resolved_value
@@ -103,7 +103,7 @@ def _other_plan(
 def _search(target: Target, encoder: FittedEncoder, first: int = TARGET_FIRST_QUALITY) -> Attempt[Scene]:
     """As `search_quality`, of what the encoder makes."""
 
-    added = FIGURES_MAX_BYTES + (SCORES_MAX_BYTES if is_measured(encoder.plan) else 0)
+    added = FIGURES_MAX_BYTES + (SCORES_MAX_BYTES if has_scores(encoder.plan) else 0)
 
     def code(quality: int) -> Attempt[Scene]:
         scene = encoder.encode_without_figures(quality)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from eigenfield.core.progress import Progress
 from eigenfield.core.proxy import opaque_mesh
-from eigenfield.encoding.between import interpolation, is_measured, spread_inside
+from eigenfield.encoding.between import interpolation, is_sparse, spread_inside
 from eigenfield.encoding.plan import EncodePlan
 from eigenfield.encoding.projected.atlas import make_atlas
 from eigenfield.encoding.projected.harmonise import Cells, average_cells
@@ -46,7 +46,7 @@ def fit_exposures(
         OutputError: `disk-full`.
     """
     asked, views = plan.options.harmonise, plan.views
-    if asked == "none" or (asked is None and not is_measured(plan)):
+    if asked == "none" or (asked is None and not is_sparse(plan)):
         return None
     if len(views.capture.times) > 1:
         log.warning("exposures are brought together in captures of one instant only: they stay as they are")
