@@ -23,6 +23,7 @@ export interface Actions {
   plain(): boolean;
   help(): void;
   panel(): void;
+  divide(): void;
   screenshot(): void;
 }
 
@@ -45,6 +46,7 @@ export function listenToKeys(viewer: Viewer, actions: Actions): Keys {
       "]": () => viewer.nextCamera(1),
       n: viewer.nearestCamera,
       " ": () => viewer.showPhotograph(!viewer.photographShown()),
+      b: actions.divide,
       "1": () => viewer.set({ view: "picture" }),
       "2": show("mean"),
       "3": show("eigen"),
@@ -78,6 +80,7 @@ export function listenToKeys(viewer: Viewer, actions: Actions): Keys {
       viewer.request();
       return;
     }
+    document.body.dataset["keys"] = ""; // the style sheet shows what is on the keys of each control
     if (!act || (event.repeat && !["[", "]", "-", "+", "="].includes(key))) return;
     event.preventDefault();
     act();
@@ -104,6 +107,7 @@ function taken(event: KeyboardEvent): boolean {
   if (!(target instanceof HTMLElement)) return false;
   if (target.closest("dialog[open]")) return true;
   if (key === "Escape") return false;
+  if (target.closest("[role=slider]")) return key.startsWith("Arrow");
   if (target instanceof HTMLSelectElement) return true;
   if (target instanceof HTMLInputElement) return key === " " || key === "Home" || key.startsWith("Arrow");
   return key === " " && target.closest("button, summary, a") !== null;
