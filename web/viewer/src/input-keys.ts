@@ -74,13 +74,13 @@ export function listenToKeys(viewer: Viewer, actions: Actions): Keys {
     const key = keyOf(event);
     if (key === "" || taken(event)) return;
     const act = actions.plain() && !PLAIN.includes(key) ? undefined : once(key);
+    if (act || HELD[event.code]) document.body.dataset["keys"] = ""; // the style sheet shows which keys do what
     if (!act && HELD[event.code]) { // a letter that acts and is printed there comes first
       event.preventDefault();
       held.add(event.code);
       viewer.request();
       return;
     }
-    document.body.dataset["keys"] = ""; // the style sheet shows what is on the keys of each control
     if (!act || (event.repeat && !["[", "]", "-", "+", "="].includes(key))) return;
     event.preventDefault();
     act();

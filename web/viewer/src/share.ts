@@ -18,7 +18,7 @@ export interface Share {
 export function createShare(viewer: Viewer): Share {
   const { url } = viewer.config;
   const possible = url !== null || /^https?:$/.test(location.protocol);
-  const said = element("p", { class: "hint", role: "status", hidden: "" });
+  const said = element("p", { class: "said", role: "status", hidden: "" });
   let timer = 0;
   const copy = async (): Promise<void> => {
     const link = new URL(hashOf(viewer), url ?? location.href).href;
