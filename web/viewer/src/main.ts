@@ -100,7 +100,6 @@ function start(): void {
     document.body.dataset["ui"] = ui; // the style sheet hides what does not belong to it
     viewer.setFading(ui !== "full");
     canvas.setAttribute("aria-label", words(ui === "full" ? "canvas" : "canvasPlain"));
-    laboratory.hidden = !config.laboratory;
     laboratory.setAttribute("aria-pressed", String(ui === "full"));
     showPanel(ui === "full" && !matchMedia(SMALL).matches);
   };
@@ -118,6 +117,7 @@ function start(): void {
     lean.hidden = !tilt.possible || !viewer.scene()?.plane;
     lean.setAttribute("aria-pressed", String(tilt.on()));
     for (const one of [home, shoot, fold]) one.hidden = viewer.scene() === null;
+    laboratory.hidden = !config.laboratory || viewer.status() === "empty";
     const source = viewer.scene()?.source;
     share.root.hidden = !share.possible || !source || (!source.own && source.from instanceof Blob);
     const title = viewer.scene()?.source.name;
