@@ -169,7 +169,7 @@ def test_a_scene_is_exported_and_viewed(tmp_path):
     ef.save(scene, tmp_path / "a.glb")
     for given in (scene, ef.load(tmp_path / "a.glb"), tmp_path / "a.glb"):
         written, what = ef.export(given, tmp_path / "a.html", title="A", overwrite=True)
-        assert written == tmp_path / "a.html" and what.endswith(" MB")
+        assert written == tmp_path / "a.html" and " MB, and a.jpg, its poster" in what
     assert ef.export(scene, tmp_path / "%d.png", path="grid", frames=2, samples=1)[1] == "2 pictures"
     assert "use one of html, mp4" in error(ef.export, scene, tmp_path / "b", "pdf")
     assert "title is not for maps" in error(ef.export, scene, tmp_path / "b", "maps", title="B")

@@ -72,6 +72,18 @@ def test_the_scene_of_the_first_page_opens():
     assert ef.validate(DOCS / "scene.glb") == [] and len(scene.rig.cameras) == 81
 
 
+def test_encoded_captures_are_small_and_say_what_they_were_made_from(monkeypatch):
+    monkeypatch.syspath_prepend(DOCS / "_ext")
+    import scene_page
+
+    found = scene_page.captures(DOCS)
+    assert {path.stem for path in (DOCS / "scenes").iterdir()} == {path.stem for path in found}
+    for path, about in found.items():
+        assert path.stat().st_size <= 200_000 and ef.validate(path) == []
+        assert about["title"] and re.search(r"licence|CC0", about["from"])
+        assert f'href="scenes/{path.stem}.html"' in scene_page.card(path, about)
+
+
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
     if not SPHINX:
@@ -107,7 +119,8 @@ def test_programs_find_every_page_as_markdown(site):
     written = {path.relative_to(site).with_suffix("") for path in site.rglob("*.md")}
     made_by_sphinx = {"genindex", "py-modindex", "search"}
     shown = {path.relative_to(site).with_suffix("") for path in site.rglob("*.html") if path.stem not in made_by_sphinx}
-    assert shown - written == {Path("scene"), Path("open/index")}
+    captures = {Path("scenes") / path.stem for path in DOCS.glob("scenes/*.glb")}
+    assert shown - written == {Path("scene"), Path("open/index"), *captures}
     reference = (site / "reference/python.md").read_text("utf-8")
     assert all(f"### {name}\n" in reference for name in set(ef.__all__) - {"__version__"})
 

@@ -29,8 +29,8 @@ from eigenfield.viewer.exports import OPTIONS
 from support.scenes import tiny_scene
 
 KINDS = {  # output, options, and a file that must be there
-    "html": ("page.html", [], "page.html"),
-    "html plain": ("page.html", ["--plain"], "page.jpg"),
+    "html": ("page.html", [], "page.jpg"),
+    "html laboratory": ("page.html", ["--laboratory"], "page.html"),
     "mp4": ("flight.mp4", ["--frames", 4], "flight.mp4"),
     "png": ("f%02d.png", ["--frames", 3], "f02.png"),
     "glb": ("plain.glb", [], "plain.glb"),
@@ -105,8 +105,8 @@ def test_an_existing_output_is_kept_before_any_work(export, kind, monkeypatch):
     assert code == 2 and "--overwrite" in err and contents(export.place) == {there: b"precious"}
 
 
-def test_a_plain_page_names_its_poster_to_crawlers_and_shows_how_to_embed_it(export):
-    code, err = export("my page.html", "--plain", "--title", "<&>", "--url", "https://example.org/a b/page.html")
+def test_a_page_for_guests_names_its_poster_to_crawlers_and_shows_how_to_embed_it(export):
+    code, err = export("my page.html", "--title", "<&>", "--url", "https://example.org/a b/page.html")
     assert code == 0
     snippet = err.splitlines()[1]
     assert snippet.startswith(
@@ -118,11 +118,12 @@ def test_a_plain_page_names_its_poster_to_crawlers_and_shows_how_to_embed_it(exp
     with Image.open(export.place / "my page.jpg") as poster:
         assert [str(side) for side in poster.size] == [tags["og:image:width"], tags["og:image:height"]]
         assert poster.format == "JPEG" and np.asarray(poster).std() > 5
-    assert '"ui":"plain"' in page and page.index('class="poster"') < page.index("eigenfield-config")
-    code, err = export("other.html", "--plain", "--at", "0.5,0")
+    assert '"url":"https://example.org/a b/page.html"' in page and '"ui":"plain"' in page
+    assert page.index('class="poster"') < page.index("eigenfield-config")
+    code, err = export("other.html", "--at", "0.5,0")
     page = (export.place / "other.html").read_text(encoding="utf-8")
     assert code == 0 and '<iframe src="other.html"' in err and "og:url" not in page
-    assert '"start":[0.5,0.0]' in page and 'og:image" content="other.jpg"' in page
+    assert '"url"' not in page and '"start":[0.5,0.0]' in page and 'og:image" content="other.jpg"' in page
     assert (export.place / "other.jpg").read_bytes() != (export.place / "my page.jpg").read_bytes()
 
 
@@ -137,6 +138,8 @@ def test_a_page_that_opens_files_offers_the_scenes_that_are_named(run, export, s
     assert config["title"] == "</title>" and "<title>&lt;/title&gt;</title>" in page
     assert [sample["name"] for sample in config["samples"]] == ["scene", "50 % & b", "scene"]
     for sample in config["samples"]:
+        with Image.open(place / unquote(sample["picture"])) as picture:
+            assert picture.format == "JPEG" and np.asarray(picture).std() > 5
         data = (place / unquote(sample["url"])).read_bytes()
         assert len(data) == sample["bytes"] and data == without_residual(scene_file.read_bytes())
     manifest = json.loads((place / "manifest.webmanifest").read_text(encoding="utf-8"))
@@ -151,7 +154,7 @@ def test_a_page_that_opens_files_needs_no_scene_and_other_exports_need_one(run, 
         (["-o", tmp_path / "a.html"], "0 scenes for html; name one"),
         (["a.glb", "b.glb", "-o", tmp_path / "a.html"], "2 scenes for html; name one"),
         ([tmp_path / "missing.glb", "-o", tmp_path / "b", "--as", "app"], "does not exist"),
-        (["-o", tmp_path / "b", "--as", "app", "--plain"], "--plain is not for app"),
+        (["-o", tmp_path / "b", "--as", "app", "--laboratory"], "--laboratory is not for app"),
     ):
         code, _, err = run("export", *arguments)
         assert code == 2 and says in err and err.count("\n") == 1
@@ -317,10 +320,10 @@ def test_an_export_that_was_killed_while_it_replaced_another_is_replaced_by_the_
         ("a", ["--as", "maps", "--textures", -1], "0 or more"),
         ("a", ["--as", "colmap", "--frames", 3], "--path"),
         ("a.html", ["--at", "0,1.5"], "outside the array"),
-        ("a.html", ["--plain", "--at", "0,1.5"], "outside the array"),
-        ("a.html", ["--url", "https://example.org/"], "--url is for --plain"),
-        ("a.html", ["--plain", "--url", "example.org"], "https://"),
-        ("a.mp4", ["--plain"], "--plain is not for mp4"),
+        ("a.html", ["--laboratory", "--at", "0,1.5"], "outside the array"),
+        ("a.html", ["--laboratory", "--url", "https://example.org/"], "--url is not for --laboratory"),
+        ("a.html", ["--url", "example.org"], "https://"),
+        ("a.mp4", ["--laboratory"], "--laboratory is not for mp4"),
         ("a.html", ["--metres-per-unit", "nan"], "above 0"),
         ("a.html", ["--metres-per-unit", "-1"], "above 0"),
         ("a.png", ["--as", "quilt", "--quilt", "0x3"], "1x1"),

@@ -391,11 +391,15 @@ def test_grey_scenes_are_pictures_and_other_attributes_are_not(tmp_path):
         lambda: exports.write_obj(other, tmp_path / "a.obj"),
         lambda: exports.write_obj_folder(other, tmp_path / "a"),
         lambda: exports.write_colmap(RenderJob(other), tmp_path / "a"),
+        lambda: exports.write_guests_page(other, tmp_path / "a.html"),
         lambda: exports.write_quilt(RenderJob(other), exports.quilt_of(other), tmp_path / "a.png"),
     ):
         with pytest.raises(OptionError, match="no picture"):
             write()
     assert {path.name for path in tmp_path.iterdir()} == {"maps", "obj", "colmap", "q_qs2x2a1.2.png"}
+    exports.export(other, tmp_path / "a.html", laboratory=True)
+    exports.export(other, tmp_path / "open", "app")
+    assert not list((tmp_path / "open").rglob("*.jpg")) and list((tmp_path / "open").rglob("*.glb"))
 
 
 def test_the_page_has_the_file_inside_and_no_title_escapes(scene, tmp_path):

@@ -56,7 +56,7 @@ test("nothing is uploaded, and the page says so: a file that is dropped causes n
   assert.ok(new Set((await picture(page)).data).size > 50, "something is drawn");
   const others = asked.slice(before[1]).filter((request) => !/^(blob|data):/.test(request.url()));
   assert.deepEqual([server.requests.length, others.map((request) => request.url())], [before[0], []]);
-  assert.deepEqual([...new Set(server.requests)].sort(), [...FILES, "/worker.js"].sort(), "by GET alone");
+  assert.deepEqual([...new Set(server.requests)].sort(), [...FILES, "/samples/line.jpg", "/samples/scene.jpg", "/worker.js"].sort(), "by GET alone");
   for (const request of asked) {
     assert.deepEqual([request.method(), request.postData()], ["GET", null], request.url());
     assert.ok(/^(blob|data):/.test(request.url()) || request.url().startsWith(server.url), request.url());

@@ -25,7 +25,7 @@ after(async () => {
 
 test("a file opened by itself, offline: the served page's picture; hostile names are text", async () => {
   const path = join(folder, "names.html");
-  eigenfield("export", scenePath("names.glb"), "-o", path, "--title", TITLE);
+  eigenfield("export", scenePath("names.glb"), "-o", path, "--laboratory", "--title", TITLE);
   const parts = ["index.html", "viewer.js", "viewer.css"].map((name) => statSync(join(STATIC, name)).size);
   const expected = (4 / 3) * sceneBytes("names.glb").length + parts.reduce((a, b) => a + b);
   const { size } = statSync(path);
@@ -57,9 +57,9 @@ test("a file opened by itself, offline: the served page's picture; hostile names
   await close();
 });
 
-test("a plain page: offline with its poster, a laboratory one click away, and embedded by its snippet", async () => {
+test("a page for guests: offline with its poster, neither panel nor a way to it, and embedded by its snippet", async () => {
   const path = join(folder, "plain.html");
-  const options = ["--plain", "--title", TITLE, "--at", "0.5,-0.25", "--url", "https://example.org/a/plain.html"];
+  const options = ["--title", TITLE, "--at", "0.5,-0.25", "--url", "https://example.org/a/plain.html"];
   eigenfield("export", scenePath("scene.glb"), "-o", path, ...options);
   const { page, close } = await openPage(browser, null, { width: 900, height: 600, context: { offline: true } });
   await page.emulateMedia({ reducedMotion: "reduce" });
@@ -73,12 +73,11 @@ test("a plain page: offline with its poster, a laboratory one click away, and em
   assert.ok(await page.locator(".panel").isHidden());
   assert.equal(await page.locator("[property='og:image']").getAttribute("content"), "https://example.org/a/plain.jpg");
   assert.equal(await page.locator("[property='og:title']").getAttribute("content"), TITLE);
-  await page.getByRole("button", { name: "Laboratory" }).click();
-  assert.ok(await page.locator(".panel").isVisible());
+  assert.equal(await page.getByRole("button", { name: "Laboratory" }).count(), 0);
   assert.equal(await page.evaluate(() => window.broken), undefined);
   await close();
 
-  const show = "import sys, eigenfield as ef; print(ef.export(*sys.argv[1:3], plain=True, overwrite=True)[1])";
+  const show = "import sys, eigenfield as ef; print(ef.export(*sys.argv[1:3], overwrite=True)[1])";
   const [snippet] = /<iframe.*<\/iframe>/.exec(python("-c", show, scenePath("scene.glb"), path));
   const head = '<!doctype html><meta charset="utf-8"><title>mine</title><link rel="icon" href="data:,">';
   const server = await serve({
@@ -99,7 +98,7 @@ test("a plain page: offline with its poster, a laboratory one click away, and em
 
 test("where scripts are forbidden, words say so; where they run, nobody sees the words", async () => {
   const path = join(folder, "forbidden.html");
-  eigenfield("export", scenePath("scene.glb"), "-o", path, "--plain");
+  eigenfield("export", scenePath("scene.glb"), "-o", path);
   for (const policy of ["default-src 'self'", "script-src 'self'", "sandbox", ""]) {
     const headers = { "Content-Security-Policy": policy };
     const server = await serve({ routes: { "/": { body: readFileSync(path), type: "text/html", headers } } });

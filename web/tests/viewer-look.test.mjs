@@ -88,6 +88,50 @@ test("through a captured camera: its own weights and exposure, and the photograp
   await close();
 });
 
+test("a divider between drawing and photograph, by hand and by keys; a scale on the error; keys show once one was pressed", async () => {
+  const options = { photographs: PHOTOGRAPHS, width: 900, height: 600, hash: "#camera=view_1_2" };
+  const { page, close } = await openViewer(browser, "scene.glb", options);
+  await state(page);
+  const caps = page.locator("kbd:visible");
+  assert.equal(await caps.count(), 0);
+  const drawn = await picture(page);
+  await page.keyboard.press(" ");
+  const photograph = await picture(page);
+  assert.ok((await caps.count()) > 8);
+  await page.keyboard.press("b");
+  const { divider, photograph: shown, frame } = await state(page);
+  assert.deepEqual([divider, shown], [0.5, true]);
+  const line = page.getByRole("slider", { name: "Drawing beside photograph" });
+  const mixed = async (part) => { // left of the line the drawing, right of it the photograph, to a pixel
+    const now = await picture(page);
+    const at = (frame.left + part * frame.width) * now.width;
+    for (let i = 0; i < now.data.length; i += 3) {
+      const x = (i / 3) % now.width;
+      if (Math.abs(x - at) > 1) assert.equal(now.data[i], (x < at ? drawn : photograph).data[i], `column ${x}`);
+    }
+  };
+  await mixed(0.5);
+  const box = await line.boundingBox();
+  await page.mouse.move(box.x + box.width / 2, 300);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2 - 0.25 * frame.width * drawn.width, 300, { steps: 3 });
+  await page.mouse.up();
+  near((await state(page)).divider, 0.25, 0.005);
+  await mixed((await state(page)).divider);
+  await line.focus();
+  await page.keyboard.press("ArrowRight");
+  near((await state(page)).divider, 0.27, 0.005);
+  assert.equal((await state(page)).camera, "view_1_2", "the eye stays");
+  await page.waitForFunction(() => location.hash.includes("divider=0.27"));
+  await page.keyboard.press("b");
+  assert.equal((await state(page)).divider, null);
+  assert.ok(await line.isHidden());
+  await page.keyboard.press("4");
+  await state(page);
+  assert.equal(await page.locator(".scale").innerText().then((text) => text.replaceAll(/\s+/g, " ")), "0 17 34 51 grey levels off");
+  await close();
+});
+
 test("without photographs the comparison is off, and says how to have it", async () => {
   const { page, close } = await openViewer(browser, "scene.glb", { width: 900, height: 600 });
   await state(page);
@@ -96,7 +140,7 @@ test("without photographs the comparison is off, and says how to have it", async
   await page.keyboard.press("4");
   const now = await state(page);
   assert.deepEqual([now.photograph, now.view, now.camera !== null], [false, "picture", true]);
-  assert.ok(await page.locator("button.wide").isDisabled());
+  assert.ok((await page.locator("button.wide:disabled").count()) === 2);
   assert.match(await page.locator(".panel").innerText(), /eigenfield view scene\.glb CAPTURE/);
   await close();
 });

@@ -29,7 +29,7 @@ from eigenfield.runtime.objects import DONE, find_objects, own_copies
 from eigenfield.runtime.parallel import threads
 from eigenfield.runtime.stages import Stages, stage_key
 from eigenfield.runtime.tasks import installed, log_into, worker_name
-from eigenfield.viewer.exports import write_plain_page
+from eigenfield.viewer.exports import write_guests_page
 
 SCENES_FOLDER, WORK_FOLDER, LOGS_FOLDER = "scenes", "work", "logs"
 RECORD_FILE = "record.json"
@@ -180,7 +180,7 @@ def _make(job: CaptureJob, output: Path, work: Path, folder: Path) -> dict[str, 
         scene = load(scene_file)
         figures = evaluate(scene, capture, path=scene_file, png_maps="none", progress=None)
         store_scores(scene_file, {**scene.scores, **stored_scores(figures)})
-        write_plain_page(scene, page, title=job.name)
+        write_guests_page(scene, page, title=job.name)
     image: Mapping[str, Any] = figures["image"]
     return {
         "name": job.name,

@@ -17,7 +17,8 @@ from eigenfield.cli.progress import progress_bars
     epilog="""\b
 Examples:
   eigenfield export scene.glb -o scene.html
-  eigenfield export scene.glb -o scene.html --plain --title "My scene" --url https://example.org/scene.html
+  eigenfield export scene.glb -o scene.html --title "My scene" --url https://example.org/scene.html
+  eigenfield export scene.glb -o scene.html --laboratory
   eigenfield export scene.glb -o flight.mp4 --path spiral --frames 240
   eigenfield export scene.glb -o 'frames/%04d.png' --background transparent
   eigenfield export scene.glb -o plain.glb --as glb
@@ -55,10 +56,8 @@ Examples:
     "--image", default="png", show_default=True, metavar="png|jpeg|webp", help="How the texture is kept (glb)."
 )
 @click.option("--draco", is_flag=True, help="Compress the mesh (glb).")
-@click.option(
-    "--plain", is_flag=True, help="A page for guests, panel and tools one click away, and a poster beside it (html)."
-)
-@click.option("--url", metavar="URL", help="Where the page will be, for links to it (html --plain).")
+@click.option("--laboratory", is_flag=True, help="A page for those who measure, with panel and tools (html).")
+@click.option("--url", metavar="URL", help="Where the page will be, for links to it (html).")
 @click.option(
     "--quilt",
     callback=pair_of_numbers("COLUMNSxROWS: 8x6"),
@@ -84,7 +83,7 @@ def command(
     """Write SCENE for other programs.
 
     \b
-    html    one page with viewer and scene, which opens by double click
+    html    one page with viewer and scene, which opens by double click, and its poster, a .jpg
     mp4     a fly-through (--path, else a circle)
     png     its single pictures, where the output's name has %04d
     glb     the mesh with its mean, or the texture of --at, for any glTF viewer

@@ -20,6 +20,7 @@ from eigenfield.rendering import viewpoint
 from eigenfield.runtime.files import refuse_existing, write_bytes
 
 STATIC_FOLDER = Path(__file__).parent / "static"  # what `npm run build` in web/ leaves here
+SAID_MAX_CHARACTERS = 200  # of a title where a screen reader says it for a picture or a frame
 TITLE_ELEMENT = "<title>eigenfield</title>"
 NAMES_FOR_ANYTHING = ("scene", "index")  # of a page, which say nothing of what it shows
 CONFIG_ELEMENT = '<script type="application/json" id="eigenfield-config">{}</script>'
@@ -49,7 +50,7 @@ def page_html(config: Mapping[str, Any], head: str = ICON_ELEMENT) -> bytes:
 
     Args:
         config: JSON object, all keys optional: title, scene (URL), bytes, embedded, photographs (camera name to URL),
-            metresPerUnit, version, start (X, Y), ui, samples (name, url, bytes each), worker (URL).
+            metresPerUnit, version, start (X, Y), ui, url, samples (name, url, bytes, picture each), worker (URL).
         head: Elements in place of the page's icon, which is none.
 
     Raises:
@@ -60,16 +61,18 @@ def page_html(config: Mapping[str, Any], head: str = ICON_ELEMENT) -> bytes:
 
 
 @dataclass(frozen=True)
-class Plain:
-    """What a page without a laboratory has of its own.
+class Guests:
+    """What a page for guests has of its own.
 
     Attributes:
         poster: A JPEG of the first view, shown until the scene is there.
         tags: Names and contents of <meta property>, for those who show a link to the page.
+        url: Where the page will be: links that it makes begin with that.
     """
 
     poster: bytes
     tags: Mapping[str, str]
+    url: str | None = None
 
 
 def single_file(
@@ -78,7 +81,7 @@ def single_file(
     title: str,
     metres_per_unit: float | None = None,
     start: tuple[float, float] | None = None,
-    plain: Plain | None = None,
+    guests: Guests | None = None,
 ) -> bytes:
     """The viewer and a scene as one page that needs nothing else, from file:// too; the same bytes for the same input.
 
@@ -89,7 +92,7 @@ def single_file(
         title: Of the page.
         metres_per_unit: Metres in one unit of the capture, for headsets.
         start: The first view, on the view plane. Default: the reference camera's.
-        plain: Of a page without a laboratory. Default: with one.
+        guests: Of a page for guests. Default: a page with panel and tools.
 
     Raises:
         OutputError: `viewer-build`.
@@ -98,11 +101,15 @@ def single_file(
     if start is not None:
         config["start"] = list(start)
     head = poster = ""
-    if plain is not None:
+    if guests is not None:
         config["ui"] = "plain"
-        head = "".join(f'\n<meta property="{name}" content="{html.escape(text)}">' for name, text in plain.tags.items())
-        picture = base64.b64encode(plain.poster).decode("ascii")
-        poster = f'<img class="poster" alt="{html.escape(title)}" src="data:image/jpeg;base64,{picture}">'
+        if guests.url is not None:
+            config["url"] = guests.url
+        tags = guests.tags.items()
+        head = "".join(f'\n<meta property="{name}" content="{html.escape(text)}">' for name, text in tags)
+        picture = base64.b64encode(guests.poster).decode("ascii")
+        said = html.escape(title[:SAID_MAX_CHARACTERS])
+        poster = f'<img class="poster" alt="{said}" src="data:image/jpeg;base64,{picture}">'
     if metres_per_unit is not None:
         config["metresPerUnit"] = metres_per_unit
     script, style = _inline_script(_text("viewer.js")), _inline_style(_text("viewer.css"))

@@ -66,7 +66,7 @@ export function createCameraMap(viewer: Viewer): CameraMap {
       const along = (axis: readonly number[], half: number): number =>
         half > 0 ? axis.reduce((sum, value, k) => sum + value * (offset[k] ?? 0), 0) / half : 0;
       const [x, y] = placed(along(right, extent[0]), along(up, extent[1]));
-      pen.fillStyle = info.heldOut[i] === true ? "#e5a14b" : "#8d949e";
+      pen.fillStyle = info.heldOut[i] === true ? "#e5a14b" : "#b4bac3";
       pen.beginPath();
       pen.arc(x, y, i === captured ? radius + 1.5 : radius, 0, 2 * Math.PI);
       pen.fill();

@@ -11,18 +11,21 @@ export interface Sample {
   name: string;
   url: string;
   bytes: number | null;
+  picture: string | null; // URL of what it shows
 }
 
 export interface Config {
   title: string | null;
   scene: string | null; // URL, relative to the page
   bytes: number | null; // of the scene
+  url: string | null; // where the page will be: links to it begin with that
   embedded: boolean; // the scene is base64 text in #eigenfield-scene
   photographs: ReadonlyMap<string, string>; // camera's name to URL
   metresPerUnit: number | null;
   version: string | null;
   start: { x: number; y: number } | null; // the first view, on the view plane
   ui: Ui;
+  laboratory: boolean; // a page for guests may lead to panel, map and tools
   poster: string | null; // URL of a picture that is shown until the scene is there
   ownView: boolean; // the address names no view: the page may show its first one as it likes
   samples: readonly Sample[]; // which a page without a scene offers
@@ -45,11 +48,14 @@ export function readConfig(page: Document, address: URL): Config {
   const [x, y] = start.map((value) => (typeof value === "number" && Math.abs(value) <= 1 ? value : undefined));
   const samples: unknown[] = Array.isArray(given["samples"]) ? given["samples"] : [];
   const asked = address.searchParams.get("ui");
+  const wanted = oneOf(UIS, asked === "0" ? "none" : asked);
+  const own = oneOf(UIS, given["ui"]) ?? "full";
   const megabytes = Number(address.searchParams.get("memory"));
   return {
     title: text("title"),
     scene: text("scene"),
     bytes: positive("bytes"),
+    url: web(text("url")),
     embedded: given["embedded"] === true,
     photographs: new Map(
       isObject(photographs)
@@ -59,12 +65,16 @@ export function readConfig(page: Document, address: URL): Config {
     metresPerUnit: positive("metresPerUnit"),
     version: text("version"),
     start: x === undefined || y === undefined ? null : { x, y },
-    ui: oneOf(UIS, asked === "0" ? "none" : asked) ?? oneOf(UIS, given["ui"]) ?? "full",
+    ui: wanted ?? own,
+    laboratory: own === "full" || wanted === "full",
     poster: address.searchParams.get("poster"),
     ownView: address.hash.length < 2,
-    samples: samples.filter(isObject).flatMap(({ name, url, bytes }) =>
+    samples: samples.filter(isObject).flatMap(({ name, url, bytes, picture }) =>
       typeof name === "string" && typeof url === "string"
-        ? [{ name, url, bytes: typeof bytes === "number" ? bytes : null }]
+        ? [{
+          name, url, bytes: typeof bytes === "number" ? bytes : null,
+          picture: typeof picture === "string" ? picture : null,
+        }]
         : [],
     ),
     worker: text("worker"),
@@ -89,6 +99,11 @@ export function fromBase64(text: string): Blob {
     pieces.push(bytes);
   }
   return new Blob(pieces);
+}
+
+/** An address that people can open, or null. */
+function web(url: string | null): string | null {
+  return url !== null && /^https?:/i.test(url) && URL.canParse(url) ? url : null;
 }
 
 function parse(text: string): Record<string, unknown> {

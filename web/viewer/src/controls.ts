@@ -1,6 +1,6 @@
-// Labelled controls of the panel, all native: the keyboard and screen readers know them.
+// Labelled controls of the panel, all native: the keyboard and screen readers know them. `keys` do the same.
 
-import { element } from "./dom";
+import { element, keyCaps } from "./dom";
 
 export interface Control<T> {
   readonly root: HTMLElement;
@@ -8,6 +8,7 @@ export interface Control<T> {
   enable(enabled: boolean, why?: string): void;
 }
 
+const capped = (keys: string | undefined): HTMLElement[] => (keys === undefined ? [] : [keyCaps(keys)]);
 let made = 0;
 const name = (): string => `control-${++made}`;
 
@@ -16,6 +17,7 @@ export function choice<T extends string>(
   label: string,
   entries: readonly (readonly [T, string])[],
   chosen: (value: T) => void,
+  keys?: string,
 ): Control<T> & { allow(value: T, allowed: boolean, why: string): void } {
   const group = name();
   const inputs = new Map<T, HTMLInputElement>();
@@ -26,7 +28,7 @@ export function choice<T extends string>(
     inputs.set(value, input);
     row.append(element("label", {}, input, element("span", {}, text)));
   }
-  const root = element("fieldset", { class: "control" }, element("legend", {}, label), row);
+  const root = element("fieldset", { class: "control" }, element("legend", {}, label, ...capped(keys)), row);
   return {
     root,
     show: (value) => {
@@ -51,14 +53,14 @@ export interface Slider extends Control<number> {
   say(text: string): void;
 }
 
-export function slider(label: string, moved: (value: number) => void): Slider {
+export function slider(label: string, moved: (value: number) => void, keys?: string): Slider {
   const id = name();
   const input = element("input", { type: "range", id, step: "1", min: "0", max: "0" });
   const words = element("output", { for: id });
   input.addEventListener("input", () => moved(Number(input.value)));
   const root = element(
     "div", { class: "control" },
-    element("div", { class: "pair" }, element("label", { for: id }, label), words), input,
+    element("div", { class: "pair" }, element("label", { for: id }, label, ...capped(keys)), words), input,
   );
   return {
     root,
@@ -79,10 +81,10 @@ export function slider(label: string, moved: (value: number) => void): Slider {
   };
 }
 
-export function tick(label: string, changed: (on: boolean) => void): Control<boolean> {
+export function tick(label: string, changed: (on: boolean) => void, keys?: string): Control<boolean> {
   const input = element("input", { type: "checkbox" });
   input.addEventListener("change", () => changed(input.checked));
-  const root = element("label", { class: "control tick" }, input, element("span", {}, label));
+  const root = element("label", { class: "control tick" }, input, element("span", {}, label, ...capped(keys)));
   return {
     root,
     show: (on) => void (input.checked = on),

@@ -26,11 +26,16 @@ export function icon(path: string): SVGSVGElement {
   return drawing;
 }
 
-export function button(label: string, path: string, act: () => void): HTMLButtonElement {
+/** keys: which do the same. */
+export function button(label: string, path: string, act: () => void, keys?: string): HTMLButtonElement {
   const made = element("button", { type: "button", class: "icon", "aria-label": label, title: label }, icon(path));
+  if (keys !== undefined) made.append(keyCaps(keys));
   made.addEventListener("click", act);
   return made;
 }
+
+/** What is on the keys that do the same as a control: it shows once somebody has pressed a key. */
+export const keyCaps = (keys: string): HTMLElement => element("kbd", { "aria-hidden": "true" }, keys);
 
 export const ICONS = {
   home: "M4 11.5 12 5l8 6.5M6.5 10v9h11v-9M10 19v-5h4v5",
@@ -45,5 +50,7 @@ export const ICONS = {
   previous: "M14.5 6 8.5 12l6 6",
   next: "M9.5 6l6 6-6 6",
   fullscreen: "M4 9V4h5M15 4h5v5M20 15v5h-5M9 20H4v-5",
+  share: "M12 4v11M8 8l4-4 4 4M6 12H4.5v8h15v-8H18",
+  info: "M12 3.5a8.5 8.5 0 1 0 0 17 8.5 8.5 0 0 0 0-17ZM12 11v5.5M12 7.6v.4",
   close: "M6 6l12 12M18 6 6 18",
 };

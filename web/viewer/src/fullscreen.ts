@@ -8,7 +8,6 @@ export function createFullscreen(): HTMLButtonElement {
     if (document.fullscreenElement) void document.exitFullscreen();
     else void document.documentElement.requestFullscreen();
   });
-  root.classList.add("plain");
   root.hidden = !document.fullscreenEnabled;
   document.addEventListener("fullscreenchange", () => {
     root.setAttribute("aria-pressed", String(document.fullscreenElement !== null));

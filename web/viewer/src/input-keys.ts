@@ -23,6 +23,7 @@ export interface Actions {
   plain(): boolean;
   help(): void;
   panel(): void;
+  divide(): void;
   screenshot(): void;
 }
 
@@ -45,6 +46,7 @@ export function listenToKeys(viewer: Viewer, actions: Actions): Keys {
       "]": () => viewer.nextCamera(1),
       n: viewer.nearestCamera,
       " ": () => viewer.showPhotograph(!viewer.photographShown()),
+      b: actions.divide,
       "1": () => viewer.set({ view: "picture" }),
       "2": show("mean"),
       "3": show("eigen"),
@@ -72,6 +74,7 @@ export function listenToKeys(viewer: Viewer, actions: Actions): Keys {
     const key = keyOf(event);
     if (key === "" || taken(event)) return;
     const act = actions.plain() && !PLAIN.includes(key) ? undefined : once(key);
+    if (act || HELD[event.code]) document.body.dataset["keys"] = ""; // the style sheet shows which keys do what
     if (!act && HELD[event.code]) { // a letter that acts and is printed there comes first
       event.preventDefault();
       held.add(event.code);
@@ -104,6 +107,7 @@ function taken(event: KeyboardEvent): boolean {
   if (!(target instanceof HTMLElement)) return false;
   if (target.closest("dialog[open]")) return true;
   if (key === "Escape") return false;
+  if (target.closest("[role=slider]")) return key.startsWith("Arrow");
   if (target instanceof HTMLSelectElement) return true;
   if (target instanceof HTMLInputElement) return key === " " || key === "Home" || key.startsWith("Arrow");
   return key === " " && target.closest("button, summary, a") !== null;

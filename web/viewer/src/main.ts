@@ -4,6 +4,7 @@ import { createApi } from "./api";
 import { createCameraMap } from "./camera-map";
 import { readConfig, type Ui } from "./config";
 import { confine, leadElsewhere } from "./confine";
+import { createDivider } from "./divider";
 import { button, element, ICONS } from "./dom";
 import { takeFiles } from "./files";
 import { createHelp } from "./help";
@@ -16,8 +17,9 @@ import { LANGUAGE, words } from "./language";
 import { keepOffline } from "./offline";
 import { createOverlays } from "./overlays";
 import { createPanel } from "./panel";
-import { takePoster } from "./poster";
+import { posterShown, takePoster } from "./poster";
 import { saveScreenshot } from "./screenshot";
+import { createShare } from "./share";
 import { fileSource, namedSource } from "./source";
 import { keepAddress } from "./url";
 import { createViewer, type Viewer } from "./viewer";
@@ -31,6 +33,7 @@ function start(): void {
   document.documentElement.lang = LANGUAGE;
   const address = new URL(location.href);
   const config = readConfig(document, address);
+  document.body.dataset["ui"] = config.ui;
   if (!leadElsewhere([config.scene, address.searchParams.get("load"), config.poster])) confine(document);
   const name = (title: string): void => {
     document.title = config.ui === "full" ? `${title} – eigenfield` : title; // other pages are their owners'
@@ -53,8 +56,10 @@ function start(): void {
   try {
     viewer = createViewer(canvas, config, pushed);
   } catch {
-    const said = element("div", { class: "message", role: "alert" }, element("p", {}, words("noWebgl")));
-    document.body.append(element("main", { class: "stage" }, said));
+    const said = element("div", { class: "message small", role: "alert" }, element("p", {}, words("noWebgl")));
+    const title = element("p", { class: "title" }, element("span", {}, config.title ?? ""));
+    const shown = takePoster(document, config.poster);
+    document.body.append(element("main", { class: "stage" }, ...(shown ? [shown] : []), title, said));
     return;
   }
 
@@ -62,6 +67,7 @@ function start(): void {
   const overlays = createOverlays(viewer, chooser.choose);
   const panel = createPanel(viewer);
   const map = createCameraMap(viewer);
+  const divider = createDivider(viewer);
   const help = createHelp(config.version);
   const headset = createHeadset(viewer, () => update());
   const tilt = createTilt(viewer, () => update());
@@ -70,51 +76,57 @@ function start(): void {
     panel.root.hidden = !shown;
     fold.setAttribute("aria-expanded", String(shown));
   };
-  const fold = button(`${words("panel")}  I`, ICONS.panel, () => showPanel(panel.root.hidden !== false));
+  const fold = button(words("panel"), ICONS.panel, () => showPanel(panel.root.hidden !== false), "I");
   fold.setAttribute("aria-controls", "panel");
-  const orbit = button(`${words("orbit")}  O`, ICONS.orbit, () => {
-    viewer.setMode(viewer.modeName() === "plane" ? "orbit" : "plane");
-  });
+  const orbit = button(
+    words("orbit"), ICONS.orbit, () => viewer.setMode(viewer.modeName() === "plane" ? "orbit" : "plane"), "O",
+  );
   const lean = button(words("tilt"), ICONS.tilt, () => void tilt.toggle());
   const fullscreen = createFullscreen();
   let ui = config.ui;
-  const laboratory = element("button", { type: "button", class: "laboratory" }, words("laboratory"));
-  laboratory.addEventListener("click", () => showUi(ui === "full" ? "plain" : "full"));
-  const shoot = button(`${words("savePicture")}  P`, ICONS.camera, () => saveScreenshot(viewer));
+  const laboratory = button(words("laboratory"), ICONS.info, () => showUi(ui === "full" ? "plain" : "full"));
+  const shoot = button(words("savePicture"), ICONS.camera, () => saveScreenshot(viewer), "P");
+  const share = createShare(viewer);
+  const home = button(words("firstView"), ICONS.home, viewer.home, words("keyHome"));
+  for (const one of [home, share.root, fullscreen, headset.root, laboratory]) one.classList.add("plain");
   const tools = element(
     "div", { class: "tools", role: "toolbar", "aria-label": words("tools") },
-    button(`${words("firstView")}  ${words("keyHome")}`, ICONS.home, viewer.home), orbit, lean, shoot,
-    button(words("openFile"), ICONS.open, chooser.choose), button(`${words("controls")}  H`, ICONS.help, help.toggle),
+    home, orbit, lean, shoot, share.root,
+    button(words("openFile"), ICONS.open, chooser.choose), button(words("controls"), ICONS.help, help.toggle, "H"),
     fullscreen, headset.root, fold, laboratory,
   );
   const showUi = (next: Ui): void => {
     ui = next;
     document.body.dataset["ui"] = ui; // the style sheet hides what does not belong to it
-    laboratory.hidden = config.ui !== "plain";
+    viewer.setFading(ui !== "full");
+    canvas.setAttribute("aria-label", words(ui === "full" ? "canvas" : "canvasPlain"));
     laboratory.setAttribute("aria-pressed", String(ui === "full"));
     showPanel(ui === "full" && !matchMedia(SMALL).matches);
   };
   const poster = takePoster(document, config.poster);
-  stageArea.append(...(poster ? [poster] : []), ...overlays.roots, map.root, tools);
+  stageArea.append(...(poster ? [poster] : []), divider.root, ...overlays.roots, share.said, map.root, tools);
   document.body.append(stageArea, panel.root, help.root, chooser.root);
 
   const update = (): void => {
     document.body.dataset["status"] = viewer.status();
     panel.update();
     overlays.update();
-    if (viewer.status() === "failed") poster?.remove();
     map.update();
     orbit.setAttribute("aria-pressed", String(viewer.modeName() === "orbit"));
     orbit.hidden = !viewer.scene()?.plane;
     lean.hidden = !tilt.possible || !viewer.scene()?.plane;
     lean.setAttribute("aria-pressed", String(tilt.on()));
-    shoot.disabled = viewer.scene() === null;
+    for (const one of [home, shoot, fold]) one.hidden = viewer.scene() === null;
+    laboratory.hidden = !config.laboratory || viewer.status() === "empty";
+    const source = viewer.scene()?.source;
+    share.root.hidden = !share.possible || !source || (!source.own && source.from instanceof Blob);
     const title = viewer.scene()?.source.name;
     if (title !== undefined) name(title);
   };
   viewer.onChange(update);
   viewer.onDraw(() => {
     overlays.tick();
+    divider.tick();
     map.update();
     panel.tick();
     if (viewer.scene() !== null && (!viewer.arriving() || !viewer.untouched())) poster?.remove();
@@ -124,6 +136,7 @@ function start(): void {
   keys = listenToKeys(viewer, {
     plain: () => ui !== "full",
     help: help.toggle,
+    divide: viewer.divide,
     panel: () => showPanel(panel.root.hidden !== false),
     screenshot: () => saveScreenshot(viewer),
   });
@@ -150,4 +163,6 @@ function start(): void {
   if (config.worker !== null) keepOffline(config.worker, opened?.then(() => viewer.scene()?.source.from));
 }
 
-start();
+const waited = posterShown(document);
+if (waited) void waited.then(start);
+else start();

@@ -25,8 +25,8 @@ export interface Mode {
   /** One frame's movement; true while there is more to come. */
   step(seconds: number): boolean;
   place(camera: PerspectiveCamera, aspect: number): Frame;
-  /** No captured view is near what the eye sees. */
-  outside(): boolean;
+  /** Radians to the nearest direction from which what the eye sees was captured; 0 among the captured views. */
+  beyond(): number;
 }
 
 /** Nobody who asked the system for less motion wants things to glide. */

@@ -51,7 +51,7 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
     };
     if (field && config.metresPerUnit !== null && source.own) field.info.metresPerUnit = config.metresPerUnit;
     Object.assign(session, { scene, status: "ready", mode: scene.plane ? "plane" : "orbit" });
-    Object.assign(session.options, { eigen: 0, count: Infinity, view: "picture" });
+    Object.assign(session.options, { eigen: 0, count: Infinity, view: "picture", divider: null });
     events.opened();
     scene.plane?.step(10);
     changed();

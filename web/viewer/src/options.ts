@@ -14,6 +14,7 @@ export interface Options {
   mixing: (typeof MIXINGS)[number];
   filter: Filter;
   wireframe: boolean;
+  divider: number | null; // where a photograph begins beside the drawing, in parts of its width; null: there is none
   background: (typeof BACKGROUNDS)[number];
 }
 
@@ -25,6 +26,7 @@ export const DEFAULTS: Options = {
   mixing: "delaunay",
   filter: "bicubic",
   wireframe: false,
+  divider: null,
   background: "#15171a",
 };
 

@@ -181,6 +181,6 @@ export function createOrbitMode(object: Object3D, around: Surroundings): OrbitMo
       camera.updateMatrixWorld(true);
       return WHOLE;
     },
-    outside: () => around.beyond(eyeOf(place), place.target) > 0,
+    beyond: () => around.beyond(eyeOf(place), place.target),
   };
 }

@@ -1,7 +1,7 @@
 // What lies over the picture: progress, messages, the cue outside the captured views, the invitation to bring a file.
 
 import type { Sample } from "./config";
-import { button, element, ICONS } from "./dom";
+import { button, element, ICONS, keyCaps } from "./dom";
 import { words } from "./language";
 import { bytes } from "./text";
 import type { Viewer } from "./viewer";
@@ -36,16 +36,18 @@ export function createOverlays(viewer: Viewer, choose: () => void): Overlays {
     element("p", { class: "quiet" }, words("staysHere")),
     ...(viewer.config.samples.length > 0 ? [sampleLinks(viewer.config.samples)] : []),
   );
+  const scale = errorScale();
   const drop = element("div", { class: "drop", hidden: "" }, element("p", { class: "large" }, words("dropToOpen")));
 
   const back = element("button", { type: "button" }, words("comeBack"));
   back.addEventListener("click", viewer.comeBack);
   const cue = element(
     "div", { class: "cue", hidden: "", role: "status" },
-    element("p", {}, words("outside"), element("kbd", {}, words("keyEscape"))), back,
+    element("p", {}, words("outside"), keyCaps(words("keyEscape"))), back,
   );
   const tag = element("p", { class: "tag", hidden: "" });
-  const title = element("p", { class: "title" });
+  const titleText = element("span");
+  const title = element("p", { class: "title" }, titleText);
   const hint = element("p", { class: "hint", hidden: "" }, words("hint"));
 
   const update = (): void => {
@@ -76,7 +78,8 @@ export function createOverlays(viewer: Viewer, choose: () => void): Overlays {
     chooseAnother.hidden = status !== "failed";
     dismiss.hidden = status !== "ready";
     invitation.hidden = status !== "empty";
-    title.textContent = scene?.source.name ?? viewer.config.title ?? "";
+    titleText.textContent = scene?.source.name ?? viewer.config.title ?? "";
+    title.hidden = titleText.textContent === "";
     tick();
   };
   const tick = (): void => {
@@ -84,6 +87,7 @@ export function createOverlays(viewer: Viewer, choose: () => void): Overlays {
     const outside = viewer.outside();
     cue.hidden = !outside;
     viewer.stage.canvas.parentElement?.classList.toggle("outside", outside);
+    scale.hidden = viewer.options().view !== "error" || !viewer.hasPhotograph();
     const captured = viewer.captured();
     const name = captured === null ? undefined : viewer.scene()?.field?.info.names[captured];
     tag.hidden = name === undefined;
@@ -97,20 +101,30 @@ export function createOverlays(viewer: Viewer, choose: () => void): Overlays {
     if (tag.textContent !== shown) tag.textContent = shown;
   };
   return {
-    roots: [title, tag, cue, hint, progress, message, invitation, drop],
+    roots: [title, tag, cue, hint, scale, progress, message, invitation, drop],
     update,
     tick,
     hover: (over) => void (drop.hidden = !over),
   };
 }
 
+/** What the colours of the error mean: `heat` of the plug-in's material, of five times the error. */
+function errorScale(): HTMLElement {
+  const marks = [0, 1, 2, 3].map((part) => element("span", {}, String((part * 255) / 5 / 3)));
+  return element(
+    "div", { class: "scale", hidden: "" },
+    element("div", { class: "heat" }), element("p", { class: "marks" }, ...marks), element("p", {}, words("greyLevels")),
+  );
+}
+
 /** Links that name a scene by the page's own address, so that they can be kept and sent. */
 function sampleLinks(samples: readonly Sample[]): HTMLElement {
-  const links = samples.map(({ name, url, bytes: size }) => {
+  const links = samples.map(({ name, url, bytes: size, picture }) => {
     const query = new URLSearchParams(location.search);
     query.set("load", url);
     const amount = size === null ? [] : [element("span", { class: "quiet" }, bytes(size))];
-    return element("li", {}, element("a", { href: `?${query}` }, name, ...amount));
+    const shown = picture === null ? [] : [element("img", { src: picture, alt: "", loading: "lazy" })];
+    return element("li", {}, element("a", { href: `?${query}` }, ...shown, name, ...amount));
   });
   return element("section", {}, element("h2", {}, words("samples")), element("ul", {}, ...links));
 }

@@ -8,6 +8,8 @@ import type { Places } from "./places";
 import type { Session } from "./session";
 import type { Stage } from "./stage";
 
+const FADED = 0.3; // radians beyond the captured views where the picture is most blurred
+
 export interface Painter {
   draw(detail: Detail): void;
   /** Where the captured picture lies in the canvas. */
@@ -17,6 +19,11 @@ export interface Painter {
 export function createPainter(session: Session, stage: Stage, places: Places, captured: Captured): Painter {
   let frame = WHOLE;
 
+  /** 0 among the captured views, 1 where nothing of them is left. */
+  const blurred = (): number => {
+    const part = Math.min(places.beyond() / FADED, 1);
+    return part * part * (3 - 2 * part);
+  };
   const place = (): Frame => {
     const field = session.scene?.field;
     const view = session.captured === null ? undefined : field?.info.cameras[session.captured];
@@ -46,7 +53,8 @@ export function createPainter(session: Session, stage: Stage, places: Places, ca
         field.weightMode = onPlane || !field.info.facesPlane ? "eye" : options.weights;
       }
       // Beside the frame the surface was seen by few cameras, and ends raggedly.
-      stage.draw(frame === WHOLE ? null : frame, session.photographShown ? picture : null);
+      if (session.photographShown && picture) stage.compare(frame, picture, options.divider);
+      else stage.draw(frame === WHOLE ? null : frame, session.fades ? blurred() : 0);
     },
   };
 }

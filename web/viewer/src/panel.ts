@@ -2,7 +2,7 @@
 
 import type { SceneInfo } from "eigenfield-three";
 import { choice, menu, slider, tick } from "./controls";
-import { button, element, ICONS } from "./dom";
+import { button, element, ICONS, keyCaps } from "./dom";
 import { briefly, createInfo } from "./info";
 import { pluginWords, words } from "./language";
 import { BACKGROUNDS } from "./options";
@@ -35,9 +35,10 @@ export function createPanel(viewer: Viewer): Panel {
       ["error", words("showError")],
     ],
     (value) => viewer.set({ view: value }),
+    "1 2 3 4",
   );
   const eigen = slider(words("eigenTexture"), (value) => viewer.set({ view: "eigen", eigen: value - 1 }));
-  const count = slider(words("eigenTextures"), (value) => viewer.set({ count: value }));
+  const count = slider(words("eigenTextures"), (value) => viewer.set({ count: value }), "− +");
   const cost = element("p", { class: "quiet figures" });
   const limitation = element("p", { class: "warning" });
 
@@ -45,23 +46,27 @@ export function createPanel(viewer: Viewer): Panel {
     if (value === "") viewer.moving();
     else viewer.toCamera(Number(value));
   });
-  const previous = button(`${words("previousCamera")}  [`, ICONS.previous, () => viewer.nextCamera(-1));
-  const next = button(`${words("nextCamera")}  ]`, ICONS.next, () => viewer.nextCamera(1));
-  const nearest = button(`${words("nearestCamera")}  N`, ICONS.nearest, viewer.nearestCamera);
+  const previous = button(words("previousCamera"), ICONS.previous, () => viewer.nextCamera(-1), "[");
+  const next = button(words("nextCamera"), ICONS.next, () => viewer.nextCamera(1), "]");
+  const nearest = button(words("nearestCamera"), ICONS.nearest, viewer.nearestCamera, "N");
   const flip = element("button", { type: "button", class: "wide", "aria-pressed": "false" });
   flip.addEventListener("click", () => viewer.showPhotograph(!viewer.photographShown()));
+  const divide = element("button", { type: "button", class: "wide", "aria-pressed": "false" });
+  divide.append(words("divider"), keyCaps("B"));
+  divide.addEventListener("click", viewer.divide);
   const heldOut = element("p", { class: "quiet held" });
   const noPhotographs = element(
     "p", { class: "quiet" }, `${words("toCompare")} `, element("code", {}, "eigenfield view scene.glb CAPTURE"),
   );
 
   const mode = choice(
-    words("move"), [["plane", words("onPlane")], ["orbit", words("orbit")]], (value) => viewer.setMode(value),
+    words("move"), [["plane", words("onPlane")], ["orbit", words("orbit")]], (value) => viewer.setMode(value), "O",
   );
   const weights = choice(
     words("weightsOffPlane"),
     [["ray", words("eachRay")], ["eye", words("theEye")]],
     (value) => viewer.set({ weights: value }),
+    "T",
   );
   const mixing = choice(
     words("betweenCameras"),
@@ -73,7 +78,7 @@ export function createPanel(viewer: Viewer): Panel {
     [["bilinear", words("bilinear")], ["bicubic", words("bicubic")]],
     (value) => viewer.set({ filter: value }),
   );
-  const wireframe = tick(words("wireframe"), (on) => viewer.set({ wireframe: on }));
+  const wireframe = tick(words("wireframe"), (on) => viewer.set({ wireframe: on }), "M");
   const background = choice(
     words("background"),
     BACKGROUNDS.map((colour, i) => [colour, SHADES[i] ?? colour] as const),
@@ -92,7 +97,7 @@ export function createPanel(viewer: Viewer): Panel {
   const cameras = element(
     "fieldset", { class: "control" },
     element("legend", {}, words("capturedCamera")),
-    element("div", { class: "cameras" }, previous, camera.root, next, nearest), heldOut, flip, noPhotographs,
+    element("div", { class: "cameras" }, previous, camera.root, next, nearest), heldOut, flip, divide, noPhotographs,
   );
   const own = element(
     "div", { class: "own" },
@@ -174,9 +179,13 @@ export function createPanel(viewer: Viewer): Panel {
       const captured = viewer.captured();
       camera.show(captured === null ? "" : String(captured));
       flip.disabled = !photographs;
-      flip.title = photographs ? words("keySpace") : words("noPhotographs");
-      flip.textContent = words(viewer.photographShown() ? "showDrawing" : "showPhotograph");
-      flip.setAttribute("aria-pressed", String(viewer.photographShown()));
+      flip.title = photographs ? "" : words("noPhotographs");
+      const flipped = viewer.photographShown();
+      flip.replaceChildren(words(flipped ? "showDrawing" : "showPhotograph"), keyCaps(words("keySpace")));
+      divide.disabled = !photographs;
+      divide.title = photographs ? "" : words("noPhotographs");
+      divide.setAttribute("aria-pressed", String(flipped && options.divider !== null));
+      flip.setAttribute("aria-pressed", String(flipped));
       noPhotographs.hidden = photographs;
       mode.show(viewer.modeName());
       weights.show(options.weights);

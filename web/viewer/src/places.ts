@@ -25,8 +25,8 @@ export interface Places {
   nearestTo(at: Coordinates): number | null;
   /** Puts the stage's camera where a captured one stood. */
   stand(index: number): PerspectiveCamera;
-  /** The eye is where no captured view is near. */
-  outside(): boolean;
+  /** How far the eye is from the captured views, in radians; 0 among them. */
+  beyond(): number;
 }
 
 export function createPlaces(session: Session, stage: Stage): Places {
@@ -77,9 +77,8 @@ export function createPlaces(session: Session, stage: Stage): Places {
       if (field && view) placeCamera(field, stage.camera, view, stage.aspect());
       return stage.camera;
     },
-    outside: () =>
-      session.status === "ready" && session.scene?.field != null && session.captured === null &&
-      mode()?.outside() === true,
+    beyond: () =>
+      session.status === "ready" && session.scene?.field && session.captured === null ? (mode()?.beyond() ?? 0) : 0,
   };
 }
 

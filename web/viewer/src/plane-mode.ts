@@ -95,7 +95,7 @@ export function createPlaneMode(field: EigenField): PlaneMode {
       cover = fillsHeight(aspect) ? Math.max(1, seen.width / seen.height / aspect) : 1;
       return placeCamera(field, camera, seen, aspect, cover * place.zoom);
     },
-    outside: () => false,
+    beyond: () => 0,
   };
 }
 

@@ -39,6 +39,7 @@ export interface Session {
   mode: ModeName;
   captured: number | null; // the camera that is looked through
   photographShown: boolean;
+  fades: boolean; // outside the captured views the picture is blurred, for guests; else it is what the file gives
   readonly options: Options;
 }
 
@@ -52,6 +53,7 @@ export function emptySession(): Session {
     mode: "plane",
     captured: null,
     photographShown: false,
+    fades: false,
     options: { ...DEFAULTS },
   };
 }

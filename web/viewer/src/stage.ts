@@ -5,6 +5,7 @@ import {
   PerspectiveCamera, PlaneGeometry, Scene, ShaderMaterial, SRGBColorSpace, type Texture, Vector4, WebGLRenderer,
 } from "three";
 import type { Frame } from "eigenfield-three";
+import { createBlur } from "./blur";
 
 const FINEST = 2; // device pixels a CSS pixel, at most
 
@@ -17,8 +18,10 @@ export interface Stage {
   put(object: Object3D, coded: boolean): void;
   clear(): void;
   setBackground(colour: string): void;
-  /** only: nothing is drawn outside it. over: a picture that fills `only`. */
-  draw(only: Frame | null, over: Texture | null): void;
+  /** only: nothing is drawn outside it. blurred: how much, 0 to 1. */
+  draw(only: Frame | null, blurred: number): void;
+  /** A picture that fills `frame`; left of `divider`, in parts of the frame's width, the scene. */
+  compare(frame: Frame, picture: Texture, divider: number | null): void;
   resize(width: number, height: number): void;
   /** Device pixels a CSS pixel of the full picture. */
   ratio(): number;
@@ -44,11 +47,24 @@ export function createStage(canvas: HTMLCanvasElement): Stage {
   scene.add(root, lights);
   const camera = new PerspectiveCamera();
   const photograph = createPhotographQuad();
+  const blur = createBlur();
   const background = { colour: "#000000", coded: true };
   const size = { width: 1, height: 1 };
   const ratio = (): number => Math.min(devicePixelRatio, FINEST);
   let scale = 1;
 
+  /** Lets `draw` change nothing outside a part of the canvas. */
+  const within = (only: Frame | null, draw: () => void): void => {
+    if (only) {
+      const { left, top, width, height } = only;
+      renderer.setScissor(
+        left * size.width, (1 - top - height) * size.height, width * size.width, height * size.height,
+      );
+    }
+    renderer.setScissorTest(only !== null);
+    draw();
+    renderer.setScissorTest(false);
+  };
   const clearColour = (): void => {
     // Coded numbers go out as they are: the colour must not be taken for sRGB that has to be made linear first.
     const space = background.coded ? LinearSRGBColorSpace : SRGBColorSpace;
@@ -75,19 +91,17 @@ export function createStage(canvas: HTMLCanvasElement): Stage {
       background.colour = colour;
       clearColour();
     },
-    draw: (only, over) => {
-      renderer.setScissorTest(false);
+    draw: (only, blurred) => {
       renderer.clear();
-      if (only) {
-        const { left, top, width, height } = only;
-        renderer.setScissor(
-          left * size.width, (1 - top - height) * size.height, width * size.width, height * size.height,
-        );
-        renderer.setScissorTest(true);
-      }
-      if (only && over) photograph.draw(renderer, over, only);
-      else renderer.render(scene, camera);
-      renderer.setScissorTest(false);
+      if (blurred > 0) blur.draw(renderer, scene, camera, blurred);
+      else within(only, () => renderer.render(scene, camera));
+    },
+    compare: (frame, picture, divider) => {
+      renderer.clear();
+      const part = divider ?? 0;
+      if (part > 0) within(frame, () => renderer.render(scene, camera));
+      const right = { ...frame, left: frame.left + part * frame.width, width: (1 - part) * frame.width };
+      within(right, () => photograph.draw(renderer, picture, frame));
     },
     resize: (width, height) => {
       Object.assign(size, { width: Math.max(width, 1), height: Math.max(height, 1) });

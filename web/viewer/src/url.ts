@@ -61,6 +61,7 @@ export function hashOf(viewer: Viewer): string {
   }
   if (scene?.plane) parts.set("mode", viewer.modeName());
   if (viewer.photographShown()) parts.set("photograph", "1");
+  if (viewer.photographShown() && options.divider !== null) parts.set("divider", short(options.divider));
   if (Number.isFinite(options.count)) parts.set("n", String(options.count));
   if (options.view !== "picture") parts.set("view", options.view);
   if (options.view === "eigen") parts.set("eigen", String(options.eigen + 1));
@@ -111,5 +112,7 @@ export function applyHash(viewer: Viewer, hash: string): void {
     wireframe: parts.get("wireframe") === "1",
     view: oneOf(VIEWS, parts.get("view")) ?? "picture",
   });
-  if (parts.get("photograph") === "1") viewer.showPhotograph(true);
+  const divider = number("divider");
+  if (divider !== null) viewer.set({ divider });
+  else if (parts.get("photograph") === "1") viewer.showPhotograph(true);
 }

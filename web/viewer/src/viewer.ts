@@ -7,7 +7,7 @@ import { createCaptured } from "./captured";
 import type { Config } from "./config";
 import { words } from "./language";
 import { createLoop } from "./loop";
-import type { Mode } from "./mode";
+import { clamp, type Mode } from "./mode";
 import { createMovement } from "./movement";
 import { createOpening } from "./opening";
 import type { Options } from "./options";
@@ -53,9 +53,13 @@ export interface Viewer {
   /** From outside the captured views to the nearest place inside. */
   comeBack(): void;
   outside(): boolean;
+  /** Whether the picture fades outside the captured views, into a blurred one. */
+  setFading(on: boolean): void;
   hasPhotograph(): boolean;
   photographShown(): boolean;
   showPhotograph(shown: boolean): void;
+  /** The photograph beside the drawing, with a divider between them; or no divider. */
+  divide(): void;
   /** Nobody has moved or set anything yet, and the page shows its own first view. */
   untouched(): boolean;
   /** A hand lies on the picture: it no longer moves by itself. */
@@ -175,6 +179,10 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
     }
     if (wish.background !== undefined) stage.setBackground(options.background);
     if (wish.wireframe !== undefined) applyWireframe();
+    if (wish.divider != null) {
+      options.divider = clamp(wish.divider, 0, 1);
+      captured.showPhotograph(true);
+    }
     if (options.view === "error") captured.findError();
     changed();
   };
@@ -220,10 +228,15 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
     }),
     home: moves(movement.home),
     comeBack: moves(movement.comeBack),
-    outside: places.outside,
+    outside: () => places.beyond() > 0,
+    setFading: (on) => {
+      session.fades = on;
+      changed();
+    },
     hasPhotograph: captured.hasPhotograph,
     photographShown: () => session.photographShown,
     showPhotograph: moves(captured.showPhotograph),
+    divide: moves(() => set({ divider: session.photographShown && options.divider !== null ? null : 0.5 })),
     untouched: sway.untouched,
     hold: sway.stop,
     moving: moves(() => {

@@ -23,7 +23,6 @@ export function createHeadset(viewer: Viewer, entered: (inside: boolean) => void
   const { renderer, camera, root: stageRoot } = viewer.stage;
   const root = button(words("enterVr"), ICONS.headset, () => void enter());
   root.hidden = true;
-  root.classList.add("plain");
   renderer.xr.setReferenceSpaceType("local");
   let session: XRSession | null = null;
   const shift = { x: 0, y: 0 }; // where sticks have moved the eye, view-plane units
@@ -108,7 +107,7 @@ export function createHeadset(viewer: Viewer, entered: (inside: boolean) => void
     field.filter = "bilinear"; // two eyes, ninety times a second
     field.coarser = 1;
     field.weightMode = field.info.facesPlane ? viewer.options().weights : "eye";
-    viewer.stage.draw(null, null);
+    viewer.stage.draw(null, 0);
   };
   const ended = (): void => {
     session = null;

@@ -7,17 +7,21 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
 from eigenfield.core.progress import Progress, track
+from eigenfield.core.scene import Scene
 from eigenfield.core.version import __version__
 from eigenfield.viewer.exports.folder import atomic_folder, write_file, write_listing
+from eigenfield.viewer.exports.guests import PICTURE_CHANNELS, draw_poster
 from eigenfield.viewer.exports.names import file_names
 from eigenfield.viewer.page import page_html, static_file
 
 APP_FILES = ("viewer.js", "viewer.css", "worker.js", "icon.svg", "icon-192.png", "icon-512.png")
+THUMBNAIL_WIDTH_PX = 400  # shown half as wide
 APP_COLOUR = "#15171a"  # the page's ground
 APP_POLICY = (  # `?load=` and `?poster=` may name any host; web/viewer/src/confine.ts narrows it before a scene is read
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src * blob: data:; connect-src * blob: data:; "
@@ -30,18 +34,44 @@ APP_HEAD = (
 )
 
 
+@dataclass(frozen=True)
+class Sample:
+    """A scene that the page offers.
+
+    Attributes:
+        name: For people.
+        glb: Its file.
+        picture: A JPEG of what it shows; None where it makes no picture.
+    """
+
+    name: str
+    glb: bytes
+    picture: bytes | None
+
+
+def draw_thumbnail(scene: Scene) -> bytes | None:
+    """What a sample shows, as a small JPEG; None for channels that make no picture.
+
+    Args:
+        scene: The scene.
+    """
+    if scene.appearance.channels not in PICTURE_CHANNELS:
+        return None
+    return draw_poster(scene, THUMBNAIL_WIDTH_PX)[0]
+
+
 def write_app(
-    samples: Sequence[tuple[str, bytes]],
+    samples: Sequence[Sample],
     folder: Path,
     *,
     title: str | None = None,
     overwrite: bool = False,
     progress: Progress | None = None,
 ) -> None:
-    """Write index.html and what belongs to it, and each sample as samples/NAME.glb.
+    """Write index.html and what belongs to it, and each sample as samples/NAME.glb with its picture, NAME.jpg.
 
     Args:
-        samples: Names and files of the scenes that the page offers.
+        samples: The scenes that the page offers.
         folder: To write.
         title: Of the page. Default: "eigenfield".
         overwrite: Whether an existing export is replaced.
@@ -50,11 +80,12 @@ def write_app(
     Raises:
         OutputError: `viewer-build`; the folder cannot be written.
     """
-    names = [name for name, _ in samples]
-    files = [f"samples/{path.removesuffix('.png')}.glb" for path in file_names(names)]
+    names = [sample.name for sample in samples]
+    stems = [f"samples/{path.removesuffix('.png')}" for path in file_names(names)]
     offered = [
-        {"name": name, "url": quote(file), "bytes": len(data)}
-        for (name, data), file in zip(samples, files, strict=True)
+        {"name": sample.name, "url": quote(f"{stem}.glb"), "bytes": len(sample.glb)}
+        | ({} if sample.picture is None else {"picture": quote(f"{stem}.jpg")})
+        for sample, stem in zip(samples, stems, strict=True)
     ]
     config: dict[str, Any] = {"samples": offered, "worker": "worker.js", "version": __version__}
     if title is not None:
@@ -65,9 +96,11 @@ def write_app(
             write_file(part / name, static_file(name))
         write_file(part / "index.html", page)
         write_file(part / "manifest.webmanifest", _manifest(title or "eigenfield"))
-        for file, (_, data) in zip(files, track(samples, "samples", len(samples), progress), strict=True):
-            write_file(part / file, data)
-        write_listing(part, "app", {"samples": dict(zip(names, files, strict=True))})
+        for stem, sample in zip(stems, track(samples, "samples", len(samples), progress), strict=True):
+            write_file(part / f"{stem}.glb", sample.glb)
+            if sample.picture is not None:
+                write_file(part / f"{stem}.jpg", sample.picture)
+        write_listing(part, "app", {"samples": {name: f"{stem}.glb" for name, stem in zip(names, stems, strict=True)}})
 
 
 def _manifest(name: str) -> bytes:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Sequence
-from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -18,23 +17,23 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.notebook import notebook_progress
 from eigenfield.core.progress import Progress
 from eigenfield.core.scene import Scene, check_scale
-from eigenfield.gltf import as_scene, encode_scene, outline, without_residual
+from eigenfield.gltf import as_scene, encode_scene, without_residual
 from eigenfield.rendering import FLIGHT_FRAMES, RenderJob, path_points
 from eigenfield.rendering.render_jobs import refuse_flight, write_flight
 from eigenfield.runtime.files import is_numbered, refuse_existing
-from eigenfield.viewer.exports.app import write_app
+from eigenfield.viewer.exports.app import Sample, draw_thumbnail, write_app
 from eigenfield.viewer.exports.colmap import write_colmap
 from eigenfield.viewer.exports.folder import refuse_folder
 from eigenfield.viewer.exports.glb import check_image, write_glb
+from eigenfield.viewer.exports.guests import guests_files, refuse_guests, write_guests_page
 from eigenfield.viewer.exports.maps import write_maps
 from eigenfield.viewer.exports.obj import refuse_obj, write_obj, write_obj_folder
-from eigenfield.viewer.exports.plain import plain_files, refuse_plain, write_plain_page
 from eigenfield.viewer.exports.quilt import quilt_of, write_quilt
 from eigenfield.viewer.page import write_page
 
 PICTURE_OPTIONS = {"resolution", "background", "weights", "filter", "textures", "samples", "renderer"}
 OPTIONS = {  # of each kind, beside the options of all
-    "html": {"title", "metres_per_unit", "at", "plain", "url"},
+    "html": {"title", "metres_per_unit", "at", "laboratory", "url"},
     "mp4": PICTURE_OPTIONS | {"path", "frames", "fps"},
     "png": PICTURE_OPTIONS | {"path", "frames"},
     "glb": {"at", "image", "draco", "metres_per_unit"},
@@ -70,7 +69,7 @@ def export(
         overwrite: Whether existing files, and folders that an export wrote, are replaced.
         progress: Reports each picture; by default a bar in a notebook.
         options: Of the kind (`OPTIONS`): fields of `RenderJob` for pictures; `path` and `frames` (`path_points`) and
-            `fps` of a flight; `title`, `metres_per_unit`, `at`, `plain` and `url` of a page (`write_plain_page`);
+            `fps` of a flight; `title`, `metres_per_unit`, `at`, `laboratory` and `url` of a page (`write_guests_page`);
             `at`, `image`, `draco` and `metres_per_unit` of a glb (`write_glb`); `quilt` (columns, rows), `spread`;
             `residual`.
 
@@ -94,8 +93,8 @@ def export(
     points = None
     if chosen in ("mp4", "png") or "path" in options:
         points = path_points(options.get("path", FLIGHT_DEFAULT_PATH), options.get("frames", FLIGHT_FRAMES))
-    if options.get("plain"):
-        refuse_plain(output, overwrite)
+    if chosen == "html" and not options.get("laboratory"):
+        refuse_guests(output, overwrite)
     _refuse(chosen, output, points, overwrite)
     if chosen == "glb" and not isinstance(scene, Scene) and output.exists() and output.samefile(scene):
         raise OptionError("output-kind", f"{output} is the scene itself", remedy="name another file")
@@ -109,14 +108,14 @@ def _write_app(
 ) -> tuple[Path, str]:  # fmt: skip
     """Write the page that opens files, with its samples; where, and what was written."""
     refuse_folder(output, overwrite)
-    samples = [
-        ("scene", encode_scene(replace(scene, residual=None)))
-        if isinstance(scene, Scene)
-        else (Path(scene).stem, without_residual(outline(scene)[1]))
-        for scene in scenes
-    ]
+    samples = []
+    for scene in scenes:
+        name = "scene" if isinstance(scene, Scene) else Path(scene).stem
+        loaded = as_scene(scene)
+        data = encode_scene(scene) if isinstance(scene, Scene) else Path(scene).read_bytes()
+        samples.append(Sample(name, without_residual(data), draw_thumbnail(loaded)))
     write_app(samples, output, overwrite=overwrite, progress=progress, **options)
-    offered = f", with {', '.join(name for name, _ in samples)} to choose from" if samples else ""
+    offered = f", with {', '.join(sample.name for sample in samples)} to choose from" if samples else ""
     return output, f"a page that opens files{offered}; put it on a web server"
 
 
@@ -140,12 +139,12 @@ def _write(
     scene = job.scene
     how: dict[str, Any] = {"overwrite": overwrite, "progress": progress}
     if kind == "html":
-        plain = {name: value for name, value in options.items() if name != "plain"}
-        if not options.get("plain"):
-            write_page(scene, output, overwrite=overwrite, **plain)
-            return output, f"{output.stat().st_size / 1e6:.1f} MB"
-        frame = write_plain_page(scene, output, overwrite=overwrite, **plain)
-        what = f"{output.stat().st_size / 1e6:.1f} MB, and {plain_files(output)[0].name}, its poster"
+        laboratory = options.pop("laboratory", False)
+        if laboratory:
+            write_page(scene, output, overwrite=overwrite, **options)
+            return output, f"{output.stat().st_size / 1e6:.1f} MB; guests get {output.name}?ui=plain"
+        frame = write_guests_page(scene, output, overwrite=overwrite, **options)
+        what = f"{output.stat().st_size / 1e6:.1f} MB, and {guests_files(output)[0].name}, its poster"
         return output, f"{what}; in a page of yours:\n{frame}"
     if kind == "glb":
         write_glb(scene, output, overwrite=overwrite, **options)
@@ -224,7 +223,7 @@ def _check(kind: str, output: Path, given: dict[str, Any]) -> None:
     check_scale(given.get("metres_per_unit"))
     if kind == "glb":
         check_image(given.get("image", "png"), given.get("draco", False))
-    if "url" in given and not given.get("plain"):
-        raise OptionError("unused-option", "--url is for --plain", remedy="leave it out")
+    if "url" in given and given.get("laboratory"):
+        raise OptionError("unused-option", "--url is not for --laboratory", remedy="leave it out")
     if not str(given.get("url", "https:")).startswith(("https:", "http:")):
         raise OptionError("url", f"{given['url']} is no address", remedy="give one that begins with https://")

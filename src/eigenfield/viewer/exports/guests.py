@@ -1,4 +1,4 @@
-"""A page for guests: title, picture and a few buttons, with a poster beside it for those who show a link to it."""
+"""A page for guests: picture, title and a few buttons, with a poster beside it for those who show a link to it."""
 
 from __future__ import annotations
 
@@ -10,19 +10,41 @@ from urllib.parse import quote, urljoin
 
 from PIL import Image
 
+from eigenfield.core.errors import OptionError
 from eigenfield.core.scene import Scene
 from eigenfield.gltf import encode_scene
 from eigenfield.rendering import RenderJob, at_resolution, viewpoint
 from eigenfield.runtime.files import atomic_files, refuse_existing
-from eigenfield.viewer.page import Plain, page_title, single_file
+from eigenfield.viewer.page import SAID_MAX_CHARACTERS, Guests, page_title, single_file
 
 POSTER_MAX_WIDTH_PX = 1200  # what those who show links recommend
 POSTER_QUALITY = 85
 GROUND = (21 / 255, 23 / 255, 26 / 255)  # of the page
+PICTURE_CHANNELS = (1, 3)
 FRAME_WIDTH_PX = 640  # of the snippet
 
 
-def plain_files(output: Path) -> list[Path]:
+def draw_poster(scene: Scene, max_width: int, at: tuple[float, float] | None = None) -> tuple[bytes, tuple[int, int]]:
+    """A view of a scene as a JPEG, and its width and height.
+
+    Args:
+        scene: The scene.
+        max_width: In pixels; no wider than the reference camera's photograph.
+        at: On the view plane. Default: the reference camera's.
+
+    Raises:
+        OptionError: `not-a-picture`; `viewpoint`: `at` is outside the array.
+    """
+    camera, weights = viewpoint(scene, at=at)
+    width = min(camera.width, max_width)
+    size = (width, max(1, round(width * camera.height / camera.width)))
+    drawn = io.BytesIO()
+    pixels = RenderJob(scene, background=GROUND).rgb(at_resolution(camera, size), weights)
+    Image.fromarray(pixels).save(drawn, "JPEG", quality=POSTER_QUALITY, optimize=True)
+    return drawn.getvalue(), size
+
+
+def guests_files(output: Path) -> list[Path]:
     """Poster and page.
 
     Args:
@@ -31,7 +53,7 @@ def plain_files(output: Path) -> list[Path]:
     return [output.with_suffix(".jpg"), output]
 
 
-def refuse_plain(output: Path, overwrite: bool) -> None:
+def refuse_guests(output: Path, overwrite: bool) -> None:
     """Before any work: check that page and poster may be written.
 
     Args:
@@ -41,11 +63,11 @@ def refuse_plain(output: Path, overwrite: bool) -> None:
     Raises:
         OutputError: One of them may not or cannot be written.
     """
-    for path in plain_files(output):
+    for path in guests_files(output):
         refuse_existing(path, overwrite)
 
 
-def write_plain_page(
+def write_guests_page(
     scene: Scene,
     output: Path,
     *,
@@ -55,7 +77,7 @@ def write_plain_page(
     url: str | None = None,
     overwrite: bool = False,
 ) -> str:
-    """Write NAME.html, whose panel and tools are one click away, and NAME.jpg, its poster; both or none.
+    """Write NAME.html, which shows the scene and has neither panel nor tools, and NAME.jpg, its poster; both or none.
 
     The page holds its poster too. The file is for crawlers, which follow addresses only and run no scripts.
 
@@ -65,7 +87,7 @@ def write_plain_page(
         title: Of the page. Default: `page_title`.
         metres_per_unit: Metres in one unit of the capture, for headsets.
         at: The first view, on the view plane. Default: the reference camera's.
-        url: Where the page will be. Default: its name, which most crawlers do not follow.
+        url: Where the page will be, for links to it. Default: its name, which most crawlers do not follow.
         overwrite: Whether existing files are replaced.
 
     Returns:
@@ -76,14 +98,15 @@ def write_plain_page(
         OutputError: `viewer-build`; a file cannot be written.
     """
     title = page_title(output) if title is None else title
-    camera, weights = viewpoint(scene, at=at)
-    width = min(camera.width, POSTER_MAX_WIDTH_PX)
-    size = (width, max(1, round(width * camera.height / camera.width)))
-    drawn = io.BytesIO()
-    pixels = RenderJob(scene, background=GROUND).rgb(at_resolution(camera, size), weights)
-    Image.fromarray(pixels).save(drawn, "JPEG", quality=POSTER_QUALITY, optimize=True)
-    poster = drawn.getvalue()
-    targets = plain_files(output)
+    channels = scene.appearance.channels
+    if channels not in PICTURE_CHANNELS:
+        raise OptionError(
+            "not-a-picture",
+            f"the scene has {channels} channels, which make no picture for guests",
+            remedy="say --laboratory, for a page that shows them",
+        )
+    poster, size = draw_poster(scene, POSTER_MAX_WIDTH_PX, at)
+    targets = guests_files(output)
     address = quote(output.name) if url is None else url
     tags = {
         "og:type": "website",
@@ -96,13 +119,14 @@ def write_plain_page(
         "twitter:card": "summary_large_image",
     }
     glb = encode_scene(replace(scene, residual=None))
-    plain = Plain(poster, tags)
-    page = single_file(glb, title=title, metres_per_unit=metres_per_unit, start=at, plain=plain)
+    guests = Guests(poster, tags, url)
+    page = single_file(glb, title=title, metres_per_unit=metres_per_unit, start=at, guests=guests)
     with atomic_files(targets, overwrite=overwrite) as (picture, document):
         picture.write_bytes(poster)
         document.write_bytes(page)
     height = round(FRAME_WIDTH_PX * size[1] / size[0])
+    said = html.escape(title[:SAID_MAX_CHARACTERS])
     return (
-        f'<iframe src="{html.escape(address)}" title="{html.escape(title)}" width="{FRAME_WIDTH_PX}" height="{height}" '
+        f'<iframe src="{html.escape(address)}" title="{said}" width="{FRAME_WIDTH_PX}" height="{height}" '
         'style="border: 0" allow="fullscreen; xr-spatial-tracking; gyroscope; accelerometer"></iframe>'
     )
