@@ -73,7 +73,7 @@ def score_words(scores: Mapping[str, Any]) -> list[str]:
         words.append(f"{image['held_out']['psnr']:.1f} dB between them (held out)")
     elif "psnr_luma_at_least" in between:
         words.append(f"at least about {between['psnr_luma_at_least']:.0f} dB between them")
-    elif between:
+    elif between.get("psnr") is not None:
         words.append(f"about {between['psnr']:.0f} dB between them")
     return words
 
