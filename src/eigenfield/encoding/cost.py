@@ -33,8 +33,8 @@ class StepCost(NamedTuple):
 
 STEPS = {  # by the name with which a step begins
     "motion": StepCost("cameras", 8, 3.6, stages={"features": 35, "matches": 25, "cameras": 40}),
-    "array": StepCost("depth", 15, 0.5, 35),
-    "relief": StepCost("surface", 8),
+    "array": StepCost("depth", 15, 0.5, 35, stages={"cameras and depth": 1}),
+    "relief": StepCost("surface", 8, stages={"second layer": 70, "what lies open": 30}),
     "surface": StepCost(
         "surface",
         30,
@@ -42,8 +42,8 @@ STEPS = {  # by the name with which a step begins
         stages={"features": 8, "first depth": 20, "depth": 25, "fusion": 6, "visibility": 26, "surface": 15},
     ),
     "proxy": StepCost("atlas", 12),
-    "trial": StepCost("trial of layers", 35),
-    "layers": StepCost("layers", 10, 22),
+    "trial": StepCost("trial of layers", 35, stages={"planes": 25, "sheets": 75}),
+    "layers": StepCost("layers", 10, 22, stages={"planes": 50, "sheets": 45, "what is seen": 5}),
     "mesh": StepCost("mesh", 5, 1),
     "maps": StepCost("texture maps", 5, 0.7, stages={"texture maps": 1}),
     "fit": StepCost("fit", 5, 1.5, stages={"fit luma": 1, "fit chroma": 1}),
