@@ -25,4 +25,4 @@ def test_the_number_of_eigen_textures_is_that_of_the_largest_basis(run, tmp_path
     path = tmp_path / "scene.glb"
     save(scene, path)
     assert json.loads(run("info", path, "--json").out)["textures"] == basis.count
-    assert f"eigen         {basis.count} textures of the basis that has most" in run("info", path).out
+    assert f"eigen textures: {basis.count} of " in run("info", path).out

@@ -361,7 +361,7 @@ def test_the_command_line(folders, tmp_path, run):
     for extra in (["--harmonise"], ["--harmonise", "affine", "--overwrite"]):
         code, _, err = run(*words, "-q", *extra)
         assert code == 0, err
-    assert "harmonised" in run("info", out).out
+    assert "exposures     gains of " in run("info", out).out
     facts = json.loads(run("info", "--json", out).out)
     assert facts["settings"]["harmonise"] == "affine" and facts["cameras"]["harmonised"]["gain"]["G"][0] < 0.9
     scene = ef.load(out)

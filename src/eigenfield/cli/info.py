@@ -171,8 +171,12 @@ def _plane_line(plane: dict[str, Any]) -> str:
 def _score_lines(scores: dict[str, Any]) -> list[str]:
     """Known figures among the scores, which a file may hold in any form."""
     image, lines = scores.get("image"), []
-    for key, title in (("encoded", "captured"), ("held_out", "held out")):
-        figures = image.get(key) if isinstance(image, dict) else None
+    views = image if isinstance(image, dict) else {}
+    for title, figures in (
+        ("captured", views.get("encoded")),
+        ("held out", views.get("held_out")),
+        ("texture maps", scores.get("uv")),
+    ):
         if isinstance(figures, dict):
             known = {name: figures[name] for name in ("psnr", "psnr_luma", "ssim", "cameras") if name in figures}
             lines.append(f"{title:14}{_short(known)}")
