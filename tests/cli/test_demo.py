@@ -27,7 +27,7 @@ def test_the_demo_leaves_what_it_promises(tmp_path):
     assert "step 1 of 5: drawing 81 photographs" in first.stderr and "contact-sheet.png" in first.stdout
     assert first.stdout.splitlines()[-1].endswith(str(Path("my demo") / "scene.html"))
     assert len(list((folder / "capture" / "images").iterdir())) == 81
-    assert {"capture", "scene.glb", "scene.html", "flight.mp4", "evaluation.json", "plots"} == {
+    assert {"capture", "scene.glb", "scene.html", "scene.jpg", "flight.mp4", "evaluation.json", "plots"} == {
         path.name for path in folder.iterdir()
     }
     figures = json.loads((folder / "evaluation.json").read_text())

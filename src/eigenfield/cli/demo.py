@@ -44,7 +44,7 @@ def command(output: Path, quiet: bool) -> None:
 
     DIR then holds capture/ (81 photographs of a scene that exists only here, transforms.json, the exact proxy.ply),
     scene.glb, flight.mp4, evaluation.json, plots/, of which contact-sheet.png shows photograph, drawing and error, and
-    scene.html, which opens in a browser. It takes about 3 minutes on two cores.
+    scene.html with its poster scene.jpg, which opens in a browser. It takes about 3 minutes on two cores.
     """  # fmt: skip
     from eigenfield.capture import open_capture
     from eigenfield.demo import DEMO_COLUMNS, DEMO_ROWS, draw_demo_capture
