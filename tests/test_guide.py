@@ -92,7 +92,7 @@ def prepare(page: str, place: Path) -> None:
         save_calibration(given, place / "model")
         (place / "model/sparse").rename(place / "sparse")
         write_array(place / "grid")
-        film(place / "walk.mp4")
+        film(place / "walk.mp4", 12)
         ef.export(ef.load(ROOT / "docs/scene.glb"), place / "quilt.png", kind="quilt", resolution=(96, 96))
     capture = write_capture(place / "capture")
     trimesh.load(capture / "proxy.ply", process=False).export(capture / "proxy.obj")
