@@ -121,7 +121,8 @@ def simplify_surface_rd(
         if count >= len(simpler.faces):  # more went than was asked for
             continue
         # The library's collapses are good for an open mesh after a few rounds, for a closed one at once
-        tried = [one for start in (whole, simpler) if (one := _simplified(start, int(count))) is not None]
+        starts = (whole,) if simpler is whole else (whole, simpler)
+        tried = [one for start in starts if (one := _simplified(start, int(count))) is not None]
         if not tried:
             break
         loss, simpler = min(((_loss(one, views, samples), one) for one in tried), key=lambda pair: pair[0])

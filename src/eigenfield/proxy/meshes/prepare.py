@@ -61,7 +61,8 @@ def prepare_proxy(
         simpler = None if simplified is None else simplified(mesh)
         if simpler is not None:
             log.warning("the mesh is simplified from %d to %d triangles", len(mesh.faces), len(simpler.faces))
-        return unwrap_mesh(simpler or mesh, triangles=triangles, cameras=cameras, progress=progress)
+            mesh = simpler
+        return unwrap_mesh(mesh, triangles=triangles, cameras=cameras, progress=progress)
     except ProxyError as error:
         raise ProxyError(error.code, error.message, path=path, remedy=error.remedy) from error
 
