@@ -44,6 +44,10 @@ class GridLayout:
         chosen = np.asarray(indices, np.int64)
         return replace(self, rows=self.rows[chosen], columns=self.columns[chosen], positions=self.positions[chosen])
 
+    def reduced(self, factor: int) -> GridLayout:
+        """The layout of photographs that are smaller by this factor."""
+        return self if self.focal is None else replace(self, focal=self.focal / factor)
+
     def transpose(self) -> GridLayout:
         """The same grid with rows for columns."""
         return replace(self, rows=self.columns, columns=self.rows, positions=self.positions[:, ::-1].copy())

@@ -6,13 +6,12 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.capture.layout import GridLayout
-from eigenfield.capture.photographs.decoded import decode_with_mask, size_on_disk
+from eigenfield.capture.photographs.decoded import PhotographSource, decode_with_mask, size_on_disk
 from eigenfield.capture.photographs.kinds import is_linear
 from eigenfield.capture.photographs.lens import Lens, remove_lens
 from eigenfield.capture.photographs.read import read_header
@@ -20,32 +19,6 @@ from eigenfield.core.brief import brief_repr
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError
 from eigenfield.core.observations import Photograph
-
-
-class PhotographSource(Protocol):
-    """What a photograph is read from, whether or not its camera is known: a `View` or a `Shot`.
-
-    Attributes:
-        name: Unique in the capture: the file's name, or its relative path where file names alone are not unique.
-        path: The picture's file.
-        lens: The distortion that is removed on reading; None where there is none.
-        mask: A mask's file, white where the photograph counts.
-        upright: Whether the photograph's EXIF orientation is applied on reading.
-        exposure: Factor of linear values before the sRGB curve; None where the file's values are coded.
-    """
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def path(self) -> Path: ...
-    @property
-    def lens(self) -> Lens | None: ...
-    @property
-    def mask(self) -> Path | None: ...
-    @property
-    def upright(self) -> bool: ...
-    @property
-    def exposure(self) -> float | None: ...
 
 
 class StillCapture(ABC):
@@ -95,6 +68,7 @@ class View:
         bounds: Nearest and farthest depth of the scene along z in world units, a hint, where the calibration states
             them.
         exposure: As of `PhotographSource`.
+        reduction: Likewise.
     """
 
     name: str
@@ -105,6 +79,7 @@ class View:
     upright: bool = True
     bounds: tuple[float, float] | None = None
     exposure: float | None = None
+    reduction: int = 1
 
     __repr__ = brief_repr
 
@@ -179,7 +154,7 @@ class LightField(StillCapture):
         """
         view = self.views[index]
         camera = view.camera
-        pixels, mask = decode_with_mask(view.path, view.upright, camera.width, camera.height, view.mask, view.exposure)
+        pixels, mask = decode_with_mask(view, camera.width, camera.height)
         if view.lens is not None:
             try:
                 pixels, mask = remove_lens(pixels, mask, camera.K, view.lens)
@@ -191,6 +166,19 @@ class LightField(StillCapture):
         """The same capture with another factor of linear values."""
         views = (replace(view, exposure=exposure) if is_linear(view.path) else view for view in self.views)
         return replace(self, views=tuple(views))
+
+    def reduced(self, factor: int) -> LightField:
+        """The same capture with smaller photographs: a pixel is the mean of `factor` by `factor` pixels."""
+        scale = np.diag([1 / factor, 1 / factor, 1.0])
+
+        def smaller(view: View) -> View:
+            camera = view.camera
+            width, height = camera.width // factor, camera.height // factor
+            small = replace(camera, K=scale @ camera.K, width=width, height=height)
+            return replace(view, camera=small, reduction=view.reduction * factor)
+
+        layout = None if self.layout is None else self.layout.reduced(factor)
+        return replace(self, views=tuple(smaller(view) for view in self.views), layout=layout)
 
     def subset(self, indices: Iterable[int]) -> LightField:
         """The same capture with some of its views, in the order given."""

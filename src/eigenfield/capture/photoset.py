@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from eigenfield.capture.layout import GridLayout
-from eigenfield.capture.lightfield import LightField, PhotographSource, StillCapture, View
-from eigenfield.capture.photographs.decoded import decode_with_mask
+from eigenfield.capture.lightfield import LightField, StillCapture, View
+from eigenfield.capture.photographs.decoded import PhotographSource, decode_with_mask
 from eigenfield.capture.photographs.kinds import is_linear
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.core.brief import brief_repr
@@ -29,6 +29,7 @@ class Shot:
         mask: As of `PhotographSource`.
         upright: Likewise.
         exposure: Likewise.
+        reduction: Likewise.
     """
 
     name: str
@@ -39,6 +40,7 @@ class Shot:
     mask: Path | None = None
     upright: bool = True
     exposure: float | None = None
+    reduction: int = 1
 
     @property
     def lens(self) -> Lens | None:
@@ -86,13 +88,23 @@ class PhotoSet(StillCapture):
         Raises CaptureError as `LightField.photograph` does.
         """
         shot = self.shots[index]
-        size = shot.width, shot.height
-        return Photograph.of(*decode_with_mask(shot.path, shot.upright, *size, shot.mask, shot.exposure))
+        return Photograph.of(*decode_with_mask(shot, shot.width, shot.height))
 
     def with_exposure(self, exposure: float) -> PhotoSet:
         """The same set with another factor of linear values."""
         shots = (replace(shot, exposure=exposure) if is_linear(shot.path) else shot for shot in self.shots)
         return replace(self, shots=tuple(shots))
+
+    def reduced(self, factor: int) -> PhotoSet:
+        """The same set with smaller photographs: a pixel is the mean of `factor` by `factor` pixels."""
+
+        def smaller(shot: Shot) -> Shot:
+            focal = None if shot.focal is None else shot.focal / factor
+            width, height = shot.width // factor, shot.height // factor
+            return replace(shot, width=width, height=height, focal=focal, reduction=shot.reduction * factor)
+
+        layout = None if self.layout is None else self.layout.reduced(factor)
+        return replace(self, shots=tuple(smaller(shot) for shot in self.shots), layout=layout)
 
     def subset(self, indices: Iterable[int]) -> PhotoSet:
         """The same set with some of its shots, in the order given."""
@@ -112,7 +124,16 @@ class PhotoSet(StillCapture):
         """
         lenses = [None] * len(self.shots) if lenses is None else lenses
         views = tuple(
-            View(shot.name, shot.path, camera, lens, shot.mask, shot.upright, exposure=shot.exposure)
+            View(
+                shot.name,
+                shot.path,
+                camera,
+                lens,
+                shot.mask,
+                shot.upright,
+                exposure=shot.exposure,
+                reduction=shot.reduction,
+            )
             for shot, camera, lens in zip(self.shots, cameras, lenses, strict=True)
         )
         return LightField(self.root, views, (*self.problems, *problems), self.format, self.layout)

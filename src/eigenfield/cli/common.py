@@ -199,29 +199,37 @@ def first_names(names: list[str], most: int) -> str:
     return ", ".join(names[:most]) + more
 
 
-def reconstruct_capture(
-    capture: Path, place: dict[str, Any], work: Path, progress: Progress | None, quiet: bool,
-    choose: Callable[[Capture], Capture] | None = None, **settings: Any,
-) -> Reconstruction:  # fmt: skip
-    """Cameras and proxy of a capture, estimated where they are not given, with notes on what was found.
+def open_for_work(capture: Path, place: dict[str, Any], work: Path, quiet: bool) -> Capture:
+    """Photographs with or without cameras, with notes on what was found.
 
     Args:
         capture: The folder.
         place: Of `capture_options`.
         work: Folder that keeps finished stages.
-        progress: Reports each stage.
         quiet: Whether nothing is noted.
-        choose: Leaves photographs out, and refuses the capture, if need be, before the work.
-        settings: Of `reconstruct`.
     """
     from eigenfield.capture import open_any
-    from eigenfield.encoding.cost import STEPS
-    from eigenfield.reconstruction import reconstruct
 
     opened = open_any(capture, work=work / "frames", **place)
     note_all(opened.problems, quiet)
-    if choose is not None:
-        opened = choose(opened)
+    return opened
+
+
+def reconstruct_capture(
+    opened: Capture, work: Path, progress: Progress | None, quiet: bool, **settings: Any
+) -> Reconstruction:
+    """Cameras and proxy of a capture, estimated where they are not given, with notes on what was found.
+
+    Args:
+        opened: The photographs that take part.
+        work: Folder that keeps finished stages.
+        progress: Reports each stage.
+        quiet: Whether nothing is noted.
+        settings: Of `reconstruct`.
+    """
+    from eigenfield.encoding.cost import STEPS
+    from eigenfield.reconstruction import reconstruct
+
     made = reconstruct(opened, work=work, progress=progress, **settings)
     note_all(made.light_field.problems[len(opened.problems) :], quiet)
     for stage, took in made.seconds.items():

@@ -19,10 +19,12 @@ from eigenfield.cli.common import (
     common_options,
     note,
     note_all,
+    open_for_work,
     reconstruct_capture,
     reconstruction_options,
     worker_options,
 )
+from eigenfield.cli.draft import Window, draft_lines, draft_of
 from eigenfield.cli.field_options import field_options, from_fields
 from eigenfield.cli.leave_out import leave_out, leave_out_option
 from eigenfield.cli.progress import StepProgress, duration_range, progress_bars
@@ -52,7 +54,8 @@ def parse_target_size(context: click.Context, parameter: click.Parameter, value:
 
 
 GROUPS = {  # of options in the help, those of every day first; the empty one has what no other names
-    "Common options": ("output", "preset", "target_size", "proxy", "calibration", "grid", "without", "overwrite"),
+    "Common options": ("output", "preset", "target_size", "draft", "look", "proxy", "calibration", "grid", "without",
+                       "overwrite"),
     "What the capture is": (
         "format", "pattern", "frame", "frames", "masks", "reference", "metres_per_unit",
     ),
@@ -90,6 +93,8 @@ class _Grouped(click.Command):
 Examples:
   eigenfield encode photos/
   eigenfield encode photos/ -o scene.glb
+  eigenfield encode photos/ --draft
+  eigenfield encode photos/ --view
   eigenfield encode photos/ --grid 5x4 -o scene.glb
   eigenfield encode walk.mp4 --frames 60 -o scene.glb
   eigenfield encode photos/ --calibration sparse/0 -o scene.glb
@@ -111,7 +116,7 @@ Examples:
     "-o",
     type=PATH,
     metavar="FILE",
-    help="The .glb to write.  [default: the capture's name and .glb, in the current folder]",
+    help="The .glb to write.  [default: the capture's name and .glb, or .draft.glb, in the current folder]",
 )
 @capture_options
 @leave_out_option
@@ -131,6 +136,18 @@ Examples:
     help="Keep held-out photographs out of cameras and mesh, too. Where cameras are estimated, each then finds its own "
     "in the finished scene, and is left out if it cannot.",
 )
+@click.option(
+    "--draft",
+    is_flag=True,
+    help="Make a first look instead, in about half a minute: fewer and smaller photographs, no fit. What is asked of "
+    "quality and size is for the scene itself.",
+)
+@click.option(
+    "--view",
+    "look",
+    is_flag=True,
+    help="Look around in a draft meanwhile, in a browser. The scene takes its place when it is done.",
+)
 @click.option("--overwrite", is_flag=True, help="Replace the output if it exists.")
 @common_options
 def command(
@@ -140,6 +157,8 @@ def command(
     place: dict[str, Any],
     without: str | None,
     work: Path | None,
+    draft: bool,
+    look: bool,
     overwrite: bool,
     quiet: bool,
     blind: bool,
@@ -162,54 +181,64 @@ def command(
     from eigenfield.runtime.objects import find_objects
 
     started = time.monotonic()
-    output = default_output(capture) if output is None else output
+    output = default_output(capture, ".draft.glb" if draft else ".glb") if output is None else output
     refuse_output(output, overwrite)
     if proxy is not None:
         refuse_no_mesh(proxy)
     options = from_fields(EncodeOptions, settings)
     projected = options.resolved().fit == "none"
     if proxy is None:
-        settings = reconstruction_settings(options, settings, blind)
+        made_by = reconstruction_settings(options, settings, blind)
     else:
         unused = {} if projected else {"workers": workers, "cluster": cluster}
         refuse_unused({**settings, **unused}, blind)
-    with chosen_workers(workers, cluster) as reached, progress_bars(quiet) as progress:
-        for_maps = reached if projected else None
-        if proxy is not None:
-            scratch = work or (None if find_objects(output) else output.absolute().parent)
-            light_field = leave_out(_open_capture(capture, place, scratch, quiet), without, quiet)
-            announce(light_field, options, None, progress)
-            scene = encode(light_field, proxy, options, work=scratch, workers=for_maps, progress=progress)
-        else:
-            scratch = output.with_suffix(".work") if work is None else work
-
-            def choose(whole: Capture) -> Capture:
-                opened = leave_out(whole, without, quiet)
+        made_by = None
+    with Window(output.name, quiet) as window:
+        with chosen_workers(workers, cluster) as reached, progress_bars(quiet) as progress:
+            kept = work or (None if find_objects(output) else output.absolute().parent)
+            scratch = work or output.with_suffix(".work")
+            if made_by is None:
+                opened: Capture = leave_out(_open_capture(capture, place, kept, quiet), without, quiet)
+            else:
+                opened = leave_out(open_for_work(capture, place, scratch, quiet), without, quiet)
                 check_selection(opened, options)
-                check_settings(opened, ReconstructionSettings.of_arguments(settings))
-                announce(opened, options, settings, progress)
-                return opened
+                check_settings(opened, ReconstructionSettings.of_arguments(made_by))
+            first = draft_of(opened, proxy, options, made_by, progress, quiet) if draft or look else None
+            if first is not None and draft:
+                scene, lines = first, draft_lines
+            else:
+                announce(opened, options, made_by, progress)
+                if first is not None:
+                    window.show_draft(first, progress)
+                for_maps = reached if projected else None
+                if made_by is None:
+                    scene = encode(opened, proxy, options, work=kept, workers=for_maps, progress=progress)
+                else:
+                    made = reconstruct_capture(opened, scratch, progress, quiet, workers=reached, **made_by)
+                    log.info("%s", "\n".join(made.report.lines(made.light_field.names)))
+                    scene = encode(
+                        made.light_field, made.proxy, options, triangles=None, hold_out=made.hold_out, work=scratch,
+                        workers=for_maps, progress=progress,
+                    )  # fmt: skip
+                lines = last_lines
+            save(scene, output, **options.for_save, overwrite=overwrite, progress=progress)
+        log.info("%.0f s", time.monotonic() - started)
+        click.echo("\n".join(lines(output, scene)))
+        if look:
+            window.show(output)
+            window.wait()
 
-            made = reconstruct_capture(capture, place, scratch, progress, quiet, choose, workers=reached, **settings)
-            log.info("%s", "\n".join(made.report.lines(made.light_field.names)))
-            scene = encode(
-                made.light_field, made.proxy, options, triangles=None, hold_out=made.hold_out, work=scratch,
-                workers=for_maps, progress=progress,
-            )  # fmt: skip
-        save(scene, output, **options.for_save, overwrite=overwrite, progress=progress)
-    log.info("%.0f s", time.monotonic() - started)
-    click.echo("\n".join(last_lines(output, scene)))
 
-
-def default_output(capture: Path) -> Path:
+def default_output(capture: Path, ending: str = ".glb") -> Path:
     """The file of a capture whose output is not named: in the current folder.
 
     Args:
         capture: A folder, a file, or an address.
+        ending: Of its name.
     """
     named = capture if capture.name not in ("", "..") else capture.resolve()
     name = named.name if named.is_dir() else named.stem
-    return Path(f"{name or 'scene'}.glb")
+    return Path(f"{name or 'scene'}{ending}")
 
 
 def last_lines(output: Path, scene: Scene) -> list[str]:

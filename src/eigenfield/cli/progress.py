@@ -100,10 +100,16 @@ class StepProgress:
         if self._told is not None:
             seconds, since = self._told
             return duration(max(seconds - (time.monotonic() - since), 0)) + " left"
-        if self._rest is None or self._step not in self._rest.seconds:
+        rest = self.seconds_left()
+        if self._rest is None or rest is None:
             return ""
-        seconds = self._rest.left(self._worked())
-        return (duration_range(seconds) if self._rest.is_vague else duration(seconds)) + " left"
+        return (duration_range(rest) if self._rest.is_vague else duration(rest)) + " left"
+
+    def seconds_left(self) -> float | None:
+        """About how long the rest will take; None if nothing is known."""
+        if self._rest is None or self._step not in self._rest.seconds:
+            return None
+        return self._rest.left(self._worked())
 
     def _worked(self) -> float:
         """Seconds without compilation."""

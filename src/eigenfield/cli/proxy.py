@@ -16,6 +16,7 @@ from eigenfield.cli.common import (
     mesh_options,
     note,
     note_all,
+    open_for_work,
     reconstruct_capture,
 )
 from eigenfield.cli.leave_out import leave_out, leave_out_option
@@ -71,10 +72,8 @@ def command(
     refuse_existing(output, overwrite)
     work = work if work is not None else output.with_suffix(".work")
     with progress_bars(quiet) as progress:
-        made = reconstruct_capture(
-            capture, place, work, progress, quiet, lambda opened: leave_out(opened, without, quiet),
-            layers=1, **settings,  # a file holds no layers
-        )  # fmt: skip
+        opened = leave_out(open_for_work(capture, place, work, quiet), without, quiet)
+        made = reconstruct_capture(opened, work, progress, quiet, layers=1, **settings)  # a file holds no layers
     note_all(made.report.lines(made.light_field.names), quiet)
     if made.calibration is not None:
         cameras = output.with_suffix(".cameras")

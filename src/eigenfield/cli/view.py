@@ -61,12 +61,12 @@ def command(
             note("Ctrl-C ends it", quiet)
             if not no_browser and not webbrowser.open(server.address):
                 note("no browser was found: open the address in one", quiet)
-            _wait()
+            wait_for_end()
         except KeyboardInterrupt:
             note("stopped", quiet)
 
 
-def _wait() -> None:
+def wait_for_end() -> None:
     """Until Ctrl-C, or SIGTERM, which main turns into the same."""
     forever = threading.Event()
     while not forever.wait(1.0):  # in steps: on Windows a wait without end cannot be interrupted

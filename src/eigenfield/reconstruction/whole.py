@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from eigenfield.calibration import structure_from_motion, triangulate_points
 from eigenfield.capture import Capture, LightField, PhotoSet
-from eigenfield.capture.lightfield import PhotographSource
+from eigenfield.capture.photographs.decoded import PhotographSource
 from eigenfield.capture.survey import refuse_one_place
 from eigenfield.capture.writers.save import save_calibration
 from eigenfield.core.arguments import checked

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -47,7 +48,11 @@ Manifest = Mapping[str, Callable[[], Content]]
 
 
 def make_manifest(
-    glb: bytes, title: str, photographs: Photographs | None = None, metres_per_unit: float | None = None
+    glb: bytes,
+    title: str,
+    photographs: Photographs | None = None,
+    metres_per_unit: float | None = None,
+    seconds_left: Callable[[], float | None] | None = None,
 ) -> Manifest:
     """The page, its files, the scene, and a picture for each photograph: path to what makes the content.
 
@@ -58,6 +63,8 @@ def make_manifest(
         title: Of the page.
         photographs: Of the scene's cameras.
         metres_per_unit: Metres in one unit of the capture, for headsets.
+        seconds_left: The scene is a draft: about when the whole scene takes its place, None where that is not known.
+            The page asks for it, and opens anew where there is no such answer any longer.
 
     Raises:
         OutputError: `viewer-build`: the page was not built.
@@ -67,10 +74,14 @@ def make_manifest(
         config["metresPerUnit"] = metres_per_unit
     if photographs is not None:
         config["photographs"] = {name: f"photographs/{index}" for index, name in photographs.names.items()}
+    if seconds_left is not None:
+        config["draft"] = "draft"
     fixed = {f"/{name}": Content.of(type, static_file(name)) for name, type in STATIC_TYPES.items()}
     fixed["/"] = Content.of("text/html; charset=utf-8", page_html(config))
     fixed["/scene.glb"] = Content.of("model/gltf-binary", glb)
     manifest: dict[str, Callable[[], Content]] = {path: _answer_fixed(content) for path, content in fixed.items()}
+    if seconds_left is not None:
+        manifest["/draft"] = _answer_seconds(seconds_left)
     if photographs is not None:
         for index in photographs.names:
             manifest[f"/photographs/{index}"] = _answer_photograph(photographs, index)
@@ -83,3 +94,7 @@ def _answer_fixed(content: Content) -> Callable[[], Content]:
 
 def _answer_photograph(photographs: Photographs, index: int) -> Callable[[], Content]:
     return lambda: Content.of("image/png", photographs.png(index))
+
+
+def _answer_seconds(seconds_left: Callable[[], float | None]) -> Callable[[], Content]:
+    return lambda: Content.of("application/json", json.dumps({"seconds": seconds_left()}).encode())

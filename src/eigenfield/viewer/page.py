@@ -50,7 +50,8 @@ def page_html(config: Mapping[str, Any], head: str = ICON_ELEMENT) -> bytes:
 
     Args:
         config: JSON object, all keys optional: title, scene (URL), bytes, embedded, photographs (camera name to URL),
-            metresPerUnit, version, start (X, Y), ui, url, samples (name, url, bytes, picture each), worker (URL).
+            metresPerUnit, version, start (X, Y), ui, url, samples (name, url, bytes, picture each), worker (URL), draft
+            (URL that says when the whole scene comes).
         head: Elements in place of the page's icon, which is none.
 
     Raises:

@@ -29,6 +29,7 @@ export interface Config {
   poster: string | null; // URL of a picture that is shown until the scene is there
   ownView: boolean; // the address names no view: the page may show its first one as it likes
   samples: readonly Sample[]; // which a page without a scene offers
+  draft: string | null; // URL that says when the whole scene comes: this one is a draft
   worker: string | null; // URL of the service worker that keeps the page for times without a network
   memory: number | null; // GPU bytes the page may use; null: by the device
 }
@@ -77,6 +78,7 @@ export function readConfig(page: Document, address: URL): Config {
         }]
         : [],
     ),
+    draft: text("draft"),
     worker: text("worker"),
     memory: megabytes > 0 && Number.isFinite(megabytes) ? megabytes * 1e6 : null,
   };

@@ -6,6 +6,7 @@ import { readConfig, type Ui } from "./config";
 import { confine, leadElsewhere } from "./confine";
 import { createDivider } from "./divider";
 import { button, element, ICONS } from "./dom";
+import { createDraft } from "./draft";
 import { takeFiles } from "./files";
 import { createHelp } from "./help";
 import { listenToGamepads, type Gamepads } from "./input-gamepad";
@@ -70,6 +71,7 @@ function start(): void {
   const divider = createDivider(viewer);
   const help = createHelp(config.version);
   const headset = createHeadset(viewer, () => update());
+  const draft = createDraft(viewer, headset.presenting);
   const tilt = createTilt(viewer, () => update());
 
   const showPanel = (shown: boolean): void => {
@@ -104,7 +106,7 @@ function start(): void {
     showPanel(ui === "full" && !matchMedia(SMALL).matches);
   };
   const poster = takePoster(document, config.poster);
-  stageArea.append(...(poster ? [poster] : []), divider.root, ...overlays.roots, share.said, map.root, tools);
+  stageArea.append(...(poster ? [poster] : []), divider.root, ...overlays.roots, draft, share.said, map.root, tools);
   document.body.append(stageArea, panel.root, help.root, chooser.root);
 
   const update = (): void => {

@@ -128,7 +128,7 @@ def extract_features_of(shot: Shot, options: FeatureOptions) -> Features:
     Raises:
         CaptureError: As `decode`.
     """
-    pixels, mask = decode_with_mask(shot.path, shot.upright, shot.width, shot.height, shot.mask, shot.exposure)
+    pixels, mask = decode_with_mask(shot, shot.width, shot.height)
     height, width = pixels.shape[:2]
     scale = min(1.0, options.max_side / max(width, height))
     size = max(1, round(width * scale)), max(1, round(height * scale))

@@ -71,7 +71,17 @@ def triangulate_points(light_field: LightField, *, progress: Progress | None = N
     views = np.linspace(0, len(light_field) - 1, count).astype(np.int64).tolist()
     cameras = [light_field.views[index].camera for index in views]
     shots = [
-        Shot(view.name, view.path, view.camera.width, view.camera.height, None, view.mask, view.upright)
+        Shot(
+            view.name,
+            view.path,
+            view.camera.width,
+            view.camera.height,
+            None,
+            view.mask,
+            view.upright,
+            view.exposure,
+            view.reduction,
+        )
         for view in (light_field.views[index] for index in views)
     ]
     photos = PhotoSet(light_field.root, tuple(shots), None, (), "folder")

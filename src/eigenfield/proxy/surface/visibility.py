@@ -44,6 +44,7 @@ class VisibilityTuning:
     Attributes:
         max_pixels: Pixels of all depth maps together that are merged, approximately.
         max_vertices: Vertices that they are merged into, at most.
+        pixels_per_vertex: And at most one for this many pixels.
         cell_growth_power: How fast cells grow until few enough vertices remain.
         behind_noises: How far behind its vertex a line of sight votes for a full tetrahedron, in units of the noise.
         face_weight: Cost of a face of the worst shape, in lines of sight.
@@ -60,6 +61,7 @@ class VisibilityTuning:
 
     max_pixels: int = 800_000
     max_vertices: int = 100_000
+    pixels_per_vertex: int = 16
     cell_growth_power: float = 0.4
     behind_noises: float = 3.0
     face_weight: float = 1.0
@@ -162,10 +164,11 @@ def _merge_pixels(
     parts = parallel_map(lambda view: _pixel_points(stack, view, step), range(len(views)))
     positions, spacing = np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
     number = np.repeat(np.arange(len(views)), [len(part[0]) for part in parts])
-    factor = float(step)
+    factor, pixels = float(step), len(stack.inverse_depth)
+    most = min(VISIBILITY_TUNING.max_vertices, pixels // VISIBILITY_TUNING.pixels_per_vertex)
     while True:
         order, starts, _ = sort_cells(positions, spacing, factor)
-        excess = len(starts) / VISIBILITY_TUNING.max_vertices
+        excess = len(starts) / most
         if excess <= 1:
             break
         factor *= max(1.05, excess**VISIBILITY_TUNING.cell_growth_power)

@@ -1,0 +1,154 @@
+"""A draft: a scene to look around in within half a minute, from fewer and smaller photographs, without a fit.
+
+Cameras and surface come from the same stages as those of the whole scene, and the textures are the paper's.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from eigenfield.capture import Capture, LightField
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.progress import Progress
+from eigenfield.core.proxy import Proxy
+from eigenfield.core.scene import Scene
+from eigenfield.encoding.options import EncodeOptions
+from eigenfield.proxy.surface.neighbours import spread_views
+from eigenfield.reconstruction import reconstruct
+from eigenfield.reconstruction.unseen import held_out_names, without
+
+log = logging.getLogger("eigenfield.encode")
+
+
+@dataclass(frozen=True)
+class DraftTuning:
+    """Constants of `make_draft`, chosen on the cube and Antinous.
+
+    Attributes:
+        max_views: Photographs, at most.
+        surface_pixels: Of all photographs together, from which cameras and surface are made.
+        texture_pixels: Of all photographs together, from which the textures are made.
+        min_side: Photographs are not made smaller than this, pixels.
+        triangles: Of the mesh, at most.
+        textures: Eigen textures.
+        atlas: Side of the atlas, at most, texels.
+        worth_seconds: A scene that takes no longer is made at once.
+    """
+
+    max_views: int = 30
+    surface_pixels: int = 800_000
+    texture_pixels: int = 4_000_000
+    min_side: int = 120
+    triangles: int = 5000
+    textures: int = 8
+    atlas: int = 1024
+    worth_seconds: float = 40.0
+
+
+DRAFT_TUNING = DraftTuning()
+DRAFT_KEY = "draft"  # of a draft's settings: how many times smaller its photographs are, along one axis
+
+
+def make_draft(
+    capture: Capture,
+    proxy: str | os.PathLike[str] | Mesh | Proxy | None,
+    options: EncodeOptions,
+    settings: Mapping[str, Any],
+    progress: Progress | None = None,
+) -> Scene:
+    """A scene without a fit from some of the photographs, made smaller, without scores.
+
+    Its cameras have the photographs' own size.
+
+    Args:
+        capture: Photographs, with cameras if there is a proxy.
+        proxy: As of `encode`; None: it is made.
+        options: Of the whole scene, of which the draft takes what is not about quality and size.
+        settings: Arguments of `reconstruct` for the whole scene.
+        progress: Called within stages.
+
+    Raises:
+        CaptureError, ProxyError, OptionError: As `encode`, of which some may not apply to the whole scene.
+    """
+    from eigenfield.encoding import encode
+
+    chosen = _some_views(capture, options)
+    if proxy is None:
+        factor = _factor(chosen, DRAFT_TUNING.surface_pixels)
+        kept = {name: value for name, value in settings.items() if name not in ("blind", "hold_out", "workers")}
+        few = {"surface": "auto" if settings["surface"] == "layers" else settings["surface"], "layers": 1}
+        few["triangles"] = min(DRAFT_TUNING.triangles, settings["triangles"])
+        made = reconstruct(chosen.reduced(factor), progress=_within(progress), **{**kept, **few})
+        proxy, chosen = made.proxy, _as_photographed(made.light_field, chosen, factor)
+    assert isinstance(chosen, LightField)
+    factor = _factor(chosen, DRAFT_TUNING.texture_pixels)
+    small = chosen.reduced(factor)
+    reference = options.reference if options.reference in small.names else None
+    pixels = max(camera.width * camera.height for camera in small.cameras)
+    own = EncodeOptions(
+        fit="none",
+        textures=min(DRAFT_TUNING.textures, len(small) - 1),
+        atlas=min(DRAFT_TUNING.atlas, round(2 * np.sqrt(pixels))),
+        metres_per_unit=options.metres_per_unit,
+        reference=reference,
+    )
+    scene = encode(small, proxy, own, progress=_within(progress))
+    recorded = {**scene.settings["photographs"], "pixels": sum(width * height for width, height in chosen.sizes)}
+    return replace(
+        scene,
+        rig=replace(scene.rig, cameras=tuple(camera.to_float32() for camera in chosen.cameras)),
+        settings={**scene.settings, "photographs": recorded, DRAFT_KEY: factor},
+        scores={},
+    )
+
+
+def _some_views(capture: Capture, options: EncodeOptions) -> Capture:
+    """The photographs that are not held out, and of these as many as a draft takes: every so many rows and columns of a
+    grid, or spread over the cameras, or over their order."""
+    rule = options.hold_out
+    known = capture.light_field is not None or capture.layout is not None
+    shown = (
+        capture if rule is None or (rule == "odd" and not known) else without(capture, held_out_names(rule, capture))
+    )
+    count, most = len(shown), DRAFT_TUNING.max_views
+    if count <= most:
+        return shown
+    if shown.layout is not None:
+        step = int(np.ceil(np.sqrt(count / most)))
+        rows, columns = (np.unique(nodes)[::step] for nodes in (shown.layout.rows, shown.layout.columns))
+        on_both = np.isin(shown.layout.rows, rows) & np.isin(shown.layout.columns, columns)
+        return shown.subset(np.flatnonzero(on_both).tolist())
+    if shown.light_field is not None:
+        return shown.subset(spread_views(shown.light_field.cameras, most))
+    return shown.subset(np.linspace(0, count - 1, most).round().astype(int).tolist())
+
+
+def _factor(capture: Capture, pixels: int) -> int:
+    """By how much photographs are made smaller so that all together have about so many pixels."""
+    sizes = np.array(capture.sizes)
+    wanted = int(np.ceil(np.sqrt(sizes.prod(axis=1).sum() / pixels)))
+    return max(1, min(wanted, int(sizes.min()) // DRAFT_TUNING.min_side))
+
+
+def _as_photographed(made: LightField, capture: Capture, factor: int) -> LightField:
+    """A light field of photographs that were made smaller, at their own sizes."""
+    place = {name: index for index, name in enumerate(capture.names)}
+    whole = capture.subset([place[name] for name in made.names])
+    scale = np.diag([factor, factor, 1.0])
+    cameras = [
+        replace(view.camera, K=scale @ view.camera.K, width=width, height=height)
+        for view, (width, height) in zip(made.views, whole.sizes, strict=True)
+    ]
+    again = whole.with_cameras(cameras, [view.lens for view in made.views])
+    return replace(again, origin=made.origin, layout=whole.layout)
+
+
+def _within(progress: Progress | None) -> Progress | None:
+    """A progress that is not told of steps: a draft is one of them."""
+    return None if progress is None else lambda stage, done, total: progress(stage, done, total)
