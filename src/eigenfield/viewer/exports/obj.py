@@ -5,7 +5,7 @@ Axes are the .glb's: x right, y up, the array looking along -z. OBJ counts v upw
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -161,19 +161,20 @@ def _pictures(scene: Scene, count: int) -> Iterator[CodedPicture]:
     """PNG, scale and zero (C,), and weights (No,) of the first `count` eigen textures of each basis, as pictures of the
     whole atlas: codes as the scene has them where these are such pictures."""
     if not _has_plain_atlas(scene):
-        yield from parallel_stream(lambda added: _quantised(*added), eigen_maps(scene, count))
+        yield from parallel_stream(lambda item: _quantised(*item), eigen_maps(scene, count))
         return
     (plane,) = scene.appearance.planes
     for basis in plane.bases:
         yield from _codes_of(basis, plane.mean.shape[2], min(count, basis.count))
 
 
-def _quantised(added: NDArray[np.float32], weights: NDArray[np.float32]) -> CodedPicture:
-    """What an eigen texture adds (H, W, C), as a picture: a grey one where it adds the same to R, G and B."""
-    if all(np.array_equal(added[..., 0], added[..., channel]) for channel in range(1, added.shape[2])):
-        added = added[..., :1]
-    scale = np.full(added.shape[2], max(-float(added.min()), float(added.max())) / MAX_OFFSET_CODES or 1, np.float32)
-    codes = np.rint(added / scale[0] + np.float32(ZERO_CODE)).astype(np.uint8)
+def _quantised(make: Callable[[], NDArray[np.float32]], weights: NDArray[np.float32]) -> CodedPicture:
+    """An item of `eigen_maps` as a picture."""
+    added = make()
+    scale = np.full(len(added), max(-float(added.min()), float(added.max())) / MAX_OFFSET_CODES or 1, np.float32)
+    added /= scale[0]
+    added += ZERO_CODE
+    codes = np.stack([np.rint(channel).astype(np.uint8) for channel in added], axis=2)
     return png_bytes(codes), scale, np.full_like(scale, ZERO_CODE), weights
 
 
