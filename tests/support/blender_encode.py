@@ -156,10 +156,15 @@ for name, events in (("to the end", ["TIMER", "MOUSEMOVE", "TIMER", "TIMER"]), (
     results = [told.invoke(window, None), *(told.modal(window, SimpleNamespace(type=event)) for event in events)]
     said[name] = [window.said, told.reports, told.closed, [next(iter(result)) for result in results]]
 
-parts["encode"].start(bpy.context)
-job = Run.job
-bpy.ops.wm.read_homefile(use_empty=True)  # another file: the encode ends
-while job.is_running and time.monotonic() < until:
-    time.sleep(0.02)
-said["after load"] = [job.stopped, Run.job is None]
+for name, leave in (
+    ("after load", lambda: bpy.ops.wm.read_homefile(use_empty=True)),
+    ("after disabling", lambda: bpy.ops.preferences.addon_disable(module=NAME)),  # as where Blender is left
+):
+    bpy.context.scene.eigenfield.folder = str(folder)
+    parts["encode"].start(bpy.context)
+    job = Run.job
+    leave()
+    while job.is_running and time.monotonic() < until:
+        time.sleep(0.02)
+    said[name] = [job.stopped, job.is_running, job.error]
 (folder / "said.json").write_text(json.dumps(said, indent=1))

@@ -10,7 +10,7 @@ from .array import active_camera, entry_of, picture_size
 from .parallax import depth_range, good_factor, overlap_part, parallax_pixels, word_of
 
 SURFACES = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
-MAX_INSTANCES = 20000  # of scattered things the first, which take a fifth of a second
+MAX_INSTANCES = 5000  # of more the first, which take a quarter of a second
 known = {}  # the range of depths, by what it was found for; empty once something has moved
 
 
