@@ -94,23 +94,26 @@ def plan(known: Measured, instants: int, pixels: float, machines: int, cores: in
 
 
 def table(instants: int, cameras: int, width: int, height: int, machines: int, cores: int) -> str:
-    """The plan as Markdown, a row for each measured capture."""
+    """The plan as Markdown, a column for each measured capture."""
     pixels = float(cameras * width * height)
+    plans = [plan(measured(name), instants, pixels, machines, cores) for name in PIXELS]
+    rows = {
+        "an instant is larger": [f"{one.times_larger:.0f} times" for one in plans],
+        "tasks": [str(one.tasks) for one in plans],
+        "seconds a task": [f"{one.task_seconds:.0f}" for one in plans],
+        "memory a task": [f"{one.memory / 1e9:.0f} GB" for one in plans],
+        "read": [f"{one.read / 1e12:.1f} TB" for one in plans],
+        "written": [f"{one.written / 1e12:.2f} TB" for one in plans],
+        "storage gives": [f"{one.read / one.hours / 3.6e9:.0f} MB/s" for one in plans],
+        "hours": [f"{one.hours:.0f}" for one in plans],
+    }
     lines = [
         f"{instants} instants of {cameras} cameras of {width}x{height}, {machines} machines of {cores} cores:",
         "",
-        "| reckoned from | an instant is larger | tasks | seconds a task | memory a task | read | written "
-        "| storage gives | hours |",
-        "|---|---|---|---|---|---|---|---|---|",
+        f"| reckoned from | {' | '.join(PIXELS)} |",
+        "|---" * (1 + len(plans)) + "|",
+        *(f"| {name} | {' | '.join(cells)} |" for name, cells in rows.items()),
     ]
-    for name in PIXELS:
-        one = plan(measured(name), instants, pixels, machines, cores)
-        cells = [
-            name, f"{one.times_larger:.0f} times", one.tasks, f"{one.task_seconds:.0f}", f"{one.memory / 1e9:.0f} GB",
-            f"{one.read / 1e12:.1f} TB", f"{one.written / 1e12:.2f} TB", f"{one.read / one.hours / 3.6e9:.0f} MB/s",
-            f"{one.hours:.0f}",
-        ]  # fmt: skip
-        lines.append(f"| {' | '.join(map(str, cells))} |")
     return "\n".join(lines)
 
 

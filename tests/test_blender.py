@@ -9,6 +9,7 @@ import sys
 import tomllib
 import zipfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -31,7 +32,8 @@ def pack(path: Path, *version: str) -> Path:
 def test_the_zip_has_equal_bytes_and_the_version_of_a_release(tmp_path):
     first = pack(tmp_path / "a.zip")
     assert first.read_bytes() == pack(tmp_path / "b.zip").read_bytes()
-    names = {"LICENSE", "__init__.py", "array.py", "blender_manifest.toml", "imported.py"}
+    files = "__init__ array encode field imported panel parallax preferences program sight steps"
+    names = {"LICENSE", "blender_manifest.toml", *(f"{name}.py" for name in files.split())}
     with zipfile.ZipFile(pack(tmp_path / "c.zip", "1.2.3")) as archive:
         assert set(archive.namelist()) == names
         manifest = tomllib.loads(archive.read("blender_manifest.toml").decode())
@@ -94,14 +96,63 @@ def test_each_frame_of_an_animation_is_a_capture(folder):
     np.testing.assert_allclose(moved, (1, 0, 0), atol=1e-5)
 
 
+@pytest.fixture(scope="module")
+def program(folder) -> Path:
+    path = folder / "program"
+    path.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m eigenfield "$@"\n')
+    path.chmod(0o755)
+    return path
+
+
+@pytest.fixture(scope="module")
+def said(folder, program) -> dict[str, Any]:
+    """What the panel showed, in all states."""
+    blender("blender_encode.py", folder, program)
+    return json.loads((folder / "said.json").read_text(encoding="utf-8"))
+
+
 @pytest.mark.slow
-def test_what_is_encoded_is_drawn_in_blender_as_it_was_rendered(folder):
+def test_the_panel_says_what_a_spacing_promises(said):
+    """A cube from 8 to 10 units away, pictures of 800 x 600 with 800 pixels of focal length."""
+    near, wide = said["promises"]
+    assert (near["near"], near["far"]) == pytest.approx((8, 10))
+    assert (near["pixels"], wide["pixels"]) == pytest.approx((2, 20))
+    assert (near["word"], wide["word"]) == ("good", "fair") and near["good"] == pytest.approx(0.6)
+    assert said["kept"], "boxes were looked at anew while the spacing was changed"
+    assert (said["moved"]["near"], said["moved"]["far"]) == pytest.approx((9, 11))
+    assert said["empty"] is None and said["array"][0] == "[Show the cameras]"
+    shown = " ".join(said["array with a cube"])
+    assert shown.startswith("Parallax 8.08 px, 1.0% of the longer side 9 m to 11 m away good: views between")
+
+
+@pytest.mark.slow
+def test_the_panel_encodes_what_was_rendered(folder, said):
+    assert " ".join(said["not rendered"]).endswith("has no transforms.json: render the array first")
+    assert said["idle"] == said["stopped"] == ["[eigenfield.encode]"]
+    assert "no program does not run" in said["no program"]
+    assert said["running"][1:] == ["[Cancel]"] and "%, " in said["running"][0]
+    assert said["output"] == f"{folder}.glb" and ef.load(folder.with_suffix(".glb")).appearance.textures
+    shown = " ".join(said["done"])
+    assert f" {folder.name}.glb: " in shown and "smaller than the photographs" in shown
+    assert said["done"][-2:] == ["[eigenfield.open]", "[Import]"]
+    assert "proxy.obj: has no vertices" in said["error"]
+    assert " ".join(said["failed"][1:]).endswith("proxy.obj: has no vertices; export it again")
+    assert said["after load"] == said["after disabling"] == [True, False, None]
+
+
+@pytest.mark.slow
+def test_long_work_says_how_far_it_is_and_escape_stops_it(said):
+    lines = [f"Import: {part}, picture {number}. Esc stops it" for number, part in enumerate(("0%", "50%"))]
+    running = "RUNNING_MODAL"
+    assert said["to the end"] == [[*lines, None], ["no more"], True, [running, running, running, running, "CANCELLED"]]
+    assert said["escaped"] == [[lines[0], None], [], True, [running, running, "CANCELLED"]]
+
+
+@pytest.mark.slow
+def test_what_is_encoded_is_drawn_in_blender_as_it_was_rendered(folder, program):
     scene = ef.encode(folder, proxy=folder / "proxy.obj", textures=2)
     ef.save(scene, folder / "scene.glb")
     (folder / "broken.glb").write_bytes(b"glTF")
-    program = folder / "program"
-    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m eigenfield "$@"\n')
-    program.chmod(0o755)
     blender("blender_import.py", folder, program)
     scene = ef.load(folder / "scene.glb")
     listing = json.loads((folder / "scene.textures/eigenfield.json").read_text())

@@ -313,7 +313,7 @@ def test_a_table_shows_text_and_runs_nothing():
     assert len(lines) == 2 + len(texts) and "<" not in "".join(lines)
     for line in lines:
         left = re.sub(r"\\.", "", line)  # without what is escaped
-        assert left.count("|") == 10 and not set(left) & set("`[]")
+        assert left.count("|") == 11 and not set(left) & set("`[]")
 
 
 def test_what_a_page_shows_is_text():
@@ -323,6 +323,8 @@ def test_what_a_page_shows_is_text():
     }  # fmt: skip
     failed = {"name": "c", "error": "<script>"}
     assert "views between at least 24.6 dB of luma" in sheet_html("sizes", [record], instants=False)
+    dense = {**record, "between_psnr_luma": None, "between_psnr": 31.24}
+    assert "views between about 31.2 dB" in sheet_html("sizes", [dense], instants=False)
     for instants in (False, True):
         page = sheet_html("<i>", [record, failed], instants)
         assert "<b></b>" not in page and "<i>" not in page and "&lt;script&gt;" in page

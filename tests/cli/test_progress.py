@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import pty
 import re
@@ -10,6 +11,7 @@ import sys
 import threading
 from pathlib import Path
 
+import click
 import pytest
 
 from eigenfield.batches.run import _Bar
@@ -195,6 +197,38 @@ def test_compilation_is_said_once_if_it_takes_long(
             assert said.wait(10)
             shown.compiling(False)
     assert capsys.readouterr().out.splitlines() == ["  compiling for this processor, once: about a minute"]
+
+
+def test_another_program_reads_lines_of_json(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    clock = Clock(monkeypatch)
+    command = click.Command("it")
+    with click.Context(command) as context:
+        context.meta["progress"] = "json"
+        with progress_bars(quiet=False) as shown:
+            assert isinstance(shown, StepProgress)
+            for done in range(11):
+                shown("pictures", done, 10)
+                clock.now += 0.125
+            shown.plan({"array": 9, "fit": 30}, {"array": "depth"})
+            shown.begin("array")
+            clock.now += 9  # as was expected
+            shown.begin("fit")
+            shown._say_compiling()
+    lines = [json.loads(line) for line in capsys.readouterr().err.splitlines()]
+    assert [line["done"] for line in lines[:6]] == [0, 2, 4, 6, 8, 10]
+    assert {(line["step"], line["stage"], line["total"], line["part"]) for line in lines[:6]} == {
+        ("", "pictures", 10, None)
+    }
+    assert [(line["step"], line["stage"], line["note"] != "") for line in lines[6:]] == [
+        ("depth", "", False),
+        ("fit", "", False),
+        ("fit", "", True),
+    ]
+    assert lines[6]["part"] == pytest.approx(1.375 / (1.375 + 39), abs=0.001)
+    assert lines[7]["part"] == pytest.approx(10.375 / (10.375 + 30), abs=0.001)
+    assert lines[7]["left"] == "about 10 to 50 s left"
 
 
 def test_nothing_is_shown_if_quiet() -> None:

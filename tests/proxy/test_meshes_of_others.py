@@ -14,7 +14,7 @@ import pytest
 
 from eigenfield.core.errors import ProxyError
 from eigenfield.proxy import read_mesh
-from eigenfield.proxy.meshes.formats import RawMesh, table_of_formats
+from eigenfield.proxy.meshes.formats import RawMesh, list_of_formats
 from eigenfield.proxy.meshes.polygons import Polygons, triangulate_polygons
 from eigenfield.proxy.meshes.read import MESH_FORMATS, check_mesh
 from support.mesh_files import GltfFile, ply_file
@@ -382,10 +382,10 @@ def test_a_huge_concave_polygon_is_refused(tmp_path):
         read_mesh(written(tmp_path, "a.obj", text + "f " + " ".join(map(str, range(1, count + 2))) + "\n"))
 
 
-def test_the_page_has_the_table_of_formats():
-    table = table_of_formats(MESH_FORMATS)
+def test_the_page_has_the_list_of_formats():
+    formats = list_of_formats(MESH_FORMATS)
     page = Path(__file__).parents[2] / "docs/meshes.md"
-    assert table in page.read_text(encoding="utf-8"), f"docs/meshes.md needs this table:\n{table}"
+    assert formats in page.read_text(encoding="utf-8"), f"docs/meshes.md needs this list:\n{formats}"
 
 
 OBJ = "".join(f"v {x} {y} {z}\n" for x, y, z in POSITIONS) + "".join(

@@ -114,7 +114,8 @@ def test_eigen_textures_beside_the_obj_make_every_camera_s_map(scene, tmp_path):
     for name, weights in listing["weights"].items():
         texture = mean.astype(float)
         for weight, entry in zip(weights, listing["textures"], strict=True):
-            codes = np.round(pixels(tmp_path / "it" / entry["file"]) * 255)
+            codes = np.round(pixels(tmp_path / "it" / entry["file"]) * 255).reshape(*mean.shape[:2], -1)
+            assert codes.shape[2] == len(entry["scale"]) == len(entry["zero"])
             texture += weight * (codes - entry["zero"]) * entry["scale"]
         np.testing.assert_allclose(texture, texture_of(scene, name), atol=1e-5)
     places = np.array(listing["places"])
@@ -131,7 +132,8 @@ def test_eigen_textures_beside_the_obj_make_every_camera_s_map(scene, tmp_path):
 
 @pytest.mark.parametrize("kind", ["fitted", "layered"])
 def test_planes_become_eigen_textures_of_red_green_and_blue_beside_the_obj(fitted, tmp_path, kind):
-    """Luma and chroma, of sizes and regions of their own, as pictures of the whole atlas that sum to the same maps."""
+    """Luma and chroma, of sizes and regions of their own, as pictures of the whole atlas that sum to the same maps.
+    Those of luma are grey."""
     made = fitted if kind == "fitted" else layered_scene()
     exports.write_obj(made, tmp_path / "alone.obj")
     exports.write_obj_folder(made, tmp_path / "it")
@@ -144,10 +146,14 @@ def test_planes_become_eigen_textures_of_red_green_and_blue_beside_the_obj(fitte
     for name, weights in listing["weights"].items():
         texture, off = mean_texture(made).astype(float), 1e-5
         for weight, entry in zip(weights, listing["textures"], strict=True):
-            codes = np.round(pixels(tmp_path / "it" / entry["file"]) * 255)
+            codes = np.round(pixels(tmp_path / "it" / entry["file"]) * 255).reshape(*mean.shape[:2], -1)
+            assert codes.shape[2] == len(entry["scale"]) == len(entry["zero"])
             texture += weight * (codes - entry["zero"]) * entry["scale"]
             off += 0.501 * abs(weight) * max(entry["scale"])  # half a code
         np.testing.assert_allclose(texture, texture_of(made, name), atol=off)
+    grey = sum(basis.count for plane in made.appearance.planes[:1] for basis in plane.bases)
+    channels = [len(entry["scale"]) for entry in listing["textures"]]
+    assert channels == grey * [1] + (len(channels) - grey) * [3]
     exports.write_obj_folder(made, tmp_path / "one", textures=1)
     kept = sum(basis.count > 0 for basis in bases)
     assert len(list((tmp_path / "one").glob("eigen_*.png"))) == kept

@@ -1,13 +1,16 @@
-"""eigenfield in Blender: arrays of cameras are rendered for `eigenfield encode`, and its scenes are looked at."""
+"""eigenfield in Blender: arrays of cameras are rendered and encoded, and its scenes are looked at."""
 
-from . import array, imported
+from . import array, encode, imported, panel, preferences, program, sight
+
+PARTS = preferences, array, sight, encode, imported, panel
 
 
 def register():
-    array.register()
-    imported.register()
+    for part in PARTS:
+        part.register()
 
 
 def unregister():
-    imported.unregister()
-    array.unregister()
+    program.stop_all()  # also called where Blender is left
+    for part in reversed(PARTS):
+        part.unregister()

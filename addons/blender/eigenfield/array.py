@@ -7,6 +7,9 @@ from pathlib import Path
 import bpy
 from mathutils import Matrix
 
+from .program import RefusalError
+from .steps import Stepped
+
 MARK = "eigenfield_array"  # of the collection of an array
 
 
@@ -31,10 +34,6 @@ class EIGENFIELD_PG_array(bpy.types.PropertyGroup):
     animation: bpy.props.BoolProperty(
         name="Animation", description="Every frame of the scene, in folders of their own: frame_0001 and so on"
     )
-
-
-class RefusalError(Exception):
-    """What the user can correct, in one sentence."""
 
 
 def active_camera(scene):
@@ -121,7 +120,7 @@ def entry_of(camera, scene, depsgraph):
 
 
 def render_array(context):
-    """Render the array, picture by picture; yields how many are done, and of how many. What it sets is put back at the
+    """Render the array, picture by picture; yields what part is done, and a few words. What it sets is put back at the
     end, and transforms.json is written last: a folder without it is not finished."""
     scene, settings = context.scene, context.scene.eigenfield
     if settings.rows * settings.columns < 3:
@@ -142,7 +141,8 @@ def render_array(context):
                 (folder / "transforms.json").unlink(missing_ok=True)
                 entries = []
                 for camera in cameras:
-                    yield number * len(cameras) + len(entries), len(frames) * len(cameras)
+                    done, count = number * len(cameras) + len(entries), len(frames) * len(cameras)
+                    yield done / count, f"{done} of {count} pictures"
                     scene.camera = camera
                     picture = f"images/{camera.name.split('.')[0]}.png"
                     scene.render.filepath = str(folder / picture)
@@ -229,81 +229,14 @@ class EIGENFIELD_OT_hide_array(bpy.types.Operator):
         return {"FINISHED"}
 
 
-class EIGENFIELD_OT_render_array(bpy.types.Operator):
+class EIGENFIELD_OT_render_array(Stepped, bpy.types.Operator):
     bl_idname = "eigenfield.render_array"
     bl_label = "Render the array"
     bl_description = "Render all cameras, and write transforms.json and the mesh beside the pictures"
 
-    def execute(self, context):
-        try:
-            for _ in render_array(context):
-                pass
-        except (RefusalError, OSError, RuntimeError) as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        return self.finish(context)
-
-    def invoke(self, context, event):
-        self.steps = render_array(context)
-        self.timer = context.window_manager.event_timer_add(0.01, window=context.window)
-        context.window_manager.progress_begin(0, 1)
-        context.window_manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
-
-    def modal(self, context, event):
-        if event.type == "ESC":
-            self.steps.close()
-            return self.end(context, {"CANCELLED"})
-        if event.type != "TIMER":
-            return {"RUNNING_MODAL"}
-        try:
-            done, count = next(self.steps)
-        except StopIteration:
-            return self.end(context, self.finish(context))
-        except (RefusalError, OSError, RuntimeError) as error:
-            self.report({"ERROR"}, str(error))
-            return self.end(context, {"CANCELLED"})
-        context.window_manager.progress_update(done / count)
-        context.workspace.status_text_set(f"Camera array: {done} of {count} pictures. Esc stops after this one")
-        return {"RUNNING_MODAL"}
-
-    def end(self, context, result):
-        context.window_manager.event_timer_remove(self.timer)
-        context.window_manager.progress_end()
-        context.workspace.status_text_set(None)
-        return result
-
-    def finish(self, context):
-        folder = capture_folder(context.scene.eigenfield)
-        self.report({"INFO"}, f"Next: eigenfield encode {folder} --proxy {folder / 'proxy.obj'} -o scene.glb")
-        return {"FINISHED"}
-
-
-class EIGENFIELD_PT_array(bpy.types.Panel):
-    bl_label = "Camera Array"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Eigenfield"
-
-    def draw(self, context):
-        settings, layout = context.scene.eigenfield, self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        column = layout.column(align=True)
-        for name in ("rows", "columns", "spacing"):
-            column.prop(settings, name)
-        layout.prop(settings, "use_zero_plane")
-        line = layout.row()
-        line.enabled = settings.use_zero_plane
-        line.prop(settings, "distance")
-        shown = array_of(context.scene) is not None
-        layout.operator("eigenfield.show_array", text="Update the cameras" if shown else "Show the cameras")
-        if shown:
-            layout.operator("eigenfield.hide_array")
-        layout.separator()
-        layout.prop(settings, "folder")
-        layout.prop(settings, "animation")
-        layout.operator("eigenfield.render_array", icon="RENDER_STILL")
+    def steps(self, context):
+        yield from render_array(context)
+        self.report({"INFO"}, f"{capture_folder(context.scene.eigenfield)} is rendered: Encode makes a scene of it")
 
 
 CLASSES = (
@@ -311,7 +244,6 @@ CLASSES = (
     EIGENFIELD_OT_show_array,
     EIGENFIELD_OT_hide_array,
     EIGENFIELD_OT_render_array,
-    EIGENFIELD_PT_array,
 )
 
 

@@ -35,8 +35,8 @@ class BatchResult:
 
     Attributes:
         folder: Of the batch.
-        records: Of each capture in order: `name`, `bytes`, `psnr`, `held_out_psnr`, `between_psnr_luma`,
-            `seconds`, ..., or `name`, `code` and `error`, its one line.
+        records: Of each capture in order: `name`, `bytes`, `psnr`, `held_out_psnr`, `between_psnr_luma` or
+            `between_psnr`, `seconds`, ..., or `name`, `code` and `error`, its one line.
         taken_up: How many were finished before.
     """
 

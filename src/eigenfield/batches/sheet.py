@@ -60,6 +60,8 @@ def _card(record: Mapping[str, Any]) -> str:
         figures.append(f"held out {record['held_out_psnr']:.1f} dB")
     if record["between_psnr_luma"] is not None:
         figures.append(f"views between at least {record['between_psnr_luma']:.1f} dB of luma")
+    elif record.get("between_psnr") is not None:  # a finished one of an earlier version has none
+        figures.append(f"views between about {record['between_psnr']:.1f} dB")
     name = _text(record["name"])
     lines = "<br>".join(map(_text, record["warnings"]))
     warned = f"<details><summary>Warnings</summary>{lines}</details>" if lines else ""

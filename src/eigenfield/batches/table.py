@@ -23,6 +23,7 @@ COLUMNS = (  # of a record: key, heading, form
     ("ssim", "SSIM", "{:.4f}"),
     ("held_out_psnr", "held out", "{:.2f}"),
     ("between_psnr_luma", "between (luma, at least)", "{:.2f}"),
+    ("between_psnr", "between (about)", "{:.2f}"),
     ("seconds", "seconds", "{:.0f}"),
     ("error", "error", "{}"),
 )

@@ -84,11 +84,17 @@ def _set_traceback(context: click.Context, parameter: click.Parameter, value: bo
     context.meta["traceback"] = value  # of all contexts of this run
 
 
+def _set_progress(context: click.Context, parameter: click.Parameter, value: str) -> None:
+    context.meta["progress"] = value  # for `progress_bars`
+
+
 # They take effect before the verb runs and are not passed on, except `quiet`, which the verb gives to `progress_bars`.
 common_options = together(
     click.option("--threads", type=int, metavar="N", expose_value=False, callback=_set_threads, is_eager=True,
                  help="Threads to use.  [default: all processors]"),
     click.option("--quiet", "-q", is_flag=True, help="Show errors only: no progress bars, no notes."),
+    click.option("--progress", type=click.Choice(["bars", "json"]), default="bars", expose_value=False,
+                 callback=_set_progress, help="json: lines on standard error for another program to read."),
     click.option("--verbose", "-v", is_flag=True, expose_value=False, callback=_set_verbose, is_eager=True,
                  help="Say more about what is done."),
     click.option("--traceback", is_flag=True, expose_value=False, callback=_set_traceback, is_eager=True,

@@ -66,7 +66,7 @@ GROUPS = {  # of options in the help, those of every day first; the empty one ha
     "Estimated cameras and mesh": (
         "surface", "layers", "refine", "background", "primitives", "fit_spheres", "triangles",
     ),
-    "How it runs": ("work", "threads", "workers", "cluster", "quiet"),
+    "How it runs": ("work", "threads", "workers", "cluster", "quiet", "progress"),
     "Other options": (),
     "The paper's way: texture maps instead of a fit": (
         "fit", "textures", "uv_ssim", "align", "max_angle", "codec", "keep_maps",

@@ -1,7 +1,8 @@
-"""What a person sees of long work: bars on a terminal, lines elsewhere."""
+"""What a person sees of long work: bars on a terminal, lines elsewhere; and what another program reads of it."""
 
 from __future__ import annotations
 
+import json
 import math
 import sys
 import threading
@@ -16,6 +17,7 @@ from eigenfield.cli.time_left import RANGE_HIGH_RATIO, RANGE_LOW_RATIO, TimeLeft
 from eigenfield.core.progress import Progress
 
 LINE_SECONDS = 15.0  # between two lines about a stage, where there is no terminal
+JSON_SECONDS = 0.2  # likewise, for another program
 COMPILING_WORDS = "compiling for this processor, once"
 UNITS = {1: "s", 60: "min", 3600: "h"}  # of times, by their seconds
 COMPILING_SECONDS = 3.0  # after which it is said where there is no terminal
@@ -23,14 +25,17 @@ COMPILING_SECONDS = 3.0  # after which it is said where there is no terminal
 
 @contextmanager
 def progress_bars(quiet: bool) -> Iterator[Progress | None]:
-    """A Progress that says on standard error how far the work is; None if `quiet`."""
+    """A Progress that says on standard error how far the work is, with `--progress json` for another program; None if
+    `quiet`."""
     if quiet:
         yield None
         return
     from eigenfield.runtime.jit import watch_compilation
 
+    context = click.get_current_context(silent=True)
+    as_json = context is not None and context.meta.get("progress") == "json"
     with ExitStack() as stack:
-        shown = _Bars(stack) if sys.stderr.isatty() else _Lines()
+        shown = _JsonLines() if as_json else _Bars(stack) if sys.stderr.isatty() else _Lines()
         stack.enter_context(watch_compilation(shown.compiling))
         yield shown
 
@@ -45,6 +50,7 @@ class StepProgress:
         self._compiling_since: float | None = None
         self._compiled = 0.0  # seconds, which tell nothing about what is to come
         self._told: tuple[float, float] | None = None  # seconds that are left, and when that was said
+        self._began = time.monotonic()
 
     def plan(
         self,
@@ -110,6 +116,13 @@ class StepProgress:
         if self._rest is None or self._step not in self._rest.seconds:
             return None
         return self._rest.left(self._worked())
+
+    def part(self) -> float | None:
+        """How much of a planned run is done, 0 to 1, by time; None where nothing is planned."""
+        if self._rest is None or self._step not in self._rest.seconds:
+            return None
+        worked = self._worked() - self._began
+        return worked / max(worked + self._rest.left(self._worked()), 1e-9)
 
     def _worked(self) -> float:
         """Seconds without compilation."""
@@ -239,3 +252,34 @@ class _Lines(StepProgress):
     def _say_compiling(self) -> None:
         self._said_compiling = True
         click.echo(f"  {COMPILING_WORDS}: about a minute", err=True)
+
+
+class _JsonLines(_Lines):
+    """A line of JSON for each step, and a few a second for the stages within it (docs/usage.md)."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._count = 0, 0
+
+    def __call__(self, stage: str, done: int, total: int) -> None:
+        StepProgress.__call__(self, stage, done, total)
+        new = stage != self._stage
+        self._stage, self._count = stage, (done, total)
+        if new or done == total or time.monotonic() - self._said >= JSON_SECONDS:
+            self._say()
+
+    def show_step(self, heading: str) -> None:
+        self._stage, self._count = "", (0, 0)
+        self._say()
+
+    def _say_compiling(self) -> None:
+        self._said_compiling = True
+        self._say(COMPILING_WORDS)
+
+    def _say(self, note: str = "") -> None:
+        self._said = time.monotonic()
+        step = "" if self._step is None else self._words.get(self._step, self._step)
+        part, (done, total) = self.part(), self._count
+        line = {"step": step, "stage": self._stage, "done": done, "total": total}
+        line |= {"part": None if part is None else round(part, 4), "left": self.left(), "note": note}
+        click.echo(json.dumps(line), err=True)

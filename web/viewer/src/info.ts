@@ -71,10 +71,12 @@ const imageQuality = (info: SceneInfo): Rows => [
   ...between(info),
 ];
 
-/** The lower estimate of `encode`. */
+/** The estimate of `encode`: of few photographs a lower one, of luma. */
 function between({ scores }: SceneInfo): Rows {
-  const psnr = figure(scores, "between", "psnr_luma_at_least");
-  return psnr === null ? [] : [[words("betweenViews"), words("atLeastLuma", { value: shown(psnr, 1, "\u00a0dB") })]];
+  const [lower, psnr] = [figure(scores, "between", "psnr_luma_at_least"), figure(scores, "between", "psnr")];
+  const value = shown(lower ?? psnr, 1, "\u00a0dB");
+  if (lower === null && psnr === null) return [];
+  return [[words("betweenViews"), words(lower === null ? "aboutValue" : "atLeastLuma", { value })]];
 }
 
 function quality(info: SceneInfo): Rows {

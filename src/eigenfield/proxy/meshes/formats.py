@@ -66,16 +66,16 @@ class MeshFormat:
     tried: str
 
 
-def table_of_formats(formats: tuple[MeshFormat, ...]) -> str:
-    """The table of `docs/meshes.md`, in Markdown.
+def list_of_formats(formats: tuple[MeshFormat, ...]) -> str:
+    """The list of `docs/meshes.md`, in Markdown.
 
     Args:
-        formats: Its rows.
+        formats: Its parts.
     """
-    head = "| format | read | refused, by name | left out | tried with files of |\n|---|---|---|---|---|\n"
-    rows = [
-        f"| {each.name}: {', '.join(f'`{suffix}`' for suffix in each.suffixes)} | {each.reads} | {each.refuses} "
-        f"| {each.ignores} | {each.tried} |\n"
+    parts = [
+        f"### {each.name}: {', '.join(f'`{suffix}`' for suffix in each.suffixes)}\n\n"
+        f"- **Read**: {each.reads}\n- **Refused, by name**: {each.refuses}\n- **Left out**: {each.ignores}\n"
+        f"- **Tried with files of** {each.tried}\n"
         for each in formats
     ]
-    return head + "".join(rows)
+    return "\n".join(parts)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from eigenfield.rendering.software.kernels import TILE_TEXELS
 from eigenfield.rendering.software.resample_kernels import mark_read
@@ -85,6 +86,18 @@ def make_taps(fine: int, coarse: int) -> Taps:
     ends = np.minimum(starts + TILE_TEXELS, fine) - 1
     first, last = at[starts, 0].astype(np.int64) // TILE_TEXELS, at[ends, 3].astype(np.int64) // TILE_TEXELS
     return Taps(at, weight.astype(np.float32), first, last, base.astype(np.int64) - 1)
+
+
+def tap_matrix(fine: int, coarse: int) -> csr_array:
+    """(fine, coarse) float32: the taps along an axis, to enlarge whole pictures.
+
+    Args:
+        fine: As of `make_taps`.
+        coarse: Likewise.
+    """
+    taps = make_taps(fine, coarse)
+    at = taps.at.ravel(), np.arange(0, taps.at.size + 1, taps.at.shape[1])
+    return csr_array((taps.weight.ravel(), *at), (fine, coarse))
 
 
 def catmull_rom(f: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
-from eigenfield.core.appearance import Plane
+from eigenfield.core.appearance import Basis
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
 from eigenfield.imaging.png import png_bytes
 from eigenfield.rendering.checks import check_textures
 from eigenfield.rendering.render_jobs import refuse_attributes
 from eigenfield.rendering.software.kernels import TILE_TEXELS
+from eigenfield.rendering.software.resample import tap_matrix
 from eigenfield.rendering.software.sheets import make_stack
 from eigenfield.rendering.software.tiles import tile_shape
 from eigenfield.rendering.texture import atlas_composer
@@ -82,22 +84,28 @@ def alpha_added(scene: Scene) -> Callable[[NDArray[np.float32]], NDArray[np.floa
     return lambda picture: np.concatenate([np.broadcast_to(picture, (height, width, 3)), alpha], axis=2)
 
 
-def eigen_maps(scene: Scene, count: int) -> Iterator[tuple[NDArray[np.float32], NDArray[np.float32]]]:
-    """Every eigen texture of every plane: (H, W, C) that it adds to a drawn picture, and its (No,) weights.
+def eigen_maps(scene: Scene, count: int) -> Iterator[tuple[Callable[[], NDArray[np.float32]], NDArray[np.float32]]]:
+    """Every eigen texture of every plane: a function that makes what it adds to a drawn picture, and its (No,) weights.
+
+    That is (C, H, W) of the whole atlas, and (1, H, W) where it is the same in R, G and B.
 
     Args:
         scene: The scene.
         count: Number of eigen textures of each basis.
     """
-    kept = [[basis.truncate(count) for basis in plane.bases] for plane in scene.appearance.planes]
-    total, first, planes = sum(basis.count for bases in kept for basis in bases), 0, []
-    for plane, bases in zip(scene.appearance.planes, kept, strict=True):
-        alone = []
-        for basis in bases:
-            alone.append(replace(basis, weights=np.eye(total, basis.count, -first, np.float32)))
-            first += basis.count
-        planes.append(Plane(np.zeros_like(plane.mean), tuple(alone)))
-    compose = atlas_composer(replace(scene, appearance=replace(scene.appearance, planes=tuple(planes))))
-    weights = [row for bases in kept for basis in bases for row in basis.weights.T]
-    for number, row in enumerate(weights):
-        yield compose(ViewWeights.one(number), None), row
+    appearance = scene.appearance
+    to_rgb = np.eye(appearance.channels, dtype=np.float32) if appearance.to_rgb is None else appearance.to_rgb
+    for plane, own in zip(appearance.planes, appearance.channel_slices, strict=True):
+        share = to_rgb[:, own]
+        share = share[:1] if (share == share[0]).all() else share
+        for basis in plane.bases:
+            sides = zip(appearance.atlas, basis.size, basis.corner, basis.textures.shape[1:3], strict=True)
+            taps = [tap_matrix(fine, coarse)[:, first : first + extent] for fine, coarse, first, extent in sides]
+            for index in range(min(count, basis.count)):
+                yield partial(_enlarged, basis, index, share, taps), basis.weights[:, index]
+
+
+def _enlarged(basis: Basis, index: int, share: NDArray[np.float32], taps: Sequence[csr_array]) -> NDArray[np.float32]:
+    rows, columns = taps
+    mixed = np.moveaxis(basis.values(index, index + 1)[0] @ share.T, 2, 0)
+    return np.stack([(columns @ (rows @ channel).T).T for channel in mixed])

@@ -5,14 +5,14 @@ Axes are the .glb's: x right, y up, the array looking along -z. OBJ counts v upw
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.coding.pictures.quantise import basis_scale, texture_codes
+from eigenfield.coding.pictures.quantise import MAX_OFFSET_CODES, ZERO_CODE, basis_scale, texture_codes
 from eigenfield.core.appearance import Basis
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
@@ -24,11 +24,12 @@ from eigenfield.rendering import mean_texture
 from eigenfield.rendering.checks import check_textures
 from eigenfield.rendering.weights import encoded_places
 from eigenfield.runtime.files import atomic_files, refuse_existing
+from eigenfield.runtime.parallel import parallel_stream
 from eigenfield.viewer.exports.folder import atomic_folder, write_listing
 from eigenfield.viewer.exports.maps import alpha_added, eigen_maps
 from eigenfield.viewer.exports.names import file_name
 
-CodedPicture = tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]
+CodedPicture = tuple[bytes, NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]
 OBJ_SUM_NOTE = "texture = mean / 255 + sum over j of weight[camera][j] * (code[j] - zero[j]) * scale[j]"
 
 
@@ -114,9 +115,9 @@ def write_obj_folder(
         (part / "mesh.obj").write_bytes(_mesh(scene, "mesh.mtl"))
         entries: list[dict[str, Any]] = []
         weights: list[NDArray[np.float32]] = []
-        for picture, scale, zero, row in track(_codes(scene, count), "eigen textures", total, progress):
+        for picture, scale, zero, row in track(_pictures(scene, count), "eigen textures", total, progress):
             name = f"eigen_{len(entries):0{digits}d}.png"
-            (part / name).write_bytes(png_bytes(picture))
+            (part / name).write_bytes(picture)
             entries.append({"file": name, "scale": _numbers(scale), "zero": _numbers(zero)})
             weights.append(row)
         write_listing(
@@ -156,23 +157,32 @@ def _places(scene: Scene) -> dict[str, Any]:
     }
 
 
-def _codes(scene: Scene, count: int) -> Iterator[CodedPicture]:
-    """Codes (H, W, C), scale and zero (C,), and weights (No,) of the first `count` eigen textures of each basis, as
-    pictures of the whole atlas: codes as the scene has them where these are such pictures."""
+def _pictures(scene: Scene, count: int) -> Iterator[CodedPicture]:
+    """PNG, scale and zero (C,), and weights (No,) of the first `count` eigen textures of each basis, as pictures of the
+    whole atlas: codes as the scene has them where these are such pictures."""
     if not _has_plain_atlas(scene):
-        for picture, weights in eigen_maps(scene, count):
-            ones = np.ones((1, picture.shape[2]), np.float32)
-            yield from _codes_of(Basis(picture[None], ones, 0 * ones, weights[:, None]), picture.shape[2], 1)
+        yield from parallel_stream(lambda item: _quantised(*item), eigen_maps(scene, count))
         return
     (plane,) = scene.appearance.planes
     for basis in plane.bases:
         yield from _codes_of(basis, plane.mean.shape[2], min(count, basis.count))
 
 
+def _quantised(make: Callable[[], NDArray[np.float32]], weights: NDArray[np.float32]) -> CodedPicture:
+    """An item of `eigen_maps` as a picture."""
+    added = make()
+    scale = np.full(len(added), max(-float(added.min()), float(added.max())) / MAX_OFFSET_CODES or 1, np.float32)
+    added /= scale[0]
+    added += ZERO_CODE
+    codes = np.stack([np.rint(channel).astype(np.uint8) for channel in added], axis=2)
+    return png_bytes(codes), scale, np.full_like(scale, ZERO_CODE), weights
+
+
 def _codes_of(basis: Basis, channels: int, count: int) -> Iterator[CodedPicture]:
     scale, zero = basis_scale(basis, one_unit=channels == 3)
     for index in range(count):
-        yield texture_codes(basis, index, scale, zero), scale[index], zero[index], basis.weights[:, index]
+        picture = png_bytes(texture_codes(basis, index, scale, zero))
+        yield picture, scale[index], zero[index], basis.weights[:, index]
 
 
 def _has_plain_atlas(scene: Scene) -> bool:
