@@ -179,3 +179,31 @@ test("what goes wrong with textures before anyone listens is said, too", async (
   assert.match((await state(page)).message.text, /nothing left/);
   await close();
 });
+
+const DRAFT = { config: { draft: "draft" }, routes: { "/draft": { body: '{"seconds":130}', type: "application/json" } } };
+
+test("a draft says when the scene comes, which then stands at the same view", async () => {
+  const { page, server, close } = await openViewer(browser, "scene.glb", DRAFT);
+  await page.waitForFunction(() => /^A draft.*about 3 min/.test(document.querySelector(".draft").textContent));
+  await page.evaluate(() => window.eigenfield.goTo(0.5, -0.25));
+  await page.locator("canvas.view").press("ArrowRight"); // a view of one's own
+  const before = await state(page);
+  assert.notEqual(before.x, 0);
+  await page.route(`${server.url}/`, async (route) => { // from now on as the server answers when the scene is done
+    const answer = await route.fetch();
+    await route.fulfill({ response: answer, body: (await answer.text()).replace('"draft":"draft"', '"bytes":1') });
+  });
+  await page.route("**/draft", (route) => route.fulfill({ status: 404, body: "" }));
+  await page.waitForFunction(() => window.eigenfield && document.querySelector(".draft")?.textContent === "");
+  const after = await state(page);
+  for (const key of ["x", "y"]) assert.ok(Math.abs(after[key] - before[key]) < 0.1, `${key}: ${after[key]}`);
+  await close();
+});
+
+test("a draft whose command has ended says so and stays", async () => {
+  const { page, close } = await openViewer(browser, "scene.glb", DRAFT);
+  await page.route("**/draft", (route) => route.abort());
+  await page.waitForFunction(() => /has ended/.test(document.querySelector(".draft").textContent));
+  assert.equal((await state(page)).status, "ready");
+  await close();
+});
