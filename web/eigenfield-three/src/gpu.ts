@@ -157,7 +157,7 @@ export function untouched(gl: GL, work: () => void): void {
   switches.forEach((name) => gl.disable(name));
   work();
   switches.forEach((name) => gl.enable(name));
-  gl.useProgram(program);
+  gl.useProgram(program && gl.isProgram(program) ? program : null); // not if it was deleted meanwhile
   gl.bindVertexArray(vertices);
   gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, frame);
   gl.viewport(x, y, width, height);
