@@ -35,8 +35,8 @@ def coded_scene(weights_codec: str = "weights-1") -> Scene:
     return coded(scene(), GRID, weights_codec)
 
 
-def coded(plain: Scene, grid: np.ndarray, weights_codec: str = "weights-1") -> Scene:
-    """A scene of one plane and basis, whose cameras stand on `grid`, with everything coded that can be."""
+def coded(plain: Scene, grid: np.ndarray | None, weights_codec: str = "weights-1") -> Scene:
+    """A scene of one plane and basis, whose cameras stand on `grid` if any, with everything coded that can be."""
     views = coded_cameras(plain.rig.cameras, plain.proxy.mesh, grid)
     (plane,) = plain.appearance.planes
     (basis,) = plane.bases

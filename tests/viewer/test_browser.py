@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from support import coded_scenes, composed, pinholes, sheet_scenes, viewer_scenes
+from support import coded_scenes, composed, patched, pinholes, sheet_scenes, viewer_scenes
 from support.browsers import CHROMIUM, OTHERS, lacks
 
 WEB = Path(__file__).parents[2] / "web"
@@ -51,6 +51,7 @@ def folder(tmp_path_factory):
     coded_scenes.write(made)
     sheet_scenes.write(made)
     pinholes.write(made)
+    patched.write(made)
     return made
 
 
@@ -64,7 +65,7 @@ def run_node(path: Path, **surroundings: str) -> None:
 
 
 def test_there_are_browser_tests():
-    assert len(FILES) >= 21
+    assert len(FILES) >= 22
 
 
 @pytest.mark.parametrize("path", cases(plain=True))

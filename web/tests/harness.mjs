@@ -2,7 +2,7 @@
 //
 // Environment:
 //   EIGENFIELD_CHROMIUM   the browser; else /usr/bin/chromium, or `chromium` on the PATH
-//   EIGENFIELD_SCENES     the folder that `write` of viewer_scenes, composed, coded_scenes, sheet_scenes and pinholes in tests/ made
+//   EIGENFIELD_SCENES     the folder that `write` of the modules in tests/support made, as tests/viewer/test_browser.py calls them
 
 import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";

@@ -26,7 +26,8 @@ test("every catalogue has English's keys in its order, and a sentence for each c
   assert.deepEqual(Object.keys(others).sort(), ["de", "fr", "ja", "zh"]);
   for (const [language, texts] of Object.entries(others)) {
     const own = Object.keys(texts).filter((key) => key.startsWith("plugin."));
-    assert.deepEqual(own.sort(), [...codes, "plugin.limited"].sort(), language);
+    const limited = ["", ".count", ".bits", ".scale", ".mean"].map((kind) => `plugin.limited${kind}`);
+    assert.deepEqual(own.sort(), [...codes, ...limited].sort(), language);
     assert.deepEqual(Object.keys(texts).filter((key) => !key.startsWith("plugin.")), Object.keys(en), language);
   }
 });

@@ -314,10 +314,10 @@ test("a harmonised scene gives a camera its own exposure back", async () => {
 
 test("with little memory eigen textures become smaller, then fewer, and it says so", async () => {
   const { page, close } = await lab.open();
-  // seven layers of 66 kB, two weight maps of 133 kB, 18 kB of geometry, 66 kB for the one that comes, and what is
+  // seven layers of 66 kB, two weight maps of 133 kB, 18 kB of geometry, 66 kB for the picture that comes, and what is
   // composed: 175 kB with its mips, 131 kB for where its texels lie
   const seen = [];
-  for (const memory of [8 * 2 ** 20, 800_000, 440_000, 380_000]) {
+  for (const memory of [8 * 2 ** 20, 800_000, 500_000, 250_000]) {
     await load(page, "scene.glb", { memory });
     const state = await page.evaluate(() => {
       const { usable, scaleDown, limitation, gpuBytes, loaded } = window.field;
@@ -332,11 +332,12 @@ test("with little memory eigen textures become smaller, then fewer, and it says 
     await page.evaluate(() => window.field.dispose());
   }
   assert.deepEqual([seen[0].usable, seen[0].scaleDown, seen[0].limitation], [6, 1, null]);
-  assert.deepEqual(seen.slice(1).map(({ usable, scaleDown }) => [usable, scaleDown]), [[6, 2], [6, 4], [4, 4]]);
-  const why = "the scene needs 1.1 MB of graphics memory and 0.4 MB may be used.";
-  const small = "igen textures have 1/4 of their size, the mean texture has 1/2 of its size";
-  assert.equal(seen[2].limitation, `E${small}: ${why}`);
-  assert.equal(seen[3].limitation, `4 of 6 eigen textures are drawn, e${small}: ${why}`);
+  assert.deepEqual(seen.slice(1).map(({ usable, scaleDown }) => [usable, scaleDown]), [[6, 1.5], [6, 3], [4, 4.5]]);
+  const why = "the scene needs 1.1 MB of graphics memory and";
+  const small = (own, mean) =>
+    `igen textures have ${own} % of their width and height, the mean texture has ${mean} % of its width and height: ${why}`;
+  assert.equal(seen[2].limitation, `E${small(33, 50)} 0.5 MB may be used.`);
+  assert.equal(seen[3].limitation, `4 of 6 eigen textures are drawn, e${small(22, 33)} 0.3 MB may be used.`);
   await close();
 });
 
@@ -357,7 +358,7 @@ test("planes, regions and pictures of several textures: bytes, sizes and little 
   assert.equal(textures.length, 6);
   const reference = references.find(({ scene, count }) => scene === "layered.glb" && count === null);
   await page.evaluate(() => window.field.dispose());
-  await load(page, "layered.glb", { memory: 1_000_000 }); // of 1.2 MB: textures of half their size
+  await load(page, "layered.glb", { memory: 1_350_000 }); // of 1.4 MB
   assert.equal(await page.evaluate(() => window.field.scaleDown), 2);
   await drawReference(page, reference);
   const { mean: off } = difference(await canvasPixels(page), decodePng(readFileSync(scenePath(reference.file))));
@@ -416,7 +417,7 @@ test("textures of 10 bits in little memory", async () => {
   const { page, close } = await lab.open();
   await load(page, "coded.glb");
   const whole = await page.evaluate(() => window.field.gpuBytes);
-  for (const [part, down] of [[0.9, 2], [0.36, 4]]) {
+  for (const [part, down] of [[0.9, 1], [0.66, 1.5], [0.36, 3]]) {
     await page.evaluate(() => window.field.dispose());
     await load(page, "coded.glb", { memory: part * whole });
     const state = await page.evaluate(() => [window.field.gpuBytes, window.field.scaleDown, window.field.usable]);
@@ -436,7 +437,7 @@ test("a mean of half its size has its precision too", async () => {
   for (const name of ["layered.glb", "precise.glb", "precise.glb"]) {
     if (pictures.length === 2) await page.evaluate(() => delete window.ImageDecoder);
     await load(page, name, { memory: 800_000 });
-    assert.match(await page.evaluate(() => window.field.limitation), /the mean texture has 1\/2 of its size/);
+    assert.match(await page.evaluate(() => window.field.limitation), /the mean texture has 50 % of its width/);
     await drawReference(page, { ...reference, count: 0 });
     pictures.push(await canvasPixels(page));
   }

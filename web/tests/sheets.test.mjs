@@ -300,8 +300,8 @@ test("opacity is summed once; a still picture is composed once", async () => {
 
 test("opacity in little memory, in eight bits, and after a lost context", async () => {
   const { page, close } = await lab.open({ allowed: /context (lost|restored)/i });
-  await load(page, "sheets.glb", { memory: 500_000 });
-  assert.match(await page.evaluate(() => window.field.limitation), /the mean texture has 1\/2 of its size/);
+  await load(page, "sheets.glb", { memory: 600_000 });
+  assert.match(await page.evaluate(() => window.field.limitation), /the mean texture has 50 % of its width/);
   assert.ok(difference(await shot(page), expected()).mean < 8);
   await page.evaluate(() => window.field.dispose());
   await load(page, "sheets.glb");

@@ -127,6 +127,12 @@ test("the panel shows quality, bytes and memory; ?memory= keeps to so many megab
   assert.ok(gpuBytes <= 5e5 || now.loaded === 0, `${gpuBytes} bytes`);
   assert.ok((await page.locator(".panel").innerText()).includes(limitation));
   await close();
+  const german = await openViewer(browser, "scene.glb", { ...wide, query: "?memory=0.5&lang=de" });
+  await settled(german.page);
+  const parts = "Eigentexturen haben 33 % ihrer Breite und Höhe und die mittlere Textur hat 50 % ihrer Breite und Höhe";
+  const warnings = await german.page.locator(".panel .warning:visible").allInnerTexts();
+  assert.deepEqual(warnings, [`Der Grafikspeicher reicht nicht für alles: ${parts}.`]);
+  await german.close();
 });
 
 test("tilting the device moves the eye, from however it is held", async () => {

@@ -74,8 +74,8 @@ export const CODECS: { readonly [K in Kind as Names[K]]: Codec<K> } = {
   "av1-10bit-2": {
     ...eightBits("video/AV1"),
     bits: 10,
-    decode: (bytes, picture, size, down) => decodeTenBits(asAvif(bytes, picture.where), picture, size, down),
-    bitmaps: (bytes, picture, size, down) => decodeBitmaps(asAvif(bytes, picture.where), picture, size, down),
+    decode: (bytes, picture, size) => decodeTenBits(asAvif(bytes, picture.where), picture, size),
+    bitmaps: (bytes, picture, size) => decodeBitmaps(asAvif(bytes, picture.where), picture, size),
     needs: "av1-10bit-2",
   },
 };

@@ -17,6 +17,7 @@ import { makeMaps } from "./maps.js";
 import { FILTERS, VIEWS, makeMaterial, type Filter, type SurfaceMaterial } from "./material.js";
 import type { EigenfieldOptions } from "./options.js";
 import { opacityPart, partsOf } from "./parts.js";
+import type { Reduction } from "./memory.js";
 import { onPlane } from "./passes.js";
 import { SheetStack } from "./sheet-stack.js";
 import { eigenGain } from "./strength.js";
@@ -100,7 +101,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     this.encoded = info.cameras.filter((_, i) => !info.heldOut[i]);
     let row = 0;
     this.rowOf = Int32Array.from(scene.heldOut, (out) => (out ? -1 : row++));
-    this.textures = new Textures(parts, geometryBytes(mesh), options);
+    this.textures = new Textures(parts, mesh.geometry, options);
     const doubleSided = [mesh.material].flat().some((material) => material.side !== FrontSide);
     this.material = makeMaterial(doubleSided, scene.sheets !== null);
     this.stack = scene.sheets && new SheetStack(scene.sheets.faces, mesh.geometry, this.material);
@@ -133,12 +134,17 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     return this.textures.loaded;
   }
 
-  /** 1, 2 or 4: eigen textures on the GPU have the file's side over this. */
+  /** Eigen textures on the GPU have the file's side over this. */
   get scaleDown(): number {
     return this.textures.plan?.scaleDown ?? 1;
   }
 
-  /** A sentence where the device has no room for all of the scene. */
+  /** What the device has no room for. */
+  get reductions(): Reduction[] {
+    return this.textures.plan?.reductions ?? [];
+  }
+
+  /** The same as a sentence. */
   get limitation(): string | null {
     return this.textures.plan?.limitation ?? null;
   }
@@ -394,12 +400,6 @@ const place = new Vector3();
 function eyeOf(camera: Camera, mesh: Mesh): Vector {
   place.setFromMatrixPosition(camera.matrixWorld).applyMatrix4(toMesh.copy(mesh.matrixWorld).invert());
   return [place.x, place.y, place.z];
-}
-
-function geometryBytes(mesh: Mesh): number {
-  const { attributes, index } = mesh.geometry;
-  const own = Object.values(attributes).reduce((sum, attribute) => sum + attribute.array.byteLength, 0);
-  return own + (index?.array.byteLength ?? 0);
 }
 
 function isBitmap(image: unknown): boolean {

@@ -3,7 +3,7 @@
 
 import type { WebGLRenderer } from "three";
 import { SceneError } from "./errors.js";
-import type { DeviceLimits } from "./memory.js";
+import type { DeviceLimits, Format } from "./memory.js";
 
 type GL = WebGL2RenderingContext;
 
@@ -27,17 +27,22 @@ export function deviceLimits(gl: GL, memory: number): DeviceLimits {
   };
 }
 
-/** Layers of zeros of 8 bits, or of half-floats if `halves`; null if there is no memory. Texels are read one by one, or
- * if `between` linearly. */
+function formatOf(gl: GL, { components, halves }: Format): GLenum {
+  if (components > 2) return halves ? gl.RGBA16F : gl.RGBA8;
+  if (components > 1) return halves ? gl.RG16F : gl.RG8;
+  return halves ? gl.R16F : gl.R8;
+}
+
+/** Layers of zeros; null if there is no memory. Texels are read one by one, or if `between` linearly. */
 export function makeArray(
   gl: GL,
   [width, height]: [number, number],
   layers: number,
   between: boolean,
-  halves: boolean,
+  format: Format,
 ): WebGLTexture | null {
   return allocated(gl, gl.TEXTURE_2D_ARRAY, () => {
-    gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, halves ? gl.RGBA16F : gl.RGBA8, width, height, layers);
+    gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, formatOf(gl, format), width, height, layers);
     for (const edge of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) {
       gl.texParameteri(gl.TEXTURE_2D_ARRAY, edge, gl.CLAMP_TO_EDGE);
     }
@@ -47,19 +52,22 @@ export function makeArray(
   });
 }
 
-/** A picture into the first layer of an array of its size. */
-export function putPicture(gl: GL, array: WebGLTexture, picture: ImageBitmap): void {
+/** A picture of so many channels into the first layer of an array of its size. */
+export function putPicture(gl: GL, array: WebGLTexture, picture: ImageBitmap, channels: number): void {
   const { width, height } = picture;
+  const format = channels > 2 ? gl.RGBA : channels > 1 ? gl.RG : gl.RED;
   bound(gl, gl.TEXTURE_2D_ARRAY, array, () =>
-    gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, 0, 0, 0, width, height, 1, gl.RGBA, gl.UNSIGNED_BYTE, picture),
+    gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, 0, 0, 0, width, height, 1, format, gl.UNSIGNED_BYTE, picture),
   );
 }
 
-/** Room for a picture of R, G, B and A, or for codes of two bytes, to be read texel by texel; or null. */
-export function makeRoom(gl: GL, [width, height]: [number, number], codes = false): WebGLTexture | null {
+/** A texture to be read texel by texel; null if there is no memory. */
+export function makeRoom(gl: GL, [width, height]: [number, number], format: Format): WebGLTexture | null {
   return allocated(gl, gl.TEXTURE_2D, () => {
-    gl.texStorage2D(gl.TEXTURE_2D, 1, codes ? gl.RG8 : gl.RGBA8, width, height);
-    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+    gl.texStorage2D(gl.TEXTURE_2D, 1, formatOf(gl, format), width, height);
+    for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
+      gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
+    }
   });
 }
 
@@ -96,4 +104,62 @@ export function bound(gl: GL, target: GLenum, texture: WebGLTexture, work: () =>
   gl.bindTexture(target, before);
   saved.forEach(([name, value]) => gl.pixelStorei(name, value));
   if (buffer) gl.bindBuffer(gl.PIXEL_UNPACK_BUFFER, buffer);
+}
+
+/** A program of two shaders. */
+export function link(gl: GL, vertex: string, fragment: string): WebGLProgram {
+  const program = gl.createProgram();
+  for (const [type, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]] as const) {
+    const shader = gl.createShader(type);
+    if (!shader) continue; // the context is lost: nothing is drawn
+    gl.shaderSource(shader, source);
+    gl.compileShader(shader);
+    gl.attachShader(program, shader);
+    gl.deleteShader(shader); // with the program
+  }
+  gl.linkProgram(program);
+  return program;
+}
+
+/** Calls `work` with the texture bound to a unit, read by no sampler of others; null: nothing is. */
+export function onUnit(gl: GL, unit: number, texture: WebGLTexture | null, work: () => void): void {
+  if (!texture) {
+    work();
+    return;
+  }
+  const active = gl.getParameter(gl.ACTIVE_TEXTURE) as GLenum;
+  gl.activeTexture(gl.TEXTURE0 + unit);
+  const sampler = gl.getParameter(gl.SAMPLER_BINDING) as WebGLSampler | null;
+  gl.bindSampler(unit, null);
+  bound(gl, gl.TEXTURE_2D, texture, work);
+  gl.bindSampler(unit, sampler);
+  gl.activeTexture(active);
+}
+
+/** Calls `work`, which draws, with every test and blending off, and puts back what it sets. */
+export function untouched(gl: GL, work: () => void): void {
+  const switches = [
+    gl.BLEND,
+    gl.CULL_FACE,
+    gl.DEPTH_TEST,
+    gl.DITHER,
+    gl.RASTERIZER_DISCARD,
+    gl.SAMPLE_ALPHA_TO_COVERAGE,
+    gl.SAMPLE_COVERAGE,
+    gl.SCISSOR_TEST,
+    gl.STENCIL_TEST,
+  ].filter((name) => gl.isEnabled(name));
+  const program = gl.getParameter(gl.CURRENT_PROGRAM) as WebGLProgram | null;
+  const vertices = gl.getParameter(gl.VERTEX_ARRAY_BINDING) as WebGLVertexArrayObject | null;
+  const frame = gl.getParameter(gl.DRAW_FRAMEBUFFER_BINDING) as WebGLFramebuffer | null;
+  const [x = 0, y = 0, width = 0, height = 0] = gl.getParameter(gl.VIEWPORT) as Int32Array;
+  const [red, green, blue, alpha] = gl.getParameter(gl.COLOR_WRITEMASK) as boolean[];
+  switches.forEach((name) => gl.disable(name));
+  work();
+  switches.forEach((name) => gl.enable(name));
+  gl.useProgram(program && gl.isProgram(program) ? program : null); // not if it was deleted meanwhile
+  gl.bindVertexArray(vertices);
+  gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, frame);
+  gl.viewport(x, y, width, height);
+  gl.colorMask(red ?? true, green ?? true, blue ?? true, alpha ?? true);
 }

@@ -12,7 +12,7 @@ export type { CaptureCamera, Matrix3rows, SceneInfo, Vector, ViewPlane } from ".
 export type { Json, JsonObject } from "./json.js";
 export { loadEigenfield, type Loaded, type LoadOptions } from "./load.js";
 export type { Filter } from "./material.js";
-export { defaultMemory } from "./memory.js";
+export { defaultMemory, type Reduction } from "./memory.js";
 export type { ByteStream, EigenfieldOptions } from "./options.js";
 export { EigenfieldPlugin } from "./plugin.js";
 export { SHEETS } from "./sheet-stack.js";

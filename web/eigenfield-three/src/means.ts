@@ -13,10 +13,10 @@ export interface Mean {
 }
 
 /** Decodes a mean or an opacity. Whoever takes it closes it. */
-export async function decodeMean(still: Still, bytes: ViewBytes, down = 1): Promise<Mean> {
+export async function decodeMean(still: Still, bytes: ViewBytes): Promise<Mean> {
   const { mean, meanSize } = still;
   const precision = still.precision && (await decodePrecision(await bytes(still.precision.view), still.precision));
-  return { pieces: await mean.codec.decode(await bytes(mean.view), mean, meanSize, down), precision };
+  return { pieces: await mean.codec.decode(await bytes(mean.view), mean, meanSize), precision };
 }
 
 async function decodePrecision(bytes: ArrayBuffer, precision: Precision): Promise<ImageBitmap> {

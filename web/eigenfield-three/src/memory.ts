@@ -1,13 +1,16 @@
-// What fits on the GPU: smaller eigen textures first, then fewer.
+// What fits on the GPU: eigen textures of fewer bits first, then smaller ones, then a smaller mean too, then fewer.
 
 const MIPS = 4 / 3; // a texture with all its mips, relative to its largest level
-const CODES = 4; // bytes of a texel of codes of 8 bits
-const HALVES = 8; // bytes of a texel of half-floats, which hold codes of more bits too
-const WORDS = 2; // bytes of a code of more than 8 bits before it is packed
+const COMPOSED = bytesOf({ components: 4, halves: true }); // of a texel
+export const PICTURE: Format = { components: 4, halves: false }; // as browsers decode it
+const WORDS: Format = { components: 2, halves: false }; // the two bytes of a code of more than 8 bits
+const REDUCED: Format = { components: 2, halves: true }; // a value, and whether it is of a chart
 export const MAP_SIDE = 129; // nodes of a weight map along X and Y
 const MIB = 2 ** 20;
+const ROOM_SHARE = 1 / 64; // of the memory, for rows of a picture that are packed at once
+const ROOM_ROWS = 34; // at least: those of a row of the smallest textures, and two
 
-type Size = [number, number];
+export type Size = [number, number];
 
 export interface DeviceLimits {
   side: number; // MAX_TEXTURE_SIZE
@@ -27,9 +30,28 @@ export interface Needs {
 export interface Plan {
   meanDown: number; // the mean and what is composed have their side over this
   scaleDown: number; // eigen textures
+  halves: boolean; // codes of eigen textures have all their bits, else 8
   usable: number; // of each basis
   bytes: number;
+  reductions: Reduction[];
   limitation: string | null;
+}
+
+/** What a scene has less of than its file: eigen textures, their bits, their sides, or the mean's sides. */
+export type Reduction =
+  | { kind: "count"; part: number; whole: number }
+  | { kind: "bits" }
+  | { kind: "scale" | "mean"; percent: number };
+
+/** Numbers that a texel holds: up to four, each in 8 bits, or as a half-float. */
+export interface Format {
+  components: number;
+  halves: boolean;
+}
+
+/** Bytes of a texel. There is no format of three that can be drawn into everywhere. */
+export function bytesOf({ components, halves }: Format): number {
+  return (components > 2 ? 4 : components) * (halves ? 2 : 1);
 }
 
 /** GPU bytes that a scene may use where nobody says: by the device's own memory, less on phones and headsets. */
@@ -77,59 +99,88 @@ export function gridsOf(needs: { atlas: Size; means: { size: Size }[]; bases: { 
   return [...new Map(sizes.map((size) => [size.join(), size])).values()];
 }
 
-/** The largest choice within the limits. */
+type Choice = Pick<Plan, "meanDown" | "scaleDown" | "halves">;
+
+// In the order of what they cost a picture (decision 42). What is composed holds no more of eigen textures than its own
+// texels, so that larger ones would be in vain.
+const DOWNS = [1, 1.5, 2, 3, 4, 6, 8, 12, 16];
+const CHOICES: Choice[] = [
+  { meanDown: 1, scaleDown: 1, halves: true },
+  ...DOWNS.flatMap((meanDown) =>
+    [1, 1.5, 2].map((further) => ({ meanDown, scaleDown: further * meanDown, halves: false })),
+  ),
+];
+
+/** The best choice within the limits. */
 export function makePlan(needs: Needs, limits: DeviceLimits): Plan {
   const total = Math.max(0, ...needs.bases.map(({ count }) => count));
   const channels = Math.max(1, ...needs.bases.map((basis) => basis.channels));
   const most = Math.min(total, 4 * Math.floor(limits.layers / channels));
-  const meanDown = [1, 2, 4, 8, 16].find(
-    (down) => Math.max(...needs.atlas) / down <= limits.side && composing(needs, down) <= limits.memory / 2,
-  ) ?? 16;
-  const fixed = composing(needs, meanDown) + needs.geometry;
-  const bytes = (down: number, count: number): number => fixed + stored(needs, down, count);
-  const hasRoom = (down: number, count: number): boolean =>
-    bytes(down, count) + onTheWay(needs, down) <= limits.memory;
-  const largest = Math.max(1, ...needs.bases.flatMap(({ size }) => size));
-  const fits = (down: number): boolean => largest / down <= limits.side;
-  const scaleDown = [1, 2, 4].find((down) => fits(down) && hasRoom(down, most)) ?? 4;
-  let usable = fits(scaleDown) ? most : 0;
-  while (usable > 0 && !hasRoom(scaleDown, usable)) usable--;
-  const plan = { meanDown, scaleDown, usable, bytes: bytes(scaleDown, usable) };
-  return { ...plan, limitation: sentence(plan, total, needs, limits) };
+  const bytes = (choice: Choice, count: number): number =>
+    composing(needs, choice.meanDown) + needs.geometry + stored(needs, choice, count);
+  const hasRoom = (choice: Choice, count: number): boolean =>
+    bytes(choice, count) + onTheWay(needs, choice, limits.memory) <= limits.memory;
+  const largest = Math.max(1, ...needs.atlas, ...needs.bases.flatMap(({ size }) => size));
+  const possible = CHOICES.filter(({ meanDown }) => largest / meanDown <= limits.side);
+  let usable = possible.length ? most : 0;
+  let choice = possible.find((one) => hasRoom(one, usable));
+  for (; !choice && usable > 0; usable--) choice = possible.find((one) => hasRoom(one, usable - 1));
+  choice ??= CHOICES.at(-1)!;
+  const reductions = reductionsOf({ ...choice, usable }, needs);
+  const limitation = sentence(reductions, needs, limits);
+  return { ...choice, usable, bytes: bytes(choice, usable), reductions, limitation };
 }
 
 /** Bytes of means and opacity and of what is composed: the atlas with its mips, sums at other sizes, where texels lie. */
 function composing(needs: Needs, down: number): number {
-  const means = needs.means.map((mean) => bytesOf(mean) * meanLayers(mean.channels) * texels(mean.size, down));
+  const means = needs.means.map(({ size, channels, tenBits }) => {
+    return bytesOf({ components: channels, halves: tenBits }) * meanLayers(channels) * texels(size, down);
+  });
   const sums = gridsOf(needs).map((size) => {
     const mips = size.join() === needs.atlas.join() ? MIPS : 1;
     const places = needs.rays && needs.bases.some(({ grid }) => grid.join() === size.join());
-    return HALVES * texels(size, down) * (mips + (places ? 1 : 0));
+    return COMPOSED * texels(size, down) * (mips + (places ? 1 : 0));
   });
   return Math.round([...means, ...sums].reduce((a, b) => a + b, 0));
 }
 
-function bytesOf({ tenBits }: { tenBits: boolean }): number {
-  return tenBits ? HALVES : CODES;
-}
-
 /** Bytes of the first `count` textures of each basis and of the maps of their weights. */
-function stored({ bases, rays }: Needs, down: number, count: number): number {
+function stored({ bases, rays }: Needs, { scaleDown, halves }: Choice, count: number): number {
   return bases.reduce((sum, basis) => {
     const used = Math.min(count, basis.count);
     if (!used) return sum;
-    const maps = rays ? groupsOf(used) * MAP_SIDE * MAP_SIDE * HALVES : 0;
-    return sum + bytesOf(basis) * layersOf(used, basis.channels) * texels(basis.size, down) + maps;
+    const maps = rays ? groupsOf(used) * MAP_SIDE * MAP_SIDE * COMPOSED : 0;
+    const texel = bytesOf({ components: used, halves: halves && basis.tenBits });
+    return sum + texel * layersOf(used, basis.channels) * texels(basis.size, scaleDown) + maps;
   }, 0);
 }
 
-/** Columns and rows of the largest piece of a picture that is packed while textures arrive. */
-export function roomFor({ means, bases }: Pick<Needs, "means" | "bases">, meanDown: number, scaleDown: number): Size {
-  const sizes = [
-    ...means.filter(({ pieces, tenBits }) => pieces > 1 || tenBits).map(({ size }) => smaller(size, meanDown)),
-    ...bases.filter(({ count }) => count > 0).map(({ size }) => smaller(size, scaleDown)),
+interface Room {
+  size: Size;
+  format: Format;
+}
+
+/** What is needed while textures arrive: room for rows of a picture, for codes of more than 8 bits, and for what becomes
+ * smaller. */
+export function roomsOf(
+  { means, bases }: Pick<Needs, "means" | "bases">,
+  { meanDown, scaleDown }: Pick<Plan, "meanDown" | "scaleDown">,
+  memory: number,
+): { picture: Room; codes: Room | null; smaller: Room | null } {
+  const stills = means.filter(({ pieces, tenBits }) => pieces > 1 || tenBits || meanDown > 1);
+  const own = bases.filter(({ count }) => count > 0);
+  const [width, height] = covering([...stills, ...own].map(({ size }) => size));
+  const rows = Math.floor((ROOM_SHARE * memory) / (bytesOf(PICTURE) * width));
+  const size: Size = [width, Math.min(height, Math.max(ROOM_ROWS, rows))];
+  const reduced = [
+    ...(meanDown > 1 ? stills.map((mean) => smaller(mean.size, meanDown)) : []),
+    ...(scaleDown > 1 ? own.map((basis) => smaller(basis.size, scaleDown)) : []),
   ];
-  return covering(sizes);
+  return {
+    picture: { size, format: PICTURE },
+    codes: [...stills, ...own].some(({ tenBits }) => tenBits) ? { size, format: WORDS } : null,
+    smaller: reduced.length ? { size: covering(reduced), format: REDUCED } : null,
+  };
 }
 
 /** Columns and rows in which each of some sizes fits. */
@@ -137,18 +188,34 @@ export function covering(sizes: Size[]): Size {
   return [Math.max(1, ...sizes.map(([width]) => width)), Math.max(1, ...sizes.map(([, height]) => height))];
 }
 
-function onTheWay(needs: Needs, down: number): number {
-  const [width, height] = roomFor({ means: [], bases: needs.bases }, 1, down);
-  return (CODES + (needs.bases.some(({ tenBits }) => tenBits) ? WORDS : 0)) * width * height;
+/** Bytes while textures arrive: the rooms, and which texels of a grid lie in charts. */
+function onTheWay(needs: Needs, choice: Choice, memory: number): number {
+  const rooms = Object.values(roomsOf(needs, choice, memory)) as (Room | null)[];
+  const bytes = rooms.map((room) => (room ? bytesOf(room.format) * texels(room.size, 1) : 0));
+  const charts = choice.scaleDown > 1 ? Math.max(...gridsOf(needs).map((size) => texels(size, 1))) : 0;
+  return [...bytes, charts].reduce((a, b) => a + b, 0);
 }
 
-function sentence(plan: Omit<Plan, "limitation">, total: number, needs: Needs, limits: DeviceLimits): string | null {
-  const parts: string[] = [];
-  if (plan.usable < total) parts.push(`${plan.usable} of ${total} eigen textures are drawn`);
-  if (plan.usable && plan.scaleDown > 1) parts.push(`eigen textures have 1/${plan.scaleDown} of their size`);
-  if (plan.meanDown > 1) parts.push(`the mean texture has 1/${plan.meanDown} of its size`);
-  if (!parts.length) return null;
-  const all = composing(needs, 1) + stored(needs, 1, total) + onTheWay(needs, 1) + needs.geometry;
+function reductionsOf({ usable, meanDown, scaleDown, halves }: Choice & { usable: number }, needs: Needs): Reduction[] {
+  const whole = Math.max(0, ...needs.bases.map(({ count }) => count));
+  const list: Reduction[] = [];
+  if (usable < whole) list.push({ kind: "count", part: usable, whole });
+  if (usable && scaleDown > 1) list.push({ kind: "scale", percent: Math.round(100 / scaleDown) });
+  if (usable && !halves && needs.bases.some(({ tenBits }) => tenBits)) list.push({ kind: "bits" });
+  if (meanDown > 1) list.push({ kind: "mean", percent: Math.round(100 / meanDown) });
+  return list;
+}
+
+function sentence(reductions: Reduction[], needs: Needs, limits: DeviceLimits): string | null {
+  if (!reductions.length) return null;
+  const parts = reductions.map((one) => {
+    if (one.kind === "count") return `${one.part} of ${one.whole} eigen textures are drawn`;
+    if (one.kind === "bits") return "eigen textures have 8 bits";
+    const what = one.kind === "mean" ? "the mean texture has" : "eigen textures have";
+    return `${what} ${one.percent} % of ${one.kind === "mean" ? "its" : "their"} width and height`;
+  });
+  const whole = { meanDown: 1, scaleDown: 1, halves: true };
+  const all = composing(needs, 1) + stored(needs, whole, Infinity) + onTheWay(needs, whole, limits.memory) + needs.geometry;
   const why =
     all > limits.memory
       ? `the scene needs ${megabytes(all)} MB of graphics memory and ${megabytes(limits.memory)} MB may be used`

@@ -2,45 +2,14 @@
 // into its component of its layer, code by code, and what three.js and others have set is put back. Codes of a mean
 // with a precision p are stored as (code - zero) / p / FINE, so that who sums them knows nothing of it.
 
-import { bound } from "./gpu.js";
+import type { BufferGeometry } from "three";
+import { makeCharts } from "./charts.js";
+import { link, onUnit, untouched } from "./gpu.js";
+import type { Size } from "./memory.js";
 import type { Codes, Piece } from "./pieces.js";
+import { PACK, SPREAD, TRIANGLE } from "./packing-shaders.js";
 
 type GL = WebGL2RenderingContext;
-
-/** Codes at p = 1 that a stored 1 stands for: 1023 at the smallest p, 1/256, is still a half-float. */
-export const FINE = 4;
-
-const VERTEX = `#version 300 es
-void main() {
-  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);
-}
-`;
-const FRAGMENT = `#version 300 es
-precision highp float;
-uniform highp sampler2D picture;
-uniform vec4 factors;
-uniform vec2 size; // of what is drawn
-uniform highp sampler2D precisions;
-uniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are
-uniform float zero;
-out vec4 stored;
-float nodeAt(ivec2 at) {
-  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;
-}
-float precisionAt(vec2 uv) {
-  vec2 at = uv * vec2(nodes) - 0.5;
-  ivec2 low = ivec2(floor(at));
-  vec2 part = at - vec2(low);
-  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);
-  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);
-  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;
-}
-void main() {
-  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);
-  if (nodes.x == 0) stored = vec4(code);
-  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / ${FINE}.0, -65504.0, 65504.0));
-}
-`;
 
 /** Where a channel of a picture goes: a component of a layer. */
 export interface Slot {
@@ -49,11 +18,21 @@ export interface Slot {
   component: number;
 }
 
+/** What becomes of a piece. */
+export interface Aim {
+  size: Size; // of what is stored: that of the piece, or less
+  grid: Size; // in which the piece lies
+  corner: Size; // its first column and row there
+  unit: number; // what is stored of a code of 1
+  codes: number; // that a picture's 1 stands for
+}
+
 /** Where pictures are put while they are packed. */
 export interface Rooms {
   picture: WebGLTexture;
   codes: WebGLTexture | null; // null: all pictures have 8 bits
   precision: WebGLTexture;
+  smaller: WebGLTexture | null; // values and whether they are of a chart; null: all textures keep their size
 }
 
 /** How fine the codes of a channel are. */
@@ -63,48 +42,96 @@ export interface Fineness {
 }
 
 export interface Packer {
-  /** `unit`: what is stored of a picture's 1. Codes are stored as they are, without `fine`. */
-  put(piece: Piece, array: WebGLTexture, slots: Slot[], unit: number, fine?: Fineness | null): void;
+  /** Codes are stored as they are, without `fine`. */
+  put(piece: Piece, array: WebGLTexture, slots: Slot[], aim: Aim, fine?: Fineness | null): void;
   free(): void;
 }
 
-/** Puts pieces of pictures into arrays as compose.glsl reads them, by way of the rooms, which it owns. */
-export function makePacker(gl: GL, rooms: Rooms): Packer {
-  const program = link(gl);
+/** Puts pieces of pictures into arrays as compose.glsl reads them, by way of the rooms, which it owns and in which so
+ * many rows fit. `geometry` has the charts: where textures become smaller, nothing beside a chart gets into it. */
+export function makePacker(gl: GL, rooms: Rooms, fitting: number, geometry: BufferGeometry): Packer {
+  const [packing, spreading] = [link(gl, TRIANGLE, PACK), link(gl, TRIANGLE, SPREAD)];
   const [frame, vertices] = [gl.createFramebuffer(), gl.createVertexArray()];
-  const [factors, size, precisions, nodes, zero] = ["factors", "size", "precisions", "nodes", "zero"].map((name) =>
-    gl.getUniformLocation(program, name),
-  );
+  const charts = rooms.smaller && makeCharts(gl, geometry);
+  const place = (name: string): WebGLUniformLocation | null => gl.getUniformLocation(packing, name);
+  const names = ["precisions", "covered", "factors", "size", "made", "first", "corner", "nodes", "zero"] as const;
+  const at = Object.fromEntries(names.map((name) => [name, place(name)])) as Record<
+    (typeof names)[number],
+    WebGLUniformLocation | null
+  >;
 
-  const draw: Packer["put"] = ({ picture, rows }, array, slots, unit, fine) => {
-    gl.useProgram(program); // its sampler `picture` reads unit 0
-    gl.uniform2f(size ?? null, picture.width, rows);
-    gl.uniform1i(precisions ?? null, fine ? 1 : 0); // on unit 1 may be anything
-    gl.uniform2i(nodes ?? null, fine?.precision.width ?? 0, fine?.precision.height ?? 0);
-    gl.uniform1f(zero ?? null, fine?.zero ?? 0);
-    gl.bindVertexArray(vertices);
+  /** Draws rows of what is stored, from `top`, of a picture whose rows from `first` are in its room. */
+  const draw = ({ picture, rows }: Piece, channel: number, aim: Aim, first: number, top: number, count: number): void => {
+    const { size, corner, unit, codes } = aim;
+    if (isCodes(picture)) gl.uniform4f(at.factors, 255 * unit, 255 * 256 * unit, 0, 0);
+    else gl.uniform4fv(at.factors, [0, 1, 2, 3].map((own) => (own === channel ? codes * unit : 0)));
+    gl.uniform2i(at.size, picture.width, rows);
+    gl.uniform2i(at.made, ...size);
+    gl.uniform2i(at.corner, ...corner);
+    gl.uniform1i(at.first, first);
+    gl.viewport(0, top, size[0], count);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+  };
+
+  const into = (texture: WebGLTexture | null, layer: number | null): void => {
     gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, frame);
-    gl.viewport(0, 0, picture.width, rows);
-    for (const { channel, layer, component } of slots) {
-      gl.colorMask(component === 0, component === 1, component === 2, component === 3);
-      gl.framebufferTextureLayer(gl.DRAW_FRAMEBUFFER, gl.COLOR_ATTACHMENT0, array, 0, layer);
-      if (isCodes(picture)) gl.uniform4f(factors ?? null, 255, 255 * 256, 0, 0);
-      else gl.uniform4fv(factors ?? null, [0, 1, 2, 3].map((own) => (own === channel ? unit : 0)));
-      gl.drawArrays(gl.TRIANGLES, 0, 3);
-    }
+    if (layer !== null) gl.framebufferTextureLayer(gl.DRAW_FRAMEBUFFER, gl.COLOR_ATTACHMENT0, texture, 0, layer);
+    else gl.framebufferTexture2D(gl.DRAW_FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+  };
+
+  const toSlot = (array: WebGLTexture, { layer, component }: Slot): void => {
+    into(array, layer);
+    gl.colorMask(component === 0, component === 1, component === 2, component === 3);
+  };
+
+  /** Puts a channel where it goes, by way of a smaller texture of values if it becomes smaller. */
+  const putSlot = (piece: Piece, room: WebGLTexture, array: WebGLTexture, slot: Slot, aim: Aim, fine: Fineness | null): void => {
+    const { picture, row, rows } = piece;
+    const [width, height] = aim.size;
+    const smaller = width < picture.width || height < rows ? rooms.smaller : null;
+    const step = Math.max(1, Math.floor(((smaller ? fitting - 2 : fitting) * height) / rows));
+    onUnit(gl, 2, (smaller && charts?.covered(aim.grid)) ?? null, () =>
+      onUnit(gl, 0, room, () => {
+        for (let top = 0; top < height; top += step) {
+          const count = Math.min(step, height - top);
+          const first = Math.floor((top * rows) / height);
+          const last = Math.ceil(((top + count) * rows) / height);
+          if (isCodes(picture)) putCodes(gl, picture, row + first, last - first);
+          else putRows(gl, picture, row + first, last - first);
+          untouched(gl, () => {
+            gl.useProgram(packing); // its sampler `picture` reads unit 0
+            gl.bindVertexArray(vertices);
+            gl.uniform1i(at.precisions, fine ? 1 : 0); // on unit 1 may be anything
+            gl.uniform1i(at.covered, smaller ? 2 : 0);
+            gl.uniform2i(at.nodes, fine?.precision.width ?? 0, fine?.precision.height ?? 0);
+            gl.uniform1f(at.zero, fine?.zero ?? 0);
+            if (smaller) {
+              into(smaller, null);
+              gl.colorMask(true, true, true, true);
+            } else toSlot(array, slot);
+            draw(piece, slot.channel, aim, first, top, count);
+          });
+        }
+      }),
+    );
+    if (!smaller) return;
+    onUnit(gl, 0, smaller, () =>
+      untouched(gl, () => {
+        gl.useProgram(spreading);
+        gl.bindVertexArray(vertices);
+        gl.uniform2i(gl.getUniformLocation(spreading, "size"), width, height);
+        toSlot(array, slot);
+        gl.viewport(0, 0, width, height);
+        gl.drawArrays(gl.TRIANGLES, 0, 3);
+      }),
+    );
   };
 
   return {
-    put(piece, array, slots, unit, fine = null) {
-      const { picture, row, rows } = piece;
-      const room = isCodes(picture) ? rooms.codes : rooms.picture;
+    put(piece, array, slots, aim, fine = null) {
+      const room = isCodes(piece.picture) ? rooms.codes : rooms.picture;
       if (!room) return;
-      const pack = (): void =>
-        onUnit(gl, 0, room, () => {
-          if (isCodes(picture)) putCodes(gl, picture, row, rows);
-          else putRows(gl, picture, row, rows);
-          untouched(gl, () => draw(piece, array, slots, unit, fine));
-        });
+      const pack = (): void => slots.forEach((slot) => putSlot(piece, room, array, slot, aim, fine));
       if (!fine) pack();
       else {
         onUnit(gl, 1, rooms.precision, () => {
@@ -114,12 +141,12 @@ export function makePacker(gl: GL, rooms: Rooms): Packer {
       }
     },
     free() {
-      gl.deleteTexture(rooms.picture);
-      gl.deleteTexture(rooms.codes);
-      gl.deleteTexture(rooms.precision);
+      for (const texture of Object.values(rooms) as (WebGLTexture | null)[]) gl.deleteTexture(texture);
+      charts?.free();
       gl.deleteVertexArray(vertices);
       gl.deleteFramebuffer(frame);
-      gl.deleteProgram(program);
+      gl.deleteProgram(packing);
+      gl.deleteProgram(spreading);
     },
   };
 }
@@ -137,57 +164,4 @@ function putCodes(gl: GL, { data, width, stride }: Codes, row: number, rows: num
   gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
   gl.pixelStorei(gl.UNPACK_ROW_LENGTH, stride / 2);
   gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, rows, gl.RG, gl.UNSIGNED_BYTE, data, row * stride);
-}
-
-function link(gl: GL): WebGLProgram {
-  const program = gl.createProgram();
-  for (const [type, source] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]] as const) {
-    const shader = gl.createShader(type);
-    if (!shader) continue; // the context is lost: nothing is drawn
-    gl.shaderSource(shader, source);
-    gl.compileShader(shader);
-    gl.attachShader(program, shader);
-    gl.deleteShader(shader); // with the program
-  }
-  gl.linkProgram(program);
-  return program;
-}
-
-/** Calls `work` with the texture bound to a unit, read by no sampler of others. */
-function onUnit(gl: GL, unit: number, texture: WebGLTexture, work: () => void): void {
-  const active = gl.getParameter(gl.ACTIVE_TEXTURE) as GLenum;
-  gl.activeTexture(gl.TEXTURE0 + unit);
-  const sampler = gl.getParameter(gl.SAMPLER_BINDING) as WebGLSampler | null;
-  gl.bindSampler(unit, null);
-  bound(gl, gl.TEXTURE_2D, texture, work);
-  gl.bindSampler(unit, sampler);
-  gl.activeTexture(active);
-}
-
-/** Calls `work`, which draws, with every test and blending off, and puts back what it sets. */
-function untouched(gl: GL, work: () => void): void {
-  const switches = [
-    gl.BLEND,
-    gl.CULL_FACE,
-    gl.DEPTH_TEST,
-    gl.DITHER,
-    gl.RASTERIZER_DISCARD,
-    gl.SAMPLE_ALPHA_TO_COVERAGE,
-    gl.SAMPLE_COVERAGE,
-    gl.SCISSOR_TEST,
-    gl.STENCIL_TEST,
-  ].filter((name) => gl.isEnabled(name));
-  const program = gl.getParameter(gl.CURRENT_PROGRAM) as WebGLProgram | null;
-  const vertices = gl.getParameter(gl.VERTEX_ARRAY_BINDING) as WebGLVertexArrayObject | null;
-  const frame = gl.getParameter(gl.DRAW_FRAMEBUFFER_BINDING) as WebGLFramebuffer | null;
-  const [x = 0, y = 0, width = 0, height = 0] = gl.getParameter(gl.VIEWPORT) as Int32Array;
-  const [red, green, blue, alpha] = gl.getParameter(gl.COLOR_WRITEMASK) as boolean[];
-  switches.forEach((name) => gl.disable(name));
-  work();
-  switches.forEach((name) => gl.enable(name));
-  gl.useProgram(program);
-  gl.bindVertexArray(vertices);
-  gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, frame);
-  gl.viewport(x, y, width, height);
-  gl.colorMask(red ?? true, green ?? true, blue ?? true, alpha ?? true);
 }

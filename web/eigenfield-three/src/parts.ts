@@ -3,8 +3,8 @@
 import type { Texture } from "three";
 import type { SceneDocument } from "./document.js";
 import { groupsOf, type Plan } from "./memory.js";
-import { FINE } from "./packing.js";
-import { hasTenBits, type Picture, type Still } from "./planes.js";
+import { FINE } from "./packing-shaders.js";
+import { hasTenBits, unitOf, type Picture, type Still } from "./planes.js";
 import type { Textures } from "./textures.js";
 
 /** A mean, or the textures of a basis. */
@@ -13,8 +13,8 @@ export interface Part {
   grid: [number, number];
   rectangle: [number, number, number, number]; // of the grid: left, top, right, bottom in 0..1
   colours: [number, number, number][]; // of the value 1 of each channel
-  // Four numbers for each channel of each group of textures: value = stored * scale + bias. Stored are codes over 255,
-  // or where some of them have more than 8 bits the codes, or of a mean with a precision what packing.ts makes of them.
+  // Four numbers for each channel of each group of textures: value = stored * scale + bias. Stored are codes over
+  // the largest, or as half-floats the codes, or of a mean with a precision what packing.ts makes of them.
   scale: Float32Array;
   bias: Float32Array;
   basis: BasisPart | null; // null: a mean
@@ -49,7 +49,7 @@ export function partsOf(scene: SceneDocument, textures: Textures, plan: Plan): P
           grid,
           rectangle: [left, top, left + size[0] / grid[0], top + size[1] / grid[1]],
           colours,
-          ...basisNumbers(pictures, channels, used),
+          ...basisNumbers(pictures, channels, used, plan.halves && hasTenBits(pictures)),
           basis: { ready, column, group },
         });
       }
@@ -74,7 +74,7 @@ type Numbers = Pick<Part, "scale" | "bias">;
 /** Of a mean channel c is component c % 4, so that three of four scales are zero; grey pictures are the first. */
 function meanNumbers({ mean, channels, precision }: Still): Numbers {
   const { scale, zero } = mean;
-  const unit = precision ? FINE : unitOf([mean]);
+  const unit = precision ? FINE : 1 / unitOf(mean, hasTenBits([mean]));
   const numbers = { scale: new Float32Array(4 * channels), bias: new Float32Array(4 * channels) };
   for (let channel = 0; channel < channels; channel++) {
     const at = 4 * channel + (channel % 4);
@@ -84,22 +84,17 @@ function meanNumbers({ mean, channels, precision }: Still): Numbers {
   return numbers;
 }
 
-/** Codes that a stored 1 stands for. */
-function unitOf(pictures: Picture[]): number {
-  return hasTenBits(pictures) ? 1 : 255;
-}
-
-function basisNumbers(pictures: Picture[], channels: number, used: number): Numbers {
+function basisNumbers(pictures: Picture[], channels: number, used: number, halves: boolean): Numbers {
+  const units = pictures.flatMap((picture) => Array<number>(picture.textures).fill(unitOf(picture, halves)));
   const scale = pictures.flatMap((picture) => picture.scale);
   const zero = pictures.flatMap((picture) => picture.zero);
-  const unit = unitOf(pictures);
   const length = 4 * channels * groupsOf(used);
   const numbers = { scale: new Float32Array(length), bias: new Float32Array(length) };
   for (let j = 0; j < used; j++) {
     for (let channel = 0; channel < channels; channel++) {
       const at = 4 * (channels * Math.floor(j / 4) + channel) + (j % 4);
       const own = scale[channels * j + channel] ?? 0;
-      numbers.scale[at] = unit * own;
+      numbers.scale[at] = own / (units[j] ?? 1);
       numbers.bias[at] = -(zero[channels * j + channel] ?? 0) * own;
     }
   }

@@ -39,45 +39,23 @@ export function checkPicture(
   return [width, height];
 }
 
-/** Decodes a picture, `down` times smaller along each side. Raises SceneError: `damaged`, `codec`. */
-async function decodePicture(
-  bytes: ArrayBuffer,
-  picture: PictureFile,
-  size: [number, number],
-  down: number,
-): Promise<ImageBitmap> {
-  const [width, height] = checkPicture(bytes, picture, size);
-  const [w, h] = [Math.ceil(width / down), Math.ceil(height / down)];
-  const resize: ImageBitmapOptions = down === 1 ? {} : { resizeWidth: w, resizeHeight: h, resizeQuality: "high" };
+/** Any picture, with the upper eight bits of codes that have more. Raises SceneError: `damaged`, `codec`. */
+export const decodeBitmaps: PictureDecoder<ImageBitmap> = async (bytes, picture, size) => {
+  const count = picture.pieces * picture.textures;
+  const [width, rows] = checkPicture(bytes, picture, size && [size[0], count * size[1]]);
   const type = readHeader(bytes)?.type ?? picture.codec.mimeType;
   let bitmap: ImageBitmap;
   try {
-    bitmap = await createImageBitmap(new Blob([bytes], { type }), { ...OPTIONS, ...resize });
+    bitmap = await createImageBitmap(new Blob([bytes], { type }), OPTIONS);
   } catch (reason) {
     throw (await canDecode(type)) ? damaged(picture.where, "it cannot be decoded") : noCodec(type, picture, reason);
   }
-  if (bitmap.width === w && bitmap.height === h) return bitmap;
-  bitmap.close();
-  throw damaged(picture.where, `decoded to ${bitmap.width} x ${bitmap.height}, not to ${w} x ${h}`);
-}
-
-/** Any picture, with the upper eight bits of codes that have more. */
-export const decodeBitmaps: PictureDecoder<ImageBitmap> = async (bytes, picture, size, down = 1) => {
-  const count = picture.pieces * picture.textures;
-  const [width, rows] = checkPicture(bytes, picture, size && [size[0], count * size[1]]);
-  const bitmap = await decodePicture(bytes, picture, [width, rows], count === 1 ? down : 1);
-  if (count === 1) return [{ picture: bitmap, row: 0, rows: bitmap.height }];
+  if (bitmap.width !== width || bitmap.height !== rows) {
+    bitmap.close();
+    throw damaged(picture.where, `decoded to ${bitmap.width} x ${bitmap.height}, not to ${width} x ${rows}`);
+  }
   const height = rows / count;
-  const pieces = Array.from({ length: count }, (_, i) => ({ picture: bitmap, row: i * height, rows: height }));
-  if (down === 1) return pieces;
-  // one by one: what lies below each other must not run together
-  const [w, h] = [Math.ceil(width / down), Math.ceil(height / down)];
-  const smaller = { ...OPTIONS, resizeWidth: w, resizeHeight: h, resizeQuality: "high" } as const;
-  const parts = await Promise.all(
-    pieces.map(({ row }) => createImageBitmap(bitmap, 0, row, width, height, smaller)),
-  );
-  bitmap.close();
-  return parts.map((part) => ({ picture: part, row: 0, rows: h }));
+  return Array.from({ length: count }, (_, i) => ({ picture: bitmap, row: i * height, rows: height }));
 };
 
 async function canDecode(type: string): Promise<boolean> {

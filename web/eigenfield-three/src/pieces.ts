@@ -31,14 +31,12 @@ export interface Piece<Kind extends ImageBitmap | Codes = ImageBitmap | Codes> {
 }
 
 /**
- * Decodes a picture into its pieces, in their order, each `down` times smaller along each side. `size`: of a texture,
- * where it is announced. Whoever takes the pieces closes them. Raises SceneError: `damaged`, `codec`.
+ * Decodes a picture into its pieces, in their order. `size`: of a texture, where it is announced. Whoever takes the pieces closes them. Raises SceneError: `damaged`, `codec`.
  */
 export type PictureDecoder<Kind extends ImageBitmap | Codes = ImageBitmap | Codes> = (
   bytes: ArrayBuffer,
   picture: PictureFile,
   size: [number, number] | null,
-  down?: number,
 ) => Promise<Piece<Kind>[]>;
 
 export function closePieces(pieces: Piece[]): void {

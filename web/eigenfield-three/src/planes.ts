@@ -152,6 +152,11 @@ export function codeStep({ codec }: Picture): number {
   return (2 ** codec.bits - 1) / 255;
 }
 
+/** What is stored of a code of 1 of a picture: 1 where codes are kept as half-floats, else a 1 is the largest code. */
+export function unitOf(picture: Picture, halves: boolean): number {
+  return halves ? 1 : 1 / (255 * codeStep(picture));
+}
+
 /** A number of each channel of each texture, or of each channel of all. */
 function numbersOf(value: Value, channels: number, textures: number): number[] {
   const given = value.items(channels * textures).map((item) => item.number());

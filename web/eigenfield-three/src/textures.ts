@@ -1,4 +1,4 @@
-import { ExternalTexture, type WebGLRenderer } from "three";
+import { ExternalTexture, type BufferGeometry, type WebGLRenderer } from "three";
 import type { ViewBytes } from "./accessors.js";
 import { stillsOf, type SceneDocument } from "./document.js";
 import { SceneError } from "./errors.js";
@@ -7,9 +7,9 @@ import { atlasOf } from "./info.js";
 import { closeMean, decodeMean, type Mean } from "./means.js";
 import * as memory from "./memory.js";
 import type { EigenfieldOptions } from "./options.js";
-import { makePacker, type Packer, type Slot } from "./packing.js";
+import { makePacker, type Aim, type Packer, type Slot } from "./packing.js";
 import { closePieces, type Piece } from "./pieces.js";
-import { codeStep, hasTenBits, type Basis, type Picture } from "./planes.js";
+import { codeStep, hasTenBits, unitOf, type Basis, type Picture, type Still } from "./planes.js";
 
 const AHEAD = 3; // pictures decoded at a time
 
@@ -56,10 +56,10 @@ export class Textures {
   private turn = 0; // of loading: an older one stops
   private disposed = false;
 
-  /** `geometry`: bytes of the mesh, which count too. */
+  /** `geometry`: of the mesh, which has the charts and takes memory too. */
   constructor(
     private readonly parts: TextureParts,
-    geometry: number,
+    private readonly geometry: BufferGeometry,
     private readonly options: EigenfieldOptions,
   ) {
     const { scene, meanSizes, rays } = parts;
@@ -70,7 +70,7 @@ export class Textures {
     const means = stillsOf(scene).map(({ channels, mean }, i): memory.Needs["means"][number] => {
       return { size: meanSizes[i] ?? [1, 1], channels, pieces: mean.pieces, tenBits: hasTenBits([mean]) };
     });
-    this.needs = { atlas: atlasOf(scene, meanSizes), means, bases, rays, geometry };
+    this.needs = { atlas: atlasOf(scene, meanSizes), means, bases, rays, geometry: geometryBytes(geometry) };
     this.means = means.map(() => new ExternalTexture());
     this.bases = bases.map(() => new ExternalTexture());
     this.ready = bases.map(({ count }) => Array<boolean>(count).fill(false));
@@ -152,17 +152,17 @@ export class Textures {
     this.plan = plan;
     this.packer = packer;
     this.onPlan(plan);
-    await this.loadMeans(gl, turn, plan.meanDown);
+    await this.loadMeans(gl, turn);
     if (turn !== this.turn) return;
     const wanted = this.entries.filter(({ first }) => first < plan.usable);
     const queue: Promise<Piece[]>[] = [];
     let next = 0;
     try {
       for (const entry of wanted) {
-        while (queue.length < AHEAD && next < wanted.length) queue.push(this.decode(wanted[next++], plan.scaleDown));
+        while (queue.length < AHEAD && next < wanted.length) queue.push(this.decode(wanted[next++]));
         const pieces = (await queue[0]) ?? [];
         queue.shift();
-        if (turn === this.turn) this.pack(pieces, entry, packer, plan.usable);
+        if (turn === this.turn) this.pack(pieces, entry, packer, plan);
         closePieces(pieces);
         if (turn !== this.turn) return;
         this.onTexture();
@@ -175,12 +175,14 @@ export class Textures {
     this.onComplete();
   }
 
-  private pack(pieces: Piece[], entry: Entry, packer: Packer, usable: number): void {
-    const { number, channels, first, picture } = entry;
+  private pack(pieces: Piece[], entry: Entry, packer: Packer, { usable, scaleDown, halves }: memory.Plan): void {
+    const { basis, number, channels, first, picture } = entry;
     const array = this.bases[number]?.sourceTexture;
     const ready = this.ready[number];
     if (!(array instanceof WebGLTexture) || !ready) return;
-    const unit = this.needs.bases[number]?.tenBits ? 255 * codeStep(picture) : 1;
+    const { grid, corner } = basis;
+    const unit = unitOf(picture, halves && hasTenBits(basis.pictures));
+    const aim = { size: memory.smaller(basis.size, scaleDown), grid, corner, unit, codes: 255 * codeStep(picture) };
     const together = picture.pieces < channels; // R, G and B
     for (let j = first; j < Math.min(first + picture.textures, usable); j++) {
       for (let i = 0; i < picture.pieces; i++) {
@@ -189,7 +191,7 @@ export class Textures {
           return { channel: together ? channel : 0, layer: layer(channel), component: j % 4 };
         });
         const piece = pieces[(j - first) * picture.pieces + i];
-        if (piece) packer.put(piece, array, slots, unit);
+        if (piece) packer.put(piece, array, slots, aim);
       }
       ready[j] = true;
     }
@@ -202,11 +204,14 @@ export class Textures {
     const precisions = this.parts.scene.planes.flatMap(({ precision }) => (precision ? [precision.size] : []));
     for (let allowed = this.options.memory ?? memory.defaultMemory(); ; allowed /= 2) {
       const plan = memory.makePlan(this.needs, gpu.deviceLimits(gl, allowed));
-      const { meanDown, scaleDown, usable } = plan;
-      const between = meanDown > 1 || scaleDown > 1; // texels of what is composed are none of what is stored
+      const { meanDown, scaleDown, usable, halves } = plan;
+      const between = meanDown !== scaleDown; // texels of what is composed are none of what is stored
       const made = [
         ...means.map(({ size, channels, tenBits }) =>
-          gpu.makeArray(gl, memory.smaller(size, meanDown), memory.meanLayers(channels), between, tenBits),
+          gpu.makeArray(gl, memory.smaller(size, meanDown), memory.meanLayers(channels), false, {
+            components: channels,
+            halves: tenBits,
+          }),
         ),
         ...bases.map(({ size, channels, count, tenBits }) => {
           const used = Math.min(count, usable);
@@ -215,40 +220,38 @@ export class Textures {
             used ? memory.smaller(size, scaleDown) : [1, 1],
             used ? memory.layersOf(used, channels) : 1,
             between,
-            tenBits,
+            { components: Math.max(1, used), halves: halves && tenBits },
           );
         }),
       ];
-      const size = memory.roomFor(this.needs, meanDown, scaleDown);
-      const picture = gpu.makeRoom(gl, size);
-      const wide = [...means, ...bases].some(({ tenBits }) => tenBits);
-      const codes = wide ? gpu.makeRoom(gl, size, true) : null;
-      const precision = gpu.makeRoom(gl, memory.covering(precisions));
-      if (picture && precision && (codes || !wide) && made.every((texture) => texture !== null)) {
+      const rooms = memory.roomsOf(this.needs, plan, allowed);
+      const [picture, codes, smaller] = [rooms.picture, rooms.codes, rooms.smaller].map((room) =>
+        room ? gpu.makeRoom(gl, room.size, room.format) : null,
+      );
+      const precision = gpu.makeRoom(gl, memory.covering(precisions), memory.PICTURE);
+      if (picture && precision && (codes || !rooms.codes) && (smaller || !rooms.smaller) && !made.includes(null)) {
         [...this.means, ...this.bases].forEach((texture, i) => (texture.sourceTexture = made[i] ?? null));
-        return { packer: makePacker(gl, { picture, codes, precision }), plan };
+        const own = { picture, codes: codes ?? null, precision, smaller: smaller ?? null };
+        return { packer: makePacker(gl, own, rooms.picture.size[1], this.geometry), plan };
       }
-      for (const texture of [...made, picture, codes, precision]) gl.deleteTexture(texture);
+      for (const texture of [...made, picture, codes, smaller, precision]) gl.deleteTexture(texture ?? null);
       if (!usable) {
         throw new SceneError("unsupported", "The graphics memory is full; close other pages and try again.");
       }
     }
   }
 
-  /** At once if they are decoded and need no resizing: the first draw shows them. */
-  private async loadMeans(gl: WebGL2RenderingContext, turn: number, down: number): Promise<void> {
+  /** At once if they are decoded: the first draw shows them. */
+  private async loadMeans(gl: WebGL2RenderingContext, turn: number): Promise<void> {
     const { scene, bytes } = this.parts;
     const stills = stillsOf(scene);
-    let { decoded } = this;
+    const decoded = this.decoded ?? (await Promise.all(stills.map((still) => decodeMean(still, bytes))));
     this.decoded = null;
-    if (!decoded || down > 1) {
-      decoded?.forEach(closeMean);
-      decoded = await Promise.all(stills.map((still) => decodeMean(still, bytes, down)));
-    }
     decoded.forEach((made, i) => {
       const array = this.means[i]?.sourceTexture;
-      const mean = stills[i]?.mean;
-      if (turn === this.turn && mean && array instanceof WebGLTexture) this.putMean(gl, made, mean, array);
+      const still = stills[i];
+      const { size } = this.needs.means[i] ?? {};
+      if (turn === this.turn && still && size && array instanceof WebGLTexture) this.putMean(gl, made, still, size, array);
       closeMean(made);
     });
     if (turn !== this.turn) return;
@@ -256,28 +259,39 @@ export class Textures {
     this.version += 1;
   }
 
-  private putMean(gl: WebGL2RenderingContext, made: Mean, mean: Picture, array: WebGLTexture): void {
+  private putMean(gl: WebGL2RenderingContext, made: Mean, still: Still, grid: memory.Size, array: WebGLTexture): void {
     const { pieces, precision } = made;
-    const tenBits = hasTenBits([mean]);
+    const { mean, channels } = still;
+    const size = memory.smaller(grid, this.plan?.meanDown ?? 1);
+    const halves = hasTenBits([mean]);
     const [first] = pieces;
-    if (first && pieces.length === 1 && !tenBits && "close" in first.picture) {
-      gpu.putPicture(gl, array, first.picture);
+    const whole = first && pieces.length === 1 && "close" in first.picture;
+    if (whole && !halves && size.join() === grid.join()) {
+      gpu.putPicture(gl, array, first.picture as ImageBitmap, channels);
       return;
     }
-    const unit = tenBits ? 255 * codeStep(mean) : 1;
-    pieces.forEach((piece, channel) => {
-      const slots = [{ channel: 0, layer: Math.floor(channel / 4), component: channel % 4 }];
-      this.packer?.put(piece, array, slots, unit, precision && { precision, zero: mean.zero[channel] ?? 0 });
+    const aim: Aim = { size, grid, corner: [0, 0], unit: unitOf(mean, halves), codes: 255 * codeStep(mean) };
+    const together = pieces.length < channels; // R, G and B
+    pieces.forEach((piece, i) => {
+      const slots = (together ? [0, 1, 2] : [i]).map((channel): Slot => {
+        return { channel: together ? channel : 0, layer: Math.floor(channel / 4), component: channel % 4 };
+      });
+      this.packer?.put(piece, array, slots, aim, precision && { precision, zero: mean.zero[i] ?? 0 });
     });
   }
 
-  private decode(entry: Entry | undefined, down: number): Promise<Piece[]> {
+  private decode(entry: Entry | undefined): Promise<Piece[]> {
     if (!entry) return Promise.reject(new RangeError("no such eigen texture"));
     const { basis, picture } = entry;
     const decoded = this.parts
       .bytes(picture.view)
-      .then((data) => picture.codec.decode(data, picture, basis.size, down));
+      .then((data) => picture.codec.decode(data, picture, basis.size));
     decoded.catch(() => undefined); // awaited later, or not at all
     return decoded;
   }
+}
+
+function geometryBytes({ attributes, index }: BufferGeometry): number {
+  const own = Object.values(attributes).reduce((sum, attribute) => sum + attribute.array.byteLength, 0);
+  return own + (index?.array.byteLength ?? 0);
 }

@@ -2,7 +2,7 @@
 
 import type { EigenField, SceneInfo } from "eigenfield-three";
 import { element } from "./dom";
-import { pluginWords, words } from "./language";
+import { limitationWords, words } from "./language";
 import { bytes, figure, shown, whole } from "./text";
 import type { Viewer } from "./viewer";
 
@@ -26,6 +26,7 @@ export function createInfo(viewer: Viewer): Info {
           element("p", {}, `${words("plainGltf")} ${words("plainGltfShown")}`),
         );
       }
+      const limitation = limitationWords(field);
       root.replaceChildren(
         ...section(words("quality"), quality(field.info)),
         ...section(words("bytes"), sizes(field.info)),
@@ -34,7 +35,7 @@ export function createInfo(viewer: Viewer): Info {
           [words("gpuMemory"), bytes(field.gpuBytes)],
           [words("eigenTexturesHere"), words("outOf", { part: field.loaded, whole: field.total })],
         ]),
-        ...(field.limitation === null ? [] : [element("p", { class: "warning" }, pluginWords("limited", field.limitation))]),
+        ...(limitation === null ? [] : [element("p", { class: "warning" }, limitation)]),
         ...settings(field),
       );
     },

@@ -2,7 +2,7 @@
 // languages that there is a catalogue for, else English. The plug-in speaks English; the other catalogues have a
 // sentence for each of its codes.
 
-import type { SceneErrorCode } from "eigenfield-three";
+import type { EigenField, Reduction, SceneErrorCode } from "eigenfield-three";
 import de from "./languages/de.json";
 import en from "./languages/en.json";
 import fr from "./languages/fr.json";
@@ -10,7 +10,7 @@ import ja from "./languages/ja.json";
 import zh from "./languages/zh.json";
 
 type Key = keyof typeof en;
-type PluginCode = SceneErrorCode | "limited";
+type PluginCode = SceneErrorCode | "limited" | `limited.${Reduction["kind"]}`;
 type Catalogue = Readonly<Record<Key, string>>;
 
 const TRANSLATED: Readonly<Record<string, Catalogue & Readonly<Record<`plugin.${PluginCode}`, string>>>> = { de, fr, ja, zh };
@@ -32,8 +32,19 @@ export const LANGUAGE = TAGS[language] ?? language;
 export function words(key: Key, values: Readonly<Record<string, string | number>> = {}): string {
   const [one = "", more = one] = catalogue[key].split("|");
   const form = plural.select(Number(values["count"])) === "one" ? one : more;
-  return form.replaceAll(/\{(\w+)\}/g, (_, name: string) => String(values[name]));
+  return filled(form, values);
+}
+
+function filled(text: string, values: Readonly<Record<string, unknown>>): string {
+  return text.replaceAll(/\{(\w+)\}/g, (_, name: string) => String(values[name]));
 }
 
 /** What the plug-in says, `english`, by its code. */
 export const pluginWords = (code: PluginCode, english: string): string => translated?.[`plugin.${code}`] ?? english;
+
+/** What a scene is drawn without where memory is little; null: nothing. */
+export function limitationWords({ limitation, reductions }: EigenField): string | null {
+  if (limitation === null || !translated) return limitation;
+  const parts = reductions.map((one) => filled(translated[`plugin.limited.${one.kind}`], { ...one }));
+  return filled(translated["plugin.limited"], { what: new Intl.ListFormat(language).format(parts) });
+}

@@ -4,7 +4,7 @@ import type { SceneInfo } from "eigenfield-three";
 import { choice, menu, slider, tick } from "./controls";
 import { button, element, ICONS, keyCaps } from "./dom";
 import { briefly, createInfo } from "./info";
-import { pluginWords, words } from "./language";
+import { limitationWords, words } from "./language";
 import { BACKGROUNDS } from "./options";
 import { bytesWith, uvSsim } from "./scores";
 import { bytes, shown } from "./text";
@@ -175,7 +175,7 @@ export function createPanel(viewer: Viewer): Panel {
       const ssim = uvSsim(field.info, drawn); // a fitted scene has none
       cost.textContent = bytes(bytesWith(field.info, drawn)) + (ssim === null ? "" : ` · UV SSIM ${shown(ssim, 4)}`);
       limitation.hidden = field.limitation === null;
-      limitation.textContent = field.limitation && pluginWords("limited", field.limitation);
+      limitation.textContent = limitationWords(field);
       const captured = viewer.captured();
       camera.show(captured === null ? "" : String(captured));
       flip.disabled = !photographs;
