@@ -1076,49 +1076,22 @@ function or(e, t, n) {
 	if (!s || i > 16384 || a > 32768 || s > Te) throw M(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
-async function sr(e, t, n, r) {
-	let [i, a] = or(e, t, n), [o, s] = [Math.ceil(i / r), Math.ceil(a / r)], c = r === 1 ? {} : {
-		resizeWidth: o,
-		resizeHeight: s,
-		resizeQuality: "high"
-	}, l = Qn(e)?.type ?? t.codec.mimeType, u;
+var sr = async (e, t, n) => {
+	let r = t.pieces * t.textures, [i, a] = or(e, t, n && [n[0], r * n[1]]), o = Qn(e)?.type ?? t.codec.mimeType, s;
 	try {
-		u = await createImageBitmap(new Blob([e], { type: l }), {
-			...ir,
-			...c
-		});
+		s = await createImageBitmap(new Blob([e], { type: o }), ir);
 	} catch (e) {
-		throw await lr(l) ? M(t.where, "it cannot be decoded") : ur(l, t, e);
+		throw await cr(o) ? M(t.where, "it cannot be decoded") : lr(o, t, e);
 	}
-	if (u.width === o && u.height === s) return u;
-	throw u.close(), M(t.where, `decoded to ${u.width} x ${u.height}, not to ${o} x ${s}`);
-}
-var cr = async (e, t, n, r = 1) => {
-	let i = t.pieces * t.textures, [a, o] = or(e, t, n && [n[0], i * n[1]]), s = await sr(e, t, [a, o], i === 1 ? r : 1);
-	if (i === 1) return [{
-		picture: s,
-		row: 0,
-		rows: s.height
-	}];
-	let c = o / i, l = Array.from({ length: i }, (e, t) => ({
+	if (s.width !== i || s.height !== a) throw s.close(), M(t.where, `decoded to ${s.width} x ${s.height}, not to ${i} x ${a}`);
+	let c = a / r;
+	return Array.from({ length: r }, (e, t) => ({
 		picture: s,
 		row: t * c,
 		rows: c
 	}));
-	if (r === 1) return l;
-	let [u, d] = [Math.ceil(a / r), Math.ceil(c / r)], f = {
-		...ir,
-		resizeWidth: u,
-		resizeHeight: d,
-		resizeQuality: "high"
-	}, p = await Promise.all(l.map(({ row: e }) => createImageBitmap(s, 0, e, a, c, f)));
-	return s.close(), p.map((e) => ({
-		picture: e,
-		row: 0,
-		rows: d
-	}));
 };
-async function lr(e) {
+async function cr(e) {
 	let t = ar[e];
 	if (!t) return !0;
 	let n = Uint8Array.from(atob(t), (e) => e.charCodeAt(0));
@@ -1128,33 +1101,25 @@ async function lr(e) {
 		return !1;
 	}
 }
-function ur(e, t, n) {
+function lr(e, t, n) {
 	return new j("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
 }
 // eigenfield-three/src/pictures-10bit.ts
-var dr = /* @__PURE__ */ new Set([
+var ur = /* @__PURE__ */ new Set([
 	"I420P10",
 	"I422P10",
 	"I444P10"
-]), fr = async (e, t, n, r = 1) => {
-	let i = t.pieces * t.textures, [a, o] = or(e, t, n && [n[0], i * n[1]]), s = await pr(e, a, o);
-	if (!s) return cr(e, t, n, r);
-	let c = o / i;
-	return Array.from({ length: i }, (e, t) => {
-		if (r === 1) return {
-			picture: s,
-			row: t * c,
-			rows: c
-		};
-		let n = mr(s, t * c, c, r);
-		return {
-			picture: n,
-			row: 0,
-			rows: n.height
-		};
-	});
+]), dr = async (e, t, n) => {
+	let r = t.pieces * t.textures, [i, a] = or(e, t, n && [n[0], r * n[1]]), o = await fr(e, i, a);
+	if (!o) return sr(e, t, n);
+	let s = a / r;
+	return Array.from({ length: r }, (e, t) => ({
+		picture: o,
+		row: t * s,
+		rows: s
+	}));
 };
-async function pr(e, t, n) {
+async function fr(e, t, n) {
 	if (typeof ImageDecoder > "u") return null;
 	let r = null, i = null;
 	try {
@@ -1163,7 +1128,7 @@ async function pr(e, t, n) {
 			type: "image/avif"
 		}), i = (await r.decode()).image;
 		let a = i.visibleRect;
-		if (!dr.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
+		if (!ur.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
 		let o = new Uint8Array(i.allocationSize()), [s] = await i.copyTo(o);
 		return s ? {
 			data: o.subarray(s.offset),
@@ -1177,55 +1142,37 @@ async function pr(e, t, n) {
 		i?.close(), r?.close();
 	}
 }
-function mr(e, t, n, r) {
-	let [i, a] = [Math.ceil(e.width / r), Math.ceil(n / r)], o = new Uint8Array(2 * i * a);
-	for (let s = 0; s < a; s++) for (let a = 0; a < i; a++) {
-		let [c, l] = [0, 0];
-		for (let i = s * r; i < Math.min((s + 1) * r, n); i++) for (let n = a * r; n < Math.min((a + 1) * r, e.width); n++) {
-			let r = (t + i) * e.stride + 2 * n;
-			c += (e.data[r] ?? 0) + 256 * (e.data[r + 1] ?? 0), l += 1;
-		}
-		let u = Math.round(c / l);
-		o.set([u & 255, u >> 8], 2 * (s * i + a));
-	}
-	return {
-		data: o,
-		width: i,
-		height: a,
-		stride: 2 * i
-	};
-}
 // eigenfield-three/src/triangle-decoder.ts
-var hr = 5;
-function gr(e, t) {
-	let n = Je(e, hr, t).getUint32(1, !0);
+var pr = 5;
+function mr(e, t) {
+	let n = Je(e, pr, t).getUint32(1, !0);
 	Ye(e, 3 * n, 6 * L, t);
-	let r = st(e.subarray(hr)), i = dt(r, n, 3, !0);
+	let r = st(e.subarray(pr)), i = dt(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
 	if (!a.every((e) => e >= 0 && e < 1e5)) throw M(t, "triangles of cameras that there cannot be");
 	return { corners: Uint32Array.from(a) };
 }
 // eigenfield-three/src/weight-decoder.ts
-var _r = 14, vr = 2 ** 20;
-function yr(e, t) {
-	let n = Je(e, _r, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
+var hr = 14, gr = 2 ** 20;
+function _r(e, t) {
+	let n = Je(e, hr, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
 	if (n.getUint8(1) > 1 || i === 0) throw M(t, "weights of no camera, or of an unknown kind");
-	Ye(e, o * s * Math.max(a, 1), Ne, t), Je(e, _r + 4 * a, t);
+	Ye(e, o * s * Math.max(a, 1), Ne, t), Je(e, hr + 4 * a, t);
 	let c = o * s;
 	if (c < i) throw M(t, "a grid with too few cells");
-	let l = st(e.subarray(_r + 4 * a)), u = r ? ft(l, c, i, t) : null, d = u !== null && i === c, f = [
+	let l = st(e.subarray(hr + 4 * a)), u = r ? ft(l, c, i, t) : null, d = u !== null && i === c, f = [
 		0,
 		1,
 		2
-	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * vr * Math.max(o, s);
+	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * gr * Math.max(o, s);
 	for (let e = 0; e < a; e++) {
-		let r = n.getFloat32(_r + 4 * e, !0);
+		let r = n.getFloat32(hr + 4 * e, !0);
 		if (!(r > 0 && r < Infinity)) throw M(t, "a step that is not positive");
 		let i = ct(l), h = ut(l, s, f[i], i);
 		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw M(t, `numbers of component ${e} that cannot be`);
 		f[i] = h;
-		let g = i === 2 ? br(h, o, s) : h;
+		let g = i === 2 ? vr(h, o, s) : h;
 		for (let t = 0; t < c; t++) {
 			let n = u ? u[t] : t;
 			n >= 0 && (p[n * a + e] = g[t] * r);
@@ -1239,14 +1186,14 @@ function yr(e, t) {
 		values: p
 	};
 }
-function br(e, t, n) {
-	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = xr(n);
+function vr(e, t, n) {
+	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = yr(n);
 	for (let i = 0; i < t; i++) for (let t = 0; t < n; t++) {
 		let o = 0;
 		for (let r = 0; r < n; r++) o += a(r, t) * e[i * n + r];
 		r[i * n + t] = o;
 	}
-	let o = xr(t);
+	let o = yr(t);
 	for (let e = 0; e < t; e++) for (let a = 0; a < n; a++) {
 		let s = 0;
 		for (let i = 0; i < t; i++) s += o(i, e) * r[i * n + a];
@@ -1254,13 +1201,13 @@ function br(e, t, n) {
 	}
 	return i;
 }
-function xr(e) {
+function yr(e) {
 	let [t, n] = [Math.sqrt(1 / e), Math.sqrt(2 / e)], r = Float64Array.from({ length: 4 * e }, (t, r) => n * Math.cos(Math.PI * r / (2 * e)));
 	return (n, i) => n === 0 ? t : r[(2 * i + 1) * n % (4 * e)];
 }
 // eigenfield-three/src/codecs.ts
-function Sr(e) {
-	let [t, n] = [cr, cr];
+function br(e) {
+	let [t, n] = [sr, sr];
 	return {
 		kind: "picture",
 		decode: t,
@@ -1308,46 +1255,46 @@ var G = {
 	},
 	"triangles-1": {
 		kind: "triangles",
-		decode: gr,
+		decode: mr,
 		needs: "codedTriangles",
 		limits: ["MAX_CAMERAS"]
 	},
 	"weights-1": {
 		kind: "weights",
-		decode: yr,
+		decode: _r,
 		needs: "codedWeights",
 		limits: ["MAX_WEIGHTS"]
 	},
-	png: Sr("image/png"),
-	webp: Sr("image/webp"),
-	avif: Sr("image/avif"),
-	jpeg: Sr("image/jpeg"),
+	png: br("image/png"),
+	webp: br("image/webp"),
+	avif: br("image/avif"),
+	jpeg: br("image/jpeg"),
 	"av1-10bit-1": {
-		...Sr("image/avif"),
+		...br("image/avif"),
 		bits: 10,
-		decode: fr,
+		decode: dr,
 		needs: "bits"
 	},
 	"av1-10bit-2": {
-		...Sr("video/AV1"),
+		...br("video/AV1"),
 		bits: 10,
-		decode: (e, t, n, r) => fr(ve(e, t.where), t, n, r),
-		bitmaps: (e, t, n, r) => cr(ve(e, t.where), t, n, r),
+		decode: (e, t, n) => dr(ve(e, t.where), t, n),
+		bitmaps: (e, t, n) => sr(ve(e, t.where), t, n),
 		needs: "av1-10bit-2"
 	}
-}, Cr = {
+}, xr = {
 	mesh: "mesh-1",
 	cameras: "cameras-1",
 	names: "names-1",
 	triangles: "triangles-1",
 	weights: "weights-1"
 };
-function wr(e, t, n) {
+function Sr(e, t, n) {
 	let r = t.exists ? t.text(R) : n, i = Object.hasOwn(G, r) ? G[r] : null;
 	if (i?.kind === e) return i;
 	throw new j("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
 }
-function Tr(e, t) {
+function Cr(e, t) {
 	return Object.keys(G).find((n) => {
 		let r = G[n];
 		return r.kind === "picture" && r.mimeType === e && (t ?? r.bits) === r.bits;
@@ -1411,21 +1358,21 @@ var K = class e {
 	wrong(e) {
 		return M(this.where || "/", this.exists ? e : "missing");
 	}
-}, Er = 5121, Dr = 5123, Or = 5125, q = 5126, kr = {
-	[Er]: 1,
-	[Dr]: 2,
-	[Or]: 4,
+}, wr = 5121, Tr = 5123, Er = 5125, q = 5126, Dr = {
+	[wr]: 1,
+	[Tr]: 2,
+	[Er]: 4,
 	[q]: 4
-}, Ar = /* @__PURE__ */ new Set([
+}, Or = /* @__PURE__ */ new Set([
 	"cameras",
 	"triangles",
 	"weights"
-]), jr = {
+]), kr = {
 	SCALAR: 1,
 	VEC2: 2,
 	VEC3: 3
 };
-function Mr(e) {
+function Ar(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
@@ -1441,10 +1388,10 @@ function Mr(e) {
 		return i;
 	});
 }
-function Nr(e) {
+function jr(e) {
 	return (t) => t.integer(0, e.length - 1);
 }
-function Pr(e, t) {
+function Mr(e, t) {
 	let n = e.key("accessors"), r = n.exists ? n.items(I) : [];
 	return (e, n, i, a) => {
 		let o = r[e.integer(0, r.length - 1)];
@@ -1455,14 +1402,14 @@ function Pr(e, t) {
 		if (o.key("sparse").exists) throw o.wrong("sparse");
 		let c = o.key("normalized");
 		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = jr[n] ?? 1, u = o.key("count").integer(1, Ne);
+		let l = kr[n] ?? 1, u = o.key("count").integer(1, Ne);
 		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
 		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
 		if (!f) throw o.wrong("no such buffer view");
-		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = kr[s] * l;
+		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = Dr[s] * l;
 		if (f.stride && (f.stride < h || n === "SCALAR")) throw o.wrong("a stride that cannot be");
 		if (m + (u - 1) * (f.stride || h) + h > f.length) throw o.wrong("outside its buffer view");
-		if ((m + f.offset) % kr[s]) throw o.wrong("not aligned");
+		if ((m + f.offset) % Dr[s]) throw o.wrong("not aligned");
 		return {
 			view: d,
 			offset: m,
@@ -1473,40 +1420,40 @@ function Pr(e, t) {
 		};
 	};
 }
-function Fr(e, t, n) {
-	let r = typeof t.raw == "number" && Ar.has(e), i = wr(e, r ? new K(void 0, t.where) : t.key("codec"), Cr[e]);
+function Nr(e, t, n) {
+	let r = typeof t.raw == "number" && Or.has(e), i = Sr(e, r ? new K(void 0, t.where) : t.key("codec"), xr[e]);
 	return {
 		view: n(r ? t : t.key("bufferView")),
 		codec: i,
 		where: t.where
 	};
 }
-async function Ir(e, t, n) {
+async function Pr(e, t, n) {
 	let r = await n(e.view), i = t[e.view]?.length ?? Infinity;
 	if (r.byteLength < i) throw ue(e.where);
-	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + kr[c] * o * s);
-	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : Lr(new Float32Array(l), e.where);
+	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + Dr[c] * o * s);
+	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : Fr(new Float32Array(l), e.where);
 }
-function Lr(e, t) {
+function Fr(e, t) {
 	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw M(t, `${n} among its numbers`);
 	return e;
 }
 // eigenfield-three/src/planes.ts
-var J = 8, Rr = 16;
-function zr(e, t) {
+var J = 8, Ir = 16;
+function Lr(e, t) {
 	return new j("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function Br(e, t = Ce) {
+function Rr(e, t = Ce) {
 	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
 	if (!n || !r) throw e.wrong("two numbers are needed");
 	if (n * r > Te) throw e.wrong(`more than ${Te} texels`);
 	return [n, r];
 }
-function Vr(e, t, n, r, i) {
+function zr(e, t, n, r, i) {
 	let a = e.key("planes").items(16);
 	if (!a.length) throw e.key("planes").wrong("no plane");
 	let o = a.map((e, a) => {
-		let o = e.key("channels").integer(1, 64), s = Yr(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => Qr(e, o, t, r, i);
+		let o = e.key("channels").integer(1, 64), s = Jr(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => Zr(e, o, t, r, i);
 		return {
 			channels: o,
 			...s,
@@ -1524,7 +1471,7 @@ function Vr(e, t, n, r, i) {
 	if (s > De) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
-function Hr(e, t) {
+function Br(e, t) {
 	let n = t.reduce((e, { channels: t }) => e + t, 0), r = e.key("toRGB");
 	if (r.exists) {
 		let e = r.numbers(3 * n), t = (t, r) => e[t * n + r] ?? 0;
@@ -1556,11 +1503,11 @@ function Hr(e, t) {
 			1
 		]
 	];
-	throw zr(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
+	throw Lr(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
 }
-function Ur(e, t, n, r, i, a = !1) {
-	let o = Wr(e), s = t === 3 && o.bits === J ? 1 : t;
-	r && $r(e, s * n, r);
+function Vr(e, t, n, r, i, a = !1) {
+	let o = Hr(e), s = t === 3 && o.bits === J ? 1 : t;
+	r && Qr(e, s * n, r);
 	let [c, l] = [e.key("scale"), e.key("zero")], u = {
 		view: i(e.key("bufferView")),
 		codec: o,
@@ -1570,41 +1517,44 @@ function Ur(e, t, n, r, i, a = !1) {
 	};
 	return a && o.bits === J && !c.exists && !l.exists ? {
 		...u,
-		...Gr(t)
+		...Ur(t)
 	} : {
 		...u,
-		scale: Jr(c, t, n),
-		zero: Jr(l, t, n)
+		scale: qr(c, t, n),
+		zero: qr(l, t, n)
 	};
 }
-function Wr(e) {
+function Hr(e) {
 	let t = e.key("mimeType").text(R);
-	if (!Tr(t)) throw e.key("mimeType").wrong("an unknown type");
-	let n = e.key("bits"), r = n.exists ? n.integer(1, Rr) : J, i = Tr(t, r);
+	if (!Cr(t)) throw e.key("mimeType").wrong("an unknown type");
+	let n = e.key("bits"), r = n.exists ? n.integer(1, Ir) : J, i = Cr(t, r);
 	if (!i) throw n.wrong(`${r} bits of ${t}`);
-	let a = e.key("codec"), o = wr("picture", a, i);
+	let a = e.key("codec"), o = Sr("picture", a, i);
 	if (o.mimeType !== t || o.bits !== r) throw a.wrong(`${r} bits of ${t}`);
 	return o;
 }
-function Gr(e) {
+function Ur(e) {
 	return {
 		scale: Array(e).fill(1 / 255),
 		zero: Array(e).fill(0)
 	};
 }
-function Kr(e) {
+function Wr(e) {
 	return e.some(({ codec: e }) => e.bits > J);
 }
-function qr({ codec: e }) {
+function Gr({ codec: e }) {
 	return (2 ** e.bits - 1) / 255;
 }
-function Jr(e, t, n) {
+function Kr(e, t) {
+	return t ? 1 : 1 / (255 * Gr(e));
+}
+function qr(e, t, n) {
 	let r = e.items(t * n).map((e) => e.number());
 	if (r.length === t * n) return r;
 	if (r.length !== t) throw e.wrong(`${t} or ${t * n} numbers are needed`);
 	return Array(n).fill(r).flat();
 }
-function Yr(e, t, n, r) {
+function Jr(e, t, n, r) {
 	let i = e.key("mean");
 	if (!i.exists) {
 		if (n === null || t !== 1 && t !== 3) throw i.wrong("no mean");
@@ -1615,22 +1565,22 @@ function Yr(e, t, n, r) {
 				textures: 1,
 				pieces: 1,
 				where: "/images/0",
-				...Gr(t)
+				...Ur(t)
 			},
 			meanSize: null,
 			precision: null
 		};
 	}
-	let a = Br(i.key("size")), o = Ur(i, t, 1, a, r, !0);
+	let a = Rr(i.key("size")), o = Vr(i, t, 1, a, r, !0);
 	return {
 		mean: o,
 		meanSize: a,
-		precision: Zr(i.key("precision"), o, r)
+		precision: Xr(i.key("precision"), o, r)
 	};
 }
-function Xr(e, t) {
-	let n = Br(e.key("size")), r = Wr(e);
-	return $r(e, 1, n), {
+function Yr(e, t) {
+	let n = Rr(e.key("size")), r = Hr(e);
+	return Qr(e, 1, n), {
 		channels: 1,
 		mean: {
 			view: t(e.key("bufferView")),
@@ -1645,10 +1595,10 @@ function Xr(e, t) {
 		precision: null
 	};
 }
-function Zr(e, t, n) {
+function Xr(e, t, n) {
 	if (!e.exists) return null;
 	if (t.codec.bits === J) throw e.wrong(`of a mean of ${J} bits`);
-	let r = Br(e.key("size"), we), i = wr("picture", e.key("codec"), "png");
+	let r = Rr(e.key("size"), we), i = Sr("picture", e.key("codec"), "png");
 	if (i !== G.png) throw e.key("codec").wrong("no PNG");
 	return {
 		view: n(e.key("bufferView")),
@@ -1659,8 +1609,8 @@ function Zr(e, t, n) {
 		where: e.where
 	};
 }
-function Qr(e, t, n, r, i) {
-	let a = Br(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Br(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, Ce) : [];
+function Zr(e, t, n, r, i) {
+	let a = Rr(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Rr(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, Ce) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
 	let d = 0, f = e.key("picture"), p = f.exists ? f.object() : {}, m = e.key("textures").items(Ee).map((e) => {
@@ -1668,10 +1618,10 @@ function Qr(e, t, n, r, i) {
 			...p,
 			...e.object()
 		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, Ee) : 1;
-		return d += o, Ur(n, t, o, a, i);
+		return d += o, Vr(n, t, o, a, i);
 	});
 	if (d > 4096) throw e.wrong(`more than ${Ee} textures`);
-	let h = e.key("codedWeights"), g = d ? h.exists ? Fr("weights", h, i) : r(e.key("weights"), "SCALAR", [q], n * d) : null;
+	let h = e.key("codedWeights"), g = d ? h.exists ? Nr("weights", h, i) : r(e.key("weights"), "SCALAR", [q], n * d) : null;
 	return {
 		size: a,
 		grid: c,
@@ -1682,23 +1632,23 @@ function Qr(e, t, n, r, i) {
 		where: e.where
 	};
 }
-function $r(e, t, [n, r]) {
+function Qr(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
 	if (n * i > Te) throw e.wrong(`more than ${Te} texels`);
 }
 // eigenfield-three/src/sheets.ts
-function ei(e, t) {
+function $r(e, t) {
 	if (!e.exists) return null;
 	let n = e.key("faces").items(32).map((e) => e.integer(1, Me));
 	if (!n.length) throw e.key("faces").wrong("no sheet");
 	return {
 		faces: n,
-		opacity: Xr(e.key("opacity"), t),
+		opacity: Yr(e.key("opacity"), t),
 		where: e.where
 	};
 }
-function ti({ faces: e, where: t }, { index: n, attributes: r }) {
+function ei({ faces: e, where: t }, { index: n, attributes: r }) {
 	let i = e.reduce((e, t) => e + t, 0), a = (n?.count ?? 0) / 3;
 	if (i !== a) throw M(`${t}/faces`, `the sheets have ${i} triangles, the mesh has ${a}`);
 	let o = new Uint8Array(r.position?.count ?? 0), s = 0;
@@ -1711,7 +1661,7 @@ function ti({ faces: e, where: t }, { index: n, attributes: r }) {
 	});
 }
 // eigenfield-three/src/document.ts
-var ni = [
+var ti = [
 	"namePattern",
 	"noFallback",
 	"packed",
@@ -1721,8 +1671,8 @@ var ni = [
 	"sheets",
 	"stacks",
 	"toRGB"
-], ri = Object.values(G).flatMap(({ needs: e }) => e ?? []), ii = /* @__PURE__ */ new Set([...ni, ...ri]), ai = 64, oi = 9, si = 10 ** oi;
-function ci(e) {
+], ni = Object.values(G).flatMap(({ needs: e }) => e ?? []), ri = /* @__PURE__ */ new Set([...ti, ...ni]), ii = 64, ai = 9, oi = 10 ** ai;
+function si(e) {
 	let t = new K(e, "");
 	try {
 		return t.key("extensions").key(xe).exists;
@@ -1730,10 +1680,10 @@ function ci(e) {
 		return !1;
 	}
 }
-function li(e) {
-	let t = new K(e, ""), n = t.key("extensions").key(xe), r = fi(n), i = Mr(t), a = Pr(t, i), o = Nr(i);
-	pi(t);
-	let s = gi(t, o), c = n.key("cameras"), { count: l, names: u } = _i(c, o), d = bi(c, l), f = d.filter((e) => !e).length, p = Vr(n, f, s, a, o), m = Hr(n, p), h = c.key("colour"), g = c.key("codedColour");
+function ci(e) {
+	let t = new K(e, ""), n = t.key("extensions").key(xe), r = di(n), i = Ar(t), a = Mr(t, i), o = jr(i);
+	fi(t);
+	let s = hi(t, o), c = n.key("cameras"), { count: l, names: u } = gi(c, o), d = yi(c, l), f = d.filter((e) => !e).length, p = zr(n, f, s, a, o), m = Br(n, p), h = c.key("colour"), g = c.key("codedColour");
 	if ((h.exists || g.exists) && m.length < 3) throw h.wrong("needs three channels");
 	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), x = n.key("mesh");
 	return {
@@ -1744,48 +1694,48 @@ function li(e) {
 		names: u,
 		heldOut: d,
 		reference: n.key("reference").integer(0, l - 1),
-		calibration: xi(c, l, a, o),
-		sizes: Si(c, l, a),
-		colour: g.exists ? Fr("weights", g, o) : h.exists ? a(h, "SCALAR", [q], 6 * l) : null,
-		...Ci(_),
-		triangles: y.exists ? Fr("triangles", y, o) : v.exists ? hi(a(v, "SCALAR", [Dr, Or], null), 2 * L) : null,
-		settings: wi(n.key("settings")),
-		scores: wi(n.key("scores")),
+		calibration: bi(c, l, a, o),
+		sizes: xi(c, l, a),
+		colour: g.exists ? Nr("weights", g, o) : h.exists ? a(h, "SCALAR", [q], 6 * l) : null,
+		...Si(_),
+		triangles: y.exists ? Nr("triangles", y, o) : v.exists ? mi(a(v, "SCALAR", [Tr, Er], null), 2 * L) : null,
+		settings: Ci(n.key("settings")),
+		scores: Ci(n.key("scores")),
 		views: i,
-		mesh: x.exists ? Fr("mesh", x, o) : null,
-		sheets: ei(n.key("sheets"), o),
-		shown: x.exists && !t.key("meshes").exists ? null : ui(t, a),
+		mesh: x.exists ? Nr("mesh", x, o) : null,
+		sheets: $r(n.key("sheets"), o),
+		shown: x.exists && !t.key("meshes").exists ? null : li(t, a),
 		preview: s
 	};
 }
-function ui(e, t) {
+function li(e, t) {
 	let n = e.key("meshes").at(0).key("primitives").at(0), r = n.key("mode");
 	if (r.exists && r.integer(0, 6) !== 4) throw r.wrong("no triangles");
 	let [i, a] = [n.key("attributes"), n.key("indices")];
 	return {
-		position: mi(t(i.key("POSITION"), "VEC3", [q], null), je),
-		uv: mi(t(i.key("TEXCOORD_0"), "VEC2", [q], null), je),
-		indices: hi(t(a, "SCALAR", [
-			Er,
-			Dr,
-			Or
+		position: pi(t(i.key("POSITION"), "VEC3", [q], null), je),
+		uv: pi(t(i.key("TEXCOORD_0"), "VEC2", [q], null), je),
+		indices: mi(t(a, "SCALAR", [
+			wr,
+			Tr,
+			Er
 		], null), Me)
 	};
 }
-function di({ planes: e, sheets: t }) {
+function ui({ planes: e, sheets: t }) {
 	return t ? [...e, t.opacity] : e;
 }
-function fi(e) {
+function di(e) {
 	let t = e.key("version").text(R);
 	if (!/^1\.\d+$/.test(t)) throw new j("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
 	for (let e of n.exists ? n.items(I) : []) {
 		let t = e.text(R);
-		if (!ii.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
+		if (!ri.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
-function pi(e) {
+function fi(e) {
 	let t = e.key("nodes").items(I), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
@@ -1800,42 +1750,42 @@ function pi(e) {
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
-function mi(e, t) {
+function pi(e, t) {
 	if (e.count > t) throw M(e.where, `more than ${t}`);
 	return e;
 }
-function hi(e, t) {
+function mi(e, t) {
 	if (e.count % 3) throw M(e.where, "torn triangles");
-	return mi(e, 3 * t);
+	return pi(e, 3 * t);
 }
-function gi(e, t) {
+function hi(e, t) {
 	let n = e.key("images");
 	if (!n.exists) return null;
 	let r = n.at(0).key("bufferView");
 	return r.exists ? t(r) : null;
 }
-function _i(e, t) {
+function gi(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
 		count: n.key("count").integer(1, L),
-		names: Fr("names", n, t)
+		names: Nr("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? yi(r) : i.items(L).map((e) => e.text(R));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? vi(r) : i.items(L).map((e) => e.text(R));
 	if (!a.length) throw i.wrong("no cameras");
-	let o = vi(a);
+	let o = _i(a);
 	if (o) throw i.wrong(o);
 	return {
 		count: a.length,
 		names: a
 	};
 }
-function vi(e) {
+function _i(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
-function yi(e) {
+function vi(e) {
 	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, L));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
-	let r = e.key("parts").items(ai).map((e) => {
+	let r = e.key("parts").items(ii).map((e) => {
 		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(R))];
 		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
 		if (a.exists) {
@@ -1843,7 +1793,7 @@ function yi(e) {
 			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
 			return [r, e];
 		}
-		let [o, s] = [e.key("first").integer(0, si), e.key("step").integer(0, si)], c = e.key("digits").integer(1, oi);
+		let [o, s] = [e.key("first").integer(0, oi), e.key("step").integer(0, oi)], c = e.key("digits").integer(1, ai);
 		return [r, Array.from({ length: i }, (e, t) => String(o + s * t).padStart(c, "0"))];
 	});
 	return Array.from({ length: t * n }, (t, i) => {
@@ -1852,7 +1802,7 @@ function yi(e) {
 		return o;
 	});
 }
-function bi(e, t) {
+function yi(e, t) {
 	let n = Array(t).fill(!1), r = e.key("heldOut");
 	if (!r.exists) return n;
 	for (let e of r.items(t)) {
@@ -1863,21 +1813,21 @@ function bi(e, t) {
 	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
 	return n;
 }
-function xi(e, t, n, r) {
+function bi(e, t, n, r) {
 	let i = e.key("coded");
-	return i.exists ? Fr("cameras", i, r) : {
+	return i.exists ? Nr("cameras", i, r) : {
 		intrinsics: n(e.key("intrinsics"), "SCALAR", [q], 5 * t),
 		poses: n(e.key("poses"), "SCALAR", [q], 12 * t)
 	};
 }
-function Si(e, t, n) {
+function xi(e, t, n) {
 	let r = e.key("size");
-	if (!r.exists) return n(e.key("sizes"), "SCALAR", [Or], 2 * t);
+	if (!r.exists) return n(e.key("sizes"), "SCALAR", [Er], 2 * t);
 	let [i = 0, a = 0] = r.numbers(2, 1, Oe);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
-function Ci(e) {
+function Si(e) {
 	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
 	for (let i of [
 		r(t, t) - 1,
@@ -1892,22 +1842,22 @@ function Ci(e) {
 		extent: [i, a]
 	};
 }
-function wi(e) {
+function Ci(e) {
 	return e.exists ? e.object() : {};
 }
 // eigenfield-three/src/info.ts
-var Ti = 1e-6;
-async function Ei(e, t) {
+var wi = 1e-6;
+async function Ti(e, t) {
 	let [n, { lenses: r, poses: i }, a, o] = await Promise.all([
-		Oi(e, t),
+		Di(e, t),
+		ki(e, t),
 		Ai(e, t),
-		ji(e, t),
-		Di(e, t)
+		Ei(e, t)
 	]);
 	return n.map((t, n) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
-		if (!(s > Ti && c > Ti)) throw M(r.where, `focal lengths of "${t}"`);
-		let { R: f, t: p } = Mi([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
+		if (!(s > wi && c > wi)) throw M(r.where, `focal lengths of "${t}"`);
+		let { R: f, t: p } = ji([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
 		if (!m || !h || Math.max(m, h) > 65535 || m * h > ke) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
@@ -1925,13 +1875,13 @@ async function Ei(e, t) {
 				0,
 				1
 			]
-		], [_, v] = o ? Ni([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
+		], [_, v] = o ? Mi([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
 		return {
 			name: t,
 			K: g,
 			R: f,
 			t: p,
-			centre: Wi(f, p),
+			centre: Ui(f, p),
 			width: m,
 			height: h,
 			gain: _,
@@ -1939,8 +1889,8 @@ async function Ei(e, t) {
 		};
 	});
 }
-async function Di({ colour: e, heldOut: t, views: n }, r) {
-	if (!e || "type" in e) return e && Ir(e, n, r);
+async function Ei({ colour: e, heldOut: t, views: n }, r) {
+	if (!e || "type" in e) return e && Pr(e, n, r);
 	let { cameras: i, components: a, values: o } = await e.codec.decode(new Uint8Array(await r(e.view)), e.where);
 	if (a !== 6 || i !== t.filter((e) => !e).length) throw M(e.where, `${i} x ${a} colours`);
 	let s = 0;
@@ -1953,31 +1903,31 @@ async function Di({ colour: e, heldOut: t, views: n }, r) {
 		0
 	] : [...o.subarray(6 * s, 6 * ++s)]));
 }
-async function Oi({ names: e, heldOut: t }, n) {
+async function Di({ names: e, heldOut: t }, n) {
 	if (Array.isArray(e)) return e;
-	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : vi(r);
+	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : _i(r);
 	if (i) throw M(e.where, i);
 	return r;
 }
-async function ki(e, t, n) {
+async function Oi(e, t, n) {
 	return {
-		numbers: await Ir(e, t.views, n),
+		numbers: await Pr(e, t.views, n),
 		where: e.where
 	};
 }
-async function Ai(e, t) {
+async function ki(e, t) {
 	let { calibration: n, heldOut: r } = e;
 	if ("intrinsics" in n) {
 		let { intrinsics: r, poses: i } = n;
 		return {
-			lenses: await ki(r, e, t),
-			poses: await ki(i, e, t)
+			lenses: await Oi(r, e, t),
+			poses: await Oi(i, e, t)
 		};
 	}
 	let { view: i, codec: a, where: o } = n, s = await a.decode(new Uint8Array(await t(i)), o), c = s.poses.length / 12;
 	if (c !== r.length) throw M(o, `${c} cameras in it, and ${r.length} names`);
 	let l = (e) => ({
-		numbers: Lr(e, o),
+		numbers: Fr(e, o),
 		where: o
 	});
 	return {
@@ -1985,15 +1935,15 @@ async function Ai(e, t) {
 		poses: l(s.poses)
 	};
 }
-async function ji(e, t) {
-	if (!Array.isArray(e.sizes)) return ki(e.sizes, e, t);
+async function Ai(e, t) {
+	if (!Array.isArray(e.sizes)) return Oi(e.sizes, e, t);
 	let [n, r] = e.sizes;
 	return {
 		numbers: Uint32Array.from({ length: 2 * e.heldOut.length }, (e, t) => t % 2 ? r : n),
 		where: "its cameras' size"
 	};
 }
-function Mi(e, t, n) {
+function ji(e, t, n) {
 	let r = (t) => [
 		e[4 * t] ?? NaN,
 		e[4 * t + 1] ?? NaN,
@@ -2011,19 +1961,19 @@ function Mi(e, t, n) {
 		let a = Y(i[e], i[r]) - +(e === r);
 		if (!(Math.abs(a) <= 2e-4)) throw M(t, `the pose of "${n}" is no rotation`);
 	}
-	if (!(Y(Gi(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
+	if (!(Y(Wi(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
 	return {
 		R: i,
 		t: a
 	};
 }
-function Ni(e, t, n) {
+function Mi(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
 	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw M(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
-async function Pi(e, t) {
-	let n = Ii(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => Fi(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
+async function Ni(e, t) {
+	let n = Fi(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => Pi(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
 	for (let e of i) {
 		let t = e.length / r;
 		for (let n = 0; n < r; n++) o.set(e.subarray(n * t, (n + 1) * t), n * a + s);
@@ -2031,26 +1981,26 @@ async function Pi(e, t) {
 	}
 	return o;
 }
-async function Fi({ weights: e, count: t }, n, r, i) {
+async function Pi({ weights: e, count: t }, n, r, i) {
 	if (!e) return /* @__PURE__ */ new Float32Array();
-	if ("type" in e) return Ir(e, r.views, i);
+	if ("type" in e) return Pr(e, r.views, i);
 	let { view: a, codec: o, where: s } = e, { cameras: c, components: l, values: u } = o.decode(new Uint8Array(await i(a)), s);
-	if (c === n && l === t) return Lr(u, s);
+	if (c === n && l === t) return Fr(u, s);
 	throw M(s, `${c} x ${l} weights, and ${n} encoded cameras x ${t} textures`);
 }
-function Ii(e) {
+function Fi(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
 }
-function Li(e) {
-	return Math.max(0, ...Ii(e).map(({ count: e }) => e));
+function Ii(e) {
+	return Math.max(0, ...Fi(e).map(({ count: e }) => e));
 }
-function Ri(e, t) {
-	let n = [...t.slice(0, e.planes.length), ...Ii(e).map(({ grid: e }) => e)];
+function Li(e, t) {
+	let n = [...t.slice(0, e.planes.length), ...Fi(e).map(({ grid: e }) => e)];
 	return [Math.max(...n.map(([e]) => e)), Math.max(...n.map(([, e]) => e))];
 }
-async function zi(e, t) {
+async function Ri(e, t) {
 	if (!e.triangles) return /* @__PURE__ */ new Uint32Array();
-	let { where: n } = e.triangles, r = await Bi(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
+	let { where: n } = e.triangles, r = await zi(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
 		if (Math.max(t, a, o) >= i) throw M(n, `no encoded camera ${Math.max(t, a, o)}`);
@@ -2058,11 +2008,11 @@ async function zi(e, t) {
 	}
 	return r;
 }
-async function Bi(e, t, n) {
-	return "type" in e ? Uint32Array.from(await Ir(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
+async function zi(e, t, n) {
+	return "type" in e ? Uint32Array.from(await Pr(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
 }
-function Vi(e, t, n, r, i, a) {
-	let { right: o, up: s } = e, c = Gi(o, s), l = [
+function Bi(e, t, n, r, i, a) {
+	let { right: o, up: s } = e, c = Wi(o, s), l = [
 		0,
 		0,
 		0
@@ -2090,8 +2040,8 @@ function Vi(e, t, n, r, i, a) {
 		settings: e.settings,
 		scores: e.scores,
 		metresPerUnit: typeof u == "number" && u > 0 && u <= 1e30 ? u : null,
-		bytes: Hi(e, i),
-		size: Ri(e, n),
+		bytes: Vi(e, i),
+		size: Li(e, n),
 		planes: e.planes.map(({ channels: e, bases: t }, r) => ({
 			channels: e,
 			mean: n[r] ?? [1, 1],
@@ -2107,9 +2057,9 @@ function Vi(e, t, n, r, i, a) {
 		facesPlane: Math.abs(Y(l, c)) > .7
 	};
 }
-function Hi(e, t) {
-	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(Li(e)).fill(0);
-	for (let { pictures: t } of Ii(e)) {
+function Vi(e, t) {
+	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(Ii(e)).fill(0);
+	for (let { pictures: t } of Fi(e)) {
 		let e = 0;
 		for (let { view: n, textures: i } of t) {
 			let t = r(n);
@@ -2119,7 +2069,7 @@ function Hi(e, t) {
 			}
 		}
 	}
-	let c = i(Ii(e).flatMap((e) => e.weights ? [e.weights.view] : [])), l = i([...Object.values(e.shown ?? {}), ...e.mesh ? [e.mesh] : []].map(({ view: e }) => e)), u = e.sheets ? r(e.sheets.opacity.mean.view) : 0;
+	let c = i(Fi(e).flatMap((e) => e.weights ? [e.weights.view] : [])), l = i([...Object.values(e.shown ?? {}), ...e.mesh ? [e.mesh] : []].map(({ view: e }) => e)), u = e.sheets ? r(e.sheets.opacity.mean.view) : 0;
 	return {
 		total: t,
 		mesh: l,
@@ -2130,7 +2080,7 @@ function Hi(e, t) {
 		textures: s
 	};
 }
-function Ui(e, t) {
+function Hi(e, t) {
 	let { origin: n, extent: r } = e, i = [
 		t[0] - n[0],
 		t[1] - n[1],
@@ -2138,7 +2088,7 @@ function Ui(e, t) {
 	];
 	return [r[0] > 0 ? Y(i, e.right) / r[0] : 0, r[1] > 0 ? Y(i, e.up) / r[1] : 0];
 }
-function Wi(e, t) {
+function Ui(e, t) {
 	let n = (n) => -(e[0][n] * t[0] + e[1][n] * t[1] + e[2][n] * t[2]);
 	return [
 		n(0),
@@ -2149,7 +2099,7 @@ function Wi(e, t) {
 function Y(e, t) {
 	return e[0] * t[0] + e[1] * t[1] + e[2] * t[2];
 }
-function Gi(e, t) {
+function Wi(e, t) {
 	return [
 		e[1] * t[2] - e[2] * t[1],
 		e[2] * t[0] - e[0] * t[2],
@@ -2157,7 +2107,7 @@ function Gi(e, t) {
 	];
 }
 // eigenfield-three/src/cameras.ts
-function Ki(e, t, n) {
+function Gi(e, t, n) {
 	let { info: r } = e, i = r.cameras.filter((e, t) => !r.heldOut[t]), a = r.cameras[r.reference];
 	if (!a) throw RangeError(`no camera ${r.reference}`);
 	let { width: o, height: s } = a, c = [
@@ -2196,7 +2146,7 @@ function Ki(e, t, n) {
 	e.viewWeights(t, n, "delaunay").forEach((e, t) => {
 		let n = i[t];
 		if (!e || !n) return;
-		let r = qi(n, o, s);
+		let r = Ki(n, o, s);
 		for (let t of [
 			0,
 			1,
@@ -2207,7 +2157,7 @@ function Ki(e, t, n) {
 			2
 		]) t < 2 && (c[t][i] += e * r[t][i]), l[t][i] += e * n.R[t][i];
 	});
-	let u = Yi(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Ji(t) * m[0], Ji(n) * m[1]], _ = [
+	let u = Ji(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [qi(t) * m[0], qi(n) * m[1]], _ = [
 		0,
 		1,
 		2
@@ -2224,7 +2174,7 @@ function Ki(e, t, n) {
 		offset: null
 	};
 }
-function qi({ K: e, width: t, height: n }, r, i) {
+function Ki({ K: e, width: t, height: n }, r, i) {
 	let a = Math.max(r / t, i / n), [o, s] = [(r - a * t) / 2, (i - a * n) / 2];
 	return [
 		[
@@ -2244,16 +2194,16 @@ function qi({ K: e, width: t, height: n }, r, i) {
 		]
 	];
 }
-function Ji(e) {
+function qi(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Yi(e) {
+function Ji(e) {
 	let t = e;
 	for (let e = 0; e < 50; e++) {
 		let e = [
-			Gi(t[1], t[2]),
-			Gi(t[2], t[0]),
-			Gi(t[0], t[1])
+			Wi(t[1], t[2]),
+			Wi(t[2], t[0]),
+			Wi(t[0], t[1])
 		], n = Y(t[0], e[0]);
 		if (!(n > 1e-12)) break;
 		let r = t.map((t, r) => t.map((t, i) => (t + e[r][i] / n) / 2)), i = Math.max(...r.flatMap((e, n) => e.map((e, r) => Math.abs(e - t[n][r]))));
@@ -2261,24 +2211,24 @@ function Yi(e) {
 	}
 	return t;
 }
-function Xi(e, t, n, r, i = 1) {
+function Yi(e, t, n, r, i = 1) {
 	let a = n.width / n.height, o = i * Math.min(1, a / r), s = i * Math.min(1, r / a), c = {
 		left: (1 - o) / 2,
 		top: (1 - s) / 2,
 		width: o,
 		height: s
 	};
-	return Zi(e, t, n), Qi(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
+	return Xi(e, t, n), Zi(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
 }
-function Zi(e, t, n) {
+function Xi(e, t, n) {
 	let { R: r, centre: i } = n, a = new x().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
 	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new A()), t.updateMatrixWorld(!0);
 }
-function Qi(e, t, n, r) {
-	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = $i(e, n);
+function Zi(e, t, n, r) {
+	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Qi(e, n);
 	t.near = d, t.far = f, t.projectionMatrix.set(l * i, -l * a, -(2 * r.left - 1 + l * o), 0, 0, u * s, -(1 - 2 * r.top - u * c), 0, 0, 0, -(f + d) / (f - d), -2 * f * d / (f - d), 0, 0, -1, 0), t.projectionMatrixInverse.copy(t.projectionMatrix).invert();
 }
-function $i(e, t) {
+function Qi(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
@@ -2288,19 +2238,19 @@ function $i(e, t) {
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
 // eigenfield-three/src/footprint.ts
-var ea = 256;
-function ta(e, t, n) {
+var $i = 256;
+function ea(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / ea)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / $i)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => na(t, i.getX(e), i.getY(e), i.getZ(e))), l = ra(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => ta(t, i.getX(e), i.getY(e), i.getZ(e))), l = na(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = ra(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = na(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -2310,7 +2260,7 @@ function ta(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function na({ K: e, R: t, t: n }, r, i, a) {
+function ta({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -2318,36 +2268,51 @@ function na({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function ra(e) {
+function na(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/memory.ts
-var ia = 4 / 3, aa = 4, oa = 8, sa = 2, ca = 2 ** 20;
-function la() {
-	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
-	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && ua(e) ? Math.min(t ?? 4, 6) * 128 * ca : Math.min(t ?? 8, 8) * 256 * ca;
+var ra = 4 / 3, ia = da({
+	components: 4,
+	halves: !0
+}), aa = {
+	components: 4,
+	halves: !1
+}, oa = {
+	components: 2,
+	halves: !1
+}, sa = {
+	components: 2,
+	halves: !0
+}, ca = 2 ** 20, la = 1 / 64, ua = 34;
+function da({ components: e, halves: t }) {
+	return (e > 2 ? 4 : e) * (t ? 2 : 1);
 }
-function ua(e) {
+function fa() {
+	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
+	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && pa(e) ? Math.min(t ?? 4, 6) * 128 * ca : Math.min(t ?? 8, 8) * 256 * ca;
+}
+function pa(e) {
 	return (e?.maxTouchPoints ?? 0) > 1;
 }
 function X([e, t], n) {
 	return [Math.ceil(e / n), Math.ceil(t / n)];
 }
-function da(e, t) {
+function ma(e, t) {
 	let [n, r] = X(e, t);
 	return n * r;
 }
-function fa(e) {
+function ha(e) {
 	return Math.ceil(e / 4);
 }
-function pa(e, t) {
-	return t * ma(e);
+function ga(e, t) {
+	return t * _a(e);
 }
-function ma(e) {
+function _a(e) {
 	return Math.max(1, Math.ceil(e / 4));
 }
-function ha(e) {
+function va(e) {
 	let { atlas: t, means: n, bases: r } = e, i = [
 		t,
 		...n.map(({ size: e }) => e),
@@ -2355,89 +2320,135 @@ function ha(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-function ga(e, t) {
-	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = [
-		1,
-		2,
-		4,
-		8,
-		16
-	].find((n) => Math.max(...e.atlas) / n <= t.side && _a(e, n) <= t.memory / 2) ?? 16, o = _a(e, a) + e.geometry, s = (t, n) => o + ya(e, t, n), c = (n, r) => s(n, r) + Sa(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
-		1,
-		2,
-		4
-	].find((e) => u(e) && c(e, i)) ?? 4, f = u(d) ? i : 0;
-	for (; f > 0 && !c(d, f);) f--;
-	let p = {
-		meanDown: a,
-		scaleDown: d,
-		usable: f,
-		bytes: s(d, f)
-	};
+var ya = [{
+	meanDown: 1,
+	scaleDown: 1,
+	halves: !0
+}, ...[
+	1,
+	1.5,
+	2,
+	3,
+	4,
+	6,
+	8,
+	12,
+	16
+].flatMap((e) => [
+	1,
+	1.5,
+	2
+].map((t) => ({
+	meanDown: e,
+	scaleDown: t * e,
+	halves: !1
+})))];
+function ba(e, t) {
+	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => xa(e, t.meanDown) + e.geometry + Sa(e, t, n), o = (n, r) => a(n, r) + Ta(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = ya.filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
+	for (; !u && l > 0; l--) u = c.find((e) => o(e, l - 1));
+	u ??= ya.at(-1);
+	let d = Ea({
+		...u,
+		usable: l
+	}, e), f = Da(d, e, t);
 	return {
-		...p,
-		limitation: Ca(p, n, e, t)
+		...u,
+		usable: l,
+		bytes: a(u, l),
+		reductions: d,
+		limitation: f
 	};
 }
-function _a(e, t) {
-	let n = e.means.map((e) => va(e) * fa(e.channels) * da(e.size, t)), r = ha(e).map((n) => {
-		let r = n.join() === e.atlas.join() ? ia : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
-		return oa * da(n, t) * (r + +!!i);
+function xa(e, t) {
+	let n = e.means.map(({ size: e, channels: n, tenBits: r }) => da({
+		components: n,
+		halves: r
+	}) * ha(n) * ma(e, t)), r = va(e).map((n) => {
+		let r = n.join() === e.atlas.join() ? ra : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
+		return ia * ma(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function va({ tenBits: e }) {
-	return e ? oa : aa;
-}
-function ya({ bases: e, rays: t }, n, r) {
-	return e.reduce((e, i) => {
-		let a = Math.min(r, i.count);
-		if (!a) return e;
-		let o = t ? ma(a) * 129 * 129 * oa : 0;
-		return e + va(i) * pa(a, i.channels) * da(i.size, n) + o;
+function Sa({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
+	return e.reduce((e, a) => {
+		let o = Math.min(i, a.count);
+		if (!o) return e;
+		let s = t ? _a(o) * 129 * 129 * ia : 0;
+		return e + da({
+			components: o,
+			halves: r && a.tenBits
+		}) * ga(o, a.channels) * ma(a.size, n) + s;
 	}, 0);
 }
-function ba({ means: e, bases: t }, n, r) {
-	return xa([...e.filter(({ pieces: e, tenBits: t }) => e > 1 || t).map(({ size: e }) => X(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => X(e, r))]);
-}
-function xa(e) {
-	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
-}
-function Sa(e, t) {
-	let [n, r] = ba({
-		means: [],
-		bases: e.bases
-	}, 1, t);
-	return (aa + (e.bases.some(({ tenBits: e }) => e) ? sa : 0)) * n * r;
-}
-function Ca(e, t, n, r) {
-	let i = [];
-	if (e.usable < t && i.push(`${e.usable} of ${t} eigen textures are drawn`), e.usable && e.scaleDown > 1 && i.push(`eigen textures have 1/${e.scaleDown} of their size`), e.meanDown > 1 && i.push(`the mean texture has 1/${e.meanDown} of its size`), !i.length) return null;
-	let a = _a(n, 1) + ya(n, 1, t) + Sa(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${wa(a)} MB of graphics memory and ${wa(r.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${Ta(i.join(", "))}: ${o}.`;
+function Ca({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
+	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = wa([...a, ...o].map(({ size: e }) => e)), l = Math.floor(la * i / (da(aa) * s)), u = [s, Math.min(c, Math.max(ua, l))], d = [...n > 1 ? a.map((e) => X(e.size, n)) : [], ...r > 1 ? o.map((e) => X(e.size, r)) : []];
+	return {
+		picture: {
+			size: u,
+			format: aa
+		},
+		codes: [...a, ...o].some(({ tenBits: e }) => e) ? {
+			size: u,
+			format: oa
+		} : null,
+		smaller: d.length ? {
+			size: wa(d),
+			format: sa
+		} : null
+	};
 }
 function wa(e) {
+	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
+}
+function Ta(e, t, n) {
+	let r = Object.values(Ca(e, t, n)).map((e) => e ? da(e.format) * ma(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(...va(e).map((e) => ma(e, 1))) : 0;
+	return [...r, i].reduce((e, t) => e + t, 0);
+}
+function Ea({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
+	let a = Math.max(0, ...i.bases.map(({ count: e }) => e)), o = [];
+	return e < a && o.push({
+		kind: "count",
+		part: e,
+		whole: a
+	}), e && n > 1 && o.push({
+		kind: "scale",
+		percent: Math.round(100 / n)
+	}), e && !r && i.bases.some(({ tenBits: e }) => e) && o.push({ kind: "bits" }), t > 1 && o.push({
+		kind: "mean",
+		percent: Math.round(100 / t)
+	}), o;
+}
+function Da(e, t, n) {
+	if (!e.length) return null;
+	let r = e.map((e) => e.kind === "count" ? `${e.part} of ${e.whole} eigen textures are drawn` : e.kind === "bits" ? "eigen textures have 8 bits" : `${e.kind === "mean" ? "the mean texture has" : "eigen textures have"} ${e.percent} % of ${e.kind === "mean" ? "its" : "their"} width and height`), i = {
+		meanDown: 1,
+		scaleDown: 1,
+		halves: !0
+	}, a = xa(t, 1) + Sa(t, i, Infinity) + Ta(t, i, n.memory) + t.geometry, o = a > n.memory ? `the scene needs ${Oa(a)} MB of graphics memory and ${Oa(n.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${ka(r.join(", "))}: ${o}.`;
+}
+function Oa(e) {
 	return (e / 1e6).toFixed(+(e < 1e7));
 }
-function Ta(e) {
+function ka(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var Ea = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of four passes. All\n// draw into textures whose row 0 is v = 0. All but the first add R, G, B and opacity to what is there, which is cleared\n// to zeros before:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n//   finerOpacity  in a scene with sheets, once for all of the atlas: the opacity of the sheets\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum; or the opacity, in the first channel, at a density of its own\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n\n// The opacity in `coarse` at texture coordinates of the atlas.\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Da = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", Oa = 2, ka = `
+var Aa = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of four passes. All\n// draw into textures whose row 0 is v = 0. All but the first add R, G, B and opacity to what is there, which is cleared\n// to zeros before:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n//   finerOpacity  in a scene with sheets, once for all of the atlas: the opacity of the sheets\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum; or the opacity, in the first channel, at a density of its own\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n\n// The opacity in `coarse` at texture coordinates of the atlas.\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", ja = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", Ma = 2, Na = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${Da}${Ea}`, Aa = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", ja = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", Ma = `${ka}
+${ja}${Aa}`, Pa = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", Fa = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", Ia = `${Na}
 in vec3 point;
 out vec4 place;
 void main() { place = placeOf(point); }
-`, Na = "sumTextures", Pa = "finerValue", Fa = "finerOpacity";
-function Ia(n, r, i) {
+`, La = "sumTextures", Ra = "finerValue", za = "finerOpacity";
+function Ba(n, r, i) {
 	let o = new O({
 		glslVersion: h,
-		vertexShader: Aa,
-		fragmentShader: `${ka}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
+		vertexShader: Pa,
+		fragmentShader: `${Na}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
 		uniforms: {
 			rectangle: { value: new ae(...r) },
 			...i
@@ -2473,7 +2484,7 @@ function Ia(n, r, i) {
 	let c = new S(s, o);
 	return c.frustumCulled = !1, c;
 }
-function La([e, t], n) {
+function Va([e, t], n) {
 	return new oe(e, t, {
 		type: g,
 		depthBuffer: !1,
@@ -2482,29 +2493,29 @@ function La([e, t], n) {
 		magFilter: n ? y : w
 	});
 }
-function Ra(e, t) {
-	let n = Gi(e.right, e.up), r = [
+function Ha(e, t) {
+	let n = Wi(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
 		t[2] - e.origin[2]
 	];
-	return [...Ui(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
+	return [...Hi(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
 }
-function za(t, n, r) {
+function Ua(t, n, r) {
 	let i = t.geometry.getAttribute("position"), a = t.geometry.getAttribute("uv"), o = new Float32Array(3 * i.count), s = new Float32Array(2 * i.count);
-	for (let e = 0; e < i.count; e++) o.set(Ra(n, [
+	for (let e = 0; e < i.count; e++) o.set(Ha(n, [
 		i.getX(e),
 		i.getY(e),
 		i.getZ(e)
 	]), 3 * e), s.set([a.getX(e), a.getY(e)], 2 * e);
-	let c = Array.from({ length: 5 }, (e, t) => t - Oa), l = c.flatMap((e) => c.map((t) => new ie(t, e)));
+	let c = Array.from({ length: 5 }, (e, t) => t - Ma), l = c.flatMap((e) => c.map((t) => new ie(t, e)));
 	l.sort((e, t) => t.lengthSq() - e.lengthSq());
 	let d = new v();
 	d.setAttribute("position", new e(s, 2)), d.setAttribute("onPlane", new e(o, 3)), d.setIndex(t.geometry.index ? new e(t.geometry.index.array, 1) : null), d.instanceCount = l.length, d.boundingSphere = new te();
 	let f = new O({
 		glslVersion: h,
-		vertexShader: ja.replace("SHIFTS", String(l.length)),
-		fragmentShader: Ma,
+		vertexShader: Fa.replace("SHIFTS", String(l.length)),
+		fragmentShader: Ia,
 		uniforms: {
 			texel: { value: new ie(2 / r.width, 2 / r.height) },
 			shifts: { value: l }
@@ -2524,7 +2535,7 @@ function za(t, n, r) {
 	};
 }
 // eigenfield-three/src/composer.ts
-var Ba = {
+var Wa = {
 	version: 0,
 	mean: !0,
 	opacity: !0,
@@ -2533,7 +2544,7 @@ var Ba = {
 	weights: /* @__PURE__ */ new Float64Array(),
 	eye: null,
 	maps: null
-}, Va = class {
+}, Ga = class {
 	opacity;
 	down;
 	mesh;
@@ -2544,14 +2555,14 @@ var Ba = {
 	camera = new n();
 	constructor(e, t, n, r, i, a) {
 		this.opacity = n, this.down = r, this.mesh = i, this.plane = a;
-		let [o, ...s] = ha({
+		let [o, ...s] = va({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), c = (e, n) => {
-			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(Ua), a = new k();
+			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(qa), a = new k();
 			return i.forEach(({ quad: e }, t) => a.add(Object.assign(e, { renderOrder: t }))), {
-				target: La(X(e, r), n),
+				target: Va(X(e, r), n),
 				scene: a,
 				steps: i,
 				places: null
@@ -2559,7 +2570,7 @@ var Ba = {
 		}, l = c(o ?? e, !0);
 		this.grids = s.map((e) => c(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = Ia(Pa, [
+			let t = Ba(Ra, [
 				0,
 				0,
 				1,
@@ -2573,36 +2584,36 @@ var Ba = {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && Ka(this.composed, n) || (this.composed = n, Ya(e, t, () => {
+		this.composed && Xa(this.composed, n) || (this.composed = n, $a(e, t, () => {
 			n.opacity && !this.opacityDrawn && this.drawOpacity(e);
 			for (let t of this.grids) {
 				n.eye && !t.places && t.steps.some(({ part: e }) => e.basis) && this.findPlaces(e, t);
-				for (let e of t.steps) Wa(e, t.places?.texture ?? null, n);
+				for (let e of t.steps) Ja(e, t.places?.texture ?? null, n);
 				this.draw(e, t.scene, t.target, this.opacityDrawn && t === this.grids.at(-1));
 			}
 		}));
 	}
 	dispose() {
-		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.dispose(), Ha(n);
+		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.dispose(), Ka(n);
 	}
 	drawOpacity(e) {
 		let t = this.grids.at(-1);
 		if (!this.opacity || !t) return;
-		let n = La(X(this.opacity.grid, this.down), !1), r = Ua(this.opacity);
-		for (let e of r) Wa(e, null, Ba);
+		let n = Va(X(this.opacity.grid, this.down), !1), r = qa(this.opacity);
+		for (let e of r) Ja(e, null, Wa);
 		let [i, a] = [new k(), new k()];
-		i.add(...r.map(({ quad: e }) => e)), a.add(Ia(Fa, [
+		i.add(...r.map(({ quad: e }) => e)), a.add(Ba(za, [
 			0,
 			0,
 			1,
 			1
 		], { coarse: { value: n.texture } })), this.draw(e, i, n), this.draw(e, a, t.target);
-		for (let e of [i, a]) Ha(e);
+		for (let e of [i, a]) Ka(e);
 		n.dispose(), this.opacityDrawn = !0;
 	}
 	findPlaces(e, t) {
-		t.places = La([t.target.width, t.target.height], !1);
-		let { scene: n, free: r } = za(this.mesh, this.plane, t.places);
+		t.places = Va([t.target.width, t.target.height], !1);
+		let { scene: n, free: r } = Ua(this.mesh, this.plane, t.places);
 		this.draw(e, n, t.places), r();
 	}
 	draw(e, t, n, r = !1) {
@@ -2611,17 +2622,17 @@ var Ba = {
 		r && i.colorMask(!0, !0, !0, !1), e.clear(!0, !1, !1), r && i.colorMask(!0, !0, !0, !0), e.render(t, this.camera);
 	}
 };
-function Ha(e) {
+function Ka(e) {
 	for (let { geometry: t, material: n } of e.children) t.dispose(), n.dispose();
 }
-function Ua(e) {
+function qa(e) {
 	let t = e.colours.length, [n, r] = [e.scale.length / (4 * t), Math.floor(64 / t)], i = [];
 	for (let a = 0; a < n; a += r) {
 		let o = Array.from({ length: 64 }, (t, n) => new A(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), s = e.basis ? 1 : 4, c = Ia(Na, e.rectangle, {
+		])), s = e.basis ? 1 : 4, c = Ba(La, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(a * t / s) },
 			sharing: { value: s },
@@ -2645,42 +2656,42 @@ function Ua(e) {
 	}
 	return i;
 }
-function Wa({ part: e, first: t, groups: n, quad: r }, i, a) {
+function Ja({ part: e, first: t, groups: n, quad: r }, i, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Ga(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Ya(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
 	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", u ? i : null), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function Ga(e, t, n, r) {
+function Ya(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function Ka(e, t) {
+function Xa(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
-var qa = new i(0), Ja = new i();
-function Ya(e, t, n) {
+var Za = new i(0), Qa = new i();
+function $a(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(Ja), e.setClearColor(qa, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(Ja, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(Qa), e.setClearColor(Za, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(Qa, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/maps.ts
-function Xa(e, t, n, i, a) {
+function eo(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? ma(t) : 0;
+		u += e, d += t ? _a(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -2699,20 +2710,20 @@ function Xa(e, t, n, i, a) {
 	return p.format = D, p.type = g, p.minFilter = p.magFilter = y, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
 }
 // ../src/eigenfield/rendering/shaders/surface.glsl?raw
-var Za = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/renderer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B and opacity at texture coordinates; nothing is cut off.\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What is seen of a value of the surface.\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\n\n// What an opaque surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\n\n// What a sheet adds to the sheets behind it at texture coordinates: R, G, B times its opacity, and its opacity. It is\n// blended with the factors ONE and ONE_MINUS_SRC_ALPHA. Colours are not cut off: those of all sheets together count.\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", Qa = {
+var to = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/renderer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B and opacity at texture coordinates; nothing is cut off.\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What is seen of a value of the surface.\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\n\n// What an opaque surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\n\n// What a sheet adds to the sheets behind it at texture coordinates: R, G, B times its opacity, and its opacity. It is\n// blended with the factors ONE and ONE_MINUS_SRC_ALPHA. Colours are not cut off: those of all sheets together count.\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", no = {
 	bilinear: 0,
 	bicubic: 1
-}, $a = {
+}, ro = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, eo = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", to = eo.replace("void main", "invariant gl_Position;\nvoid main"), no = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", ro = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", io = `${no}
-${Da}${Za}
+}, io = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", ao = io.replace("void main", "invariant gl_Position;\nvoid main"), oo = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", so = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", co = `${oo}
+${ja}${to}
 uniform float shownGain;       // of the eigen texture around mid grey
 in vec2 surfaceUv;
 vec3 eigenColour(vec3 value) { return clamp(0.5 + shownGain * value, 0.0, 1.0); }
-`, ao = `${io}${ro}
+`, lo = `${co}${so}
 in vec3 surfacePlace;
 out vec4 fragment;
 void main() {
@@ -2722,7 +2733,7 @@ void main() {
   if (shown == 3) colour = errorColour(colour, surfacePlace);
   fragment = vec4(colour, 1.0);
 }
-`, oo = `${io}
+`, uo = `${co}
 layout(location = 0) out vec4 fragment;
 layout(location = 1) out vec4 solid;
 vec3 threeBytes(float depth) {
@@ -2736,174 +2747,76 @@ void main() {
   float depth = (gl_FragCoord.z - gl_DepthRange.near) / gl_DepthRange.diff;
   solid = colour.a < 0.5 ? vec4(0.0) : vec4(threeBytes(depth), 1.0);
 }
-`, so = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", co = {
+`, fo = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", po = {
 	blending: a,
 	blendSrc: E,
 	blendDst: ee
-}, lo = {
+}, mo = {
 	depthWrite: !1,
 	stencilWrite: !0,
 	stencilFunc: d,
 	stencilZPass: _
 };
-function uo(e, t) {
+function ho(e, t) {
 	let n = {
 		composed: { value: null },
 		finest: { value: 1 },
 		exposureScale: { value: new A(1, 1, 1) },
 		exposureBias: { value: new A() },
-		shown: { value: $a.picture },
+		shown: { value: ro.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new x() }
 	}, r = new O({
 		glslVersion: h,
-		vertexShader: t ? to : eo,
-		fragmentShader: t ? oo : ao,
+		vertexShader: t ? ao : io,
+		fragmentShader: t ? uo : lo,
 		uniforms: n,
-		defines: { BICUBIC: Qa.bicubic },
+		defines: { BICUBIC: no.bicubic },
 		side: e ? u : m,
 		...t ? {
-			...co,
-			...lo
+			...po,
+			...mo
 		} : {}
 	});
 	return r.name = "eigen textures", r;
 }
-function fo(e) {
+function go(e) {
 	let { side: t } = e;
 	return new O({
 		name: "depth of sheets",
 		glslVersion: h,
-		vertexShader: to,
-		fragmentShader: so,
+		vertexShader: ao,
+		fragmentShader: fo,
 		colorWrite: !1,
 		side: t,
 		stencilWrite: !0,
 		stencilZPass: se
 	});
 }
-// eigenfield-three/src/gpu.ts
-function po(e) {
-	let t = e.getContext();
-	if (!(t instanceof WebGL2RenderingContext)) throw new j("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
-	if ((t.getExtension("EXT_color_buffer_float") ?? t.getExtension("EXT_color_buffer_half_float")) || t.isContextLost()) return t;
-	throw new j("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
+var _o = 3, vo = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", yo = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", bo = `#version 300 es
+precision highp float;
+precision highp int;
+uniform highp sampler2D picture; // values, and whether they are of a chart
+uniform ivec2 size; // as much of it as is used
+out vec4 stored;
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  vec2 own = texelFetch(picture, at, 0).rg;
+  vec2 sum = vec2(own.r * own.g, own.g);
+  for (int far = 1; far <= ${_o} && sum.y == 0.0; far++) {
+    for (int y = -far; y <= far; y++) {
+      for (int x = -far; x <= far; x++) {
+        vec2 near = texelFetch(picture, clamp(at + ivec2(x, y), ivec2(0), size - 1), 0).rg;
+        sum += vec2(near.r * near.g, near.g);
+      }
+    }
+  }
+  stored = vec4(sum.y > 0.0 ? sum.x / sum.y : own.r);
 }
-function mo(e, t) {
-	return {
-		side: e.getParameter(e.MAX_TEXTURE_SIZE),
-		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
-		memory: t
-	};
-}
-function ho(e, [t, n], r, i, a) {
-	return vo(e, e.TEXTURE_2D_ARRAY, () => {
-		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, a ? e.RGBA16F : e.RGBA8, t, n, r);
-		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
-		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
-	});
-}
-function go(e, t, n) {
-	let { width: r, height: i } = n;
-	yo(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
-}
-function _o(e, [t, n], r = !1) {
-	return vo(e, e.TEXTURE_2D, () => {
-		e.texStorage2D(e.TEXTURE_2D, 1, r ? e.RG8 : e.RGBA8, t, n), e.texParameteri(e.TEXTURE_2D, e.TEXTURE_MIN_FILTER, e.NEAREST);
-	});
-}
-function vo(e, t, n) {
-	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
-	let r = e.createTexture();
-	return yo(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
-}
-function yo(e, t, n, r) {
-	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
-		[e.UNPACK_FLIP_Y_WEBGL, !1],
-		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
-		[e.UNPACK_COLORSPACE_CONVERSION_WEBGL, e.NONE],
-		[e.UNPACK_ALIGNMENT, 4],
-		[e.UNPACK_ROW_LENGTH, 0],
-		[e.UNPACK_IMAGE_HEIGHT, 0],
-		[e.UNPACK_SKIP_PIXELS, 0],
-		[e.UNPACK_SKIP_ROWS, 0],
-		[e.UNPACK_SKIP_IMAGES, 0]
-	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
-	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
-}
-var bo = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", xo = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform vec2 size; // of what is drawn\nuniform highp sampler2D precisions;\nuniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nvoid main() {\n  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);\n  if (nodes.x == 0) stored = vec4(code);\n  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / 4.0, -65504.0, 65504.0));\n}\n";
-function So(e, t) {
-	let n = Eo(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], [a, o, s, c, l] = [
-		"factors",
-		"size",
-		"precisions",
-		"nodes",
-		"zero"
-	].map((t) => e.getUniformLocation(n, t)), u = ({ picture: t, rows: u }, d, f, p, m) => {
-		e.useProgram(n), e.uniform2f(o ?? null, t.width, u), e.uniform1i(s ?? null, +!!m), e.uniform2i(c ?? null, m?.precision.width ?? 0, m?.precision.height ?? 0), e.uniform1f(l ?? null, m?.zero ?? 0), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.viewport(0, 0, t.width, u);
-		for (let { channel: n, layer: r, component: i } of f) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, d, 0, r), Co(t) ? e.uniform4f(a ?? null, 255, 65280, 0, 0) : e.uniform4fv(a ?? null, [
-			0,
-			1,
-			2,
-			3
-		].map((e) => e === n ? p : 0)), e.drawArrays(e.TRIANGLES, 0, 3);
-	};
-	return {
-		put(n, r, i, a, o = null) {
-			let { picture: s, row: c, rows: l } = n, d = Co(s) ? t.codes : t.picture;
-			if (!d) return;
-			let f = () => Do(e, 0, d, () => {
-				Co(s) ? To(e, s, c, l) : wo(e, s, c, l), Oo(e, () => u(n, r, i, a, o));
-			});
-			o ? Do(e, 1, t.precision, () => {
-				wo(e, o.precision, 0, o.precision.height), f();
-			}) : f();
-		},
-		free() {
-			e.deleteTexture(t.picture), e.deleteTexture(t.codes), e.deleteTexture(t.precision), e.deleteVertexArray(i), e.deleteFramebuffer(r), e.deleteProgram(n);
-		}
-	};
-}
-function Co(e) {
-	return "data" in e;
-}
-function wo(e, t, n, r) {
-	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
-}
-function To(e, { data: t, width: n, stride: r }, i, a) {
-	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
-}
-function Eo(e) {
-	let t = e.createProgram();
-	for (let [n, r] of [[e.VERTEX_SHADER, bo], [e.FRAGMENT_SHADER, xo]]) {
-		let i = e.createShader(n);
-		i && (e.shaderSource(i, r), e.compileShader(i), e.attachShader(t, i), e.deleteShader(i));
-	}
-	return e.linkProgram(t), t;
-}
-function Do(e, t, n, r) {
-	let i = e.getParameter(e.ACTIVE_TEXTURE);
-	e.activeTexture(e.TEXTURE0 + t);
-	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), yo(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
-}
-function Oo(e, t) {
-	let n = [
-		e.BLEND,
-		e.CULL_FACE,
-		e.DEPTH_TEST,
-		e.DITHER,
-		e.RASTERIZER_DISCARD,
-		e.SAMPLE_ALPHA_TO_COVERAGE,
-		e.SAMPLE_COVERAGE,
-		e.SCISSOR_TEST,
-		e.STENCIL_TEST
-	].filter((t) => e.isEnabled(t)), r = e.getParameter(e.CURRENT_PROGRAM), i = e.getParameter(e.VERTEX_ARRAY_BINDING), a = e.getParameter(e.DRAW_FRAMEBUFFER_BINDING), [o = 0, s = 0, c = 0, l = 0] = e.getParameter(e.VIEWPORT), [u, d, f, p] = e.getParameter(e.COLOR_WRITEMASK);
-	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
-}
+`, xo = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
 // eigenfield-three/src/parts.ts
-function ko(e, t, n) {
+function So(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -2913,7 +2826,7 @@ function ko(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = jo(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = wo(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -2930,18 +2843,18 @@ function ko(e, t, n) {
 		for (let { size: e, grid: i, corner: c, pictures: l, count: p } of d) {
 			let d = t.bases[a], m = t.ready[a++] ?? [], h = Math.min(p, n.usable);
 			if (h && d) {
-				let [t, n] = [c[0] / i[0], c[1] / i[1]];
+				let [t, a] = [c[0] / i[0], c[1] / i[1]];
 				r.push({
 					stored: d,
 					grid: i,
 					rectangle: [
 						t,
-						n,
+						a,
 						t + e[0] / i[0],
-						n + e[1] / i[1]
+						a + e[1] / i[1]
 					],
 					colours: f,
-					...No(l, u, h),
+					...To(l, u, h, n.halves && Wr(l)),
 					basis: {
 						ready: m,
 						column: o,
@@ -2949,11 +2862,11 @@ function ko(e, t, n) {
 					}
 				});
 			}
-			o += p, s += h ? ma(h) : 0;
+			o += p, s += h ? _a(h) : 0;
 		}
 	}), r;
 }
-function Ao({ planes: e, sheets: t }, { means: n, needs: r }) {
+function Co({ planes: e, sheets: t }, { means: n, needs: r }) {
 	let i = n[e.length], a = r.means[e.length]?.size;
 	return !t || !i || !a ? null : {
 		stored: i,
@@ -2969,12 +2882,12 @@ function Ao({ planes: e, sheets: t }, { means: n, needs: r }) {
 			0,
 			0
 		]],
-		...jo(t.opacity),
+		...wo(t.opacity),
 		basis: null
 	};
 }
-function jo({ mean: e, channels: t, precision: n }) {
-	let { scale: r, zero: i } = e, a = n ? 4 : Mo([e]), o = {
+function wo({ mean: e, channels: t, precision: n }) {
+	let { scale: r, zero: i } = e, a = n ? 4 : 1 / Kr(e, Wr([e])), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
 	};
@@ -2984,22 +2897,19 @@ function jo({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function Mo(e) {
-	return Kr(e) ? 1 : 255;
-}
-function No(e, t, n) {
-	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = Mo(e), o = 4 * t * ma(n), s = {
-		scale: new Float32Array(o),
-		bias: new Float32Array(o)
+function To(e, t, n, r) {
+	let i = e.flatMap((e) => Array(e.textures).fill(Kr(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * _a(n), c = {
+		scale: new Float32Array(s),
+		bias: new Float32Array(s)
 	};
 	for (let e = 0; e < n; e++) for (let n = 0; n < t; n++) {
-		let o = 4 * (t * Math.floor(e / 4) + n) + e % 4, c = r[t * e + n] ?? 0;
-		s.scale[o] = a * c, s.bias[o] = -(i[t * e + n] ?? 0) * c;
+		let r = 4 * (t * Math.floor(e / 4) + n) + e % 4, s = a[t * e + n] ?? 0;
+		c.scale[r] = s / (i[e] ?? 1), c.bias[r] = -(o[t * e + n] ?? 0) * s;
 	}
-	return s;
+	return c;
 }
 // eigenfield-three/src/sheet-stack.ts
-var Po = "sheets", Fo = 16, Io = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Lo = `${no}${ro}
+var Eo = "sheets", Do = 16, Oo = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", ko = `${oo}${so}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -3024,7 +2934,7 @@ void main() {
   gl_FragDepth = depth;
   fragment = colour;
 }
-`, Ro = new ae(), zo = class {
+`, Ao = new ae(), jo = class {
 	scene = new k();
 	camera = new n();
 	sheets;
@@ -3036,16 +2946,16 @@ void main() {
 		e.forEach((e, n) => {
 			for (let i of [0, 1]) t.addGroup(r, 3 * e, 2 * n + i);
 			r += 3 * e;
-		}), this.depth = fo(n), this.depth.transparent = n.transparent = !0, this.sheets = new S(t, e.flatMap(() => [this.depth, n])), this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (t, n, r, i, a, o) => {
+		}), this.depth = go(n), this.depth.transparent = n.transparent = !0, this.sheets = new S(t, e.flatMap(() => [this.depth, n])), this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (t, n, r, i, a, o) => {
 			let { materialIndex: s = 0 } = o, c = e.length - 1 - (s >> 1);
 			t.getContext().depthRange(c / e.length, (c + 1) / e.length);
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
 		let { shown: i, photograph: a, toPhotograph: o } = n.uniforms;
 		this.screen = new O({
-			name: Po,
+			name: Eo,
 			glslVersion: h,
-			vertexShader: Io,
-			fragmentShader: Lo,
+			vertexShader: Oo,
+			fragmentShader: ko,
 			uniforms: {
 				shown: i,
 				photograph: a,
@@ -3059,11 +2969,11 @@ void main() {
 				toPlace: { value: new x() }
 			},
 			transparent: !0,
-			...co
+			...po
 		});
 	}
 	get bytes() {
-		return this.target ? Fo * this.target.width * this.target.height : 0;
+		return this.target ? Do * this.target.width * this.target.height : 0;
 	}
 	attach(n, r) {
 		for (let e of [n.material].flat()) e.visible = !1;
@@ -3084,7 +2994,7 @@ void main() {
 			boundingSphere: a
 		});
 		let s = new S(o, this.screen);
-		s.name = Po, s.raycast = () => void 0, s.onBeforeRender = (e, t, i) => {
+		s.name = Eo, s.raycast = () => void 0, s.onBeforeRender = (e, t, i) => {
 			r(e, i), this.draw(e, i, n);
 		}, n.add(s);
 	}
@@ -3092,11 +3002,11 @@ void main() {
 		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
 	}
 	draw(e, t, n) {
-		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Ro);
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Ao);
 		if (!a || !o) return;
-		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Bo(a, o));
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Mo(a, o));
 		let { target: s } = this;
-		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), Ya(e, t, () => {
+		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), $a(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
 		}), e.getContext().depthRange(0, 1);
 		let { uniforms: c } = this.screen, l = (e, t) => {
@@ -3105,7 +3015,7 @@ void main() {
 		l("sheets", s.textures[0]), l("solid", s.textures[1]), l("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
 	}
 };
-function Bo(e, t) {
+function Mo(e, t) {
 	let n = new l(e, t, re);
 	n.format = c;
 	let r = new oe(e, t, {
@@ -3119,21 +3029,21 @@ function Bo(e, t) {
 	return i && (i.type = ne), r;
 }
 // eigenfield-three/src/pieces.ts
-function Vo(e) {
+function No(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
 // eigenfield-three/src/strength.ts
-var Ho = 128, Uo = .98;
-async function Wo(e, t, n, r) {
+var Po = 128, Fo = .98;
+async function Io(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = qr(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Ho, Ho).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = Gr(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Po, Po).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, Ho, Ho);
-		let { data: u } = d.getImageData(0, 0, Ho, Ho);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, Po, Po);
+		let { data: u } = d.getImageData(0, 0, Po, Po);
 		(l ? [
 			0,
 			1,
@@ -3142,31 +3052,211 @@ async function Wo(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), Vo(u), f.sort((e, t) => e - t);
-	let p = f[Math.floor(Uo * f.length)] ?? 0;
+	}), No(u), f.sort((e, t) => e - t);
+	let p = f[Math.floor(Fo * f.length)] ?? 0;
 	return p > 0 ? .45 / p : 1;
 }
-// eigenfield-three/src/means.ts
-async function Go(e, t, n = 1) {
-	let { mean: r, meanSize: i } = e, a = e.precision && await Ko(await t(e.precision.view), e.precision);
+// eigenfield-three/src/gpu.ts
+function Lo(e) {
+	let t = e.getContext();
+	if (!(t instanceof WebGL2RenderingContext)) throw new j("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
+	if ((t.getExtension("EXT_color_buffer_float") ?? t.getExtension("EXT_color_buffer_half_float")) || t.isContextLost()) return t;
+	throw new j("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
+}
+function Ro(e, t) {
 	return {
-		pieces: await r.codec.decode(await t(r.view), r, i, n),
-		precision: a
+		side: e.getParameter(e.MAX_TEXTURE_SIZE),
+		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
+		memory: t
 	};
 }
-async function Ko(e, t) {
+function zo(e, { components: t, halves: n }) {
+	return t > 2 ? n ? e.RGBA16F : e.RGBA8 : t > 1 ? n ? e.RG16F : e.RG8 : n ? e.R16F : e.R8;
+}
+function Bo(e, [t, n], r, i, a) {
+	return Uo(e, e.TEXTURE_2D_ARRAY, () => {
+		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, zo(e, a), t, n, r);
+		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
+		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
+	});
+}
+function Vo(e, t, n, r) {
+	let { width: i, height: a } = n, o = r > 2 ? e.RGBA : r > 1 ? e.RG : e.RED;
+	Wo(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
+}
+function Ho(e, [t, n], r) {
+	return Uo(e, e.TEXTURE_2D, () => {
+		e.texStorage2D(e.TEXTURE_2D, 1, zo(e, r), t, n);
+		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D, t, e.NEAREST);
+	});
+}
+function Uo(e, t, n) {
+	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
+	let r = e.createTexture();
+	return Wo(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+}
+function Wo(e, t, n, r) {
+	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
+		[e.UNPACK_FLIP_Y_WEBGL, !1],
+		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
+		[e.UNPACK_COLORSPACE_CONVERSION_WEBGL, e.NONE],
+		[e.UNPACK_ALIGNMENT, 4],
+		[e.UNPACK_ROW_LENGTH, 0],
+		[e.UNPACK_IMAGE_HEIGHT, 0],
+		[e.UNPACK_SKIP_PIXELS, 0],
+		[e.UNPACK_SKIP_ROWS, 0],
+		[e.UNPACK_SKIP_IMAGES, 0]
+	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
+	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
+}
+function Go(e, t, n) {
+	let r = e.createProgram();
+	for (let [i, a] of [[e.VERTEX_SHADER, t], [e.FRAGMENT_SHADER, n]]) {
+		let t = e.createShader(i);
+		t && (e.shaderSource(t, a), e.compileShader(t), e.attachShader(r, t), e.deleteShader(t));
+	}
+	return e.linkProgram(r), r;
+}
+function Ko(e, t, n, r) {
+	if (!n) {
+		r();
+		return;
+	}
+	let i = e.getParameter(e.ACTIVE_TEXTURE);
+	e.activeTexture(e.TEXTURE0 + t);
+	let a = e.getParameter(e.SAMPLER_BINDING);
+	e.bindSampler(t, null), Wo(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+}
+function qo(e, t) {
+	let n = [
+		e.BLEND,
+		e.CULL_FACE,
+		e.DEPTH_TEST,
+		e.DITHER,
+		e.RASTERIZER_DISCARD,
+		e.SAMPLE_ALPHA_TO_COVERAGE,
+		e.SAMPLE_COVERAGE,
+		e.SCISSOR_TEST,
+		e.STENCIL_TEST
+	].filter((t) => e.isEnabled(t)), r = e.getParameter(e.CURRENT_PROGRAM), i = e.getParameter(e.VERTEX_ARRAY_BINDING), a = e.getParameter(e.DRAW_FRAMEBUFFER_BINDING), [o = 0, s = 0, c = 0, l = 0] = e.getParameter(e.VIEWPORT), [u, d, f, p] = e.getParameter(e.COLOR_WRITEMASK);
+	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r && e.isProgram(r) ? r : null), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
+}
+// eigenfield-three/src/means.ts
+async function Jo(e, t) {
+	let { mean: n, meanSize: r } = e, i = e.precision && await Yo(await t(e.precision.view), e.precision);
+	return {
+		pieces: await n.codec.decode(await t(n.view), n, r),
+		precision: i
+	};
+}
+async function Yo(e, t) {
 	let { type: n } = Qn(e) ?? {}, { mimeType: r } = t.codec;
 	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
 	if (!i) throw M(t.where, "no picture");
 	return i.picture;
 }
-function qo({ pieces: e, precision: t }) {
-	Vo(e), t?.close();
+function Xo({ pieces: e, precision: t }) {
+	No(e), t?.close();
+}
+// eigenfield-three/src/charts.ts
+function Zo(e, t) {
+	let n = Go(e, ...xo), r = e.createFramebuffer(), i = null, a = (i, a) => {
+		let { index: o } = t, s = t.getAttribute("uv"), c = Float32Array.from({ length: 2 * (o?.count ?? 0) }, (e, t) => {
+			let n = o?.getX(t >> 1) ?? 0;
+			return t % 2 ? s.getY(n) : s.getX(n);
+		}), [l, u] = [e.createVertexArray(), e.createBuffer()], d = e.getParameter(e.ARRAY_BUFFER_BINDING);
+		qo(e, () => {
+			e.useProgram(n), e.bindVertexArray(l), e.bindBuffer(e.ARRAY_BUFFER, u), e.bufferData(e.ARRAY_BUFFER, c, e.STREAM_DRAW);
+			let t = e.getAttribLocation(n, "uv");
+			e.enableVertexAttribArray(t), e.vertexAttribPointer(t, 2, e.FLOAT, !1, 0, 0), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, a, 0), e.viewport(0, 0, ...i), e.colorMask(!0, !0, !0, !0), e.drawArrays(e.TRIANGLES, 0, c.length / 2);
+		}), e.bindBuffer(e.ARRAY_BUFFER, d), e.deleteBuffer(u), e.deleteVertexArray(l);
+	};
+	return {
+		covered(t) {
+			if (i?.grid.join() !== t.join()) {
+				e.deleteTexture(i?.texture ?? null);
+				let n = Ho(e, t, {
+					components: 1,
+					halves: !1
+				});
+				n && a(t, n), i = {
+					grid: t,
+					texture: n
+				};
+			}
+			return i.texture;
+		},
+		free() {
+			e.deleteTexture(i?.texture ?? null), e.deleteFramebuffer(r), e.deleteProgram(n);
+		}
+	};
+}
+// eigenfield-three/src/packing.ts
+function Qo(e, t, n, r) {
+	let [i, a] = [Go(e, vo, yo), Go(e, vo, bo)], [o, s] = [e.createFramebuffer(), e.createVertexArray()], c = t.smaller && Zo(e, r), l = (t) => e.getUniformLocation(i, t), u = Object.fromEntries([
+		"precisions",
+		"covered",
+		"factors",
+		"size",
+		"made",
+		"first",
+		"corner",
+		"nodes",
+		"zero"
+	].map((e) => [e, l(e)])), d = ({ picture: t, rows: n }, r, i, a, o, s) => {
+		let { size: c, corner: l, unit: d, codes: f } = i;
+		$o(t) ? e.uniform4f(u.factors, 255 * d, 65280 * d, 0, 0) : e.uniform4fv(u.factors, [
+			0,
+			1,
+			2,
+			3
+		].map((e) => e === r ? f * d : 0)), e.uniform2i(u.size, t.width, n), e.uniform2i(u.made, ...c), e.uniform2i(u.corner, ...l), e.uniform1i(u.first, a), e.viewport(0, o, c[0], s), e.drawArrays(e.TRIANGLES, 0, 3);
+	}, f = (t, n) => {
+		e.bindFramebuffer(e.DRAW_FRAMEBUFFER, o), n === null ? e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, t, 0) : e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, t, 0, n);
+	}, p = (t, { layer: n, component: r }) => {
+		f(t, n), e.colorMask(r === 0, r === 1, r === 2, r === 3);
+	}, m = (r, o, l, m, h, g) => {
+		let { picture: _, row: v, rows: y } = r, [b, x] = h.size, S = b < _.width || x < y ? t.smaller : null, C = Math.max(1, Math.floor((S ? n - 2 : n) * x / y));
+		Ko(e, 2, (S && c?.covered(h.grid)) ?? null, () => Ko(e, 0, o, () => {
+			for (let t = 0; t < x; t += C) {
+				let n = Math.min(C, x - t), a = Math.floor(t * y / x), o = Math.ceil((t + n) * y / x);
+				$o(_) ? ts(e, _, v + a, o - a) : es(e, _, v + a, o - a), qo(e, () => {
+					e.useProgram(i), e.bindVertexArray(s), e.uniform1i(u.precisions, +!!g), e.uniform1i(u.covered, S ? 2 : 0), e.uniform2i(u.nodes, g?.precision.width ?? 0, g?.precision.height ?? 0), e.uniform1f(u.zero, g?.zero ?? 0), S ? (f(S, null), e.colorMask(!0, !0, !0, !0)) : p(l, m), d(r, m.channel, h, a, t, n);
+				});
+			}
+		})), S && Ko(e, 0, S, () => qo(e, () => {
+			e.useProgram(a), e.bindVertexArray(s), e.uniform2i(e.getUniformLocation(a, "size"), b, x), p(l, m), e.viewport(0, 0, b, x), e.drawArrays(e.TRIANGLES, 0, 3);
+		}));
+	};
+	return {
+		put(n, r, i, a, o = null) {
+			let s = $o(n.picture) ? t.codes : t.picture;
+			if (!s) return;
+			let c = () => i.forEach((e) => m(n, s, r, e, a, o));
+			o ? Ko(e, 1, t.precision, () => {
+				es(e, o.precision, 0, o.precision.height), c();
+			}) : c();
+		},
+		free() {
+			for (let n of Object.values(t)) e.deleteTexture(n);
+			c?.free(), e.deleteVertexArray(s), e.deleteFramebuffer(o), e.deleteProgram(i), e.deleteProgram(a);
+		}
+	};
+}
+function $o(e) {
+	return "data" in e;
+}
+function es(e, t, n, r) {
+	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
+}
+function ts(e, { data: t, width: n, stride: r }, i, a) {
+	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
 // eigenfield-three/src/textures.ts
-var Jo = 3, Yo = class {
+var ns = 3, rs = class {
 	parts;
+	geometry;
 	options;
 	means;
 	bases;
@@ -3186,25 +3276,25 @@ var Jo = 3, Yo = class {
 	turn = 0;
 	disposed = !1;
 	constructor(e, t, n) {
-		this.parts = e, this.options = n;
+		this.parts = e, this.geometry = t, this.options = n;
 		let { scene: r, meanSizes: i, rays: a } = e;
 		this.decoded = e.means;
 		let o = r.planes.flatMap(({ channels: e, bases: t }) => t.map((t) => ({
 			...t,
 			channels: e,
-			tenBits: Kr(t.pictures)
-		}))), s = di(r).map(({ channels: e, mean: t }, n) => ({
+			tenBits: Wr(t.pictures)
+		}))), s = ui(r).map(({ channels: e, mean: t }, n) => ({
 			size: i[n] ?? [1, 1],
 			channels: e,
 			pieces: t.pieces,
-			tenBits: Kr([t])
+			tenBits: Wr([t])
 		}));
 		this.needs = {
-			atlas: Ri(r, i),
+			atlas: Li(r, i),
 			means: s,
 			bases: o,
 			rays: a,
-			geometry: t
+			geometry: is(t)
 		}, this.means = s.map(() => new p()), this.bases = o.map(() => new p()), this.ready = o.map(({ count: e }) => Array(e).fill(!1)), this.entries = o.flatMap((e, t) => {
 			let n = 0;
 			return e.pictures.map((r) => {
@@ -3235,7 +3325,7 @@ var Jo = 3, Yo = class {
 		});
 	}
 	dispose() {
-		this.detach(), this.disposed = !0, this.decoded?.forEach(qo), this.decoded = null;
+		this.detach(), this.disposed = !0, this.decoded?.forEach(Xo), this.decoded = null;
 	}
 	detach() {
 		let e = this.renderer?.getContext();
@@ -3252,100 +3342,133 @@ var Jo = 3, Yo = class {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		let n = po(e);
+		let n = Lo(e);
 		if (n.isContextLost()) return;
 		let { packer: r, plan: i } = this.makeRoom(n);
-		if (this.plan = i, this.packer = r, this.onPlan(i), await this.loadMeans(n, t, i.meanDown), t !== this.turn) return;
+		if (this.plan = i, this.packer = r, this.onPlan(i), await this.loadMeans(n, t), t !== this.turn) return;
 		let a = this.entries.filter(({ first: e }) => e < i.usable), o = [], s = 0;
 		try {
 			for (let e of a) {
-				for (; o.length < Jo && s < a.length;) o.push(this.decode(a[s++], i.scaleDown));
+				for (; o.length < ns && s < a.length;) o.push(this.decode(a[s++]));
 				let n = await o[0] ?? [];
-				if (o.shift(), t === this.turn && this.pack(n, e, r, i.usable), Vo(n), t !== this.turn) return;
+				if (o.shift(), t === this.turn && this.pack(n, e, r, i), No(n), t !== this.turn) return;
 				this.onTexture();
 			}
 		} finally {
-			for (let e of o) e.then(Vo).catch(() => void 0);
+			for (let e of o) e.then(No).catch(() => void 0);
 		}
 		r.free(), this.packer = null, this.onComplete();
 	}
-	pack(e, t, n, r) {
-		let { number: i, channels: a, first: o, picture: s } = t, c = this.bases[i]?.sourceTexture, l = this.ready[i];
-		if (!(c instanceof WebGLTexture) || !l) return;
-		let u = this.needs.bases[i]?.tenBits ? 255 * qr(s) : 1, d = s.pieces < a;
-		for (let t = o; t < Math.min(o + s.textures, r); t++) {
-			for (let r = 0; r < s.pieces; r++) {
-				let i = (e) => a * Math.floor(t / 4) + e, l = (d ? [
+	pack(e, t, n, { usable: r, scaleDown: i, halves: a }) {
+		let { basis: o, number: s, channels: c, first: l, picture: u } = t, d = this.bases[s]?.sourceTexture, f = this.ready[s];
+		if (!(d instanceof WebGLTexture) || !f) return;
+		let { grid: p, corner: m } = o, h = Kr(u, a && Wr(o.pictures)), g = {
+			size: X(o.size, i),
+			grid: p,
+			corner: m,
+			unit: h,
+			codes: 255 * Gr(u)
+		}, _ = u.pieces < c;
+		for (let t = l; t < Math.min(l + u.textures, r); t++) {
+			for (let r = 0; r < u.pieces; r++) {
+				let i = (e) => c * Math.floor(t / 4) + e, a = (_ ? [
 					0,
 					1,
 					2
 				] : [r]).map((e) => ({
-					channel: d ? e : 0,
+					channel: _ ? e : 0,
 					layer: i(e),
 					component: t % 4
-				})), f = e[(t - o) * s.pieces + r];
-				f && n.put(f, c, l, u);
+				})), o = e[(t - l) * u.pieces + r];
+				o && n.put(o, d, a, g);
 			}
-			l[t] = !0;
+			f[t] = !0;
 		}
 		this.version += 1;
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs, r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
-		for (let i = this.options.memory ?? la();; i /= 2) {
-			let a = ga(this.needs, mo(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, tenBits: r }) => ho(e, X(t, o), fa(n), l, r)), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
+		for (let i = this.options.memory ?? fa();; i /= 2) {
+			let a = ba(this.needs, Ro(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => Bo(e, X(t, o), ha(n), !1, {
+				components: n,
+				halves: r
+			})), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return ho(e, a ? X(t, s) : [1, 1], a ? pa(a, n) : 1, l, i);
-			})], d = ba(this.needs, o, s), f = _o(e, d), p = [...t, ...n].some(({ tenBits: e }) => e), m = p ? _o(e, d, !0) : null, h = _o(e, xa(r));
-			if (f && h && (m || !p) && u.every((e) => e !== null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = u[t] ?? null), {
-				packer: So(e, {
-					picture: f,
-					codes: m,
-					precision: h
-				}),
+				return Bo(e, a ? X(t, s) : [1, 1], a ? ga(a, n) : 1, u, {
+					components: Math.max(1, a),
+					halves: l && i
+				});
+			})], f = Ca(this.needs, a, i), [p, m, h] = [
+				f.picture,
+				f.codes,
+				f.smaller
+			].map((t) => t ? Ho(e, t.size, t.format) : null), g = Ho(e, wa(r), aa);
+			if (p && g && (m || !f.codes) && (h || !f.smaller) && !d.includes(null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = d[t] ?? null), {
+				packer: Qo(e, {
+					picture: p,
+					codes: m ?? null,
+					precision: g,
+					smaller: h ?? null
+				}, f.picture.size[1], this.geometry),
 				plan: a
 			};
 			for (let t of [
-				...u,
-				f,
+				...d,
+				p,
 				m,
-				h
-			]) e.deleteTexture(t);
+				h,
+				g
+			]) e.deleteTexture(t ?? null);
 			if (!c) throw new j("unsupported", "The graphics memory is full; close other pages and try again.");
 		}
 	}
-	async loadMeans(e, t, n) {
-		let { scene: r, bytes: i } = this.parts, a = di(r), { decoded: o } = this;
-		this.decoded = null, (!o || n > 1) && (o?.forEach(qo), o = await Promise.all(a.map((e) => Go(e, i, n)))), o.forEach((n, r) => {
-			let i = this.means[r]?.sourceTexture, o = a[r]?.mean;
-			t === this.turn && o && i instanceof WebGLTexture && this.putMean(e, n, o, i), qo(n);
+	async loadMeans(e, t) {
+		let { scene: n, bytes: r } = this.parts, i = ui(n), a = this.decoded ?? await Promise.all(i.map((e) => Jo(e, r)));
+		this.decoded = null, a.forEach((n, r) => {
+			let a = this.means[r]?.sourceTexture, o = i[r], { size: s } = this.needs.means[r] ?? {};
+			t === this.turn && o && s && a instanceof WebGLTexture && this.putMean(e, n, o, s, a), Xo(n);
 		}), t === this.turn && (this.hasMeans = !0, this.version += 1);
 	}
-	putMean(e, t, n, r) {
-		let { pieces: i, precision: a } = t, o = Kr([n]), [s] = i;
-		if (s && i.length === 1 && !o && "close" in s.picture) {
-			go(e, r, s.picture);
+	putMean(e, t, n, r, i) {
+		let { pieces: a, precision: o } = t, { mean: s, channels: c } = n, l = X(r, this.plan?.meanDown ?? 1), u = Wr([s]), [d] = a;
+		if (d && a.length === 1 && "close" in d.picture && !u && l.join() === r.join()) {
+			Vo(e, i, d.picture, c);
 			return;
 		}
-		let c = o ? 255 * qr(n) : 1;
-		i.forEach((e, t) => {
-			let i = [{
-				channel: 0,
-				layer: Math.floor(t / 4),
-				component: t % 4
-			}];
-			this.packer?.put(e, r, i, c, a && {
-				precision: a,
-				zero: n.zero[t] ?? 0
+		let f = {
+			size: l,
+			grid: r,
+			corner: [0, 0],
+			unit: Kr(s, u),
+			codes: 255 * Gr(s)
+		}, p = a.length < c;
+		a.forEach((e, t) => {
+			let n = (p ? [
+				0,
+				1,
+				2
+			] : [t]).map((e) => ({
+				channel: p ? e : 0,
+				layer: Math.floor(e / 4),
+				component: e % 4
+			}));
+			this.packer?.put(e, i, n, f, o && {
+				precision: o,
+				zero: s.zero[t] ?? 0
 			});
 		});
 	}
-	decode(e, t) {
+	decode(e) {
 		if (!e) return Promise.reject(/* @__PURE__ */ RangeError("no such eigen texture"));
-		let { basis: n, picture: r } = e, i = this.parts.bytes(r.view).then((e) => r.codec.decode(e, r, n.size, t));
-		return i.catch(() => void 0), i;
+		let { basis: t, picture: n } = e, r = this.parts.bytes(n.view).then((e) => n.codec.decode(e, n, t.size));
+		return r.catch(() => void 0), r;
 	}
-}, Xo = 1.5, Zo = .001, Qo = class extends f {
+};
+function is({ attributes: e, index: t }) {
+	return Object.values(e).reduce((e, t) => e + t.array.byteLength, 0) + (t?.array.byteLength ?? 0);
+}
+// eigenfield-three/src/field.ts
+var as = 1.5, os = .001, ss = class extends f {
 	parts;
 	mesh;
 	info;
@@ -3378,15 +3501,15 @@ var Jo = 3, Yo = class {
 		super(), this.parts = e;
 		let { scene: n, info: r, meshes: i } = e, [a] = i;
 		if (!a) throw Error("a field needs a mesh");
-		this.mesh = a, this.info = r, this.total = Li(n), this.counts = Ii(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye", this.encoded = r.cameras.filter((e, t) => !r.heldOut[t]);
+		this.mesh = a, this.info = r, this.total = Ii(n), this.counts = Fi(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye", this.encoded = r.cameras.filter((e, t) => !r.heldOut[t]);
 		let o = 0;
-		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new Yo(e, ns(a), t);
+		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new rs(e, a.geometry, t);
 		let s = [a.material].flat().some((e) => e.side !== m);
-		this.material = uo(s, n.sheets !== null), this.stack = n.sheets && new zo(n.sheets.faces, a.geometry, this.material), this.complete = new Promise((e, t) => {
+		this.material = ho(s, n.sheets !== null), this.stack = n.sheets && new jo(n.sheets.faces, a.geometry, this.material), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0);
 		let c = r.cameras[r.reference];
-		this.detail = c ? ta(a.geometry, c, [1, 1]) : 0, this.listen();
+		this.detail = c ? ea(a.geometry, c, [1, 1]) : 0, this.listen();
 		for (let e of i) {
 			let t = (t, n) => this.prepare(t, n, e);
 			this.stack ? this.stack.attach(e, t) : (e.material = this.material, e.onBeforeRender = (e, n, r) => t(e, r));
@@ -3401,6 +3524,9 @@ var Jo = 3, Yo = class {
 	}
 	get scaleDown() {
 		return this.textures.plan?.scaleDown ?? 1;
+	}
+	get reductions() {
+		return this.textures.plan?.reductions ?? [];
 	}
 	get limitation() {
 		return this.textures.plan?.limitation ?? null;
@@ -3419,7 +3545,7 @@ var Jo = 3, Yo = class {
 		let t = this.rowOf[e] ?? -1, n = this.info.cameras[e], r = this.columns;
 		if (t >= 0) return Float64Array.from(this.parts.omega.subarray(t * r, (t + 1) * r));
 		if (!n) throw RangeError(`no camera ${e}`);
-		return this.componentWeights(...Ui(this.info.viewPlane, n.centre));
+		return this.componentWeights(...Hi(this.info.viewPlane, n.centre));
 	}
 	restore(e) {
 		this.textures.attach(e);
@@ -3433,7 +3559,7 @@ var Jo = 3, Yo = class {
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return Xo * Math.max(1, this.detail * Math.sqrt(e * t) / n);
+		return as * Math.max(1, this.detail * Math.sqrt(e * t) / n);
 	}
 	get columns() {
 		return this.counts.reduce((e, t) => e + t, 0);
@@ -3450,9 +3576,9 @@ var Jo = 3, Yo = class {
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = ts(t, n), [i, a] = Ui(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
+		let r = us(t, n), [i, a] = Hi(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
 		this.setView(), this.setExposure(o, [i, a]);
-		let l = Qa[this.filter];
+		let l = no[this.filter];
 		this.material.defines.BICUBIC !== l && (this.material.defines.BICUBIC = l, this.material.needsUpdate = !0), this.material.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
@@ -3460,8 +3586,8 @@ var Jo = 3, Yo = class {
 		if (!r) return;
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
 		if (!s) {
-			let { scene: e } = this.parts, t = Ao(e, this.textures);
-			s = new Va(i, ko(e, this.textures, r), t, o, this.mesh, a), this.composers.set(o, s);
+			let { scene: e } = this.parts, t = Co(e, this.textures);
+			s = new Ga(i, So(e, this.textures, r), t, o, this.mesh, a), this.composers.set(o, s);
 		}
 		s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
 	}
@@ -3470,22 +3596,22 @@ var Jo = 3, Yo = class {
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.material.uniforms.shown.value, r = n === $a.eigen ? this.shownEigen : null;
+		let n = this.material.uniforms.shown.value, r = n === ro.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			opacity: this.textures.hasMeans && this.stack !== null,
 			only: r,
-			count: n === $a.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === ro.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && Ra(this.info.viewPlane, t),
+			eye: t && Ha(this.info.viewPlane, t),
 			maps: t && this.mapsOf(this.mixing)
 		};
 	}
 	setExposure(e, t) {
 		let { cameras: n, heldOut: r, mixedColours: i, viewPlane: a } = this.info, o = this.exposure ?? (i || this.showsErrors ? e : null), s = o === null ? void 0 : n[o], c = [[s, 1]];
 		if (i && (o === null || r[o])) {
-			let e = s ? Ui(a, s.centre) : t, { camera: n, weight: r } = this.parts.weights.at(...e, this.mixing);
+			let e = s ? Hi(a, s.centre) : t, { camera: n, weight: r } = this.parts.weights.at(...e, this.mixing);
 			c = [
 				0,
 				1,
@@ -3513,7 +3639,7 @@ var Jo = 3, Yo = class {
 	}
 	setView() {
 		let { uniforms: e } = this.material, t = this.showsErrors, n = this.view === "error" && !t ? "picture" : this.view, r = this.shownEigen;
-		e.shown.value = $a[n === "eigen" && r >= this.loaded ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r)), t && this.aimPhotograph();
+		e.shown.value = ro[n === "eigen" && r >= this.loaded ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r)), t && this.aimPhotograph();
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -3521,7 +3647,7 @@ var Jo = 3, Yo = class {
 	aimPhotograph() {
 		let e = this.camera === null ? void 0 : this.info.cameras[this.camera], { photograph: t } = this;
 		if (!e || !t) return;
-		let { K: n, R: r, t: i, width: a, height: o } = e, s = new x().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new x().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !rs(t.image), u = new x().makeScale(1 / a, (l ? -1 : 1) / o, 1);
+		let { K: n, R: r, t: i, width: a, height: o } = e, s = new x().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new x().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !ds(t.image), u = new x().makeScale(1 / a, (l ? -1 : 1) / o, 1);
 		l && (u.elements[13] = 1), this.material.uniforms.toPhotograph.value.multiplyMatrices(u, c.multiply(s)), this.material.uniforms.photograph.value = t;
 	}
 	gainOf(e) {
@@ -3532,7 +3658,7 @@ var Jo = 3, Yo = class {
 		for (let { channels: t, bases: a } of n.planes) {
 			let o = n.colours.slice(i, i += t), s = a.find(({ count: t }) => t > e);
 			if (!(!s || e < 0)) {
-				Wo(s, e, o, r).then((t) => {
+				Io(s, e, o, r).then((t) => {
 					this.gains.set(e, t), this.dispatchEvent({ type: "texture" });
 				}).catch(() => void 0);
 				break;
@@ -3542,13 +3668,13 @@ var Jo = 3, Yo = class {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= Zo * Math.max(...r);
+		return Math.abs(i) <= os * Math.max(...r);
 	}
 	mapsOf(e) {
 		let { usable: t } = this;
 		if (this.maps?.mixing === e && this.maps.usable === t) return this.maps.texture;
 		this.maps?.texture.dispose();
-		let n = Xa(this.parts.weights, e, this.parts.omega, this.counts, t);
+		let n = eo(this.parts.weights, e, this.parts.omega, this.counts, t);
 		return this.maps = {
 			texture: n,
 			mixing: e,
@@ -3556,33 +3682,29 @@ var Jo = 3, Yo = class {
 		}, n;
 	}
 	fail(e) {
-		if (is(e)) return;
+		if (fs(e)) return;
 		let t = de(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
 		this.dispatchEvent({
 			type: "error",
 			error: new j(t.code, r, t.where)
 		});
 	}
-}, $o = new x(), es = new A();
-function ts(e, t) {
-	return es.setFromMatrixPosition(e.matrixWorld).applyMatrix4($o.copy(t.matrixWorld).invert()), [
-		es.x,
-		es.y,
-		es.z
+}, cs = new x(), ls = new A();
+function us(e, t) {
+	return ls.setFromMatrixPosition(e.matrixWorld).applyMatrix4(cs.copy(t.matrixWorld).invert()), [
+		ls.x,
+		ls.y,
+		ls.z
 	];
 }
-function ns(e) {
-	let { attributes: t, index: n } = e.geometry;
-	return Object.values(t).reduce((e, t) => e + t.array.byteLength, 0) + (n?.array.byteLength ?? 0);
-}
-function rs(e) {
+function ds(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
-function is(e) {
+function fs(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var as = class {
+var ps = class {
 	received = 0;
 	chunks = [];
 	waiters = [];
@@ -3625,53 +3747,53 @@ var as = class {
 		}
 		return n.buffer;
 	}
-}, os = 1179937895, ss = 1313821514, cs = 5130562;
-async function ls(e) {
+}, ms = 1179937895, hs = 1313821514, gs = 5130562;
+async function _s(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof j && t.code === "truncated" ? ms(e.received === 0) : t;
+		throw t instanceof j && t.code === "truncated" ? Ss(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== os) throw ms(!1);
+	if (new DataView(t).getUint32(0, !0) !== ms) throw Ss(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
 	if (r !== 2) throw new j("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
 	if (i < 20) throw M("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== ss) throw M("16", "it does not begin with JSON");
+	if (a.getUint32(4, !0) !== hs) throw M("16", "it does not begin with JSON");
 	if (o > Se) throw M("12", `${o} bytes of JSON`);
 	if (20 + o > i) throw M("12", "a chunk longer than the file");
-	let s = ds(await e.read(20, 20 + o));
+	let s = ys(await e.read(20, 20 + o));
 	return {
 		length: i,
 		text: s,
-		json: fs(s, "20"),
-		binary: () => us(e, 20 + o, i)
+		json: bs(s, "20"),
+		binary: () => vs(e, 20 + o, i)
 	};
 }
-async function us(e, t, n) {
+async function vs(e, t, n) {
 	let r = t;
 	for (let t = 1; t < 64 && r + 8 <= n; t++) {
 		let t = new DataView(await e.read(r, r + 8)), i = t.getUint32(0, !0);
 		if (r + 8 + i > n) throw M(String(r), "a chunk longer than the file");
-		if (t.getUint32(4, !0) === cs) return r + 8;
+		if (t.getUint32(4, !0) === gs) return r + 8;
 		r += 8 + i;
 	}
 	throw M(String(t), "no binary chunk");
 }
-function ds(e) {
+function ys(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
 		throw M("20", "its JSON is not UTF-8");
 	}
 }
-function fs(e, t) {
-	if (ps(e) > 64) throw M(t, "its JSON is nested too deep");
+function bs(e, t) {
+	if (xs(e) > 64) throw M(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
 		throw M(t, "its JSON cannot be read");
 	}
 }
-function ps(e) {
+function xs(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3682,20 +3804,20 @@ function ps(e) {
 	}
 	return n;
 }
-function ms(e) {
+function Ss(e) {
 	return new j("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/packed.ts
-var hs = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", gs = 4;
-async function _s(e, t) {
+var Cs = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", ws = 4;
+async function Ts(e, t) {
 	let n = new K(e, ""), r = n.key("extensions").key(xe), i = r.key("packed");
 	if (!i.exists) return e;
-	fi(r);
-	let a = Mr(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < gs) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, gs)).getUint32(0, !0);
-	if (gs + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new K(fs(await ys(await t(o.offset + gs, s), i.where), i.where), i.where).object(), u = vs(new K(c, `${i.where}/lengths`), o, gs + s), { packed: d, ...f } = r.object();
+	di(r);
+	let a = Ar(n), o = a[i.integer(a.length - 1, a.length - 1)];
+	if (!o || o.length < ws) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, ws)).getUint32(0, !0);
+	if (ws + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new K(bs(await Ds(await t(o.offset + ws, s), i.where), i.where), i.where).object(), u = Es(new K(c, `${i.where}/lengths`), o, ws + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
 		bufferViews: [...n.key("bufferViews").items(I).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
@@ -3708,7 +3830,7 @@ async function _s(e, t) {
 		}
 	};
 }
-function vs(e, t, n) {
+function Es(e, t, n) {
 	let r = n, i = e.items(I).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
@@ -3720,8 +3842,8 @@ function vs(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function ys(e, t) {
-	let n = new TextEncoder().encode(hs), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function Ds(e, t) {
+	let n = new TextEncoder().encode(Cs), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -3740,8 +3862,8 @@ async function ys(e, t) {
 	}
 }
 // eigenfield-three/src/proxy.ts
-var bs = 65535;
-function xs(e, t) {
+var Os = 65535;
+function ks(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
 	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
 	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
@@ -3751,46 +3873,46 @@ function xs(e, t) {
 	}
 	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
 }
-async function Ss({ view: n, codec: r, where: i }, a) {
+async function As({ view: n, codec: r, where: i }, a) {
 	let { positions: o, uv: s, indices: c } = r.decode(new Uint8Array(await a(n)), i);
 	if (!c.length) throw M(i, "a mesh without faces");
 	let l = new t();
 	l.setAttribute("position", new e(o, 3)), l.setAttribute("uv", new e(s, 2));
-	let u = o.length / 3 <= bs;
+	let u = o.length / 3 <= Os;
 	return l.setIndex(new e(u ? Uint16Array.from(c) : c, 1)), l;
 }
-function Cs(e) {
+function js(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/grid.ts
-function ws(e) {
+function Ms(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = Ts(e, n, r) ?? (n === r ? null : Ts(e, r, n));
+		let r = t / n, i = Ns(e, n, r) ?? (n === r ? null : Ns(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function Ts(e, t, n) {
-	let [r, i] = [Ds(e, 0), Ds(e, 1)];
-	if (t === 1 && Os(i) > 0 || n === 1 && Os(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => ks(i, e) - ks(i, t));
+function Ns(e, t, n) {
+	let [r, i] = [Fs(e, 0), Fs(e, 1)];
+	if (t === 1 && Is(i) > 0 || n === 1 && Is(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => Ls(i, e) - Ls(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => ks(r, e) - ks(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Ls(r, e) - Ls(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return Es(n, t, (e, t) => ks(r, o(t, e))) && Es(t, n, (e, t) => ks(i, o(e, t))) ? {
+	return Ps(n, t, (e, t) => Ls(r, o(t, e))) && Ps(t, n, (e, t) => Ls(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function Es(e, t, n) {
+function Ps(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -3800,33 +3922,33 @@ function Es(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function Ds(e, t) {
+function Fs(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function Os(e) {
+function Is(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var ks = (e, t) => e[t] ?? 0, As = 1e-6, js = 32, Ms = class {
+var Ls = (e, t) => e[t] ?? 0, Rs = 1e-6, zs = 32, Bs = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = ws(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = Ms(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(Ns(e), this.isLine ? 0 : Ns(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(Vs(e), this.isLine ? 0 : Vs(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => Us(e, t, this.places) : e === "bilinear" && this.grid ? Gs(this.places, this.grid) : Is(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => Zs(e, t, this.places) : e === "bilinear" && this.grid ? $s(this.places, this.grid) : Ws(this.places, this.triangles);
 	}
 };
-function Ns(e) {
+function Vs(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Ps(e) {
+function Hs(e) {
 	let t = {
 		camera: [
 			0,
@@ -3846,7 +3968,7 @@ function Ps(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function Fs(e, t, n, r, i, a) {
+function Us(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -3854,49 +3976,49 @@ function Fs(e, t, n, r, i, a) {
 		m
 	];
 }
-function Is(e, t) {
+function Ws(e, t) {
 	if (!t.length) {
-		let t = Hs(e, Vs(e));
-		return (n, r) => Bs(n, r, e, t);
+		let t = Xs(e, Ys(e));
+		return (n, r) => Js(n, r, e, t);
 	}
-	let n = Rs(e, t, 3), r = zs(t);
+	let n = Ks(e, t, 3), r = qs(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * js + $(i)] ?? []) {
+		for (let r of n[$(a) * zs + $(i)] ?? []) {
 			let [n, l, u] = [
-				Ls(t, r, 0),
-				Ls(t, r, 1),
-				Ls(t, r, 2)
-			], d = Fs(i, a, e, n, l, u), f = Math.min(...d);
+				Gs(t, r, 0),
+				Gs(t, r, 1),
+				Gs(t, r, 2)
+			], d = Us(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? Bs(i, a, e, r) : Ps(c.map((e, n) => [Ls(t, o, n), e]));
+		return s < -1e-9 ? Js(i, a, e, r) : Hs(c.map((e, n) => [Gs(t, o, n), e]));
 	};
 }
-var Ls = (e, t, n) => e[3 * t + n] ?? 0;
+var Gs = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * js)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * zs)));
 }
-function Rs(e, t, n) {
+function Ks(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * js + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * zs + t]?.push(i);
 	}
 	return r;
 }
-function zs(e) {
+function qs(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [Ls(e, n, r), Ls(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [Gs(e, n, r), Gs(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -3905,7 +4027,7 @@ function zs(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function Bs(e, t, n, r) {
+function Js(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -3920,12 +4042,12 @@ function Bs(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return Ps([[o, 1 - c], [s, c]]);
+	return Hs([[o, 1 - c], [s, c]]);
 }
-function Vs(e) {
+function Ys(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function Hs(e, t) {
+function Xs(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -3946,7 +4068,7 @@ function Hs(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function Us(e, t, n) {
+function Zs(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -3960,12 +4082,12 @@ function Us(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || Ws(n, r, i, a) <= As) return Bs(e, t, n, Hs(n, [
+	if (a < 0 || Qs(n, r, i, a) <= Rs) return Js(e, t, n, Xs(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = Fs(e, t, n, r, i, a);
+	let [l, u, d] = Us(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -3981,15 +4103,15 @@ function Us(e, t, n) {
 		]
 	};
 }
-function Ws(e, t, n, r) {
+function Qs(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function Gs(e, t) {
+function $s(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = Hs(e, Vs(e));
-		return (n, r) => Bs(n, r, e, t);
+		let t = Xs(e, Ys(e));
+		return (n, r) => Js(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -3998,7 +4120,7 @@ function Gs(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = Rs(e, o.flat(), 4), c = [];
+	let s = Ks(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -4006,12 +4128,12 @@ function Gs(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * js + $(t)] ?? []) {
-			let s = o[a], c = s ? Ks(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * zs + $(t)] ?? []) {
+			let s = o[a], c = s ? ec(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return Bs(t, n, e, l);
-		let [a, c] = qs(t, n, e, r);
+		if (!r || i < -1e-9) return Js(t, n, e, l);
+		let [a, c] = tc(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -4023,7 +4145,7 @@ function Gs(e, t) {
 		};
 	};
 }
-function Ks(e, t, n, r) {
+function ec(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -4031,7 +4153,7 @@ function Ks(e, t, n, r) {
 	}
 	return i;
 }
-function qs(e, t, n, r) {
+function tc(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -4049,27 +4171,27 @@ function qs(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Js(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [Js(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = nc(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [nc(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function Js(e) {
+function nc(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var Ys = class {
+var rc = class {
 	parser;
 	options;
 	name = xe;
 	scene = null;
 	ours;
 	constructor(e, t = {}) {
-		this.parser = e, this.options = t, this.ours = ci(e.json);
+		this.parser = e, this.options = t, this.ours = si(e.json);
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
-		this.options.renderer && po(this.options.renderer);
+		this.options.renderer && Lo(this.options.renderer);
 		let { json: e } = this.parser;
-		me(e), Object.assign(e, await _s(e, (e, t) => this.read(e, t))), this.scene = li(e), this.scene.shown || Xs(e);
+		me(e), Object.assign(e, await Ts(e, (e, t) => this.read(e, t))), this.scene = ci(e), this.scene.shown || ic(e);
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
@@ -4090,25 +4212,25 @@ var Ys = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = Zs(e, this.parser), [r] = n;
+		let n = ac(e, this.parser), [r] = n;
 		if (!r) throw M("/meshes/0", "no node shows it");
-		t.shown && xs(r.geometry, t.shown);
+		t.shown && ks(r.geometry, t.shown);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
 			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ue(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await Ss(t.mesh, i);
+		}, a = t.mesh && await As(t.mesh, i);
 		if (a) {
 			r.geometry.dispose();
 			for (let e of n) e.geometry = a;
 		}
-		t.sheets && ti(t.sheets, r.geometry);
+		t.sheets && ei(t.sheets, r.geometry);
 		let [o, s, c, l] = await Promise.all([
-			Promise.all(di(t).map((e) => Go(e, i))),
-			Ei(t, i),
-			Pi(t, i),
-			zi(t, i)
-		]), u = s.filter((e, n) => !t.heldOut[n]), d = new Ms(Float64Array.from(u.flatMap((e) => Ui(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = Vi(t, s, f, d.grid, this.fileBytes(), Cs(r.geometry)), m = {
+			Promise.all(ui(t).map((e) => Jo(e, i))),
+			Ti(t, i),
+			Ni(t, i),
+			Ri(t, i)
+		]), u = s.filter((e, n) => !t.heldOut[n]), d = new Bs(Float64Array.from(u.flatMap((e) => Hi(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = Bi(t, s, f, d.grid, this.fileBytes(), js(r.geometry)), m = {
 			scene: t,
 			info: p,
 			meshes: n,
@@ -4119,7 +4241,7 @@ var Ys = class {
 			weights: d,
 			bytes: i
 		};
-		e.userData.eigenfield = new Qo(m, this.options);
+		e.userData.eigenfield = new ss(m, this.options);
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -4127,50 +4249,50 @@ var Ys = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function Xs(e) {
+function ic(e) {
 	let [t] = e.nodes;
 	t && (t.mesh = 0), e.meshes = [{ primitives: [{
 		attributes: {},
 		material: 0
 	}] }], e.materials = [{ doubleSided: !0 }];
 }
-function Zs(e, t) {
+function ac(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		Qs(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		oc(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function Qs(e) {
+function oc(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function $s(e, t = {}) {
+async function sc(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new as(), i = new AbortController(), a = () => {
+	let r = new ps(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = nc(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = uc(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
-		let e = await ls(r);
-		if (!ci(e.json)) return {
-			gltf: await tc(r, e, o),
+		let e = await _s(r);
+		if (!si(e.json)) return {
+			gltf: await lc(r, e, o),
 			field: null
 		};
-		let i = await ec(r, e, t);
+		let i = await cc(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
 			gltf: i,
-			field: a instanceof Qo ? a : null
+			field: a instanceof ss ? a : null
 		};
 	} catch (e) {
 		throw i.abort(), n?.throwIfAborted(), de(e);
 	}
 }
-async function ec(e, t, n) {
+async function cc(e, t, n) {
 	let r = new ce(), i = t.binary();
 	i.catch(() => void 0);
 	let a = {
@@ -4180,12 +4302,12 @@ async function ec(e, t, n) {
 			return e.read(r, r + n);
 		}
 	};
-	return r.register((e) => new Ys(e, {
+	return r.register((e) => new rc(e, {
 		...n,
 		stream: a
 	})), r.parseAsync(t.text, "");
 }
-async function tc(e, t, n) {
+async function lc(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -4197,25 +4319,25 @@ async function tc(e, t, n) {
 		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function nc(e, t, n, r) {
+async function uc(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? rc(e) : await ic(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? dc(e) : await fc(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : ac(t.received, e);
+			throw n.aborted ? e : pc(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function rc(e) {
+function dc(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function ic(e, t) {
+async function fc(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -4226,7 +4348,7 @@ async function ic(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function ac(e, t) {
+function pc(e, t) {
 	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { Qo as EigenField, Ys as EigenfieldPlugin, Po as SHEETS, j as SceneError, la as defaultMemory, $s as loadEigenfield, Ki as novelCamera, Xi as placeCamera, pe as refuseAddresses };
+export { ss as EigenField, rc as EigenfieldPlugin, Eo as SHEETS, j as SceneError, fa as defaultMemory, sc as loadEigenfield, Gi as novelCamera, Yi as placeCamera, pe as refuseAddresses };
