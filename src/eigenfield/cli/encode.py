@@ -54,7 +54,7 @@ def parse_target_size(context: click.Context, parameter: click.Parameter, value:
 
 
 GROUPS = {  # of options in the help, those of every day first; the empty one has what no other names
-    "Common options": ("output", "preset", "target_size", "draft", "look", "proxy", "calibration", "grid", "without",
+    "Common options": ("output", "draft", "look", "preset", "target_size", "proxy", "calibration", "grid", "without",
                        "overwrite"),
     "What the capture is": (
         "format", "pattern", "frame", "frames", "masks", "reference", "metres_per_unit",
@@ -116,7 +116,7 @@ Examples:
     "-o",
     type=PATH,
     metavar="FILE",
-    help="The .glb to write.  [default: the capture's name and .glb, or .draft.glb, in the current folder]",
+    help="The .glb to write.  [default: the capture's name and .glb, in the current folder]",
 )
 @capture_options
 @leave_out_option
@@ -139,14 +139,13 @@ Examples:
 @click.option(
     "--draft",
     is_flag=True,
-    help="Make a first look instead, in about half a minute: fewer and smaller photographs, no fit. What is asked of "
-    "quality and size is for the scene itself.",
+    help="Only a first look, in about half a minute.",
 )
 @click.option(
     "--view",
     "look",
     is_flag=True,
-    help="Look around in a draft meanwhile, in a browser. The scene takes its place when it is done.",
+    help="Look around in a draft meanwhile, in a browser.",
 )
 @click.option("--overwrite", is_flag=True, help="Replace the output if it exists.")
 @common_options
