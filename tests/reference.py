@@ -21,7 +21,7 @@ def filled_maps(T, v):
 
 
 def decomposition(T, v, N):
-    """Equations 3 to 6: subtract the mean, singular value decomposition, keep N.
+    """Equations 3 to 6: subtract the mean, which gives X; its singular value decomposition; keep N.
 
     Returns the mean (n, C), eigen textures (N, n, C) and weights (Nc, N), the weights with unit mean square and their
     entry of largest magnitude positive.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 from graphlib import CycleError, TopologicalSorter
@@ -106,3 +107,15 @@ def test_no_public_class_name_twice():
                 places.setdefault(node.name, []).append(name)
     offenders = [f"{name}: {', '.join(modules)}" for name, modules in sorted(places.items()) if len(modules) > 1]
     assert len(places) > 100 and not offenders, "\n".join(offenders)
+
+
+def test_the_table_of_the_paper_s_equations_leads_to_them():
+    """Each row of docs/architecture.md names a file, and functions that stand in it; each equation has a row."""
+    text = (ROOT.parents[1] / "docs" / "architecture.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| ([^|]+) \| ([^|]+) \| `([a-z_/]+\.py)` \|$", text, re.MULTILINE)
+    numbers = [span for paper, _, _ in rows for span in re.findall(r"^(\d)(?: to (\d))?:", paper)]
+    assert [n for first, last in numbers for n in range(int(first), int(last or first) + 1)] == list(range(1, 9))
+    for _, here, file in rows:
+        code = (ROOT / file).read_text(encoding="utf-8")
+        names = re.findall(r"`(?:\w+\.)?(_?[a-z_]+)`", here)
+        assert all(f"def {name}(" in code for name in names), (file, names)

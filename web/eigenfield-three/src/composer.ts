@@ -1,3 +1,5 @@
+// Equation 8 on the GPU: means and eigen textures, weighted and summed into one texture when the viewpoint moves.
+
 import {
   Camera,
   Color,

@@ -1,9 +1,9 @@
 """Eigen textures by the Gram matrix of the texture maps (the paper's equations 3 to 6), streamed over texels.
 
-The paper stacks the filled maps of Nc cameras less their mean as the columns of a matrix and takes its singular value
-decomposition. Here the columns are No observations. With far fewer of them than texels the same vectors come from the
-No x No matrix of inner products (Sirovich's method of snapshots, 1987), which needs two passes over the maps and memory
-for one tile of them.
+The paper writes the deviations of Nc filled maps from their mean as the rows of a matrix X: equation 3 is a pixel of a
+row, 4 is a row, 5 the matrix. Equation 6 decomposes X^T X, which has a row for each texel and channel. Here the rows
+are No observations. With far fewer of them than texels the same vectors come from X X^T, their No x No inner products
+(Sirovich's method of snapshots, 1987), which needs two passes over the maps and memory for one tile of them.
 """
 
 from __future__ import annotations
@@ -24,15 +24,18 @@ log = logging.getLogger("eigenfield.basis")
 
 
 def _deviations(maps: TextureMaps, mean: Mean, first: int, last: int) -> NDArray[np.float32]:
-    """(No, (last - first) C): equation 3 on a tile of the filled maps; zero where the fill is the mean itself."""
+    """(No, (last - first) C): the columns of X (equations 3 to 5) of a tile; zero where the fill is the mean itself."""
     tile = maps.values[:, first:last] - mean.values[first:last]
     tile *= maps.seen[:, first:last, None]
     return tile.reshape(maps.count, -1)
 
 
 def gram_matrix(maps: TextureMaps, mean: Mean, progress: Progress | None = None) -> NDArray[np.float64]:
-    """(No, No) float64 inner products of the maps' deviations from the mean. Tiles are summed in float64 and in a fixed
-    order: float32 sums lose the small eigenvalues, free order changes the last bits with the number of threads."""
+    """(No, No) float64: X X^T, inner products of the maps' deviations from the mean.
+
+    Tiles are summed in float64 and in a fixed order: float32 sums lose the small eigenvalues, free order changes the
+    last bits with the number of threads.
+    """
 
     def product(part: tuple[int, int]) -> NDArray[np.float64]:
         tile = _deviations(maps, mean, *part).astype(np.float64)
@@ -47,8 +50,8 @@ def gram_matrix(maps: TextureMaps, mean: Mean, progress: Progress | None = None)
 
 
 def eigenvectors(gram: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(No, No - 1) float64 eigenvectors of a Gram matrix within the complement of (1, ..., 1), on which deviations from
-    a mean live: orthonormal columns by falling eigenvalue, each with its entry of largest magnitude positive.
+    """(No, No - 1) float64, equation 6: eigenvectors of a Gram matrix within the complement of (1, ..., 1), on which
+    deviations from a mean live: orthonormal columns by falling eigenvalue, each with its largest entry positive.
 
     Working there leaves exactly No - 1 components, which span every set of maps even where eigenvalues vanish.
     """

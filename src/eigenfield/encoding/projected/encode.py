@@ -80,17 +80,17 @@ def _basis_of(
     Unseen texels deviate by nothing, which is equation 2 without filling any map.
     """
     options, views = plan.options, plan.views
-    gram = gram_matrix(maps, mean, progress)  # equation 3
+    gram = gram_matrix(maps, mean, progress)  # of X, equations 3 to 5
     names, places = views.observation_names, views.coordinates[views.taken_by]
     disagreement_of(maps, mean, gram, names, places, aligned=bool(options.align))
-    vectors = eigenvectors(gram)  # equation 4
+    vectors = eigenvectors(gram)  # equation 6
     if options.uv_ssim is None:
         count = component_count(resolved_value(options.textures), maps.count)
     else:
         average = spreader(mean.values)
         count = smallest_count(maps, mean, average, vectors, options.uv_ssim, work=work, progress=progress)
     weights = weights_of(vectors, count)
-    compact = eigen_textures(maps, mean, weights, progress)  # equations 5 and 6
+    compact = eigen_textures(maps, mean, weights, progress)
     pictures = np.zeros((count, maps.atlas.height, maps.atlas.width, maps.channels), np.float32)
     for index in range(count):
         pictures[index] = spreader(compact[index])
