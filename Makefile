@@ -1,15 +1,17 @@
 # make demo   a capture is drawn, encoded, flown through and measured; open demo/scene.html
 # make test   the fast tests, two files at a time
+# make check  in a minute: format, style, types, and the tests of the rooms that were changed
 # make docs   the site, in build/docs/index.html
 # make addon  the Blender add-on, build/eigenfield-blender.zip
 # make bpy    Blender as a module, in build/bpy, for the add-on's tests (Python 3.11, a gigabyte)
+# make lines  lines of code and of docstrings in each room, beside those of the last tag (or SINCE=COMMIT)
 # make web    build the web viewer again after a change in web/ (Node.js; users need none, the build is kept here)
-# The first three make .venv first. PYTHON names the interpreter (3.11 or newer).
+# The first four make .venv first. PYTHON names the interpreter (3.11 or newer).
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: addon bpy demo docs test web lint clean help
+.PHONY: addon bpy check clean demo docs help lines lint test web
 
 help:
 	@sed -n 's/^# //p' Makefile
@@ -35,6 +37,15 @@ demo: $(VENV)/.installed
 test: $(VENV)/.installed-test
 	$(BIN)/python -m pytest -m 'not slow' -n 2 --dist loadfile $(PYTEST_ARGS)
 
+CHANGED = $(shell { git diff --name-only HEAD; git ls-files --others --exclude-standard; } | \
+	sed -n 's,^src/eigenfield/\([a-z]*\)/.*,tests/\1,p; s,^tests/\([a-z]*\)/test_.*,tests/\1,p; s,^tests/test_.*,&,p' | sort -u)
+
+check: $(VENV)/.installed-test
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/python -m pytest -q -m 'not slow' -n 2 tests/test_architecture.py $(wildcard $(CHANGED))
+
 docs: $(VENV)/.installed-docs
 	$(BIN)/python -m sphinx -W --keep-going -q -d build/doctrees docs build/docs
 
@@ -50,6 +61,9 @@ build/bpy/.installed: packaging/requirements-bpy.txt
 
 web:
 	cd web && npm ci --no-audit --no-fund && npm run build
+
+lines:
+	@$(PYTHON) packaging/lines.py $(SINCE)
 
 lint: $(VENV)/.installed-test
 	$(BIN)/ruff check .
