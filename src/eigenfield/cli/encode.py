@@ -180,7 +180,8 @@ def command(
     from eigenfield.runtime.objects import find_objects
 
     started = time.monotonic()
-    output = default_output(capture, ".draft.glb" if draft else ".glb") if output is None else output
+    whole = default_output(capture) if output is None else output
+    output = whole.with_suffix(".draft.glb") if draft and output is None else whole
     refuse_output(output, overwrite)
     if proxy is not None:
         refuse_no_mesh(proxy)
@@ -195,7 +196,7 @@ def command(
     with Window(output.name, quiet) as window:
         with chosen_workers(workers, cluster) as reached, progress_bars(quiet) as progress:
             kept = work or (None if find_objects(output) else output.absolute().parent)
-            scratch = work or output.with_suffix(".work")
+            scratch = work or whole.with_suffix(".work")
             if made_by is None:
                 opened: Capture = leave_out(_open_capture(capture, place, kept, quiet), without, quiet)
             else:
@@ -206,6 +207,7 @@ def command(
             if first is not None and draft:
                 scene, lines = first, draft_lines
             else:
+                refuse_output(output := whole, overwrite)
                 announce(opened, options, made_by, progress)
                 if first is not None:
                     window.show_draft(first, progress)
@@ -228,16 +230,15 @@ def command(
             window.wait()
 
 
-def default_output(capture: Path, ending: str = ".glb") -> Path:
+def default_output(capture: Path) -> Path:
     """The file of a capture whose output is not named: in the current folder.
 
     Args:
         capture: A folder, a file, or an address.
-        ending: Of its name.
     """
     named = capture if capture.name not in ("", "..") else capture.resolve()
     name = named.name if named.is_dir() else named.stem
-    return Path(f"{name or 'scene'}{ending}")
+    return Path(f"{name or 'scene'}.glb")
 
 
 def last_lines(output: Path, scene: Scene) -> list[str]:
