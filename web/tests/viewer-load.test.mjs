@@ -180,7 +180,11 @@ test("what goes wrong with textures before anyone listens is said, too", async (
   await close();
 });
 
-const DRAFT = { config: { draft: "draft" }, routes: { "/draft": { body: '{"seconds":130}', type: "application/json" } } };
+const DRAFT = {
+  config: { draft: "draft" },
+  routes: { "/draft": { body: '{"seconds":130}', type: "application/json" } },
+  allowed: /404|ERR_FAILED/, // by which the page knows that the scene is done, or the command
+};
 
 test("a draft says when the scene comes, which then stands at the same view", async () => {
   const { page, server, close } = await openViewer(browser, "scene.glb", DRAFT);
