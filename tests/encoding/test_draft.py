@@ -83,6 +83,27 @@ def test_a_grid_keeps_whole_rows_and_columns(array, monkeypatch):
     assert {(camera.width, camera.height) for camera in scene.rig.cameras} == {(96, 96)}
 
 
+def test_what_is_named_in_pixels_or_by_photographs_stays_with_the_scene(array, monkeypatch):
+    """Regions of spheres are in pixels of the whole photographs, and held-out ones are gone already."""
+    asked = {}
+
+    def note_and_stop(capture, **settings):
+        asked.update(settings)
+        raise ProxyError("surface-empty", "stopped", remedy="")
+
+    monkeypatch.setattr(drafts, "reconstruct", note_and_stop)
+    given = ESTIMATED | {
+        "surface": "layers",
+        "fit_spheres": ("a.png:1,2,3,4",),
+        "hold_out": "every:4",
+        "blind": "every:4",
+    }
+    with pytest.raises(ProxyError):
+        make_draft(open_any(array), None, ef.EncodeOptions(hold_out="every:4"), given)
+    del asked["progress"]
+    assert asked == ESTIMATED | {"layers": 1, "triangles": drafts.DRAFT_TUNING.triangles}
+
+
 def test_the_command_writes_a_draft_and_says_what_it_is(row, tmp_path, worth_it, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert encode(row) == 0

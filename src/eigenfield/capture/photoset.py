@@ -42,6 +42,15 @@ class Shot:
     exposure: float | None = None
     reduction: int = 1
 
+    @staticmethod
+    def of(view: View) -> Shot:
+        """The photograph of a view, without what is known of its camera."""
+        camera = view.camera
+        return Shot(
+            view.name, view.path, camera.width, camera.height,
+            mask=view.mask, upright=view.upright, exposure=view.exposure, reduction=view.reduction,
+        )  # fmt: skip
+
     @property
     def lens(self) -> Lens | None:
         """None: a lens becomes known together with the camera."""

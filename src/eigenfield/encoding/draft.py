@@ -81,24 +81,30 @@ def make_draft(
     chosen = _some_views(capture, options)
     if proxy is None:
         factor = _factor(chosen, DRAFT_TUNING.surface_pixels)
-        kept = {name: value for name, value in settings.items() if name not in ("blind", "hold_out", "workers")}
-        few = {"surface": "auto" if settings["surface"] == "layers" else settings["surface"], "layers": 1}
-        few["triangles"] = min(DRAFT_TUNING.triangles, settings["triangles"])
-        made = reconstruct(chosen.reduced(factor), progress=_within(progress), **{**kept, **few})
+        own = {
+            **settings,
+            "surface": "auto" if settings["surface"] == "layers" else settings["surface"],
+            "layers": 1,
+            "fit_spheres": (),  # whose regions are in pixels of the whole photographs
+            "triangles": min(DRAFT_TUNING.triangles, settings["triangles"]),
+            "blind": None,  # who is held out takes no part at all
+            "hold_out": None,
+        }
+        made = reconstruct(chosen.reduced(factor), progress=_within(progress), **own)
         proxy, chosen = made.proxy, _as_photographed(made.light_field, chosen, factor)
     assert isinstance(chosen, LightField)
     factor = _factor(chosen, DRAFT_TUNING.texture_pixels)
     small = chosen.reduced(factor)
     reference = options.reference if options.reference in small.names else None
     pixels = max(camera.width * camera.height for camera in small.cameras)
-    own = EncodeOptions(
+    plain = EncodeOptions(
         fit="none",
         textures=min(DRAFT_TUNING.textures, len(small) - 1),
         atlas=min(DRAFT_TUNING.atlas, round(2 * np.sqrt(pixels))),
         metres_per_unit=options.metres_per_unit,
         reference=reference,
     )
-    scene = encode(small, proxy, own, progress=_within(progress))
+    scene = encode(small, proxy, plain, progress=_within(progress))
     recorded = {**scene.settings["photographs"], "pixels": sum(width * height for width, height in chosen.sizes)}
     return replace(
         scene,

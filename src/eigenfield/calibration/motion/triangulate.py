@@ -70,21 +70,8 @@ def triangulate_points(light_field: LightField, *, progress: Progress | None = N
     count = min(len(light_field), TRIANGULATION_TUNING.max_views)
     views = np.linspace(0, len(light_field) - 1, count).astype(np.int64).tolist()
     cameras = [light_field.views[index].camera for index in views]
-    shots = [
-        Shot(
-            view.name,
-            view.path,
-            view.camera.width,
-            view.camera.height,
-            None,
-            view.mask,
-            view.upright,
-            view.exposure,
-            view.reduction,
-        )
-        for view in (light_field.views[index] for index in views)
-    ]
-    photos = PhotoSet(light_field.root, tuple(shots), None, (), "folder")
+    shots = tuple(Shot.of(light_field.views[index]) for index in views)
+    photos = PhotoSet(light_field.root, shots, None, (), "folder")
     features = _features(photos, TRIANGULATION_FEATURES, progress)
     if np.median([len(found) for found in features]) < TRIANGULATION_TUNING.min_median_features:
         features = _features(photos, TRIANGULATION_WEAK_FEATURES, progress)

@@ -165,7 +165,7 @@ def _merge_pixels(
     positions, spacing = np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
     number = np.repeat(np.arange(len(views)), [len(part[0]) for part in parts])
     factor, pixels = float(step), len(stack.inverse_depth)
-    most = min(VISIBILITY_TUNING.max_vertices, pixels // VISIBILITY_TUNING.pixels_per_vertex)
+    most = max(1, min(VISIBILITY_TUNING.max_vertices, pixels // VISIBILITY_TUNING.pixels_per_vertex))
     while True:
         order, starts, _ = sort_cells(positions, spacing, factor)
         excess = len(starts) / most
