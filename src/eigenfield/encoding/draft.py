@@ -28,7 +28,7 @@ log = logging.getLogger("eigenfield.encode")
 
 @dataclass(frozen=True)
 class DraftTuning:
-    """Constants of `make_draft`, chosen on the cube and Antinous.
+    """Constants of `make_draft`, chosen on the cube, Antinous and Temple.
 
     Attributes:
         max_views: Photographs, at most.
@@ -41,10 +41,10 @@ class DraftTuning:
         worth_seconds: A scene that takes no longer is made at once.
     """
 
-    max_views: int = 30
+    max_views: int = 25
     surface_pixels: int = 800_000
     texture_pixels: int = 4_000_000
-    min_side: int = 120
+    min_side: int = 180
     triangles: int = 5000
     textures: int = 8
     atlas: int = 1024

@@ -61,7 +61,7 @@ class VisibilityTuning:
 
     max_pixels: int = 800_000
     max_vertices: int = 100_000
-    pixels_per_vertex: int = 16
+    pixels_per_vertex: int = 32
     cell_growth_power: float = 0.4
     behind_noises: float = 3.0
     face_weight: float = 1.0
