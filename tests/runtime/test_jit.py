@@ -24,10 +24,10 @@ print(sum(double.stats.cache_hits.values()), sum(double.stats.cache_misses.value
 def counts(tmp_path):
     (tmp_path / "module.py").write_text(MODULE)
 
-    def call(cache):
+    def call(cache, module=tmp_path / "module.py"):
         environment = os.environ | {"XDG_CACHE_HOME": str(cache)}
         environment.pop("NUMBA_CACHE_DIR", None)
-        command = [sys.executable, "-B", str(tmp_path / "module.py")]
+        command = [sys.executable, "-B", str(module)]
         done = subprocess.run(command, capture_output=True, text=True, env=environment)
         assert done.returncode == 0, done.stderr
         assert ("NUMBA_CACHE_DIR" in done.stderr) == str(cache).startswith("/dev/null")
@@ -42,6 +42,41 @@ def test_the_second_process_compiles_nothing(counts, tmp_path):
     assert counts(tmp_path / "cache") == (1, 0)
     assert list((tmp_path / "cache" / "eigenfield").rglob("*.nbi"))
     assert not (tmp_path / "__pycache__").exists()  # nothing beside the source, which may be read-only
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="XDG_CACHE_HOME names the cache on Linux")
+def test_a_copy_of_the_source_has_its_kernels_and_a_change_has_none(counts, tmp_path):
+    assert counts(tmp_path / "cache") == (0, 1)
+    copy = tmp_path / "clone" / "module.py"
+    copy.parent.mkdir()
+    copy.write_text(MODULE)
+    assert counts(tmp_path / "cache", copy) == (1, 0)
+    copy.write_text(MODULE.replace("2 * x", "x + x"))
+    assert counts(tmp_path / "cache", copy) == (0, 1)
+
+
+def test_kernels_follow_what_their_file_imports(tmp_path, monkeypatch):
+    jit = pytest.importorskip("eigenfield.runtime.jit")
+    package = tmp_path / "eigenfield"
+    sources = {
+        "runtime/jit.py": "",
+        "rays.py": "from eigenfield.core.scale import UNIT",
+        "core/scale.py": "UNIT = 1",
+        "other.py": "UNIT = 3",
+    }
+    monkeypatch.setattr(jit, "__file__", str(package / "runtime" / "jit.py"))
+
+    def version(**changed):
+        jit._text.cache_clear()
+        for name, text in (sources | changed).items():
+            (package / name).parent.mkdir(parents=True, exist_ok=True)
+            (package / name).write_text(text)
+        return jit._version.__wrapped__(package / "rays.py")
+
+    first = version()
+    assert first.startswith("rays-")
+    assert version(**{"other.py": "UNIT = 4"}) == first
+    assert version(**{"core/scale.py": "UNIT = 2"}) != first
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="XDG_CACHE_HOME names the cache on Linux")

@@ -1,8 +1,9 @@
 """The one way to compile a kernel: serial, without the GIL, cached in the user's cache folder.
 
 numba caches beside the source by default, which fails where the package is installed read-only and leaves every new
-process to compile again. It also notices changes only in a kernel's own file, not in those it calls: the folder's
-name therefore carries a digest of all sources of the package.
+process to compile again. It also notices changes only in a kernel's own file, not in those it calls. Here each file
+has a folder, whose name follows the text of the file and of all that it imports from the package. Another copy of the
+package, such as a new clone, finds the kernels of the first, and a change compiles only what depends on it.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from typing import Any
 import numba
 import platformdirs
 from numba.core import event
-from numba.core.caching import FunctionCache
+from numba.core.caching import FunctionCache, UserProvidedCacheLocator
 from numba.core.compiler_lock import global_compiler_lock
 
 log = logging.getLogger("eigenfield.kernels")
@@ -33,28 +34,47 @@ _IMPORTS = re.compile(r"^from eigenfield\.(\S+) import", re.MULTILINE)
 
 
 @cache
-def _cache_folder() -> str:
-    """A folder for this state of all kernels and of their imports. Numba notices a change of a kernel's own file, but
-    not of a kernel or a constant from another one. A change elsewhere recompiles nothing."""
+def _text(path: Path) -> str:
+    """Of a module's file, or of its folder's `__init__.py`."""
+    return (path if path.is_file() else path.with_suffix("") / "__init__.py").read_text(encoding="utf-8")
+
+
+def _cache_folder() -> Path:
+    """Of all kernels."""
+    return Path(numba.config.CACHE_DIR or Path(platformdirs.user_cache_dir("eigenfield")) / "kernels")
+
+
+@cache
+def _version(source: Path) -> str:
+    """A name for the kernels of a file in its present state and that of all that it imports."""
     root = Path(__file__).parents[1]
-    texts = {path: path.read_text(encoding="utf-8") for path in root.rglob("*.py")}
-    waiting = [path for path, text in texts.items() if "from eigenfield.runtime.jit import" in text]
-    counted: set[Path] = set()
+    waiting, counted = [source], set[Path]()
     while waiting:
         path = waiting.pop()
-        if path not in counted and path in texts:
+        if path not in counted:
             counted.add(path)
-            waiting += [(root / name.replace(".", "/")).with_suffix(".py") for name in _IMPORTS.findall(texts[path])]
+            waiting += [(root / name.replace(".", "/")).with_suffix(".py") for name in _IMPORTS.findall(_text(path))]
     digest = hashlib.sha256()
     for path in sorted(counted):
-        digest.update(f"{path.relative_to(root)} {path.stat().st_size} {path.stat().st_mtime_ns}\n".encode())
-    return str(Path(platformdirs.user_cache_dir("eigenfield")) / "kernels" / digest.hexdigest()[:16])
+        digest.update(_text(path).encode() + b"\0")
+    return f"{source.stem}-{digest.hexdigest()[:16]}"
+
+
+class _Locator(UserProvidedCacheLocator):  # type: ignore[misc]
+    """The folder that numba is told, whose name says what its kernels were compiled from."""
+
+    @classmethod
+    def get_suitable_cache_subpath(cls, py_file: str) -> str:
+        return ""  # numba's differs with the place of the source
+
+    def get_source_stamp(self) -> str:
+        return ""
 
 
 class _Place(FunctionCache._impl_class):  # type: ignore[misc]
-    """The folder that numba is told, and none of the others that it would try, such as the one of the source."""
+    """That folder, and none of the others that numba would try, such as the one of the source."""
 
-    _locator_classes = FunctionCache._impl_class._locator_classes[:1]
+    _locator_classes = (_Locator,)
 
 
 class _Cache(FunctionCache):  # type: ignore[misc]
@@ -88,14 +108,14 @@ def _say_not_kept() -> None:
     log.warning(
         "%s: compiled kernels cannot be kept there, so each run compiles them again; make room, or name another folder "
         "as NUMBA_CACHE_DIR",
-        numba.config.CACHE_DIR or _cache_folder(),
+        _cache_folder(),
     )
 
 
-def _compiled(function: Kernel, folder: str, options: dict[str, Any]) -> Any:
+def _compiled(function: Kernel, folder: Path, options: dict[str, Any]) -> Any:
     """numba's dispatcher of a function, with a cache where one can be written."""
     dispatcher = numba.njit(**options)(function)
-    theirs, numba.config.CACHE_DIR = numba.config.CACHE_DIR, folder
+    theirs, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(folder)
     try:
         dispatcher._cache = _Cache(function)
     except (RuntimeError, OSError):  # RuntimeError: numba has tried to write there
@@ -105,7 +125,7 @@ def _compiled(function: Kernel, folder: str, options: dict[str, Any]) -> Any:
     return dispatcher
 
 
-def _share_calls(compiled: Any, function: Kernel, folder: str, options: dict[str, Any]) -> None:
+def _share_calls(compiled: Any, function: Kernel, folder: Path, options: dict[str, Any]) -> None:
     """Let other kernels call a compilation of their own, which takes a fifth less time to make.
 
     It has no wrapper for calls from Python, which unpacks every array of every argument; numba makes one for each
@@ -116,7 +136,7 @@ def _share_calls(compiled: Any, function: Kernel, folder: str, options: dict[str
 
     @cache
     def inner() -> Any:
-        return _compiled(function, str(Path(folder) / "inner"), {**options, "no_cpython_wrapper": True})
+        return _compiled(function, folder / "inner", {**options, "no_cpython_wrapper": True})
 
     compiled.get_call_template = lambda args, kws: inner().get_call_template(
         tuple(widen(kind) for kind in args), {name: widen(kind) for name, kind in kws.items()}
@@ -137,7 +157,7 @@ def kernel(*, fastmath: bool | set[str] = False, inline: bool = False) -> Callab
         options["fastmath"] = fastmath
         if inline:
             options["inline"] = "always"
-        folder = numba.config.CACHE_DIR or _cache_folder()
+        folder = _cache_folder() / _version(Path(function.__code__.co_filename))
         compiled: Kernel = _compiled(function, folder, options)
         _share_calls(compiled, function, folder, options)
         return compiled
