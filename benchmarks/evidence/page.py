@@ -81,7 +81,7 @@ def _rates(name: str, figures: Figures, folder: Path) -> Iterator[str]:
     head = ["", "setting", "bytes", *PAIRED.values(), "encode s"]
     yield table(head, [_point(curve, point) for curve in figures["curves"] for point in curve["points"]])
     yield _pictures([(crop["picture"], crop["label"]) for crop in figures["crops"]])
-    yield "".join(f"- Left out: {words}\n" for words in figures["left_out"])
+    yield "".join(f"- {words}\n" for words in figures["left_out"])
 
 
 def _point(curve: Figures, point: Figures) -> list[str]:

@@ -142,7 +142,6 @@ def test_the_report_of_a_folder_of_photographs(tmp_path):
     assert len(shown) > 10 and all((tmp_path / "report" / path).stat().st_size for path in shown)
     assert "### Where the decibels go" in text and "### Between the cameras" in text
     assert {curve["kind"] for curve in steps["rates"]["figures"]["curves"]} == {"ours", "paper", "video"}
-    assert "<html" in (tmp_path / "report" / "index.html").read_text()
 
 
 def test_the_page_says_which_step_failed(tmp_path, capture):
