@@ -30,7 +30,8 @@ def write(results: Figures, kept: Captures, folder: Path) -> Path:
         folder: Where the paths of pictures begin.
     """
     (folder / "pictures").mkdir(parents=True, exist_ok=True)
-    parts = [_head(results), evaluation(kept), *(_capture(*one, folder) for one in results["captures"].items())]
+    captures: dict[str, Figures] = results["captures"]
+    parts = [_head(results), evaluation(kept), *(_capture(name, one, folder) for name, one in captures.items())]
     path = folder / "report.md"
     path.write_text("\n".join(parts), encoding="utf-8")
     return path
