@@ -4,6 +4,7 @@
 # make docs   the site, in build/docs/index.html
 # make addon  the Blender add-on, build/eigenfield-blender.zip
 # make bpy    Blender as a module, in build/bpy, for the add-on's tests (Python 3.11, a gigabyte)
+# make tables  what is made of figures and sources: tables of the documents, docs/errors.md
 # make lines  lines of code and of docstrings in each room, beside those of the last tag (or SINCE=COMMIT)
 # make web    build the web viewer again after a change in web/ (Node.js; users need none, the build is kept here)
 # The first four make .venv first. PYTHON names the interpreter (3.11 or newer).
@@ -11,7 +12,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: addon bpy check clean demo docs help lines lint test web
+.PHONY: addon bpy check clean demo docs help lines lint tables test web
 
 help:
 	@sed -n 's/^# //p' Makefile
@@ -45,6 +46,10 @@ check: $(VENV)/.installed-test
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/python -m pytest -q -m 'not slow' -n 2 tests/test_architecture.py $(wildcard $(CHANGED))
+
+tables: $(VENV)/.installed
+	$(BIN)/python benchmarks/tables.py
+	$(BIN)/python packaging/errors.py
 
 docs: $(VENV)/.installed-docs
 	$(BIN)/python -m sphinx -W --keep-going -q -d build/doctrees docs build/docs

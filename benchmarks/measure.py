@@ -1,6 +1,7 @@
 """What the benchmarks share: a child process timed and weighed, and results that say where they come from.
 
-results/NAME.json is {"runs": [...]}, the newest last, each with date, commit, machine and command beside its figures.
+results/NAME.json is {"runs": [...]}, one run a line, the newest last. Each has date, commit, machine and command beside
+its figures. A run goes once later ones have measured all that it measured; the repository's history has it.
 """
 
 from __future__ import annotations
@@ -17,7 +18,6 @@ from pathlib import Path
 from typing import Any
 
 RESULTS = Path(__file__).parent / "results"
-KEPT = 50  # runs of a benchmark; older ones are in the repository's history
 ORIGIN = ("date", "commit", "machine", "command")  # what every run says beside its figures
 
 
@@ -95,7 +95,7 @@ def machine() -> dict[str, Any]:
 
 
 def store(name: str, figures: dict[str, Any]) -> Path:
-    """Append the figures to results/NAME.json, with date, commit, machine and command; the newest KEPT runs stay.
+    """Append the figures to results/NAME.json, with date, commit, machine and command; what they supersede goes.
 
     Where that file cannot be read (see `runs`) it stays as it is, the run goes to NAME.json.new and SystemExit says so.
     """
@@ -107,17 +107,37 @@ def store(name: str, figures: dict[str, Any]) -> Path:
     try:
         kept = runs(name) if path.exists() else []
     except SystemExit as error:
-        write_json(new, {"runs": [run]})
+        write_runs(new, [run])
         raise SystemExit(f"{error}; this run is kept as {new}") from error
-    write_json(path, {"runs": [*kept, run][-KEPT:]})
+    write_runs(path, current([*kept, run]))
     return path
+
+
+def current(runs: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Runs without those whose captures, or else whose driver, later ones have all measured again."""
+    newest = {subject: number for number, run in enumerate(runs) for subject in _subjects(run)}
+    return [runs[number] for number in sorted(set(newest.values()))]
+
+
+def _subjects(run: dict[str, Any]) -> list[str]:
+    return list(run["captures"]) if "captures" in run else [run.get("driver", "")]
+
+
+def write_runs(path: Path, runs: list[dict[str, Any]]) -> None:
+    """One run a line, so that a change of one run is a change of one line."""
+    lines = ",\n".join(json.dumps(run, ensure_ascii=False) for run in runs)
+    _write(path, f'{{"runs": [\n{lines}\n]}}\n')
 
 
 def write_json(path: Path, value: Any) -> None:
     """A JSON file, whole or not at all, should this be killed."""
+    _write(path, json.dumps(value, indent=1) + "\n")
+
+
+def _write(path: Path, text: str) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_suffix(".part")
-    part.write_text(json.dumps(value, indent=1) + "\n", encoding="utf-8")
+    part.write_text(text, encoding="utf-8")
     part.replace(path)
 
 

@@ -1,11 +1,11 @@
-"""The whole evaluation: every capture through every step, one page for reviewers, one file of figures.
+"""The whole evaluation: every capture through every step, one page in Markdown, one file of figures.
 
     [EIGENFIELD_DATA=captures] python benchmarks/report.py [CAPTURE...] [--quick] [--out report]
 
 CAPTURE: a name (demo, tarot, tarot-5x4, amethyst, ...; those of the shared captures that lie in EIGENFIELD_DATA) or a
-folder of photographs of your own; without any, all shared captures and the demo. Writes OUT/index.html (self-contained)
-and OUT/results.json. What is finished is kept in OUT/steps: after Ctrl-C the same command goes on. A figure is measured
-again when the code has changed, unless --keep. `--quick` takes two captures, fewer rates and no studies, within ten
+folder of photographs of your own; without any, all shared captures and the demo. Writes OUT/report.md, with pictures
+beside it, and OUT/results.json. What is finished is kept in OUT/steps: after Ctrl-C the same command goes on. A figure
+is measured again when the code has changed, unless --keep. `--quick` takes two captures and fewer rates, within ten
 minutes on two cores; everything takes up to three hours. `pip install 'eigenfield[report]'` first: what a peer lacks
 here is left out, and the page says so.
 """
@@ -41,7 +41,7 @@ def chosen(names: list[str], out: Path, quick: bool) -> tuple[list[Capture], lis
     names_left = [name for name in known if name not in {one.name for one in some}]
     words = [
         "a quick run: two rates instead of four, four numbers of textures, no alignment, no x265, libaom, AVIF or JPEG"
-        " XL, no parameter studies"
+        " XL"
     ]
     return some, words + ([f"captures: {', '.join(names_left)}"] if names_left else [])
 
@@ -72,7 +72,7 @@ def main() -> None:
         _write(out, results)  # a page after each capture: a long run can be read while it goes on
     if arguments.store:
         print(f"stored as {measure.store('report', summary(results))}")
-    print(f"{out / 'index.html'}: {results['seconds']:.0f} s")
+    print(f"{out / 'report.md'}: {results['seconds']:.0f} s")
     failed = [name for name, record in results["captures"].items() for step in _records(record) if "error" in step]
     if failed:
         raise SystemExit(f"some steps failed: {', '.join(dict.fromkeys(failed))}; the page says which")
@@ -84,7 +84,7 @@ def _records(record: dict[str, Any]) -> list[dict[str, Any]]:
 
 def _write(out: Path, results: dict[str, Any]) -> None:
     measure.write_json(out / "results.json", results)
-    page.write(results, out)
+    page.write(results, summary(results)["captures"], out)
 
 
 def summary(results: dict[str, Any]) -> dict[str, Any]:

@@ -7,33 +7,388 @@ from __future__ import annotations
 
 import re
 import sys
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import between_tables
-import evaluation_tables
+import numpy as np
+
 import plots
-import rate_tables
-from evaluation_tables import table
+from evidence import rates
+from evidence.between import TITLES
 from measure import latest, runs
+
+Captures = dict[str, dict[str, Any]]
 
 README = Path(__file__).parents[1] / "README.md"
 BENCHMARKS = README.parent / "docs" / "benchmarks.md"
+BEGIN, END = "<!-- figures -->\n", "<!-- end of figures -->\n"
+NONE = "–"
+ORDER = (  # of captures in tables
+    "tarot", "antinous", "boxes", "shop", "tarot-5x4", "cube", "cube_colmap_mesh", "fern", "fox", "fountain", "temple",
+    "jellybeans", "amethyst", "demo",
+)  # fmt: skip
+
+# Fitted files
+ANCHOR, FASTER = "SVT-AV1 preset 2, 4:2:0", "SVT-AV1 preset 6, 4:2:0"
+BALANCED = 88  # the quality measured that is nearest the default's
+SHOWN = (70, 84, 94, 97)  # qualities of the table of all; rate.json has more
+KEYS = ("psnr", "psnr_luma")
+FIVE = {  # of the README: far ahead of the codec, about level, far behind
+    "tarot": "289 views of a gantry, a glass ball",
+    "shop": "9 x 9 cameras, rendered, much detail",
+    "boxes": "9 x 9 cameras, rendered, sharp edges",
+    "cube": "13 hand-held phone pictures all round",
+    "fern": "20 hand-held pictures of thin leaves",
+}
+
+# The paper's way
+ANCHORS = (ANCHOR, FASTER, "libaom cpu 6, 4:4:4", "AVIF a view, 4:4:4")
+WAYS = {
+    "nearest": "nearest photograph",
+    "blend": "blended photographs",
+    "lumigraph": "lumigraph",
+    "delaunay": "eigenfield",
+}
+RUNGS = ("codec", "quantisation", "truncation", "resampling")
 CAPTURES = ("tarot", "tarot-5x4", "cube", "demo")
 SCENES = (
     "tarot-all", "tarot", "tarot-blind", "tarot-5x4", "amethyst", "jellybeans", "shop", "boxes", "antinous", "fern",
     "cube", "fountain", "fox", "temple",
 )  # fmt: skip
 DRAWN = {"bilinear": "bilinear", "bicubic": "bicubic", "bicubic_one_sample": "bicubic, one sample"}  # in render.json
-BEGIN, END = "<!-- figures -->\n", "<!-- end of figures -->\n"
 
 
-def origin(figures: dict[str, Any], name: str) -> str:
-    machine = figures["machine"]
+def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    lines = [head, ["---"] * len(head), *rows]
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+
+
+def decimals(value: Any, places: int = 2, unit: str = "") -> str:
+    """A figure in words; a dash where there is none."""
+    return NONE if value is None else f"{value:.{places}f}{unit}"
+
+
+def percent(value: float | None) -> str:
+    return NONE if value is None else f"{value:+.0f} %"
+
+
+def both(scores: Mapping[str, Any]) -> str:
+    return f"{decimals(scores.get('psnr'))} / {decimals(scores.get('psnr_luma'))}"
+
+
+def newest(name: str) -> tuple[Captures, str]:
+    """Each capture of results/NAME.json as its newest run measured it, and where these runs come from."""
+    history = runs(name)
+    last = {capture: number for number, run in enumerate(history) for capture in run["captures"]}
+    known = sorted(last, key=lambda capture: ORDER.index(capture) if capture in ORDER else len(ORDER))
+    captures = {capture: history[last[capture]]["captures"][capture] for capture in known}
+    return captures, origin(name, [history[number] for number in sorted(set(last.values()))])
+
+
+def origin(name: str, shown: Sequence[Mapping[str, Any]]) -> str:
+    """The command, commits, machines and dates of runs of results/NAME.json, each named once."""
+
+    def once(words: Sequence[str]) -> str:
+        return ", ".join(dict.fromkeys(words))
+
+    commands = [str(run["command"]) for run in shown]
+    command = commands[0] if len(set(commands)) == 1 else " ".join(commands[0].split()[:2])
+    commits = once([commit for run in shown for commit in run.get("commits") or [run["commit"]]])
+    machines = once([f"{run['machine']['processor']} with {run['machine']['cores']} cores" for run in shown])
+    dates = once([run["date"][:10] for run in (shown[0], shown[-1])]).replace(", ", " to ")
+    return f"[`{command}`](../benchmarks/results/{name}.json), commit {commits}, {machines}, {dates}.\n"
+
+
+# -- fitted files ---------------------------------------------------------------------------------------------------
+
+
+def fitted() -> str:
+    """Fitted files beside codecs (benchmarks/rate.py)."""
+    captures, source = newest("rate")
     return (
-        f"[`{figures['command']}`](../benchmarks/results/{name}.json), commit {figures['commit']}, "
-        f"{machine['processor']}, {machine['cores']} cores.  \n"
+        "## Fitted files (the default of `encode`) beside AV1\n\nEvery byte of the `.glb` counts, mesh and cameras"
+        " included. The codec stores the captured views as one video with one key frame, in the best of three orders;"
+        " it has no view between its frames. Percentages compare bytes at equal quality: with a minus our file is"
+        " smaller; – means that the codec was not measured at that quality.\n\n"
+        f"### Quality {BALANCED} (the default is 89)\n\n{_overview(captures)}\n"
+        f"### Other qualities, beside {ANCHOR}\n\n{_points(captures)}\n"
+        "### Bjøntegaard rates, and the fit before coding\n\nBytes that our file takes more (+) or less (-) at equal"
+        f" RGB / luma PSNR / SSIM, over the qualities that both curves share.\n\n{_deltas(captures)}\n{source}\n"
     )
+
+
+def five() -> str:
+    """The README's table; hand-held captures are of bare photographs (benchmarks/photographs.py --hand-held)."""
+    captures, _ = newest("rate")
+    bare, _ = newest("hand-held")
+    rows = []
+    for name, what in FIVE.items():
+        point, peers = _default(captures[name])
+        point = bare.get(name, point)
+        rows.append([
+            f"`{name}`: {what}", f"{point['bytes'] / 1e3:.0f} kB", f"{point['psnr_luma']:.1f} dB",
+            f"{point['ssim']:.3f}", _saved(point, _curve(peers, ANCHOR), "psnr_luma"),
+        ])  # fmt: skip
+    return table(["capture", "file", "luma PSNR", "SSIM", "bytes relative to AV1"], rows) + "\n"
+
+
+def _overview(captures: Mapping[str, Any]) -> str:
+    """What `encode` makes by default beside the codec, every capture in a row."""
+    rows = []
+    for name, one in captures.items():
+        point, peers = _default(one)
+        against = [" / ".join(_saved(point, _curve(peers, label), key) for key in KEYS) for label in (ANCHOR, FASTER)]
+        rows.append([
+            f"`{name}`", str(one["views"]), f"{point['bytes'] / 1e3:.0f}",
+            both(point), f"{point['ssim']:.3f}", *against,
+        ])  # fmt: skip
+    return table(["capture", "views", "kB", "RGB / luma dB", "SSIM", f"bytes: {ANCHOR}", FASTER], rows)
+
+
+def _default(one: Mapping[str, Any]) -> tuple[Mapping[str, Any], Sequence[Mapping[str, Any]]]:
+    """Our point nearest the default's quality, and the peers' curves."""
+    mine, *peers = one["curves"]
+    return min(mine["points"], key=lambda point: abs(point["parameter"] - BALANCED)), peers
+
+
+def _curve(peers: Sequence[Mapping[str, Any]], name: str) -> Mapping[str, Any] | None:
+    """A peer's curve, None where it was not measured."""
+    return next((one for one in peers if one["name"] == name), None)
+
+
+def _points(captures: Mapping[str, Any]) -> str:
+    """Each of our points, and what the anchor needs for the same figure."""
+    rows = []
+    for name, one in captures.items():
+        mine, *others = one["curves"]
+        anchor = _curve(others, ANCHOR)
+        rows += [_row(f"`{name}`", point, anchor) for point in mine["points"] if point["parameter"] in SHOWN]
+        patient = one.get("best") or {"points": []}
+        rows += [_row(f"`{name}`, `best`", point, anchor) for point in patient["points"]]
+    head = ["capture", "quality", "N", "kB", "RGB / luma dB", "SSIM", "at equal RGB / luma / SSIM"]
+    return table(head, rows)
+
+
+def _row(name: str, point: Mapping[str, Any], anchor: Mapping[str, Any] | None) -> list[str]:
+    return [
+        name, str(point["parameter"]), str(point["textures"]), f"{point['bytes'] / 1e3:.1f}",
+        both(point), f"{point['ssim']:.4f}",
+        " / ".join(_saved(point, anchor, key) for key in ("psnr", "psnr_luma", "ssim")),
+    ]  # fmt: skip
+
+
+def _saved(point: Mapping[str, Any], anchor: Mapping[str, Any] | None, key: str) -> str:
+    theirs = None if anchor is None else rates.bytes_at(anchor["points"], point[key], key)
+    return NONE if theirs is None else f"{100 * (point['bytes'] / theirs - 1):+.0f} %"
+
+
+def _deltas(captures: Mapping[str, Any]) -> str:
+    """Bjøntegaard's rates against both presets, and what no coding costs."""
+    rows = []
+    for name, one in captures.items():
+        fit = one["curves"][0]["fits"]["balanced"]
+        against = [one["bd"].get(label, {}) for label in (ANCHOR, FASTER)]
+        rows.append([
+            f"`{name}`", *(" / ".join(percent(of.get(key)) for key in (*KEYS, "ssim")) for of in against),
+            " / ".join(f"{fit['uncoded'][plane]:.2f}" for plane in ("luma", "chroma")), f"{fit['seconds']:.0f}",
+        ])  # fmt: skip
+    head = ["capture", ANCHOR, FASTER, "ours uncoded (balanced), luma / chroma dB", "fit s"]
+    return table(head, rows)
+
+
+# -- views between the cameras ---------------------------------------------------------------------------------------
+
+
+def between_cameras() -> str:
+    """Held-out views beside a codec's film of equal bytes (benchmarks/between.py)."""
+    captures, source = newest("between")
+    head = ["capture", "what is drawn", "kB", "RGB / luma dB", "worst view", "SSIM", "FLIP", "error near depth edges"]
+    rows = [_way(name, number, row) for name, one in captures.items() for number, row in enumerate(one["methods"])]
+    return (
+        "## Views between the cameras, at equal bytes\n\nHeld-out views, measured over the pixels that our mesh covers."
+        " The codec's film holds the encoded views; it is decoded and blended as a lumigraph on our mesh, and its bytes"
+        " include the mesh. Where our file has soft sheets, this mesh is the opaque surface of the same capture"
+        " (`--layers 1`), also for coverage and depth edges. The last three ways of a capture need all photographs. The"
+        " worst view is the lowest of each figure. The last column is the share of luma's squared error within two"
+        " pixels of depth edges.\n\n"
+        f"{_held_out(captures)}\n{table(head, rows)}\n{source}\n"
+    )
+
+
+def _held_out(captures: Mapping[str, Any]) -> str:
+    rows = [
+        [f"`{name}`", f"`{one['rule']}`", str(one["cameras"]), str(one["encoded"]), str(one.get("sheets", 0) or NONE),
+         f"{one['mesh'] / 1e3:.1f}",
+         f"{100 * one['methods'][0]['coverage']:.1f} %", f"{100 * one['methods'][0]['edge_pixels']:.0f} %"]
+        for name, one in captures.items()
+    ]  # fmt: skip
+    head = [
+        "capture", "held out", "held-out views", "encoded views", "our soft sheets", "mesh kB", "coverage",
+        "pixels near depth edges",
+    ]  # fmt: skip
+    return table(head, rows)
+
+
+def _way(name: str, number: int, row: Mapping[str, Any]) -> list[str]:
+    size = f"{row['bytes'] / 1e3:.1f}" if "bytes" in row else NONE
+    return [
+        "" if number else f"`{name}`", TITLES[row["key"]], size, both(row), both(row["worst"]), f"{row['ssim']:.4f}",
+        f"{row['flip']:.4f}", f"{100 * row['edge_share']:.0f} %",
+    ]  # fmt: skip
+
+
+# -- the whole evaluation (benchmarks/report.py) ---------------------------------------------------------------------
+
+
+def summary(captures: Captures) -> str:
+    """What every capture's file weighs and shows."""
+    rows = []
+    for name, one in captures.items():
+        if "encoded" not in one:
+            continue
+        encoded, held = one["encoded"], one["held_out"] or {}
+        rows.append([
+            f"`{name}`", str(one["views"]), str(one["textures"]), decimals(one["bytes"]["total"] / 1e6),
+            both(encoded), decimals(encoded["ssim"], 3),
+            decimals(encoded.get("flip"), 3), both(held),
+            decimals(held.get("ssim"), 3), decimals(100 * encoded["coverage"], 1, unit=" %"),
+        ])  # fmt: skip
+    head = ["capture", "views", "N", "MB", "encoded dB, RGB / luma", "SSIM", "FLIP", "held out dB, RGB / luma", "SSIM",
+            "coverage"]  # fmt: skip
+    return table(head, rows)
+
+
+def beside_codecs(captures: Captures) -> str:
+    """Bytes of ours relative to each anchor, at equal RGB and luma PSNR; where no quality is shared, a dash."""
+    rows = []
+    for name, one in captures.items():
+        if "bd" not in one:
+            continue
+        cells = [one["bd"].get(anchor, {}) for anchor in ANCHORS]
+        rows.append([f"`{name}`", *(f"{percent(c.get('psnr'))} / {percent(c.get('psnr_luma'))}" for c in cells)])
+    return table(["capture", *ANCHORS], rows)
+
+
+def losses(captures: Captures) -> str:
+    """The ladder: what each loss costs in dB when those before it are switched off already."""
+    rows = []
+    for name, one in captures.items():
+        if "losses" not in one:
+            continue
+        rungs = {row["key"]: row for row in one["losses"]}
+        gains = [
+            f"{decimals(rungs[k]['gain'])} ({100 * rungs[k]['share']:.0f} %)" if k in rungs else NONE for k in RUNGS
+        ]
+        rows.append([f"`{name}`", decimals(rungs["file"]["psnr"]), *gains, f"{100 * rungs['left']['share']:.0f} %"])
+    head = ["capture", "file dB", "codec", "8-bit codes", "truncation to N", "resampling", "what stays"]
+    return table(head, rows)
+
+
+def between(captures: Captures) -> str:
+    """Held-out views drawn in each way, dB over the pixels that the proxy covers."""
+    rows = [
+        [f"`{name}`", str(one["hold_out"]), *(decimals(one["between"].get(way, {}).get("psnr")) for way in WAYS)]
+        for name, one in captures.items()
+        if "between" in one
+    ]
+    return table(["capture", "held out", *WAYS.values()], rows)
+
+
+def paper(captures: Captures) -> str:
+    """The paper's measure and its way to count bytes."""
+    rows = [["the paper, 289 views", "", "0.98 (aligned)", "", "15", "9.5-14.8 MB, 96-97 %", ""]]
+    for name, one in captures.items():
+        if "table" not in one:
+            continue
+        stored = {(row["label"], row["aligned"]): row for row in one["table"]["rows"]}
+        curve = one["uv_curve"]
+        most = max(map(int, curve["plain"]))
+        at = "15" if "15" in curve["plain"] else str(most)
+        needed = [_needed(stored.get(("SSIM 0.98", aligned))) for aligned in (False, True)]
+        counted = stored.get(("N = 15", False)) or stored.get(("N = 7", False)) or {}
+        rows.append([
+            f"`{name}`", at, f"{decimals(curve['plain'].get(at), 3)} / {decimals(curve['aligned'].get(at), 3)}",
+            *needed, f"{counted['bytes'] / 1e6:.1f} MB, {100 * counted['saving']:.1f} %" if counted else NONE,
+            f"{counted['file_bytes'] / 1e6:.2f} MB, {100 * counted['file_saving']:.1f} %" if counted else NONE,
+        ])  # fmt: skip
+    head = [
+        "capture",
+        "N",
+        "UV SSIM plain / aligned",
+        "N for 0.98, plain",
+        "aligned",
+        "as the paper counts",
+        "our file",
+    ]
+    return table(head, rows)
+
+
+def _needed(row: dict[str, Any] | None) -> str:
+    if row is None:
+        return NONE
+    return f"> {row['most']}" if row.get("not_reached") else str(row["textures"])
+
+
+def largest(captures: Captures) -> str:
+    """The losses by their median over captures, the three largest first, in words."""
+    gap = [
+        one["encoded_beside_held_out"]["psnr"] - one["held_out"]["psnr"]
+        for one in captures.values()
+        if one.get("held_out") and one.get("encoded_beside_held_out")
+    ]
+    found = {"from encoded to held-out cameras": gap}
+    titles = {
+        "codec": "the codec of the textures",
+        "truncation": "truncation to N textures (it includes what wrong geometry and gloss add to the maps)",
+        "resampling": "resampling into the atlas and out of it",
+    }
+    for key, title in titles.items():
+        rows = [row for one in captures.values() for row in one.get("losses", ()) if row["key"] == key]
+        found[title] = [row["gain"] for row in rows]
+    known = {title: values for title, values in found.items() if values}
+    order = sorted(known, key=lambda title: -float(np.median(known[title])))
+    lines = [
+        f"{number}. **{title}**: {np.median(known[title]):.1f} dB in the median of {len(known[title])} captures"
+        f" ({min(known[title]):.1f} to {max(known[title]):.1f})"
+        for number, title in enumerate(order, 1)
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def truth(captures: Captures) -> str:
+    found = captures.get("demo", {}).get("truth")
+    if not found:
+        return ""
+    cost = {kind: found[kind]["cost"] for kind in ("encoded", "held_out")}
+    return (
+        "\nThe demo's true geometry is known. With cameras and mesh estimated from its photographs (every second row"
+        f" and column), encoded views lose {_cost(cost['encoded'])} dB and held-out views {_cost(cost['held_out'])} dB"
+        " against the true ones.\n"
+    )
+
+
+def _cost(value: Any) -> str:
+    return decimals(value["psnr"] if isinstance(value, dict) else value)
+
+
+SECTIONS: tuple[tuple[str, Callable[[Captures], str]], ...] = (
+    ("Every capture (15 textures, density 1.5)", summary),
+    ("The paper's measure and its way to count bytes", paper),
+    ("Where the decibels go", losses),
+    ("Bytes relative to codecs at equal PSNR, RGB / luma (+: our file is larger)", beside_codecs),
+    ("Views that were held out, dB", between),
+)
+
+
+def evaluation(captures: Captures) -> str:
+    """The tables of the whole evaluation."""
+    parts = [f"### {title}\n\n{of(captures)}\n" for title, of in SECTIONS]
+    parts.insert(3, f"The losses, the largest first:\n\n{largest(captures)}{truth(captures)}\n")
+    return "".join(parts)
+
+
+# -- given cameras and mesh, bare photographs, time --------------------------------------------------------------------
 
 
 def quality() -> str:
@@ -67,7 +422,7 @@ def quality() -> str:
         f" {decibels(held)} dB. With exact geometry (25 views of the demo), all textures and density 2, only resampling"
         f" loses anything: {decibels(exact)} dB remain. Compared with the texture maps coded as AVIF at the same UV SSIM,"
         f" the file is {100 * avif['tarot']:.1f} % smaller on Tarot and {100 * avif['demo']:.1f} % smaller on the demo.\n\n"
-        + "".join(origin(figures, f"quality-{name}") for name, figures in results.items())
+        + "\n".join(origin(f"quality-{name}", [figures]) for name, figures in results.items())
         + "\n"
     )
 
@@ -123,7 +478,7 @@ def reconstruction() -> str:
         + table(head, rows)
         + f"\nWith `--blind`, held-out photographs take no part in the estimation; each only registers its own camera."
         f" Before coding, Tarot's held-out views have {decibels(uncoded)} dB.\n\n"
-        + origin(scenes["tarot"], "proxy-scene-tarot")
+        + origin("proxy-scene-tarot", [scenes["tarot"]])
         + "\n"
     )
 
@@ -153,7 +508,7 @@ def encoding() -> str:
         " anonymous pages.\n\n"
         + table(["what runs", "seconds", "peak MB", "MB written"], rows)
         + f"\nAll cameras need {figures['ratio']['memory_all_to_every_second_row']:.2f} times the memory of half of"
-        " them.\n\n" + origin(figures, "encode") + "\n"
+        " them.\n\n" + origin("encode", [figures]) + "\n"
     )
 
 
@@ -178,7 +533,7 @@ def drawing() -> str:
         f" once a frame, to the memory bandwidth ({figures['read_gb_per_second']:.0f} GB/s, measured in the same run).\n\n"
         + table(["N", *DRAWN.values(), "of the bandwidth"], rows)
         + f"\nSumming 40 textures takes {figures['composition_40']['ratio_to_numpy']:.2f} of the time of NumPy's matrix"
-        " product on float32 textures.\n\n" + shaded() + origin(figures, "render") + "\n"
+        " product on float32 textures.\n\n" + shaded() + origin("render", [figures]) + "\n"
     )
 
 
@@ -219,8 +574,9 @@ def shaded_by(gpu: bool) -> str:
         f"{place}: {driver(opengl['driver'])}; {browser['browser']} on {driver(browser['driver'])}.\n\n"
         + table(["N", "OpenGL bilinear", "bicubic", "stereo", "browser", "by the ray"], rows)
         + "\n"
-        + origin(opengl, "render-opengl")
-        + origin(browser, "render-browser")
+        + origin("render-opengl", [opengl])
+        + "\n"
+        + origin("render-browser", [browser])
         + "\n"
     )
 
@@ -249,7 +605,7 @@ def photographs() -> str:
     return (
         "### Encoding bare photographs\n\n`eigenfield encode` at `balanced`, cameras and surface estimated, kernels"
         f" compiled before.{before} PSNR is that of captured views, RGB. SVT-AV1 is preset 6 at crf {figures['crf']}, on the same views in the order of their"
-        " names.\n\n" + table(head, rows) + "\n" + origin(figures, "photographs") + "\n"
+        " names.\n\n" + table(head, rows) + "\n" + origin("photographs", [figures]) + "\n"
     )  # fmt: skip
 
 
@@ -271,7 +627,7 @@ def batches() -> str:
         f" process of {figures['workers']} threads. The overhead is the time in which workers had no capture, as a share"
         " of that in which they had one. The scenes are equal to the byte.\n\n"
         + table(["where", "seconds", "of one process", "overhead"], rows)
-        + "\n" + origin(figures, "batch") + "\n"
+        + "\n" + origin("batch", [figures]) + "\n"
     )  # fmt: skip
 
 
@@ -297,14 +653,16 @@ def between_marks(text: str, made: str) -> str:
 
 
 def main() -> None:
+    whole, source = newest("report")
     made = {
-        README: rate_tables.five(),
-        BENCHMARKS: rate_tables.section()
-        + between_tables.section()
+        README: five(),
+        BENCHMARKS: fitted()
+        + between_cameras()
         + "## The paper's way (`--fit none`)\n\n"
         + quality()
         + reconstruction()
-        + evaluation_tables.page()
+        + evaluation(whole)
+        + source
         + "\n## Time\n\n"
         + encoding()
         + photographs()

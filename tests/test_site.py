@@ -12,11 +12,9 @@ from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urldefrag, urlsplit
 
-import click
 import pytest
 
 import eigenfield as ef
-from eigenfield.cli import VERBS, group
 from support.browsers import CHROMIUM, OTHERS, lacks
 
 ROOT = Path(__file__).parents[1]
@@ -44,26 +42,6 @@ class Links(HTMLParser):
                 self.targets.append(found[key])
                 if tag != "a":
                     self.fetched.append(found[key])
-
-
-def test_the_python_reference_has_every_public_name_once():
-    page = (DOCS / "reference/python.md").read_text("utf-8")
-    named = re.findall(r"^\.\. auto(?:function|class):: (\w+)$", page, re.MULTILINE)
-    assert sorted(named) == sorted(set(ef.__all__) - {"__version__"})
-
-
-def test_the_command_reference_has_every_option(monkeypatch):
-    monkeypatch.syspath_prepend(DOCS / "_ext")
-    from commands import help_page
-
-    sections = re.split(r"^## (\w+)$", help_page(), flags=re.MULTILINE)[1:]
-    texts = dict(zip(sections[::2], sections[1::2], strict=True))
-    assert list(texts) == list(VERBS)
-    for name, text in texts.items():
-        params = group.get_command(click.Context(group), name).params
-        options = [param for param in params if isinstance(param, click.Option) and not param.hidden]
-        named = set(re.findall(r"-[\w-]+", "\n".join(re.findall(r"^`(-.*)`$", text, re.MULTILINE))))
-        assert {word for option in options for word in option.opts} <= named, name
 
 
 def test_the_scene_of_the_first_page_opens():

@@ -28,19 +28,19 @@ from eigenfield.imaging.colour import LUMA_BT709
 from eigenfield.imaging.metrics import psnr, to_codes
 from eigenfield.rendering import WEIGHT_MODES, Renderer, ViewWeights, camera_weights, view_weights
 from evidence import codecs
-from evidence.lumigraph import BLENDED, Lumigraph, draw_lumigraph, make_lumigraph
+from evidence.lumigraph import Lumigraph, draw_lumigraph, make_lumigraph
 from evidence.prepared import spread_over_array
 
 EDGE_REACH = 2  # pixels: what lies so near a depth edge counts as the edge's
 AVIF_QUALITY, AVIF_SAMPLE = 50, 12  # of the photographs as AVIF: how many are packed to say what all need
 TITLES = {
-    "nearest": "photograph of the nearest encoded camera",
-    "blend": "photographs of the neighbours, blended without geometry",
-    "lumigraph": f"unstructured lumigraph, {BLENDED} photographs on the proxy",
+    "nearest": "the nearest photograph",
+    "blend": "blended photographs",
+    "lumigraph": "lumigraph of photographs",
     **{mode: f"our scene, {mode} view weights" for mode in WEIGHT_MODES},
     "ours": "our scene",
     "before": "our scene, the version before",
-    **{codec.name: f"lumigraph of the encoded views as {codec.label}" for codec in codecs.VIDEO},
+    **{codec.name: f"lumigraph of {codec.label}" for codec in codecs.VIDEO},
 }
 WORDS = (
     "Held-out views; mean over views, the worst beside it. All ways are measured over the same pixels, those that the "
@@ -97,19 +97,6 @@ def between(
         "bytes": _bytes(stage, peers, file),
         "words": " ".join((WORDS, *notes)),
     }
-
-
-def weights_study(
-    scene: Scene,
-    light_field: LightField,
-    sample: int | None = None,
-    circles: Mapping[str, ExcludedCircle] | None = None,
-) -> dict[str, Any]:
-    """The view weights of our scene on held-out views: a row for each of `WEIGHT_MODES`, as `between` has them."""
-    stage = Stage(scene, light_field, match_photographs(scene, light_field), Renderer(scene))
-    chosen = held_out(stage, sample)
-    rows, notes = measure_ways(stage, chosen, {mode: partial(_ours, stage, mode) for mode in WEIGHT_MODES}, circles)
-    return {"cameras": len(chosen), "methods": rows, "words": " ".join(notes)}
 
 
 def start(scene: Scene, light_field: LightField) -> tuple[Stage, Peers]:

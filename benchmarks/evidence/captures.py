@@ -17,7 +17,7 @@ class Capture:
     folder: of the photographs; for `demo` it is drawn when it is not there. calibration, proxy: files that come with
     it; what is None is estimated (a folder may hold its own calibration). hold_out: rule of `encode --hold-out`; None:
     "odd" where the cameras stand on a grid, else "every:2". circles: file for the figures outside a circle.
-    compression: whether figures of compression mean anything on it. studied: whether the parameter studies run on it.
+    compression: whether figures of compression mean anything on it. studied: whether losses are switched off alone.
     """
 
     name: str

@@ -49,7 +49,7 @@ def evaluate_capture(capture: Capture, run: Run, say: Callable[[str], None]) -> 
     prepared = prepare(capture, work, run.quick)
     first = prepared.light_field.cameras[0]
     record |= {"views": len(prepared.light_field), "size": [first.width, first.height], "hold_out": prepared.hold_out}
-    for name in wanted(capture, run.quick):
+    for name in wanted(capture):
         step = STEPS[name]
         made = [work / "all.glb", work / "held.glb"] if name == "scene" else []
         record["steps"][name] = _step(name, kept, run, capture, partial(step, prepared, run.out), say, made)
@@ -124,7 +124,7 @@ def kept(place: Path, program: Path, make: Callable[[], dict[str, Any]], more: s
 def fingerprint() -> str:
     """A hash of the code that the figures depend on: the package and the evaluation's modules, but for the page's."""
     places = [(BENCHMARKS.parent / "src").rglob("*.py"), (BENCHMARKS / "evidence").glob("*.py")]
-    shown_only = {"charts.py", "markup.py", "runner.py", "captures.py"}
+    shown_only = {"page.py", "runner.py", "captures.py"}
     digest = hashlib.sha256(sys.version.encode())
     for file in sorted(one for place in places for one in place if one.name not in shown_only):
         digest.update(str(file.relative_to(BENCHMARKS.parent)).encode() + measure.meaning(file))

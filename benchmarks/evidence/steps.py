@@ -16,7 +16,6 @@ from evidence.losses import losses
 from evidence.paper import paper
 from evidence.peers import peers
 from evidence.prepared import Prepared
-from evidence.studies import studies
 from evidence.truth import true_geometry
 
 SAMPLE = 25  # held-out cameras that are drawn in every way
@@ -82,12 +81,9 @@ STEPS: dict[str, Step] = {
     "losses": _losses,
     "rates": peers,
     "between": _between,
-    "studies": lambda prepared, folder: studies(prepared),
 }
 
 
-def wanted(capture: Capture, quick: bool) -> list[str]:
+def wanted(capture: Capture) -> list[str]:
     """The steps of one capture, in order."""
-    left_out = {"studies"} if quick or not capture.studied else set()
-    left_out |= set() if capture.compression else {"rates"}
-    return [name for name in STEPS if name not in left_out]
+    return [name for name in STEPS if name != "rates" or capture.compression]

@@ -12,7 +12,7 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.gltf import save
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.imaging.raster import rasterise_view
-from evidence.between import between, start, ways_of, weights_study
+from evidence.between import between, start, ways_of
 from evidence.lumigraph import draw_lumigraph, make_lumigraph
 from evidence.prepared import spread_over_array
 from support import captures
@@ -69,24 +69,15 @@ def test_all_ways_are_measured_over_the_same_pixels(capture):
     assert len({row["coverage"] for row in rows}) == 1 and 0.9 < rows[0]["coverage"] <= 1
 
 
-def test_the_study_of_view_weights_gives_the_same_figures(capture):
-    _, light_field, scene, _ = capture
-    rows = {row["key"]: row for row in between(*start(scene, light_field), 4)["methods"]}
-    study = weights_study(scene, light_field, 4)
-    assert {row["key"] for row in study["methods"]} == {"delaunay", "nearest3", "bilinear"}
-    for row in study["methods"]:
-        assert row["psnr"] == rows[row["key"]]["psnr"] and row["ssim"] == rows[row["key"]]["ssim"]
-
-
 def test_pixels_outside_circles_are_counted_apart(capture):
     from eigenfield.evaluation import ExcludedCircle
 
     _, light_field, scene, _ = capture
     none = {name: ExcludedCircle(0, 0, 0) for name in scene.rig.names}
-    row = weights_study(scene, light_field, 2, none)["methods"][0]
+    row = between(*start(scene, light_field), 2, circles=none)["methods"][0]
     assert row["psnr_outside"] == row["psnr"]
     left = {name: ExcludedCircle(0, 28, 32) for name in scene.rig.names}
-    row = weights_study(scene, light_field, 2, left)["methods"][0]
+    row = between(*start(scene, light_field), 2, circles=left)["methods"][0]
     assert row["psnr_outside"] != row["psnr"]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -12,7 +13,7 @@ import pytest
 
 import report
 from eigenfield.core.errors import CaptureError
-from evidence import captures, runner
+from evidence import captures, page, runner
 from evidence.runner import Run, fingerprint
 from evidence.steps import wanted
 from measure import meaning
@@ -91,10 +92,8 @@ def test_an_error_is_told_and_not_kept(tmp_path, capture, capsys):
 
 
 def test_steps_that_mean_nothing_are_left_out(capture):
-    assert "studies" not in wanted(capture, quick=False)
-    known = captures.Capture("video", "", capture.folder, compression=False, studied=True)
-    assert "rates" not in wanted(known, quick=False) and "studies" in wanted(known, quick=False)
-    assert "studies" not in wanted(known, quick=True)
+    assert "rates" in wanted(capture)
+    assert "rates" not in wanted(captures.Capture("video", "", capture.folder, compression=False))
 
 
 def test_names_folders_and_what_is_left_out(tmp_path, monkeypatch, capture):
@@ -138,5 +137,23 @@ def test_the_report_of_a_folder_of_photographs(tmp_path):
     steps = results["captures"]["own"]["steps"]
     assert set(steps) == {"scene", "paper", "losses", "rates", "between"}
     assert steps["scene"]["figures"]["encoded"]["psnr"] > 25
+    text = (tmp_path / "report" / "report.md").read_text()
+    shown = re.findall(r"!\[[^]]*\]\(([^)]+)\)", text)
+    assert len(shown) > 10 and all((tmp_path / "report" / path).stat().st_size for path in shown)
+    assert "### Where the decibels go" in text and "### Between the cameras" in text
     assert {curve["kind"] for curve in steps["rates"]["figures"]["curves"]} == {"ours", "paper", "video"}
-    assert "<html" in (tmp_path / "report" / "index.html").read_text()
+
+
+def test_the_page_says_which_step_failed(tmp_path, capture):
+    curve = [{"textures": count, "plain": {"uv_ssim": 0.9 + count / 100}} for count in (0, 5)]
+    record = {
+        "title": "Own", "note": "", "licence": "", "views": 9, "hold_out": "every:2", "geometry": {"figures": {}},
+        "steps": {"paper": {"figures": {"curve": curve, "figure6": []}}, "rates": {"error": "no codec"}},
+    }  # fmt: skip
+    results = {
+        "machine": {"processor": "P", "cores": 2}, "paper": {"note": "Quoted."}, "left_out": ["VVenC"], "quick": True,
+        "command": "c", "commit": "a", "started": "2026", "captures": {"own": record},
+    }  # fmt: skip
+    text = page.write(results, {}, tmp_path).read_text("utf-8")
+    assert "The step `rates` ended with an error: no codec" in text and "- Left out: VVenC" in text
+    assert (tmp_path / "pictures" / "own-uv.png").read_bytes()[:4] == b"\x89PNG" and "(pictures/own-uv.png)" in text

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import rate
-import rate_tables
+import tables
 from eigenfield.encoding import EncodeOptions
 from evidence import codecs, pictures, prepared
 from evidence.captures import Capture
@@ -28,9 +28,9 @@ def test_what_a_peer_needs_at_equal_quality():
     assert said[0] == "psnr 28.00:   100.0 kB, film 200.0 kB (-50 %)"
     assert said[-1] == "BD-rate against film: psnr -50.0 %"
     anchor = {"points": points(2)}
-    assert rate_tables._saved(ours["points"][2], anchor, "psnr") == "-50 %"
-    assert rate_tables._saved({"psnr": 20.0}, anchor, "psnr") == "–"
-    assert rate_tables._saved(ours["points"][2], None, "psnr") == "–"
+    assert tables._saved(ours["points"][2], anchor, "psnr") == "-50 %"
+    assert tables._saved({"psnr": 20.0}, anchor, "psnr") == "–"
+    assert tables._saved(ours["points"][2], None, "psnr") == "–"
 
 
 @pytest.mark.slow
@@ -63,15 +63,12 @@ def test_a_small_capture_from_end_to_end(tmp_path, monkeypatch):
     for long, kept in zip([*found["curves"], found["best"]], [*short["curves"], short["best"]], strict=True):
         assert "worst" in long["points"][0] and not {"worst", "file", "shown"} & set(kept["points"][0])
         assert [point["bytes"] for point in kept["points"]] == [point["bytes"] for point in long["points"]]
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(rate_tables, "newest", lambda history: ({"nine": found}, []))
-        patch.setattr(rate_tables, "runs", lambda name: [])
-        patch.setattr(rate_tables, "RESULTS", tmp_path)
-        (tmp_path / "rate.json").touch()
-        text = rate_tables.section()
+    monkeypatch.setattr(tables, "newest", lambda name: ({"nine": found}, ""))
+    monkeypatch.setattr(tables, "SHOWN", (70, 90))
+    text = tables.fitted()
     assert [point["preset"] for point in found["best"]["points"]] == ["best"]
     assert (tmp_path / "work" / "best-70.glb").exists() and "| `nine`, `best` | 70 |" in text
-    assert "| `nine` | 90 |" in text and film["order"] in text
+    assert "| `nine` | 90 |" in text
 
 
 def test_the_view_that_is_shown_is_of_the_film_in_the_chosen_order(tmp_path, monkeypatch):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-import evaluation_tables as tables
+import tables
 
 IMAGE = {"psnr": 31.234, "ssim": 0.91234, "flip": 0.0812, "psnr_luma": 32.5, "psnr_full": 30.0, "coverage": 0.9951}
 
@@ -44,13 +44,12 @@ def run_of(commit, **captures):
     return {"command": "c", "commits": [commit], "machine": machine, "date": "2026-11-01T00", "captures": captures}
 
 
-def test_a_capture_is_shown_as_its_newest_run_measured_it():
+def test_a_capture_is_shown_as_its_newest_run_measured_it(monkeypatch):
     history = [run_of("aaa", one=1, two=2), run_of("bbb", gone=0), run_of("ccc", two=3, gone=4)]
-    captures, shown = tables.newest(history)
-    assert captures == {"one": 1, "two": 3, "gone": 4} and list(captures) == ["one", "two", "gone"]
-    assert [run["commits"] for run in shown] == [["aaa"], ["ccc"]]
-    text = tables.origin(shown, "there")
-    assert text.count("commit") == 2 and "aaa" in text and "bbb" not in text
+    monkeypatch.setattr(tables, "runs", lambda name: history)
+    captures, source = tables.newest("there")
+    assert captures == {"one": 1, "two": 3, "gone": 4}
+    assert source == "[`c`](../benchmarks/results/there.json), commit aaa, ccc, P with 2 cores, 2026-11-01.\n"
 
 
 def cells(text, row):
@@ -66,7 +65,7 @@ def test_the_summary_rounds_and_keeps_gaps_out(captures):
 
 
 def test_rates_have_signs_and_dashes(captures):
-    assert cells(tables.rates(captures), 0) == ["`one`", "+120 % / –", "-12 % / +3 %", "– / –", "– / –"]
+    assert cells(tables.beside_codecs(captures), 0) == ["`one`", "+120 % / –", "-12 % / +3 %", "– / –", "– / –"]
 
 
 def test_the_ladder_has_gains_and_shares(captures):
