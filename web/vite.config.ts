@@ -2,6 +2,7 @@
 
 import { fileURLToPath } from "node:url";
 import { defineConfig, type Plugin } from "vite";
+import { plainShaders } from "./vite.shaders.ts";
 
 const path = (name: string) => fileURLToPath(new URL(name, import.meta.url));
 
@@ -28,7 +29,7 @@ export default defineConfig({
   base: "./",
   publicDir: path("viewer/public"),
   resolve: { alias: { "eigenfield-three": path("eigenfield-three/src/index.ts") } },
-  plugins: [plainTags()],
+  plugins: [plainShaders(), plainTags()],
   server: { fs: { allow: [path("..")] } },
   build: {
     outDir: path("../src/eigenfield/viewer/static"),

@@ -2,12 +2,14 @@
 
 import { fileURLToPath } from "node:url";
 import { defineConfig } from "vite";
+import { plainShaders } from "./vite.shaders.ts";
 
 const path = (name: string) => fileURLToPath(new URL(name, import.meta.url));
 
 export default defineConfig({
   root: path("eigenfield-three"),
   publicDir: false,
+  plugins: [plainShaders()],
   build: {
     outDir: path("../src/eigenfield/viewer/static"),
     emptyOutDir: false,

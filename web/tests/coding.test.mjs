@@ -2,36 +2,24 @@
 // what Python codes and decodes, damaged bytes included.
 
 import assert from "node:assert/strict";
-import { mkdtemp, readFile, readdir, rm } from "node:fs/promises";
-import { tmpdir } from "node:os";
+import { readFile, readdir } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { deflateRawSync } from "node:zlib";
-import { fileURLToPath, pathToFileURL } from "node:url";
-import { build } from "vite";
+import { fileURLToPath } from "node:url";
 import { python } from "./command.mjs";
+import { buildModule } from "./module.mjs";
 
 const path = (name) => fileURLToPath(new URL(name, import.meta.url));
-let folder, names, built;
+let folder, names, built, close;
 
 before(async () => {
-  folder = await mkdtemp(join(tmpdir(), "eigenfield-coding-"));
+  ({ module: built, folder, close } = await buildModule("coding"));
   python("-m", "support.coded_vectors", folder);
   names = (await readdir(folder)).filter((name) => name.endsWith(".bin")).map((name) => name.slice(0, -4));
-  await build({
-    configFile: false,
-    logLevel: "error",
-    build: {
-      outDir: join(folder, "built"),
-      target: "es2022",
-      minify: false,
-      lib: { entry: path("pages/coding.ts"), formats: ["es"], fileName: () => "coding.mjs" },
-    },
-  });
-  built = await import(pathToFileURL(join(folder, "built/coding.mjs")));
 });
 
-after(() => rm(folder, { recursive: true, force: true }));
+after(() => close());
 
 const decoderOf = (kind, version = 1) => built.CODECS[`${kind}-${version}`].decode;
 

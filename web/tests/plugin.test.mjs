@@ -484,22 +484,12 @@ test("a still picture is composed once, and again when something changes", async
   await load(page, "layered.glb");
   const calls = await page.evaluate(() => {
     const { field, lab } = window;
-    const gl = lab.renderer.getContext();
-    let count = 0;
-    const draw = gl.drawElements.bind(gl);
-    gl.drawElements = (...given) => (count++, draw(...given));
-    const drawn = (change) => {
-      change();
-      count = 0;
-      lab.draw();
-      return count;
-    };
     const at = (x, y) => lab.placeCamera(field, lab.camera, lab.novelCamera(field, x, y), 320 / 240);
-    return [
+    return lab.countDraws([
       () => at(0.1, 0.1), () => {}, () => at(0.2, 0.1), () => (field.filter = "bilinear"), () => (field.count = 2),
       () => (field.mixing = "nearest3"), () => (field.view = "mean"), () => (field.view = "mean"),
       () => (field.coarser = 4), () => (field.coarser = 1), () => (field.coarser = 4),
-    ].map(drawn);
+    ]);
   });
   // two means, four bases, three grids made finer, and the mesh; of the mean alone two, three and one
   assert.deepEqual(calls, [10, 1, 10, 1, 10, 10, 6, 1, 6, 1, 1]);
@@ -527,19 +517,7 @@ for (const name of ["scene.glb", "precise.glb"]) {
     await load(page, name);
     await drawReference(page, reference);
     const before = await canvasPixels(page);
-    const loaded = await page.evaluate(async () => {
-      const extension = window.lab.renderer.getContext().getExtension("WEBGL_lose_context");
-      const { domElement } = window.lab.renderer;
-      const lost = new Promise((resolve) => domElement.addEventListener("webglcontextlost", resolve, { once: true }));
-      extension.loseContext();
-      await lost;
-      const gone = window.field.loaded;
-      const complete = new Promise((resolve) => window.field.addEventListener("complete", resolve));
-      await new Promise((resolve) => setTimeout(resolve, 50));
-      extension.restoreContext();
-      await complete;
-      return [gone, window.field.loaded];
-    });
+    const loaded = await page.evaluate(async () => [await window.lab.loseContext(window.field), window.field.loaded]);
     assert.deepEqual(loaded, [0, 6]);
     await drawReference(page, reference);
     assert.equal(difference(await canvasPixels(page), before).largest, 0);
@@ -605,18 +583,7 @@ test("each eye of a stereo camera has its own weights", async () => {
   await load(page, "scene.glb");
   const { eyes, single, expected } = await page.evaluate(() => {
     const { field, lab } = window;
-    const { THREE } = lab;
-    const eye = (x, left) => {
-      const camera = new THREE.PerspectiveCamera();
-      lab.placeCamera(field, camera, lab.novelCamera(field, x, 0.1), 160 / 240);
-      camera.viewport = new THREE.Vector4(left, 0, 160, 240);
-      return camera;
-    };
-    const stereo = new THREE.ArrayCamera([eye(-0.3, 0), eye(0.3, 160)]);
-    stereo.projectionMatrix.copy(stereo.cameras[0].projectionMatrix);
-    stereo.matrixAutoUpdate = false;
-    const scene = field.mesh.parent.parent ?? field.mesh.parent;
-    lab.renderer.render(scene, stereo);
+    lab.drawEyes(field);
     const eyes = field.lastWeights.map((weights) => [...weights]);
     lab.draw();
     return {

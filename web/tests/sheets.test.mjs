@@ -210,19 +210,8 @@ test("each eye of a stereo camera has its own sheets", async () => {
   const { page, close } = await lab.open();
   await load(page, "sheets.glb");
   const stereo = await page.evaluate(() => {
-    const { field, lab } = window;
-    const { THREE } = lab;
-    const eye = (x, left) => {
-      const camera = new THREE.PerspectiveCamera();
-      lab.placeCamera(field, camera, lab.novelCamera(field, x, 0.1), 160 / 240);
-      camera.viewport = new THREE.Vector4(left, 0, 160, 240);
-      return camera;
-    };
-    const both = new THREE.ArrayCamera([eye(-0.3, 0), eye(0.3, 160)]);
-    both.projectionMatrix.copy(both.cameras[0].projectionMatrix);
-    both.matrixAutoUpdate = false;
-    lab.renderer.render(field.mesh.parent.parent ?? field.mesh.parent, both);
-    return field.lastWeights.length;
+    window.lab.drawEyes(window.field);
+    return window.field.lastWeights.length;
   });
   assert.equal(stereo, 2);
   const both = await canvasPixels(page);
@@ -278,20 +267,9 @@ test("opacity is summed once; a still picture is composed once", async () => {
   await load(page, "sheets.glb");
   const calls = await page.evaluate(() => {
     const { field, lab } = window;
-    const gl = lab.renderer.getContext();
-    let count = 0;
-    for (const name of ["drawElements", "drawArrays"]) {
-      const draw = gl[name].bind(gl);
-      gl[name] = (...given) => (count++, draw(...given));
-    }
-    const drawn = (change) => {
-      change();
-      count = 0;
-      lab.draw();
-      return count;
-    };
     const at = (x, y) => lab.placeCamera(field, lab.camera, lab.novelCamera(field, x, y), 320 / 240);
-    return [() => at(0.1, 0.1), () => {}, () => at(0.2, 0.1), () => (field.coarser = 2), () => at(0, 0)].map(drawn);
+    const changes = [() => at(0.1, 0.1), () => {}, () => at(0.2, 0.1), () => (field.coarser = 2), () => at(0, 0)];
+    return lab.countDraws(changes);
   });
   // mean and eigen textures, each sheet twice, and all of it into the picture; opacity at another size and the atlas's
   assert.deepEqual(calls, [2 + 7, 7, 2 + 7, 2 + 2 + 7, 2 + 7]);
@@ -305,17 +283,7 @@ test("opacity in little memory, in eight bits, and after a lost context", async 
   assert.ok(difference(await shot(page), expected()).mean < 8);
   await page.evaluate(() => window.field.dispose());
   await load(page, "sheets.glb");
-  await page.evaluate(async () => {
-    const extension = window.lab.renderer.getContext().getExtension("WEBGL_lose_context");
-    const { domElement } = window.lab.renderer;
-    const lost = new Promise((resolve) => domElement.addEventListener("webglcontextlost", resolve, { once: true }));
-    extension.loseContext();
-    await lost;
-    const complete = new Promise((resolve) => window.field.addEventListener("complete", resolve));
-    await new Promise((resolve) => setTimeout(resolve, 50));
-    extension.restoreContext();
-    await complete;
-  });
+  await page.evaluate(() => window.lab.loseContext(window.field));
   assert.ok(difference(await shot(page), expected()).largest <= 2);
   await page.evaluate(() => {
     window.field.dispose();

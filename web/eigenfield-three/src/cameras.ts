@@ -59,7 +59,7 @@ function clamp(value: number): number {
 }
 
 /** The rotation nearest to a matrix, least squares (its polar factor), by Newton's iteration M <- (M + M^-T) / 2. */
-export function nearestRotation(matrix: Matrix3rows): Matrix3rows {
+function nearestRotation(matrix: Matrix3rows): Matrix3rows {
   let M = matrix;
   for (let step = 0; step < 50; step++) {
     const cofactors: Matrix3rows = [cross(M[1], M[2]), cross(M[2], M[0]), cross(M[0], M[1])];

@@ -4,6 +4,7 @@ import type { BufferAttribute, BufferGeometry } from "three";
 import { link, makeRoom, untouched } from "./gpu.js";
 import type { Size } from "./memory.js";
 import { CHARTS } from "./packing-shaders.js";
+import type { Surface } from "./surface.js";
 
 type GL = WebGL2RenderingContext;
 
@@ -13,12 +14,12 @@ export interface Charts {
   free(): void;
 }
 
-export function makeCharts(gl: GL, geometry: BufferGeometry): Charts {
+export function makeCharts(gl: GL, surface: Surface): Charts {
   const program = link(gl, ...CHARTS);
   const frame = gl.createFramebuffer();
-  let found: { grid: Size; texture: WebGLTexture | null } | null = null; // of the last grid
+  let found: { geometry: BufferGeometry; grid: Size; texture: WebGLTexture | null } | null = null; // of the last grid
 
-  const draw = (grid: Size, texture: WebGLTexture): void => {
+  const draw = (geometry: BufferGeometry, grid: Size, texture: WebGLTexture): void => {
     const { index } = geometry;
     const uv = geometry.getAttribute("uv") as BufferAttribute;
     const corners = Float32Array.from({ length: 2 * (index?.count ?? 0) }, (_, i) => {
@@ -48,11 +49,12 @@ export function makeCharts(gl: GL, geometry: BufferGeometry): Charts {
 
   return {
     covered(grid) {
-      if (found?.grid.join() !== grid.join()) {
+      const { geometry } = surface;
+      if (found?.grid.join() !== grid.join() || found.geometry !== geometry) {
         gl.deleteTexture(found?.texture ?? null);
         const texture = makeRoom(gl, grid, { components: 1, halves: false });
-        if (texture) draw(grid, texture);
-        found = { grid, texture };
+        if (texture) draw(geometry, grid, texture);
+        found = { geometry, grid, texture };
       }
       return found.texture;
     },

@@ -2,7 +2,6 @@
 
 import {
   Camera,
-  Color,
   Scene,
   Vector3,
   type BufferGeometry,
@@ -16,28 +15,31 @@ import {
 import type { ViewPlane } from "./info.js";
 import { gridsOf, smaller } from "./memory.js";
 import type { Part } from "./parts.js";
-import { FINER, FINER_OPACITY, LAYERS, SUM, makePlacing, makeQuad, makeTarget } from "./passes.js";
+import { FINER, FINER_OPACITY, LAYERS, SUM, makePlacing, makeQuad, makeTarget, within } from "./passes.js";
+import type { Surface } from "./surface.js";
 
 /** What is summed: everything that makes a difference to it. */
 export interface Recipe {
   version: number; // of what is there
   mean: boolean;
-  opacity: boolean; // of sheets: it is there
+  opacity: number; // version of that of sheets; 0: there is none
   only: number | null; // one eigen texture of each basis, as it is; else the first `count`, weighted
   count: number;
   weights: Float64Array; // of all textures of all bases
   eye: [number, number, number] | null; // X, Y, height: each texel looks its weights up in `maps`
+  places: number; // version of the surface, which says where texels lie
   maps: DataArrayTexture | null;
 }
 
 const STILL: Recipe = {
   version: 0,
   mean: true,
-  opacity: true,
+  opacity: 0,
   only: null,
   count: 0,
   weights: new Float64Array(0),
   eye: null,
+  places: 0,
   maps: null,
 };
 
@@ -55,14 +57,14 @@ interface Grid {
   target: WebGLRenderTarget;
   scene: Scene;
   steps: Step[];
-  places: WebGLRenderTarget | null; // where its texels lie, once weights are looked up
+  places: { target: WebGLRenderTarget; version: number } | null; // where its texels lie, once weights are looked up
 }
 
 /** Sums means and eigen textures into one texture of the whole atlas, for one viewpoint after the other. */
 export class Composer {
   private readonly grids: Grid[]; // that of the whole atlas last
   private composed: Recipe | null = null;
-  private opacityDrawn = false;
+  private opacityDrawn = 0; // its version
   private readonly camera = new Camera();
 
   /** `opacity`: of sheets; `down`: what is composed has the atlas's side over this. */
@@ -71,7 +73,7 @@ export class Composer {
     parts: Part[],
     private readonly opacity: Part | null,
     private readonly down: number,
-    private readonly mesh: Mesh,
+    private readonly surface: Surface,
     private readonly plane: ViewPlane,
   ) {
     const means = parts.filter(({ basis }) => !basis).map(({ grid }) => ({ size: grid }));
@@ -102,11 +104,11 @@ export class Composer {
     if (this.composed && isSame(this.composed, recipe)) return;
     this.composed = recipe;
     within(renderer, camera, () => {
-      if (recipe.opacity && !this.opacityDrawn) this.drawOpacity(renderer);
+      if (recipe.opacity > this.opacityDrawn) this.drawOpacity(renderer, recipe.opacity);
       for (const grid of this.grids) {
-        if (recipe.eye && !grid.places && grid.steps.some(({ part }) => part.basis)) this.findPlaces(renderer, grid);
-        for (const step of grid.steps) setStep(step, grid.places?.texture ?? null, recipe);
-        this.draw(renderer, grid.scene, grid.target, this.opacityDrawn && grid === this.grids.at(-1));
+        if (recipe.eye && grid.steps.some(({ part }) => part.basis)) this.findPlaces(renderer, grid, recipe.places);
+        for (const step of grid.steps) setStep(step, grid.places?.target.texture ?? null, recipe);
+        this.draw(renderer, grid.scene, grid.target, this.opacityDrawn > 0 && grid === this.grids.at(-1));
       }
     });
   }
@@ -114,13 +116,13 @@ export class Composer {
   dispose(): void {
     for (const { target, places, scene } of this.grids) {
       target.dispose();
-      places?.dispose();
+      places?.target.dispose();
       freeQuads(scene);
     }
   }
 
-  /** Opacity does not change from view to view: it is drawn once, and stays in the alpha of what is composed. */
-  private drawOpacity(renderer: WebGLRenderer): void {
+  /** Opacity does not change from view to view: it is drawn when it comes, and stays in the alpha of what is composed. */
+  private drawOpacity(renderer: WebGLRenderer, version: number): void {
     const whole = this.grids.at(-1);
     if (!this.opacity || !whole) return;
     const own = makeTarget(smaller(this.opacity.grid, this.down), false);
@@ -133,14 +135,16 @@ export class Composer {
     this.draw(renderer, finer, whole.target);
     for (const scene of [sum, finer]) freeQuads(scene);
     own.dispose();
-    this.opacityDrawn = true;
+    this.opacityDrawn = version;
   }
 
-  private findPlaces(renderer: WebGLRenderer, grid: Grid): void {
-    grid.places = makeTarget([grid.target.width, grid.target.height], false);
-    const { scene, free } = makePlacing(this.mesh, this.plane, grid.places);
-    this.draw(renderer, scene, grid.places);
+  private findPlaces(renderer: WebGLRenderer, grid: Grid, version: number): void {
+    if (grid.places?.version === version) return;
+    const target = grid.places?.target ?? makeTarget([grid.target.width, grid.target.height], false);
+    const { scene, free } = makePlacing(this.surface.geometry, this.plane, target);
+    this.draw(renderer, scene, target);
     free();
+    grid.places = { target, version };
   }
 
   /** `keep`: what the target has in its alpha stays there. */
@@ -232,29 +236,4 @@ function isSame(one: Recipe, other: Recipe): boolean {
   if (one.only !== null) return true; // as it is, wherever the eye
   if (eye) return eye.every((value, i) => value === other.eye?.[i]);
   return weights.every((value, i) => value === other.weights[i]);
-}
-
-const black = new Color(0);
-const clearColour = new Color();
-
-/** Calls `work`, which draws into targets, within a draw of `camera`, and puts back what three.js has set. */
-export function within(renderer: WebGLRenderer, camera: Camera, work: () => void): void {
-  const target = renderer.getRenderTarget();
-  const [face, level] = [renderer.getActiveCubeFace(), renderer.getActiveMipmapLevel()];
-  const { autoClear, info } = renderer;
-  const [presenting, shadows, alpha] = [renderer.xr.enabled, renderer.shadowMap.autoUpdate, renderer.getClearAlpha()];
-  const [frame, autoReset] = [info.render.frame, info.autoReset];
-  renderer.getClearColor(clearColour);
-  renderer.setClearColor(black, 0);
-  renderer.autoClear = renderer.xr.enabled = renderer.shadowMap.autoUpdate = info.autoReset = false;
-  work();
-  info.render.frame = frame; // it is one frame to whoever counts them
-  Object.assign(info, { autoReset });
-  Object.assign(renderer, { autoClear });
-  renderer.xr.enabled = presenting;
-  renderer.shadowMap.autoUpdate = shadows;
-  renderer.setClearColor(clearColour, alpha);
-  renderer.setRenderTarget(target, face, level);
-  const { viewport } = camera as { viewport?: Parameters<WebGLRenderer["state"]["viewport"]>[0] };
-  if (viewport) renderer.state.viewport(viewport); // one eye of two
 }

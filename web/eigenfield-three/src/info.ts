@@ -319,7 +319,7 @@ export function planeCoordinates(plane: Omit<ViewPlane, "normal">, point: Vector
   return [extent[0] > 0 ? dot(from, plane.right) / extent[0] : 0, extent[1] > 0 ? dot(from, plane.up) / extent[1] : 0];
 }
 
-export function centreOf(R: Matrix3rows, t: Vector): Vector {
+function centreOf(R: Matrix3rows, t: Vector): Vector {
   const entry = (i: 0 | 1 | 2): number => -(R[0][i] * t[0] + R[1][i] * t[1] + R[2][i] * t[2]);
   return [entry(0), entry(1), entry(2)];
 }

@@ -13,10 +13,12 @@ import {
   RawShaderMaterial,
   Vector3,
   ZeroStencilOp,
+  type IUniform,
+  type Texture,
 } from "three";
-import type { IUniform, Texture } from "three";
 import cubic from "../../../src/eigenfield/rendering/shaders/cubic.glsl?raw";
 import surface from "../../../src/eigenfield/rendering/shaders/surface.glsl?raw";
+import type { CaptureCamera } from "./info.js";
 
 /** How the finest level is read: BICUBIC of the shader. */
 export const FILTERS = { bilinear: 0, bicubic: 1 } as const;
@@ -177,4 +179,20 @@ export function makeDepthMaterial(sheets: SurfaceMaterial): RawShaderMaterial {
     stencilWrite: true,
     stencilZPass: ZeroStencilOp,
   });
+}
+
+/** Shows the error against a photograph that a camera took. */
+export function compareWith(uniforms: SurfaceUniforms, camera: CaptureCamera, photograph: Texture): void {
+  const { K, R, t, width, height } = camera;
+  const pose = new Matrix4().set(...R[0], t[0], ...R[1], t[1], ...R[2], t[2], 0, 0, 0, 1);
+  const lens = new Matrix4().set(...K[0], 0, ...K[1], 0, 0, 0, 0, 0, ...K[2], 0);
+  const flipped = photograph.flipY && !isBitmap(photograph.image);
+  const toTexture = new Matrix4().makeScale(1 / width, (flipped ? -1 : 1) / height, 1);
+  if (flipped) toTexture.elements[13] = 1; // v = 1 - v: the entry that w is multiplied with
+  uniforms.toPhotograph.value.multiplyMatrices(toTexture, lens.multiply(pose));
+  uniforms.photograph.value = photograph;
+}
+
+function isBitmap(image: unknown): boolean {
+  return typeof ImageBitmap !== "undefined" && image instanceof ImageBitmap;
 }

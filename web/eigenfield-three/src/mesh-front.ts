@@ -1,6 +1,6 @@
 // The growing border of the triangles that are decoded so far: gates, linked into loops. As mesh_front_kernels.py.
 
-export const CLOSED = 0;
+const CLOSED = 0;
 export const OPEN = 1;
 export const BORDER = 2;
 const ROW = 2 ** 24; // more than twice any sum of two coordinates

@@ -2,12 +2,12 @@
 // into its component of its layer, code by code, and what three.js and others have set is put back. Codes of a mean
 // with a precision p are stored as (code - zero) / p / FINE, so that who sums them knows nothing of it.
 
-import type { BufferGeometry } from "three";
 import { makeCharts } from "./charts.js";
 import { link, onUnit, untouched } from "./gpu.js";
 import type { Size } from "./memory.js";
 import type { Codes, Piece } from "./pieces.js";
 import { PACK, SPREAD, TRIANGLE } from "./packing-shaders.js";
+import type { Surface } from "./surface.js";
 
 type GL = WebGL2RenderingContext;
 
@@ -48,11 +48,11 @@ export interface Packer {
 }
 
 /** Puts pieces of pictures into arrays as compose.glsl reads them, by way of the rooms, which it owns and in which so
- * many rows fit. `geometry` has the charts: where textures become smaller, nothing beside a chart gets into it. */
-export function makePacker(gl: GL, rooms: Rooms, fitting: number, geometry: BufferGeometry): Packer {
+ * many rows fit. `surface` has the charts: where textures become smaller, nothing beside a chart gets into it. */
+export function makePacker(gl: GL, rooms: Rooms, fitting: number, surface: Surface): Packer {
   const [packing, spreading] = [link(gl, TRIANGLE, PACK), link(gl, TRIANGLE, SPREAD)];
   const [frame, vertices] = [gl.createFramebuffer(), gl.createVertexArray()];
-  const charts = rooms.smaller && makeCharts(gl, geometry);
+  const charts = rooms.smaller && makeCharts(gl, surface);
   const place = (name: string): WebGLUniformLocation | null => gl.getUniformLocation(packing, name);
   const names = ["precisions", "covered", "factors", "size", "made", "first", "corner", "nodes", "zero"] as const;
   const at = Object.fromEntries(names.map((name) => [name, place(name)])) as Record<

@@ -3,6 +3,7 @@
 import {
   BufferAttribute,
   BufferGeometry,
+  Color,
   CustomBlending,
   DoubleSide,
   GLSL3,
@@ -20,7 +21,9 @@ import {
   Vector2,
   Vector4,
   WebGLRenderTarget,
+  type Camera,
   type IUniform,
+  type WebGLRenderer,
 } from "three";
 import compose from "../../../src/eigenfield/rendering/shaders/compose.glsl?raw";
 import cubic from "../../../src/eigenfield/rendering/shaders/cubic.glsl?raw";
@@ -115,12 +118,13 @@ export function onPlane(plane: ViewPlane, point: Vector): Vector {
 /** A scene that draws where each texel of a target lies. The mesh is drawn beside itself, too, for the texels beside
  * its charts; the nearest comes last, and stays. */
 export function makePlacing(
-  mesh: Mesh,
+  shape: BufferGeometry,
   plane: ViewPlane,
   target: WebGLRenderTarget,
 ): { scene: Scene; free: () => void } {
-  const position = mesh.geometry.getAttribute("position");
-  const uv = mesh.geometry.getAttribute("uv");
+  const { index } = shape;
+  const position = shape.getAttribute("position");
+  const uv = shape.getAttribute("uv");
   const places = new Float32Array(3 * position.count);
   const coordinates = new Float32Array(2 * position.count);
   for (let i = 0; i < position.count; i++) {
@@ -133,7 +137,7 @@ export function makePlacing(
   const geometry = new InstancedBufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(coordinates, 2));
   geometry.setAttribute("onPlane", new BufferAttribute(places, 3));
-  geometry.setIndex(mesh.geometry.index ? new BufferAttribute(mesh.geometry.index.array, 1) : null);
+  geometry.setIndex(index && new BufferAttribute(index.array, 1));
   geometry.instanceCount = shifts.length;
   geometry.boundingSphere = new Sphere();
   const material = new RawShaderMaterial({
@@ -155,4 +159,29 @@ export function makePlacing(
     material.dispose();
   };
   return { scene, free };
+}
+
+const black = new Color(0);
+const clearColour = new Color();
+
+/** Calls `work`, which draws into targets, within a draw of `camera`, and puts back what three.js has set. */
+export function within(renderer: WebGLRenderer, camera: Camera, work: () => void): void {
+  const target = renderer.getRenderTarget();
+  const [face, level] = [renderer.getActiveCubeFace(), renderer.getActiveMipmapLevel()];
+  const { autoClear, info } = renderer;
+  const [presenting, shadows, alpha] = [renderer.xr.enabled, renderer.shadowMap.autoUpdate, renderer.getClearAlpha()];
+  const [frame, autoReset] = [info.render.frame, info.autoReset];
+  renderer.getClearColor(clearColour);
+  renderer.setClearColor(black, 0);
+  renderer.autoClear = renderer.xr.enabled = renderer.shadowMap.autoUpdate = info.autoReset = false;
+  work();
+  info.render.frame = frame; // it is one frame to whoever counts them
+  Object.assign(info, { autoReset });
+  Object.assign(renderer, { autoClear });
+  renderer.xr.enabled = presenting;
+  renderer.shadowMap.autoUpdate = shadows;
+  renderer.setClearColor(clearColour, alpha);
+  renderer.setRenderTarget(target, face, level);
+  const { viewport } = camera as { viewport?: Parameters<WebGLRenderer["state"]["viewport"]>[0] };
+  if (viewport) renderer.state.viewport(viewport); // one eye of two
 }

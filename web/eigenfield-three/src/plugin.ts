@@ -14,6 +14,7 @@ import type { EigenfieldOptions } from "./options.js";
 import { unpacked } from "./packed.js";
 import { checkGeometry, countsOf, readCodedMesh } from "./proxy.js";
 import { checkSheets } from "./sheets.js";
+import { stillTextures } from "./still-textures.js";
 import { ViewWeights } from "./weights.js";
 
 /**
@@ -97,9 +98,8 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
     const sizeOf = ({ pieces: [first] }: Mean): [number, number] => [first?.picture.width ?? 1, first?.rows ?? 1];
     const meanSizes = means.map(sizeOf);
     const info = sceneInfo(scene, cameras, meanSizes, weights.grid, this.fileBytes(), countsOf(mesh.geometry));
-    const rays = info.facesPlane;
-    const parts = { scene, info, meshes, means, meanSizes, rays, omega, weights, bytes };
-    gltf.userData["eigenfield"] = new EigenField(parts, this.options);
+    const parts = { scene, info, meshes, meanSizes, omega, weights };
+    gltf.userData["eigenfield"] = new EigenField(parts, stillTextures(scene, bytes, means), this.options);
   }
 
   private fileBytes(): number {

@@ -23,8 +23,8 @@ import {
   WebGLRenderTarget,
   type WebGLRenderer,
 } from "three";
-import { within } from "./composer.js";
 import { ERROR, OVER, PRECISIONS, makeDepthMaterial, type SurfaceMaterial } from "./material.js";
+import { within } from "./passes.js";
 
 /** Name of the child of a mesh that draws its sheets: its geometry is the whole picture. */
 export const SHEETS = "sheets";
@@ -70,26 +70,22 @@ const viewport = new Vector4();
 export class SheetStack {
   private readonly scene = new Scene();
   private readonly camera = new Camera();
-  private readonly sheets: Mesh;
+  private readonly sheets = new Mesh<BufferGeometry, RawShaderMaterial[]>();
   private readonly depth: RawShaderMaterial;
   private readonly screen: RawShaderMaterial;
+  private readonly everywhere = new BufferGeometry(); // the whole picture
   private target: WebGLRenderTarget | null = null;
 
-  /** `faces`: of each sheet, back to front, in the order of the geometry; `material`: of `makeMaterial`, for sheets. */
-  constructor(faces: number[], geometry: BufferGeometry, material: SurfaceMaterial) {
-    let start = 0;
-    faces.forEach((count, sheet) => {
-      for (const pass of [0, 1]) geometry.addGroup(start, 3 * count, 2 * sheet + pass);
-      start += 3 * count;
-    });
+  /** `material`: of `makeMaterial`, for sheets. `setGeometry` says what is drawn. */
+  constructor(private readonly material: SurfaceMaterial) {
     this.depth = makeDepthMaterial(material);
     this.depth.transparent = material.transparent = true; // or three.js would sort them by their materials
-    this.sheets = new Mesh(geometry, faces.flatMap(() => [this.depth, material]));
     this.sheets.frustumCulled = false;
     this.sheets.onBeforeRender = (renderer, _scene, _camera, _geometry, _material, group) => {
       const { materialIndex = 0 } = group as unknown as { materialIndex?: number };
-      const before = faces.length - 1 - (materialIndex >> 1); // sheets
-      renderer.getContext().depthRange(before / faces.length, (before + 1) / faces.length);
+      const count = this.sheets.material.length / 2;
+      const before = count - 1 - (materialIndex >> 1); // sheets
+      renderer.getContext().depthRange(before / count, (before + 1) / count);
     };
     this.scene.add(this.sheets);
     this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = false;
@@ -106,7 +102,7 @@ export class SheetStack {
         sheets: { value: null },
         solid: { value: null },
         nearest: { value: null },
-        slices: { value: faces.length },
+        slices: { value: 1 },
         corner: { value: new Vector2() },
         size: { value: new Vector2() },
         toPlace: { value: new Matrix4() },
@@ -114,6 +110,8 @@ export class SheetStack {
       transparent: true,
       ...OVER,
     });
+    const corners = new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]);
+    this.everywhere.setAttribute("position", new BufferAttribute(corners, 3));
   }
 
   /** Bytes on the GPU, once something was drawn. */
@@ -121,16 +119,27 @@ export class SheetStack {
     return this.target ? PIXEL_BYTES * this.target.width * this.target.height : 0;
   }
 
+  /** `faces`: of each sheet, back to front, in the order of the geometry. */
+  setGeometry(geometry: BufferGeometry, faces: number[]): void {
+    geometry.clearGroups();
+    let start = 0;
+    faces.forEach((count, sheet) => {
+      for (const pass of [0, 1]) geometry.addGroup(start, 3 * count, 2 * sheet + pass);
+      start += 3 * count;
+    });
+    this.sheets.geometry = geometry;
+    this.sheets.material = faces.flatMap(() => [this.depth, this.material]);
+    this.set("slices", faces.length);
+    geometry.computeBoundingBox();
+    geometry.computeBoundingSphere();
+    const { boundingBox, boundingSphere } = geometry;
+    Object.assign(this.everywhere, { boundingBox, boundingSphere }); // it is sorted and left out as the mesh would be
+  }
+
   /** Has a mesh drawn by a child of its own, among the transparent objects; `prepare` is called before each draw. */
   attach(mesh: Mesh, prepare: (renderer: WebGLRenderer, camera: Camera) => void): void {
     for (const material of [mesh.material].flat()) material.visible = false;
-    mesh.geometry.computeBoundingBox();
-    mesh.geometry.computeBoundingSphere();
-    const { boundingBox, boundingSphere } = mesh.geometry;
-    const everywhere = new BufferGeometry();
-    everywhere.setAttribute("position", new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
-    Object.assign(everywhere, { boundingBox, boundingSphere }); // it is sorted and left out as the mesh would be
-    const shown = new Mesh(everywhere, this.screen);
+    const shown = new Mesh(this.everywhere, this.screen);
     shown.name = SHEETS;
     shown.raycast = () => undefined;
     shown.onBeforeRender = (renderer, _scene, camera) => {
@@ -138,6 +147,10 @@ export class SheetStack {
       this.draw(renderer, camera, mesh);
     };
     mesh.add(shown);
+  }
+
+  private set(name: string, value: unknown): void {
+    Object.assign(this.screen.uniforms[name] ?? {}, { value });
   }
 
   dispose(): void {
@@ -167,12 +180,9 @@ export class SheetStack {
     });
     renderer.getContext().depthRange(0, 1);
     const { uniforms } = this.screen;
-    const set = (name: string, value: unknown): void => {
-      Object.assign(uniforms[name] ?? {}, { value });
-    };
-    set("sheets", target.textures[0]);
-    set("solid", target.textures[1]);
-    set("nearest", target.depthTexture);
+    this.set("sheets", target.textures[0]);
+    this.set("solid", target.textures[1]);
+    this.set("nearest", target.depthTexture);
     uniforms["corner"]?.value.set(x, y);
     uniforms["size"]?.value.set(width, height);
     const toClip = uniforms["toPlace"]?.value as Matrix4;

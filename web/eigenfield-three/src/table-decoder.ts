@@ -5,7 +5,7 @@ import { RangeDecoder, binaryDigits } from "./range-decoder.js";
 
 const SIZES = 12;
 const ZONES = 12;
-export const SLOPES = 1;
+const SLOPES = 1;
 export const FREQUENCIES = 2;
 const WAYS = 3;
 const OWN = SIZES * SIZES + 2 * SIZES + SIZES * ZONES;

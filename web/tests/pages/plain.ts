@@ -39,7 +39,52 @@ function plainLoad(url: string, plugin: boolean, options: eigenfield.EigenfieldO
   return loader.loadAsync(url);
 }
 
-const lab = { THREE, ...eigenfield, renderer, camera, show, draw, drawView, plainLoad };
+/** Draws the eyes at -0.3 and 0.3 of the view plane, side by side. */
+function drawEyes(field: eigenfield.EigenField): void {
+  const eye = (x: number, left: number): THREE.PerspectiveCamera => {
+    const own = new THREE.PerspectiveCamera();
+    eigenfield.placeCamera(field, own, eigenfield.novelCamera(field, x, 0.1), WIDTH / 2 / HEIGHT);
+    return Object.assign(own, { viewport: new THREE.Vector4(left, 0, WIDTH / 2, HEIGHT) });
+  };
+  const both = new THREE.ArrayCamera([eye(-0.3, 0), eye(0.3, WIDTH / 2)]);
+  both.projectionMatrix.copy(both.cameras[0]!.projectionMatrix);
+  both.matrixAutoUpdate = false;
+  renderer.render(scene, both);
+}
+
+/** How often WebGL draws in the frame after each change. */
+function countDraws(changes: (() => void)[]): number[] {
+  const gl = renderer.getContext();
+  let count = 0;
+  for (const name of ["drawElements", "drawArrays"] as const) {
+    const draw = gl[name].bind(gl) as (...given: unknown[]) => void;
+    gl[name] = (...given: unknown[]) => (count++, draw(...given));
+  }
+  return changes.map((change) => {
+    change();
+    count = 0;
+    draw();
+    return count;
+  });
+}
+
+/** Loses the graphics context, and waits until it is back with all textures. Returns how many were there meanwhile. */
+async function loseContext(field: eigenfield.EigenField): Promise<number> {
+  const extension = renderer.getContext().getExtension("WEBGL_lose_context")!;
+  const lost = new Promise((resolve) => renderer.domElement.addEventListener("webglcontextlost", resolve, { once: true }));
+  extension.loseContext();
+  await lost;
+  const { loaded } = field;
+  const complete = new Promise<void>((resolve) => field.addEventListener("complete", () => resolve()));
+  await new Promise((resolve) => setTimeout(resolve, 50));
+  extension.restoreContext();
+  await complete;
+  return loaded;
+}
+
+const lab = {
+  THREE, ...eigenfield, renderer, camera, show, draw, drawView, plainLoad, drawEyes, countDraws, loseContext,
+};
 declare global {
   interface Window {
     lab: typeof lab;

@@ -85,7 +85,7 @@ export function createApi(viewer: Viewer): Embedded {
         outside: viewer.outside(),
         frame: viewer.frame(),
         detail: viewer.detail(),
-        frames: viewer.frames(),
+        frames: viewer.drawn(),
         loaded: field?.loaded ?? 0,
         total,
         bytes: field ? bytesWith(field.info, viewer.summed()) : null,

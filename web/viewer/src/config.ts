@@ -4,7 +4,7 @@
 import { oneOf } from "./options";
 
 /** What lies over the picture: nothing; title and a few buttons; or panel, map and tools. */
-export const UIS = ["none", "plain", "full"] as const;
+const UIS = ["none", "plain", "full"] as const;
 export type Ui = (typeof UIS)[number];
 
 export interface Sample {

@@ -1,5 +1,11 @@
 // Frames on demand: one is drawn when something asked for it, and the next only while something still moves.
 
+/** What moves from frame to frame, by itself or by a hand. */
+export interface Mover {
+  /** One frame's movement, of so many seconds; true while there is more to come. */
+  step(seconds: number): boolean;
+}
+
 export interface Loop {
   request(): void;
   /** A hand moved something: the next frame shows movement even if nothing glides. */
@@ -21,9 +27,9 @@ export interface Moment {
   follows: boolean; // the frame before asked for it
 }
 
-/** step: moves things by so many seconds and says whether they still move. draw: one frame. rested: all is still. */
+/** movers: all that move in every frame. draw: one frame. rested: all is still. */
 export function createLoop(
-  step: (seconds: number) => boolean,
+  movers: readonly Mover[],
   draw: (moment: Moment) => void,
   rested: () => void,
 ): Loop {
@@ -42,7 +48,7 @@ export function createLoop(
     last = now;
     times.push(now);
     if (times.length > REMEMBERED) times.shift();
-    const moves = step(seconds);
+    const moves = movers.map((mover) => mover.step(seconds)).includes(true);
     draw({ now, moves: moves || touched, follows });
     touched = false;
     drawn++;

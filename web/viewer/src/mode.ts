@@ -2,6 +2,7 @@
 
 import type { Frame } from "eigenfield-three";
 import type { PerspectiveCamera } from "three";
+import type { Mover } from "./loop";
 
 /** What keys and sticks ask for, each -1..1: sideways, up, larger, into the scene. */
 export interface Push {
@@ -13,7 +14,7 @@ export interface Push {
 
 export const WHOLE: Frame = { left: 0, top: 0, width: 1, height: 1 };
 
-export interface Mode {
+export interface Mode extends Mover {
   grab(): void;
   /** The hand moved by so much, in parts of the canvas's smaller side, right and down. */
   drag(dx: number, dy: number, pan: boolean): void;
@@ -22,8 +23,6 @@ export interface Mode {
   closer(factor: number): void;
   /** Into the scene, in parts of its distance. */
   forward(amount: number): void;
-  /** One frame's movement; true while there is more to come. */
-  step(seconds: number): boolean;
   place(camera: PerspectiveCamera, aspect: number): Frame;
   /** Radians to the nearest direction from which what the eye sees was captured; 0 among the captured views. */
   beyond(): number;

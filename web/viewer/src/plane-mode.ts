@@ -106,7 +106,7 @@ export function soft(value: number): number {
 }
 
 /** How far the surface lies in front of the view plane, and which way that is. */
-export function depths(field: EigenField): { forward: Vector; nearest: number; middle: number } {
+function depths(field: EigenField): { forward: Vector; nearest: number; middle: number } {
   const { normal, origin } = field.info.viewPlane;
   const forward = scaled(normal, -1);
   const position = field.mesh.geometry.getAttribute("position");

@@ -1,5 +1,6 @@
 // Until somebody moves, the eye sways slowly within the array, so that one sees that there is something to look around.
 
+import type { Mover } from "./loop";
 import { type Mode, reducedMotion } from "./mode";
 import type { Session } from "./session";
 
@@ -8,9 +9,7 @@ const TIMES = 7; // after which the eye rests: a page that is left open draws no
 const WIDE = 0.1; // parts of the canvas's smaller side, as if a hand dragged it
 const HIGH = 0.03;
 
-export interface Sway {
-  /** One frame's movement; true while there is more to come. */
-  step(seconds: number): boolean;
+export interface Sway extends Mover {
   /** Nobody has moved or set anything yet. */
   untouched(): boolean;
   /** It stops where it is: a hand lies on the picture. */

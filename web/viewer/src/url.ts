@@ -72,7 +72,7 @@ export function hashOf(viewer: Viewer): string {
 }
 
 /** Sets what the address names and leaves the rest; what makes no sense is passed over. */
-export function applyHash(viewer: Viewer, hash: string): void {
+function applyHash(viewer: Viewer, hash: string): void {
   const scene = viewer.scene();
   if (!scene || hash.length < 2) return;
   const parts = new URLSearchParams(hash.slice(1));

@@ -5,13 +5,13 @@ import type { Frame } from "eigenfield-three";
 import { type CameraOrder } from "./camera-order";
 import { createCaptured } from "./captured";
 import type { Config } from "./config";
+import { createFrames, type Frames } from "./frames";
 import { words } from "./language";
-import { createLoop } from "./loop";
+import type { Mover } from "./loop";
 import { clamp, type Mode } from "./mode";
 import { createMovement } from "./movement";
 import { createOpening } from "./opening";
 import type { Options } from "./options";
-import { createPace, type Detail, FULL } from "./pace";
 import { createPhotographs } from "./photographs";
 import { createPainter } from "./painter";
 import { createPlaces } from "./places";
@@ -21,7 +21,7 @@ import { createStage, type Stage } from "./stage";
 import { createSway } from "./sway";
 import { createWireframe } from "./wireframe";
 
-export interface Viewer {
+export interface Viewer extends Omit<Frames, "changed" | "touch" | "rested"> {
   readonly stage: Stage;
   readonly config: Config;
   scene(): Scene | null;
@@ -67,21 +67,9 @@ export interface Viewer {
   /** The mode that is moved now; looking through a captured camera ends with it. */
   moving(): Mode | null;
   frame(): Frame;
-  /** How the last frame was drawn: not in full while movement is too much for the machine. */
-  detail(): Detail;
-  request(): void;
-  frames(): number;
-  rate(): number | null;
   open(source: Source): Promise<void>;
   /** Everything is loaded, drawn in full, and still. */
   settled(): Promise<void>;
-  /** Draws now and in full, for those who read the canvas. */
-  drawNow(): void;
-  /** A headset takes over, and hands back. */
-  suspend(): void;
-  resume(): void;
-  onChange(listener: () => void): void;
-  onDraw(listener: () => void): void;
 }
 
 /** pushed: what keys and sticks do in one frame; true while they do. */
@@ -89,42 +77,10 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
   const session = emptySession();
   const { options } = session;
   const stage = createStage(canvas);
-  const changeListeners: (() => void)[] = [];
-  const drawListeners: (() => void)[] = [];
-  const restWaiters: (() => void)[] = [];
-  let wireframe: { dispose(): void } | null = null;
-  let changePending = false;
-  let suspended = false;
-  let detail = FULL;
+  const movers: Mover[] = [{ step: pushed }];
+  const frames = createFrames(session, stage, movers, (detail) => painter.draw(detail));
+  const { changed } = frames;
 
-  const changed = (): void => {
-    loop.request();
-    if (changePending) return;
-    changePending = true;
-    queueMicrotask(() => {
-      changePending = false;
-      for (const listener of changeListeners) listener();
-    });
-  };
-  const draw = (next: Detail): void => {
-    detail = next;
-    painter.draw(detail);
-    for (const listener of drawListeners) listener();
-  };
-  const loop = createLoop(
-    (seconds) => {
-      const active = pushed(seconds);
-      const swayed = sway.step(seconds);
-      const moved = session.captured === null && places.mode()?.step(seconds) === true;
-      return active || swayed || moved;
-    },
-    ({ now, moves, follows }) => draw(pace.frame(now, moves, follows)),
-    () => {
-      for (const done of restWaiters.splice(0)) done();
-      for (const listener of drawListeners) listener();
-    },
-  );
-  const pace = createPace(loop.request, () => options.filter, stage.ratio);
   const say = (text: string): void => {
     session.message = { text, code: null, detail: null };
     changed();
@@ -136,8 +92,10 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
   const places = createPlaces(session, stage);
   const captured = createCaptured(session, places, photographs, changed);
   const movement = createMovement(session, stage, places, captured, config.start, changed);
-  const coarse = (): boolean => detail.scale < 1;
+  const coarse = (): boolean => frames.detail().scale < 1;
   const sway = createSway(session, config.ownView, places.mode, movement.home, coarse);
+  const glide = (seconds: number): boolean => session.captured === null && places.mode()?.step(seconds) === true;
+  movers.push(sway, { step: glide });
   /** The same, and nothing moves by itself any more. */
   const moves = <Given extends unknown[], Made>(act: (...given: Given) => Made): ((...given: Given) => Made) => {
     return (...given) => {
@@ -147,23 +105,19 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
   };
   const painter = createPainter(session, stage, places, captured);
 
-  const removeWireframe = (): void => {
-    wireframe?.dispose();
-    wireframe = null;
-  };
-  const applyWireframe = (): void => {
-    removeWireframe();
+  const edges = createWireframe();
+  const showEdges = (): void => {
     const { scene } = session;
-    if (options.wireframe && scene) wireframe = createWireframe(scene.field?.mesh ?? scene.gltf.scene);
+    edges(options.wireframe && scene ? (scene.field?.mesh ?? scene.gltf.scene) : null);
   };
   const opening = createOpening(session, stage, config, {
     changed,
     opened: () => {
       movement.home();
-      applyWireframe();
+      showEdges();
     },
     closing: () => {
-      removeWireframe();
+      edges(null);
       photographs.forget();
     },
   });
@@ -178,7 +132,7 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
       options.count = Math.max(Math.round(options.count), 0);
     }
     if (wish.background !== undefined) stage.setBackground(options.background);
-    if (wish.wireframe !== undefined) applyWireframe();
+    if (wish.wireframe !== undefined) showEdges();
     if (wish.divider != null) {
       options.divider = clamp(wish.divider, 0, 1);
       captured.showPhotograph(true);
@@ -189,11 +143,11 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
   const settled = async (): Promise<void> => {
     await opening.done();
     sway.settle();
-    do await new Promise<void>((done) => void (restWaiters.push(done), loop.request()));
-    while (photographs.pending() || !loop.idle() || pace.waiting());
+    await frames.rested(photographs.pending);
   };
 
   return {
+    ...frames,
     stage,
     config,
     set: moves(set),
@@ -224,7 +178,7 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
     coordinates: places.coordinates,
     goTo: moves((x, y) => {
       movement.goTo(x, y);
-      loop.touch();
+      frames.touch();
     }),
     home: moves(movement.home),
     comeBack: moves(movement.comeBack),
@@ -240,32 +194,15 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
     untouched: sway.untouched,
     hold: sway.stop,
     moving: moves(() => {
-      loop.touch();
+      frames.touch();
       return movement.moving();
     }),
     frame: painter.frame,
-    detail: () => detail,
-    request: loop.request,
-    frames: loop.frames,
-    rate: loop.rate,
     open: opening.open,
-    drawNow: () => {
-      if (!suspended) draw(FULL);
-    },
     suspend: () => {
-      suspended = true;
       sway.end();
       captured.leave();
-      stage.setScale(FULL.scale);
-      loop.pause();
-      changed();
+      frames.suspend();
     },
-    resume: () => {
-      suspended = false;
-      loop.resume();
-      changed();
-    },
-    onChange: (listener) => void changeListeners.push(listener),
-    onDraw: (listener) => void drawListeners.push(listener),
   };
 }
