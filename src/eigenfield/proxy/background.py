@@ -27,7 +27,7 @@ from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.imaging.graph import face_edges
 from eigenfield.imaging.raster import rasterise_view
-from eigenfield.proxy.surface.trim import surface_samples
+from eigenfield.proxy.samples import surface_samples
 from eigenfield.proxy.topology import remove_unused_vertices
 from eigenfield.runtime.parallel import parallel_map
 

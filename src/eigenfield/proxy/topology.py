@@ -8,10 +8,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.core.mesh import Mesh
+from eigenfield.core.mesh import Mesh, triangle_areas
 from eigenfield.imaging.graph import components, edge_components, face_edges, vertex_components
 from eigenfield.proxy.topology_kernels import triangulate_least_area
 
+MESH_SLIVER_RATIO = 1e-9  # area over the square of the longest edge: below, a triangle is degenerate
 HOLE_MAX_EDGES = 200  # of a hole that is filled: the triangulation is cubic in it
 
 
@@ -165,3 +166,16 @@ def fill_holes(mesh: Mesh, max_size: float) -> Mesh:
             if 2 * Mesh(mesh.vertices, fill).face_areas().sum() <= patch_area[patch_of[loop[0]]]:
                 added.append(fill)
     return Mesh(mesh.vertices, np.concatenate(added))
+
+
+def is_sliver(vertices: NDArray[np.float32], faces: NDArray[np.integer]) -> NDArray[np.bool_]:
+    """(m,) whether a triangle is degenerate at float32 precision.
+
+    Args:
+        vertices: (n, 3).
+        faces: (m, 3).
+    """
+    corners = vertices[faces].astype(np.float64)
+    sides = corners - np.roll(corners, 1, axis=1)
+    longest = (sides**2).sum(axis=2).max(axis=1)
+    return np.asarray(triangle_areas(corners) <= MESH_SLIVER_RATIO * longest)

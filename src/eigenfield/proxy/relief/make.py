@@ -17,7 +17,6 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress
-from eigenfield.proxy.atlas.unwrap import PROXY_DEFAULT_TRIANGLES
 from eigenfield.proxy.relief.backdrop import make_backdrop
 from eigenfield.proxy.relief.height_field import (
     extract_faces,
@@ -26,6 +25,7 @@ from eigenfield.proxy.relief.height_field import (
     triangulate_height_field,
 )
 from eigenfield.proxy.relief.packing import pack_layers
+from eigenfield.proxy.simplify import PROXY_DEFAULT_TRIANGLES
 from eigenfield.stereo import ReferenceView
 
 RELIEF_SECOND_LAYER_FRACTION = 0.3  # of the triangles, for the second layer at most

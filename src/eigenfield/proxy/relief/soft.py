@@ -15,7 +15,6 @@ from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import barycentric_coordinates
 from eigenfield.core.progress import Progress
 from eigenfield.core.proxy import Proxy, Sheets
-from eigenfield.proxy.atlas.unwrap import PROXY_DEFAULT_TRIANGLES
 from eigenfield.proxy.relief.backdrop import cameras_between
 from eigenfield.proxy.relief.find_lattice import lattice_of_camera
 from eigenfield.proxy.relief.height_field import (
@@ -25,6 +24,7 @@ from eigenfield.proxy.relief.height_field import (
     triangulate_height_field,
 )
 from eigenfield.proxy.relief.packing import chart_pixels, pack_sheets
+from eigenfield.proxy.simplify import PROXY_DEFAULT_TRIANGLES
 from eigenfield.stereo import ReferenceView
 from eigenfield.stereo.multiplane import SoftSheets
 from eigenfield.stereo.multiplane.visibility import sheet_visibility

@@ -20,9 +20,9 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress
-from eigenfield.proxy.atlas.unwrap import PROXY_DEFAULT_TRIANGLES
 from eigenfield.proxy.background import fill_background
 from eigenfield.proxy.primitives.shapes import Primitive, insert_primitive
+from eigenfield.proxy.simplify import PROXY_DEFAULT_TRIANGLES
 from eigenfield.proxy.surface.depth_maps import DepthJob, WorkingPicture, make_depth_maps
 from eigenfield.proxy.surface.fusion import DepthView, fuse_depth_maps
 from eigenfield.proxy.surface.neighbours import choose_neighbours, frustum_points, inside_frame, spread_views
