@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,6 @@ from typing import Any
 from eigenfield.runtime.executor import spread
 from eigenfield.runtime.stages import Stages, stage_key
 from eigenfield.runtime.tasks import Task, Workers
-from eigenfield.runtime.temporary import temporary_folder
 
 
 @dataclass(frozen=True)
@@ -44,20 +42,6 @@ class Parts:
         task = Task(make_part, memory)
         each = ((task, self.folder, name, key, build, call) for key, call in zip(keys, calls, strict=True))
         return spread(self.workers, each)
-
-    @contextmanager
-    def shared(self, contents: Sequence[bytes]) -> Iterator[list[Path]]:
-        """Files that workers can read, removed after the block.
-
-        Args:
-            contents: Of each file.
-        """
-        with temporary_folder("shared", self.folder) as place:
-            place.chmod(0o755)  # workers may run as another user
-            files = [place / str(number) for number in range(len(contents))]
-            for file, data in zip(files, contents, strict=True):
-                file.write_bytes(data)
-            yield files
 
 
 def make_part(folder: Path, name: str, key: str, build: Callable[..., None], args: tuple[Any, ...]) -> Path:
