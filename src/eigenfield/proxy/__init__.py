@@ -1,4 +1,9 @@
-"""The proxy mesh (section 3.1 of the paper): read from a file or reconstructed from depth, with an atlas."""
+"""The proxy mesh (section 3.1 of the paper): read from a file or reconstructed from depth, with an atlas.
+
+What arguments are throughout, unless a function says otherwise: `vertices` (n, 3), `faces` (m, 3), `uv` (n, 2) with v
+down, `points` and `positions` (n, 3) in the world; over a depth map `d` (h, w) labels and `valid` (h, w) where there is
+surface.
+"""
 
 from eigenfield.proxy.atlas.layout import AtlasStatistics, atlas_fault, atlas_statistics, chart_labels
 from eigenfield.proxy.atlas.unwrap import unwrap_mesh

@@ -73,9 +73,6 @@ class Directions:
     def keys_of(self, positions: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Coordinates in which neighbouring directions are near each other, and w, of points.
 
-        Args:
-            positions: (n, 3) points.
-
         Returns:
             (n, 2) for a sheet or (n, 3) for a dome, and (n,) w, not positive behind a sheet.
         """
@@ -99,10 +96,6 @@ def fill_background(mesh: Mesh, cameras: Sequence[Camera]) -> Mesh:
     Cameras that look in one direction get a sheet, others a dome around them all. Only the part that some camera sees
     is kept, with one ring of triangles around it. The mesh's UVs are dropped.
 
-    Args:
-        mesh: The reconstructed surface.
-        cameras: All cameras.
-
     Raises:
         ProxyError: `surface-empty`: the mesh is empty.
     """
@@ -123,13 +116,7 @@ def fill_background(mesh: Mesh, cameras: Sequence[Camera]) -> Mesh:
 
 
 def add_seen_faces(mesh: Mesh, other: Mesh, cameras: Sequence[Camera]) -> tuple[Mesh, int]:
-    """A mesh with those faces of another that some camera sees in a small picture, and those next to them; how many.
-
-    Args:
-        mesh: The mesh.
-        other: The other mesh.
-        cameras: All cameras.
-    """
+    """A mesh with those faces of another that some camera sees in a small picture, and those next to them; how many."""
     both = join_meshes(mesh, other)
     seen = np.zeros(len(both.faces), np.bool_)
     for faces in parallel_map(lambda camera: np.unique(rasterise_view(both, _small_camera(camera)).face), cameras):
@@ -142,11 +129,7 @@ def add_seen_faces(mesh: Mesh, other: Mesh, cameras: Sequence[Camera]) -> tuple[
 
 
 def join_meshes(*meshes: Mesh) -> Mesh:
-    """Several meshes as one, without shared vertices and without UVs.
-
-    Args:
-        meshes: In order.
-    """
+    """Several meshes as one, without shared vertices and without UVs."""
     starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
     return Mesh(
         np.concatenate([mesh.vertices for mesh in meshes]),
@@ -155,12 +138,7 @@ def join_meshes(*meshes: Mesh) -> Mesh:
 
 
 def camera_coverage(mesh: Mesh, cameras: Sequence[Camera]) -> NDArray[np.float64]:
-    """(n,) fraction of each camera's pixels that the mesh covers.
-
-    Args:
-        mesh: The mesh.
-        cameras: The n cameras.
-    """
+    """(n,) fraction of each camera's pixels that the mesh covers."""
     return np.array(parallel_map(lambda camera: float((rasterise_view(mesh, camera).face >= 0).mean()), cameras))
 
 

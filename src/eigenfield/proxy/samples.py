@@ -14,7 +14,6 @@ def surface_samples(mesh: Mesh, count: int) -> tuple[NDArray[np.float64], NDArra
     They are the R2 sequence (Roberts, 2018) folded into each triangle, so that the same mesh gives the same points.
 
     Args:
-        mesh: The surface.
         count: How many, approximately.
     """
     area = mesh.face_areas()

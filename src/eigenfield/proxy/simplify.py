@@ -13,11 +13,7 @@ PROXY_DEFAULT_TRIANGLES = 30_000
 
 
 def weld_vertices(mesh: Mesh) -> Mesh:
-    """Merge vertices at identical positions and drop UVs: undoes the duplication along the seams of an atlas.
-
-    Args:
-        mesh: The mesh.
-    """
+    """Merge vertices at identical positions and drop UVs: undoes the duplication along the seams of an atlas."""
     vertices, first, index = np.unique(mesh.vertices, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(first)  # keep the order of first occurrence
     rank = np.empty_like(order)
@@ -29,10 +25,6 @@ def weld_vertices(mesh: Mesh) -> Mesh:
 
 def simplify_mesh(mesh: Mesh, triangles: int) -> Mesh:
     """The mesh with at most about `triangles` triangles, by quadric edge collapse, without UVs.
-
-    Args:
-        mesh: The mesh.
-        triangles: How many.
 
     Raises:
         ProxyError: `proxy-degenerate`: nothing is left.

@@ -17,7 +17,6 @@ class Parts:
     """Where the parts of stages are made.
 
     Attributes:
-        workers: Of `open_executor`.
         folder: That all of them share; it keeps parts that are finished.
         identity: What every part depends on, besides its own arguments.
     """
@@ -32,7 +31,6 @@ class Parts:
         """The folders of all parts, in order. Those that an earlier run has finished are not made again.
 
         Args:
-            name: Of the parts.
             build: Importable by name; writes the files of a part into the folder that is its first argument.
             calls: Its other arguments for each part: paths and small numbers. A part is known by its place among them,
                 so they must follow from `identity`.
@@ -45,15 +43,7 @@ class Parts:
 
 
 def make_part(folder: Path, name: str, key: str, build: Callable[..., None], args: tuple[Any, ...]) -> Path:
-    """The folder of a part, made if it is not finished; runs on a worker.
-
-    Args:
-        folder: That keeps the parts.
-        name: Of the parts.
-        key: Of this one.
-        build: Writes its files into the folder that is its first argument.
-        args: Its other arguments.
-    """
+    """The folder of a part, made if it is not finished; runs on a worker."""
 
     def write(place: Path) -> None:
         build(place, *args)

@@ -39,7 +39,6 @@ def share(values: Iterable[T], folder: Path) -> Iterator[list[Shared[T]]]:
     """Values that workers read until the end of the block, also workers of another user.
 
     Args:
-        values: In order.
         folder: That all workers see.
 
     Raises:

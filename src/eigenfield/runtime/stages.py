@@ -87,7 +87,6 @@ class Stages:
         """The folder of a stage: the finished one, otherwise a new one.
 
         Args:
-            name: Of the stage.
             key: Digest of everything that its result depends on (`stage_key`).
             build: Writes the stage's files into the folder that it is given.
 

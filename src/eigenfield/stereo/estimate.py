@@ -57,11 +57,7 @@ def estimate_depth(
     first round, when visibility is better known.
 
     Args:
-        pictures: (V, H, W, 3) uint8 or packed.
-        matrices: (V, 3, 4) of the views.
-        shape: (h, w) of the reference view.
         d_range: Lowest and highest label.
-        rounds: Rounds of refinement over all views.
 
     Raises:
         ValueError: The range is empty, or pictures or matrices are malformed.
@@ -129,14 +125,7 @@ def _seen_by_enough(
 
 
 def label_step(matrices: NDArray[np.float64], shape: tuple[int, int], low: float, high: float) -> float:
-    """Distance of the labels of a sweep at full resolution.
-
-    Args:
-        matrices: (V, 3, 4) of the views.
-        shape: (h, w) of the reference view.
-        low: Lowest label.
-        high: Highest label.
-    """
+    """Distance of the labels of a sweep at full resolution."""
     fastest = np.hypot(*label_parallax(matrices, shape, (low + high) / 2).T).max(initial=1e-9)
     return float(max(DEPTH_SWEEP_STRIDE_PIXELS / fastest, (high - low) / (DEPTH_SWEEP_MAX_LABELS - 1)))
 
@@ -145,8 +134,6 @@ def spaced_labels(low: float, high: float, step: float) -> NDArray[np.float32]:
     """At least three labels, evenly spaced.
 
     Args:
-        low: First label.
-        high: Last label.
         step: Largest distance between neighbours.
     """
     return np.linspace(low, high, max(3, int(np.ceil((high - low) / step)) + 1)).astype(np.float32)
@@ -157,7 +144,6 @@ def spread_views(moves: NDArray[np.float64], max_views: int) -> NDArray[np.int64
 
     Args:
         moves: (V, 2) parallax of each view (`label_parallax`). The view that moves least is chosen first.
-        max_views: How many are chosen.
 
     Returns:
         Sorted indices.
@@ -186,9 +172,6 @@ def sweep_and_match(
     Args:
         detail: (V, H, W) packed pictures that are compared.
         pictures: (V, H, W) packed; at edges of the reference camera's own one, depth may jump.
-        matrices: (V, 3, 4) of the views.
-        shape: (h, w) of the reference view.
-        labels: (L,) evenly spaced.
         options: Of `plane_sweep`.
     """
     compared, known = _warp_reference_picture(detail, matrices, shape)
@@ -204,14 +187,8 @@ def sweep_coarse(
     """Depth at half resolution (rounded up) over the whole range.
 
     Args:
-        packed: (V, H, W) packed pictures.
-        matrices: (V, 3, 4) of the views.
-        shape: (h, w) of the reference view.
         chosen: Indices of the views that are compared.
-        low: Lowest label.
-        high: Highest label.
         step: Of the labels at full resolution (`label_step`).
-        base_gain: Of `detail_pictures`.
     """
     small_shape = ((shape[0] + 1) // 2, (shape[1] + 1) // 2)
     small = halve_pictures(packed[chosen])

@@ -40,12 +40,10 @@ def unwrap_mesh(
     """The mesh with a valid atlas (see `atlas_fault`), one UV a vertex.
 
     Args:
-        mesh: With or without UVs.
         triangles: Simplify to at most this many. None keeps a mesh with an atlas as it is, and simplifies others to
             PROXY_DEFAULT_TRIANGLES. A simplified mesh gets new charts.
         cameras: Give each new chart an area in proportion to their resolution (`chart_scales`), and give up an atlas
             that leaves hardly any texels to what they see. None: all charts alike.
-        progress: Called for each step.
 
     Raises:
         OptionError: `triangles`: too few.

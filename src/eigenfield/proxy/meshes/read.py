@@ -70,9 +70,6 @@ def read_mesh(path: str | os.PathLike[str], origin: NDArray[np.float64] | None =
 def refuse_no_mesh(path: Path) -> None:
     """Before any work: refuse what is no file of a mesh, by its name and its first bytes.
 
-    Args:
-        path: The file.
-
     Raises:
         ProxyError: `proxy-missing`, `proxy-format`.
         OptionError: `web-address`.
@@ -125,10 +122,6 @@ def _without_mark(data: bytes) -> bytes:
 
 def check_mesh(raw: RawMesh, path: Path | None) -> Mesh:
     """The usable part of a mesh, as float32.
-
-    Args:
-        raw: As read from a file.
-        path: Of the file, for messages.
 
     Raises:
         ProxyError: See `read_mesh`.

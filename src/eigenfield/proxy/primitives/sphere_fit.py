@@ -128,10 +128,6 @@ def parse_region(text: str) -> ViewRegion:
 def find_view(region: ViewRegion, names: Sequence[str]) -> int:
     """The index of the region's view: by its name, else by its unique file name with or without the ending.
 
-    Args:
-        region: The region.
-        names: Of all views.
-
     Raises:
         OptionError: `fit-sphere-view`.
     """
@@ -158,10 +154,7 @@ def fit_sphere(
 
     Args:
         view: Index of the camera that shows the region.
-        region: The box around the sphere.
-        cameras: Of the observations.
         observations: At any times: the sphere does not move.
-        progress: Called for each photograph.
 
     Raises:
         OptionError: `fit-sphere-region`: the box lies outside the view.
@@ -207,7 +200,6 @@ def sphere_outlines(
     """(V, G, n, 2) pixels of a sphere's outline in V cameras; NaN for a camera that stands in the sphere.
 
     Args:
-        sphere: The sphere.
         K: (V, 3, 3) of the cameras.
         R: (V, 3, 3) likewise.
         t: (V, 3) likewise.

@@ -39,13 +39,7 @@ LATTICE_MIN_PEAK_NOISE_RATIO = 6.0  # height of a peak, relative to that of rand
 
 
 def relief_proxy(mesh: Mesh, cameras: Sequence[Camera], depth_error: float) -> Proxy:
-    """The mesh with its lattice, if it is a relief.
-
-    Args:
-        mesh: See `relief_lattice`.
-        cameras: See `relief_lattice`.
-        depth_error: See `relief_lattice`.
-    """
+    """The mesh with its lattice, if it is a relief."""
     return Proxy(mesh, relief_lattice(mesh, cameras, depth_error))
 
 
@@ -53,7 +47,6 @@ def relief_lattice(mesh: Mesh, cameras: Sequence[Camera], depth_error: float) ->
     """The lattice of a relief; None for other meshes.
 
     Args:
-        mesh: With UVs.
         cameras: The array, one of which may be the relief's camera.
         depth_error: Pixels by which a rounded depth may move a point in the camera that it moves most.
     """
@@ -85,9 +78,6 @@ def lattice_of_camera(
 
     Args:
         matrix: (3, 4) of that camera, whose pixels' centres most vertices stand on.
-        mesh: The relief.
-        cameras: See `relief_lattice`.
-        depth_error: See `relief_lattice`.
     """
     return _lattice(matrix, mesh, cameras, depth_error, np.array([0.5, 0.5]), LATTICE_CONTOUR_DIGITS)
 

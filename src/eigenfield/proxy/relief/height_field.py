@@ -80,8 +80,6 @@ def triangulate_height_field(
     it a little). If `limit` triangles do not suffice, it is as near as they allow, and the log says so.
 
     Args:
-        d: (h, w) labels.
-        valid: (h, w) where there is surface.
         cut: Difference of neighbouring labels at which the surface is cut.
         tolerance: In labels.
         limit: Most triangles. Default: no limit.
@@ -331,10 +329,6 @@ def height_field_to_world(reference: ReferenceView, mesh: HeightFieldMesh) -> Me
     """A mesh in the world, without UVs, counter-clockwise for the reference camera.
 
     Nothing is farther than 1 / `min_inverse_ratio` times the nearest vertex.
-
-    Args:
-        reference: The reference view of the labels.
-        mesh: The height field.
     """
     nearest = reference.offset + reference.scale * mesh.d.max()
     d = np.maximum(mesh.d, (HEIGHT_FIELD_MIN_INVERSE_RATIO * nearest - reference.offset) / reference.scale)
@@ -346,7 +340,6 @@ def extract_faces(mesh: HeightFieldMesh, faces: NDArray[np.int64] | None = None)
     """Some triangles of a mesh, with only the vertices that they use.
 
     Args:
-        mesh: The height field.
         faces: Which. Default: all.
     """
     kept = mesh.faces if faces is None else mesh.faces[faces]

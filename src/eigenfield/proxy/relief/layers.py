@@ -63,12 +63,8 @@ def estimate_second_layer(
     """The layer behind a depth map.
 
     Args:
-        pictures: (V, H, W, 3) uint8 or packed.
-        matrices: (V, 3, 4) of the views, as for `plane_sweep`.
-        d: (h, w) labels of the first layer.
         valid: (h, w) where it has surface. Default: everywhere.
         cut: Difference of neighbouring labels at which the first layer is cut.
-        progress: Called for each step.
 
     Returns:
         (h, w) float32 labels of the second layer, below d, and (h, w) bool where there is one. It extends a few pixels

@@ -69,13 +69,10 @@ def soft_relief(
     The backmost sheet is opaque and is drawn wherever others let something through: nothing is left open.
 
     Args:
-        reference: The reference view.
         sheets: Back to front; sheets that draw next to nothing are left out.
-        cameras: The views.
         tolerance: Largest difference of the mesh from a sheet's labels.
         depth_error: Pixels by which the lattice's depths may move a point in the camera that they move most.
         triangles: Most triangles, at the cost of the tolerance. Default: PROXY_DEFAULT_TRIANGLES.
-        progress: Called for each view.
 
     Raises:
         ProxyError: `relief-empty`: no sheet draws anything.
@@ -152,7 +149,6 @@ def _draw_chart(
 
     Args:
         layer: (h, w, 4) of the sheet.
-        part: A part of it.
         depth: (n,) of its vertices in the reference view.
         place: (2,) of the part in the atlas.
         atlas: (S, S, 4), drawn into.

@@ -108,10 +108,7 @@ def make_depth_maps(
 
     Args:
         jobs: At most one a view.
-        pictures: Of all views.
         parts: Workers that make the maps; None: this process does.
-        stage: Name for `progress`.
-        progress: Called for each map of both passes.
     """
     numbers = {job.index: number for number, job in enumerate(jobs)}
     if parts is None:

@@ -85,14 +85,12 @@ def surface_from_views(
     """The surface that the photographs show, by multi-view stereo and Poisson reconstruction.
 
     Args:
-        light_field: Photographs with cameras.
         points: (n, 3) world points on the scene from structure from motion, for the range of depths and the choice of
             neighbours. Without them a coarse pass finds its own.
         triangles: Most triangles, approximately.
         background: Add a far surface (`fill_background`). None: unless there are masks.
         primitives: Shapes that replace the result of stereo.
         parts: Workers that make the depth maps; None: this process does.
-        progress: Called for each view and step.
 
     Raises:
         ProxyError: `surface-masked`, `surface-no-points`, `surface-empty`; `surface-overlap`: no view shares enough

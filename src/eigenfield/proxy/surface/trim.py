@@ -53,10 +53,6 @@ class SurfaceError:
 def trim_surface(mesh: Mesh, points: OrientedPoints) -> Mesh:
     """Remove what no points support and close small holes; no small islands and nothing non-manifold remains.
 
-    Args:
-        mesh: The closed surface.
-        points: The points that it was reconstructed from.
-
     Raises:
         ProxyError: `surface-empty`: nothing remains.
     """
@@ -80,8 +76,6 @@ def trim_by_masks(mesh: Mesh, cameras: Sequence[Camera], masks: Sequence[NDArray
     """Remove what no view has in its frame, and what more than a tenth of those that do see outside their masks.
 
     Args:
-        mesh: The surface.
-        cameras: The views.
         masks: (H, W) bool at the cameras' sizes; one pixel outside is tolerated.
 
     Raises:
@@ -112,9 +106,6 @@ def simplify_with_error(
     """At most about `triangles` triangles, still manifold, and the distance of the points from the result.
 
     Args:
-        mesh: The surface.
-        points: The points that it was reconstructed from.
-        triangles: How many.
         camera: Whose pixels measure the error.
     """
     result = mesh if len(mesh.faces) <= triangles else make_manifold(simplify_mesh(mesh, triangles))
@@ -129,8 +120,6 @@ def surface_error(mesh: Mesh, positions: NDArray[np.float64], camera: Camera) ->
     """Distances of points from a mesh, measured at no more than SURFACE_ERROR_PROBES of them.
 
     Args:
-        mesh: The surface.
-        positions: (n, 3) points.
         camera: Whose pixels measure the error.
     """
     probes = positions[np.linspace(0, len(positions) - 1, min(len(positions), SURFACE_ERROR_PROBES)).astype(np.int64)]
@@ -153,10 +142,6 @@ def surface_distances(mesh: Mesh, positions: NDArray[np.float64]) -> NDArray[np.
     """(n,) distances of points from a surface.
 
     The distance is the least over the triangles of the nearest samples: sometimes a little too large, never too small.
-
-    Args:
-        mesh: The surface.
-        positions: (n, 3) points.
     """
     from trimesh.triangles import closest_point
 

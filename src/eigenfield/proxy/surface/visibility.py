@@ -62,9 +62,7 @@ def add_weak_points(
 
     Args:
         fused: Points that several views confirm.
-        views: Depth maps.
         tolerance: Relative noise of their depths.
-        progress: Called before and after.
     """
     report = progress or (lambda stage, done, total: None)
     report("visibility", 0, 1)
@@ -86,7 +84,6 @@ def visible_surface(views: Sequence[DepthView], tolerance: float) -> Mesh:
     """The minimal cut between what cameras see through and what lies behind what they see.
 
     Args:
-        views: Depth maps.
         tolerance: Relative noise of their depths.
     """
     vertices, line_vertex, line_view = _merge_pixels(views)
