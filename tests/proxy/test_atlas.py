@@ -27,7 +27,7 @@ from eigenfield.proxy import (
     unwrap_mesh,
     write_ply,
 )
-from eigenfield.proxy.meshes.prepare import without_far_vertices
+from eigenfield.proxy.prepare import without_far_vertices
 
 
 def grid(n, uv=True, height=0.0):

@@ -10,6 +10,7 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.imaging.graph import face_edges
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy.background import camera_coverage, fill_background, join_meshes
+from eigenfield.proxy.samples import surface_samples
 from eigenfield.proxy.surface.fusion import OrientedPoints, fuse_depth_maps
 from eigenfield.proxy.surface.multiview import surface_from_views
 from eigenfield.proxy.surface.poisson import poisson_surface
@@ -17,7 +18,6 @@ from eigenfield.proxy.surface.trim import (
     simplify_with_error,
     surface_distances,
     surface_error,
-    surface_samples,
     trim_by_masks,
     trim_surface,
 )

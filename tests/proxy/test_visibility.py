@@ -48,7 +48,7 @@ def views(cameras):
 
 @pytest.fixture(autouse=True)
 def few_vertices(monkeypatch):
-    monkeypatch.setattr(visibility, "VISIBILITY_TUNING", replace(visibility.VISIBILITY_TUNING, max_vertices=8_000))
+    monkeypatch.setattr(visibility, "VISIBILITY_MAX_VERTICES", 8_000)
 
 
 def with_patch(views, behind):

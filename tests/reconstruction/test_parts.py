@@ -77,7 +77,7 @@ def test_workers_measure_the_same(run, fitted):
     assert here.code == there.code == 0, there.err
     figures = [{key: value for key, value in json.loads(ran.out).items() if key != "seconds"} for ran in (here, there)]
     assert figures[0] == figures[1] and len(figures[0]["cameras"]) == 9
-    assert not list(scene.parent.glob(".eigenfield-measure*"))
+    assert not list(scene.parent.glob(".eigenfield-shared*"))
 
 
 def test_workers_make_the_same_texture_maps(run, tmp_path):

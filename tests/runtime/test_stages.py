@@ -13,7 +13,15 @@ import pytest
 
 from eigenfield.core.errors import OutputError
 from eigenfield.runtime import stages
-from eigenfield.runtime.stages import PACKAGE_FOLDER, STAGE_ROOMS, Stages, code_version, file_digest, stage_key
+from eigenfield.runtime.stages import (
+    PACKAGE_FOLDER,
+    SCENE_ROOMS,
+    SURFACE_ROOMS,
+    Stages,
+    code_version,
+    file_digest,
+    stage_key,
+)
 
 
 def test_a_finished_stage_is_taken_up(tmp_path):
@@ -61,7 +69,8 @@ def test_keys_know_the_files_bytes_and_the_options(tmp_path):
 def test_keys_do_not_know_the_order_of_options_and_know_the_program(tmp_path, monkeypatch):
     key = stage_key([{"a": 1, "b": tmp_path}, 2])
     assert key == stage_key([{"b": str(tmp_path), "a": 1}, 2]) and re.fullmatch("[0-9a-f]{16}", key)
-    monkeypatch.setattr(stages, "code_version", lambda: "another")
+    assert key != stage_key([{"a": 1, "b": tmp_path}, 2], SCENE_ROOMS)
+    monkeypatch.setattr(stages, "code_version", lambda rooms: "another")
     assert key != stage_key([{"a": 1, "b": tmp_path}, 2])
 
 
@@ -80,29 +89,31 @@ def test_a_stage_that_cannot_appear_is_said(tmp_path):
         Stages(tmp_path).run("depth", "k", lambda folder: (tmp_path / "depth-k").write_text("a file") and None)
 
 
-def test_the_fingerprint_is_that_of_the_rooms_that_make_stages(tmp_path):
-    rooms = (*STAGE_ROOMS, "encoding")
+@pytest.mark.parametrize("makers", [SURFACE_ROOMS, SCENE_ROOMS])
+def test_the_fingerprint_is_that_of_the_rooms_that_make_stages(tmp_path, makers):
+    rooms = (*SCENE_ROOMS, "viewer")
     sources = [tmp_path / room / "inner" / "work.py" for room in rooms]
     for source in sources:
         source.parent.mkdir(parents=True)
         source.write_text("first")
-    before = code_version(tmp_path)
+    before = code_version(makers, tmp_path)
     for room, source in zip(rooms, sources, strict=True):
         source.write_text("second")
         code_version.cache_clear()
-        assert (code_version(tmp_path) != before) == (room in STAGE_ROOMS), room
+        assert (code_version(makers, tmp_path) != before) == (room in makers), room
         source.write_text("first")
     code_version.cache_clear()
-    assert code_version(tmp_path) == before
+    assert code_version(makers, tmp_path) == before
     sources[0].rename(sources[0].with_name("other.py"))
     code_version.cache_clear()
-    assert code_version(tmp_path) != before
-    assert code_version() not in (before, code_version(tmp_path))
+    assert code_version(makers, tmp_path) != before
+    assert code_version(makers) not in (before, code_version(makers, tmp_path))
 
 
 def test_the_rooms_that_make_stages_are_there():
-    assert all((PACKAGE_FOLDER / room / "__init__.py").is_file() for room in STAGE_ROOMS)
-    assert "calibration" in STAGE_ROOMS and "encoding" not in STAGE_ROOMS
+    assert all((PACKAGE_FOLDER / room / "__init__.py").is_file() for room in SCENE_ROOMS)
+    assert "calibration" in SURFACE_ROOMS and "encoding" not in SURFACE_ROOMS
+    assert set(SURFACE_ROOMS) | {"encoding", "coding", "gltf", "rendering"} == set(SCENE_ROOMS)
 
 
 def test_a_place_that_is_a_file_is_refused(tmp_path):

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-import pickle
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -17,11 +16,10 @@ from eigenfield.evaluation.session import CameraScores, Session, start_session
 from eigenfield.gltf import load
 from eigenfield.runtime.executor import refuse_unshared, spread
 from eigenfield.runtime.parallel import parallel_stream, pieces
+from eigenfield.runtime.shared import Shared, share
 from eigenfield.runtime.tasks import Workers
-from eigenfield.runtime.temporary import temporary_folder
 
 TASKS_PER_WORKER = 4  # so that the last ones end at about the same time
-JOB_FILE = "job.pickle"
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +35,11 @@ class MeasureJob:
     scene: Path
     capture: LightField
     settings: Mapping[str, Any]
+
+    @cached_property
+    def session(self) -> Session:
+        """Begun once by each worker."""
+        return start_session(load(self.scene), self.capture, **self.settings)
 
 
 def measure_on(
@@ -58,29 +61,16 @@ def measure_on(
     refuse_unshared(workers, folder)
     size = math.ceil(len(indices) / (TASKS_PER_WORKER * workers.width))
     groups = [list(indices[start:stop]) for start, stop in pieces(len(indices), size)]
-    with temporary_folder("eigenfield-measure", folder) as place:
-        place.chmod(0o755)  # workers may run as another user
-        (place / JOB_FILE).write_bytes(pickle.dumps(job))
+    with share([job], folder) as (shared,):
         found: dict[int, CameraScores] = {}
-        results = spread(workers, ((measure_group, place / JOB_FILE, group) for group in groups))
+        results = spread(workers, ((measure_group, shared, group) for group in groups))
         for part in track(results, "measuring", len(groups), progress):
             found |= part
     return found
 
 
-def measure_group(job: Path, indices: Sequence[int]) -> dict[int, CameraScores]:
-    """The scores of a few cameras, on a worker.
-
-    Args:
-        job: File of a `MeasureJob`.
-        indices: Of the scene's cameras.
-    """
-    session = _session(job)
+def measure_group(shared: Shared[MeasureJob], indices: Sequence[int]) -> dict[int, CameraScores]:
+    """The scores of a few cameras, on a worker."""
+    session = shared.value().session
     views = with_differences(session.scene, indices, session.measures_residual)
     return dict(parallel_stream(lambda view: (view[0], session.measure(*view)), views))
-
-
-@lru_cache(maxsize=1)
-def _session(path: Path) -> Session:
-    job: MeasureJob = pickle.loads(path.read_bytes())
-    return start_session(load(job.scene), job.capture, **job.settings)

@@ -27,53 +27,30 @@ from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.imaging.graph import face_edges
 from eigenfield.imaging.raster import rasterise_view
-from eigenfield.proxy.surface.trim import surface_samples
+from eigenfield.proxy.samples import surface_samples
 from eigenfield.proxy.topology import remove_unused_vertices
 from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger("eigenfield.proxy")
 
-
-@dataclass(frozen=True)
-class BackgroundTuning:
-    """Constants of `fill_background`.
-
-    Attributes:
-        sheet_cells: Cells of the sheet along its longer side.
-        sheet_max_angle_degrees: Angle from the middle axis that a sheet reaches; cameras that look farther aside get a
-            dome.
-        sheet_border_sizes: Added on every side, in units of the sheet's size.
-        behind_fraction: Relative distance of the background behind what it hides.
-        stiffness: Weight of curvature against one direction that is full of samples: bends are a few directions wide.
-        tension: Weight of slope.
-        opening_directions: Radius of the morphological opening: what is less than twice as wide stands before the
-            background.
-        surface_samples: Samples of the surface.
-        far_quantile: Quantile of inverse distance in a cell that counts as its background.
-        min_inverse_ratio: Smallest inverse distance, in units of the scene's smallest (1st percentile).
-        dome_subdivisions: Subdivisions of an icosahedron; 4 give 2562 directions.
-        dome_clearance_ratio: Least distance of the dome, in units of the farthest camera's distance from its centre.
-        visibility_pixels: Longer side of the pictures in which visible faces are determined.
-        push_rounds: Rounds that push the background behind what it still hides.
-    """
-
-    sheet_cells: int = 56
-    sheet_max_angle_degrees: float = 70.0
-    sheet_border_sizes: float = 0.08
-    behind_fraction: float = 0.01
-    stiffness: float = 30.0
-    tension: float = 0.5
-    opening_directions: int = 8
-    surface_samples: int = 200_000
-    far_quantile: float = 0.1
-    min_inverse_ratio: float = 0.5
-    dome_subdivisions: int = 4
-    dome_clearance_ratio: float = 1.3
-    visibility_pixels: int = 256
-    push_rounds: int = 6
-
-
-BACKGROUND_TUNING = BackgroundTuning()
+BACKGROUND_SHEET_CELLS = 56  # cells of the sheet along its longer side
+# Angle from the middle axis that a sheet reaches; cameras that look farther aside get a dome
+BACKGROUND_SHEET_MAX_ANGLE_DEGREES = 70.0
+BACKGROUND_SHEET_BORDER_SIZES = 0.08  # added on every side, in units of the sheet's size
+BACKGROUND_BEHIND_FRACTION = 0.01  # relative distance of the background behind what it hides
+# Weight of curvature against one direction that is full of samples: bends are a few directions wide
+BACKGROUND_STIFFNESS = 30.0
+BACKGROUND_TENSION = 0.5  # weight of slope
+# Radius of the morphological opening: what is less than twice as wide stands before the background
+BACKGROUND_OPENING_DIRECTIONS = 8
+BACKGROUND_SURFACE_SAMPLES = 200_000
+BACKGROUND_FAR_QUANTILE = 0.1  # quantile of inverse distance in a cell that counts as its background
+BACKGROUND_MIN_INVERSE_RATIO = 0.5  # smallest inverse distance, in units of the scene's smallest (1st percentile)
+BACKGROUND_DOME_SUBDIVISIONS = 4  # subdivisions of an icosahedron; 4 give 2562 directions
+# Least distance of the dome, in units of the farthest camera's distance from its centre
+BACKGROUND_DOME_CLEARANCE_RATIO = 1.3
+BACKGROUND_VISIBILITY_PIXELS = 256  # longer side of the pictures in which visible faces are determined
+BACKGROUND_PUSH_ROUNDS = 6  # rounds that push the background behind what it still hides
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,9 +72,6 @@ class Directions:
 
     def keys_of(self, positions: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Coordinates in which neighbouring directions are near each other, and w, of points.
-
-        Args:
-            positions: (n, 3) points.
 
         Returns:
             (n, 2) for a sheet or (n, 3) for a dome, and (n,) w, not positive behind a sheet.
@@ -122,19 +96,15 @@ def fill_background(mesh: Mesh, cameras: Sequence[Camera]) -> Mesh:
     Cameras that look in one direction get a sheet, others a dome around them all. Only the part that some camera sees
     is kept, with one ring of triangles around it. The mesh's UVs are dropped.
 
-    Args:
-        mesh: The reconstructed surface.
-        cameras: All cameras.
-
     Raises:
         ProxyError: `surface-empty`: the mesh is empty.
     """
     if len(mesh.faces) == 0:
         raise ProxyError("surface-empty", "the surface is empty", remedy="check the calibration and the depth range")
-    samples, _ = surface_samples(mesh, BACKGROUND_TUNING.surface_samples)
+    samples, _ = surface_samples(mesh, BACKGROUND_SURFACE_SAMPLES)
     directions = _sheet_directions(samples, cameras) or _dome_directions(cameras)
     far = _fit_inverse_distance(directions, samples, cameras)
-    for _ in range(BACKGROUND_TUNING.push_rounds):
+    for _ in range(BACKGROUND_PUSH_ROUNDS):
         w, hidden = _push_behind(directions, far, mesh, cameras)
         if not hidden:
             break
@@ -146,13 +116,7 @@ def fill_background(mesh: Mesh, cameras: Sequence[Camera]) -> Mesh:
 
 
 def add_seen_faces(mesh: Mesh, other: Mesh, cameras: Sequence[Camera]) -> tuple[Mesh, int]:
-    """A mesh with those faces of another that some camera sees in a small picture, and those next to them; how many.
-
-    Args:
-        mesh: The mesh.
-        other: The other mesh.
-        cameras: All cameras.
-    """
+    """A mesh with those faces of another that some camera sees in a small picture, and those next to them; how many."""
     both = join_meshes(mesh, other)
     seen = np.zeros(len(both.faces), np.bool_)
     for faces in parallel_map(lambda camera: np.unique(rasterise_view(both, _small_camera(camera)).face), cameras):
@@ -165,11 +129,7 @@ def add_seen_faces(mesh: Mesh, other: Mesh, cameras: Sequence[Camera]) -> tuple[
 
 
 def join_meshes(*meshes: Mesh) -> Mesh:
-    """Several meshes as one, without shared vertices and without UVs.
-
-    Args:
-        meshes: In order.
-    """
+    """Several meshes as one, without shared vertices and without UVs."""
     starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
     return Mesh(
         np.concatenate([mesh.vertices for mesh in meshes]),
@@ -178,17 +138,12 @@ def join_meshes(*meshes: Mesh) -> Mesh:
 
 
 def camera_coverage(mesh: Mesh, cameras: Sequence[Camera]) -> NDArray[np.float64]:
-    """(n,) fraction of each camera's pixels that the mesh covers.
-
-    Args:
-        mesh: The mesh.
-        cameras: The n cameras.
-    """
+    """(n,) fraction of each camera's pixels that the mesh covers."""
     return np.array(parallel_map(lambda camera: float((rasterise_view(mesh, camera).face >= 0).mean()), cameras))
 
 
 def _small_camera(camera: Camera) -> Camera:
-    scale = min(1.0, BACKGROUND_TUNING.visibility_pixels / max(camera.width, camera.height))
+    scale = min(1.0, BACKGROUND_VISIBILITY_PIXELS / max(camera.width, camera.height))
     return camera.resize(max(1, round(camera.width * scale)), max(1, round(camera.height * scale)))
 
 
@@ -216,7 +171,7 @@ def _sheet_directions(samples: NDArray[np.float64], cameras: Sequence[Camera]) -
         return None
     w_low, w_high = _inverse_range(1 / depth[ahead])
     low, high = np.full(2, np.inf), np.full(2, -np.inf)
-    steepest = np.tan(np.radians(BACKGROUND_TUNING.sheet_max_angle_degrees))
+    steepest = np.tan(np.radians(BACKGROUND_SHEET_MAX_ANGLE_DEGREES))
     for camera in cameras:
         rays = _corner_rays(camera) @ axis.T
         if (rays[:, 2] * steepest <= np.hypot(rays[:, 0], rays[:, 1])).any():
@@ -229,9 +184,9 @@ def _sheet_directions(samples: NDArray[np.float64], cameras: Sequence[Camera]) -
             at = (local[:2] + step * rays[:, :2]) * w
             low, high = np.minimum(low, at.min(axis=0)), np.maximum(high, at.max(axis=0))
     size = high - low
-    border = BACKGROUND_TUNING.sheet_border_sizes * size.max()
+    border = BACKGROUND_SHEET_BORDER_SIZES * size.max()
     low, high = low - border, high + border
-    cell = float((high - low).max()) / BACKGROUND_TUNING.sheet_cells
+    cell = float((high - low).max()) / BACKGROUND_SHEET_CELLS
     columns, rows = (int(n) for n in np.ceil((high - low) / cell).astype(int) + 1)
     x, y = np.meshgrid(low[0] + cell * np.arange(columns), low[1] + cell * np.arange(rows))
     first = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
@@ -246,7 +201,7 @@ def _dome_directions(cameras: Sequence[Camera]) -> Directions:
     """All directions from the middle of the cameras."""
     import trimesh
 
-    sphere = trimesh.creation.icosphere(BACKGROUND_TUNING.dome_subdivisions)
+    sphere = trimesh.creation.icosphere(BACKGROUND_DOME_SUBDIVISIONS)
     centre = np.mean([camera.centre for camera in cameras], axis=0)
     faces = np.ascontiguousarray(np.asarray(sphere.faces)[:, ::-1]).astype(np.int32)  # seen from inside
     return Directions(centre, np.asarray(sphere.vertices, np.float64), faces, None)
@@ -255,7 +210,7 @@ def _dome_directions(cameras: Sequence[Camera]) -> Directions:
 def _inverse_range(w: NDArray[np.float64]) -> tuple[float, float]:
     """The smallest and the largest inverse distance that the background may have."""
     low, high = np.percentile(w, [1, 99])
-    return BACKGROUND_TUNING.min_inverse_ratio * float(low), float(high)
+    return BACKGROUND_MIN_INVERSE_RATIO * float(low), float(high)
 
 
 def _fit_inverse_distance(
@@ -283,7 +238,7 @@ def _fit_inverse_distance(
     envelope = np.full(count, np.inf)
     np.minimum.at(envelope, nearest[outside], w[outside])
     envelope = np.minimum(envelope, ceiling)
-    result = np.minimum(smooth, envelope * (1 - BACKGROUND_TUNING.behind_fraction))
+    result = np.minimum(smooth, envelope * (1 - BACKGROUND_BEHIND_FRACTION))
     return _ease_steps(np.clip(result, low, None), directions.faces)
 
 
@@ -297,7 +252,7 @@ def _fit_thin_plate(
     inner = np.ones(count)
     inner[ends[np.bincount(number)[number] == 1]] = 0  # the bend is not defined at the border
     bend = diags_array(inner) @ laplacian
-    stiff = BACKGROUND_TUNING.stiffness * (bend.T @ bend) + BACKGROUND_TUNING.tension * laplacian
+    stiff = BACKGROUND_STIFFNESS * (bend.T @ bend) + BACKGROUND_TENSION * laplacian
     return np.asarray(spsolve((stiff + diags_array(weight + 1e-9)).tocsc(), weight * target))
 
 
@@ -309,7 +264,7 @@ def _open_morphologically(
     b = np.roll(faces, -1, axis=1).reshape(-1)
 
     def spread_extremes(values: NDArray[np.float64], least: np.ufunc) -> NDArray[np.float64]:
-        for _ in range(BACKGROUND_TUNING.opening_directions):
+        for _ in range(BACKGROUND_OPENING_DIRECTIONS):
             result = values.copy()
             least.at(result, a, values[b])
             least.at(result, b, values[a])
@@ -330,7 +285,7 @@ def _quantiles(
     first = np.cumsum(number) - number
     target = np.zeros(count)
     full = number > 0
-    target[full] = w[order][(first + BACKGROUND_TUNING.far_quantile * np.maximum(number - 1, 0)).astype(np.int64)[full]]
+    target[full] = w[order][(first + BACKGROUND_FAR_QUANTILE * np.maximum(number - 1, 0)).astype(np.int64)[full]]
     typical = float(np.median(number[full])) if full.any() else 1.0
     return target, np.minimum(number / typical, 1.0)
 
@@ -340,7 +295,7 @@ def _max_inverse_distance(directions: Directions, cameras: Sequence[Camera]) -> 
     farthest = max(float(np.linalg.norm(camera.centre - directions.centre)) for camera in cameras)
     if directions.axis is not None or farthest == 0:
         return np.full(len(directions.vectors), np.inf)
-    return np.full(len(directions.vectors), 1 / (BACKGROUND_TUNING.dome_clearance_ratio * farthest))
+    return np.full(len(directions.vectors), 1 / (BACKGROUND_DOME_CLEARANCE_RATIO * farthest))
 
 
 def _adjacency(faces: NDArray[np.int32], count: int) -> tuple[csr_array, NDArray[np.float64]]:

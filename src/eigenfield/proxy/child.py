@@ -32,12 +32,7 @@ def run_child(
     """What a script writes to standard output when arrays come in (as `numpy.save` writes).
 
     Args:
-        script: A Python script.
-        arrays: Its input.
         on_wait: Called while the child works. If it raises, or on Ctrl-C, the child is killed.
-        code: Of the error.
-        name: Of the library, for the error.
-        remedy: Of the error.
         words: Arguments of the script.
 
     Raises:

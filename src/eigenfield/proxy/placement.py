@@ -91,10 +91,8 @@ def describe_placement(
 
     Args:
         mesh: In the cameras' world.
-        cameras: Of the observations.
         observations: The photographs, of which a few are decoded.
         origin: (3,) the origin of the cameras' world in that of the mesh's file. None: they are the same.
-        path: Of the mesh, which the line names.
     """
     first = {camera: index for index, camera in reversed(list(enumerate(cameras_of(observations).tolist())))}
     views = [view for view in _chosen_views(cameras) if view in first]

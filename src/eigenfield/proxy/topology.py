@@ -8,19 +8,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.core.mesh import Mesh
+from eigenfield.core.mesh import Mesh, triangle_areas
 from eigenfield.imaging.graph import components, edge_components, face_edges, vertex_components
 from eigenfield.proxy.topology_kernels import triangulate_least_area
 
+MESH_SLIVER_RATIO = 1e-9  # area over the square of the longest edge: below, a triangle is degenerate
 HOLE_MAX_EDGES = 200  # of a hole that is filled: the triangulation is cubic in it
 
 
 def remove_unused_vertices(mesh: Mesh) -> Mesh:
-    """The mesh without vertices that no face uses; UVs are kept.
-
-    Args:
-        mesh: The mesh.
-    """
+    """The mesh without vertices that no face uses; UVs are kept."""
     used = np.zeros(len(mesh.vertices), bool)
     used[mesh.faces] = True
     index = np.cumsum(used, dtype=np.int32) - np.int32(1)
@@ -31,7 +28,6 @@ def face_patches(faces: NDArray[np.int32], which: NDArray[np.bool_] | None = Non
     """(m,) index of the edge-connected patch of each face; -1 outside `which`.
 
     Args:
-        faces: (m, 3).
         which: (m,) faces that count. Default: all.
     """
     label = np.full(len(faces), -1, np.int64)
@@ -41,23 +37,13 @@ def face_patches(faces: NDArray[np.int32], which: NDArray[np.bool_] | None = Non
 
 
 def face_components(faces: NDArray[np.int32], vertices: int) -> NDArray[np.int32]:
-    """(m,) index of the vertex-connected component of each triangle.
-
-    Args:
-        faces: (m, 3).
-        vertices: Number of vertices.
-    """
+    """(m,) index of the vertex-connected component of each triangle."""
     label = vertex_components(faces, vertices)
     return np.unique(label[faces[:, 0]], return_inverse=True)[1].astype(np.int32)
 
 
 def remove_islands(mesh: Mesh, min_fraction: float) -> Mesh:
-    """The mesh without patches of less than a fraction of the whole area.
-
-    Args:
-        mesh: The mesh.
-        min_fraction: Of the area.
-    """
+    """The mesh without patches of less than a fraction of the whole area."""
     if len(mesh.faces) == 0:
         return mesh
     label, area = face_patches(mesh.faces), mesh.face_areas()
@@ -71,9 +57,6 @@ def make_manifold(mesh: Mesh) -> Mesh:
 
     No face is there twice or degenerate. No edge has more than two faces: the largest stay, preferring neighbours that
     run the edge in opposite directions. A vertex that joins two fans is duplicated.
-
-    Args:
-        mesh: The mesh.
     """
     faces = mesh.faces[(mesh.faces != np.roll(mesh.faces, 1, axis=1)).all(axis=1)]
     _, first = np.unique(np.sort(faces, axis=1), axis=0, return_index=True)
@@ -165,3 +148,11 @@ def fill_holes(mesh: Mesh, max_size: float) -> Mesh:
             if 2 * Mesh(mesh.vertices, fill).face_areas().sum() <= patch_area[patch_of[loop[0]]]:
                 added.append(fill)
     return Mesh(mesh.vertices, np.concatenate(added))
+
+
+def is_sliver(vertices: NDArray[np.float32], faces: NDArray[np.integer]) -> NDArray[np.bool_]:
+    """(m,) whether a triangle is degenerate at float32 precision."""
+    corners = vertices[faces].astype(np.float64)
+    sides = corners - np.roll(corners, 1, axis=1)
+    longest = (sides**2).sum(axis=2).max(axis=1)
+    return np.asarray(triangle_areas(corners) <= MESH_SLIVER_RATIO * longest)

@@ -38,10 +38,6 @@ def _leave_to_parent() -> None:
 def child_process(command: Sequence[str], **options: Any) -> Iterator[subprocess.Popen[bytes]]:
     """A child process: killed if the block raises, by `kill_children`, and on Linux when this process is killed.
 
-    Args:
-        command: Of the child; the first word is the path of a program.
-        options: As of `subprocess.Popen`.
-
     Raises:
         KeyboardInterrupt: `kill_children` has been called.
         OSError: The program cannot be started.

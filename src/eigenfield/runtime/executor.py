@@ -221,7 +221,6 @@ def as_finished(workers: Workers, calls: Iterable[tuple[Any, ...]]) -> Iterator[
     `calls` is read as workers become free, so that of many calls only a few exist at a time.
 
     Args:
-        workers: Of `open_executor`.
         calls: A function or a `Task`, and its arguments.
     """
     running: dict[Future[Any], int] = {}
@@ -246,7 +245,6 @@ def spread(workers: Workers, calls: Iterable[tuple[Any, ...]]) -> Iterator[Any]:
     """The results of calls in their order, which may have ended in another; the first error in this order is raised.
 
     Args:
-        workers: Of `open_executor`.
         calls: A function or a `Task`, and its arguments.
     """
     early: dict[int, Future[Any]] = {}

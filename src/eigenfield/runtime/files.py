@@ -220,7 +220,6 @@ def scratch_rows(tail: tuple[int, ...], dtype: DTypeLike, folder: Path | None = 
 
     Args:
         tail: Shape of a row.
-        dtype: Of the array.
         folder: Where the file is made; None: the system's temporary folder.
     """
     place = Path(folder) if folder is not None else Path(tempfile.gettempdir())
@@ -238,8 +237,6 @@ def scratch_array(shape: tuple[int, ...], dtype: DTypeLike, folder: Path | None 
     later would end the process by SIGBUS instead of by an OutputError.
 
     Args:
-        shape: Of the array.
-        dtype: Of the array.
         folder: Where the file is made; None: the system's temporary folder.
     """
     place = Path(folder) if folder is not None else Path(tempfile.gettempdir())

@@ -58,7 +58,6 @@ def absolute_place(path: str | os.PathLike[str], base: str | os.PathLike[str] = 
     """An address as it is, and another path as an absolute one.
 
     Args:
-        path: A path of this machine, or an address.
         base: Folder or address that a relative path is below. Default: the current folder.
     """
     place = Path(path) if find_objects(path) else Path(base, path)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,6 @@ from typing import Any
 from eigenfield.runtime.executor import spread
 from eigenfield.runtime.stages import Stages, stage_key
 from eigenfield.runtime.tasks import Task, Workers
-from eigenfield.runtime.temporary import temporary_folder
 
 
 @dataclass(frozen=True)
@@ -19,7 +17,6 @@ class Parts:
     """Where the parts of stages are made.
 
     Attributes:
-        workers: Of `open_executor`.
         folder: That all of them share; it keeps parts that are finished.
         identity: What every part depends on, besides its own arguments.
     """
@@ -34,7 +31,6 @@ class Parts:
         """The folders of all parts, in order. Those that an earlier run has finished are not made again.
 
         Args:
-            name: Of the parts.
             build: Importable by name; writes the files of a part into the folder that is its first argument.
             calls: Its other arguments for each part: paths and small numbers. A part is known by its place among them,
                 so they must follow from `identity`.
@@ -45,31 +41,9 @@ class Parts:
         each = ((task, self.folder, name, key, build, call) for key, call in zip(keys, calls, strict=True))
         return spread(self.workers, each)
 
-    @contextmanager
-    def shared(self, contents: Sequence[bytes]) -> Iterator[list[Path]]:
-        """Files that workers can read, removed after the block.
-
-        Args:
-            contents: Of each file.
-        """
-        with temporary_folder("shared", self.folder) as place:
-            place.chmod(0o755)  # workers may run as another user
-            files = [place / str(number) for number in range(len(contents))]
-            for file, data in zip(files, contents, strict=True):
-                file.write_bytes(data)
-            yield files
-
 
 def make_part(folder: Path, name: str, key: str, build: Callable[..., None], args: tuple[Any, ...]) -> Path:
-    """The folder of a part, made if it is not finished; runs on a worker.
-
-    Args:
-        folder: That keeps the parts.
-        name: Of the parts.
-        key: Of this one.
-        build: Writes its files into the folder that is its first argument.
-        args: Its other arguments.
-    """
+    """The folder of a part, made if it is not finished; runs on a worker."""
 
     def write(place: Path) -> None:
         build(place, *args)

@@ -26,14 +26,16 @@ log = logging.getLogger("eigenfield.stages")
 
 DIGEST_BLOCK_BYTES = 1 << 20
 PACKAGE_FOLDER = Path(__file__).parents[1]
-STAGE_ROOMS = "core", "runtime", "imaging", "capture", "stereo", "calibration", "proxy", "reconstruction"
+# What makes stages of cameras and surfaces. A change of how scenes are coded, which comes after them, keeps them
+SURFACE_ROOMS = "core", "runtime", "imaging", "capture", "stereo", "calibration", "proxy", "reconstruction"
+SCENE_ROOMS = (*SURFACE_ROOMS, "coding", "gltf", "rendering", "encoding")  # what makes stages of encoded scenes
 
 
 @cache
-def code_version(root: Path = PACKAGE_FOLDER) -> str:
-    """A digest of the sources of STAGE_ROOMS in a package: a stage built by another version of them is not reused."""
+def code_version(rooms: tuple[str, ...] = SURFACE_ROOMS, root: Path = PACKAGE_FOLDER) -> str:
+    """A digest of the sources of rooms of a package: a stage built by another version of them is not reused."""
     digest = hashlib.sha256()
-    for source in sorted(path for room in STAGE_ROOMS for path in (root / room).rglob("*.py")):
+    for source in sorted(path for room in rooms for path in (root / room).rglob("*.py")):
         digest.update(f"{source.relative_to(root).as_posix()}\n".encode() + source.read_bytes())
     return digest.hexdigest()
 
@@ -47,9 +49,10 @@ def file_digest(path: Path) -> str:
     return digest.hexdigest()
 
 
-def stage_key(inputs: Iterable[Any]) -> str:
-    """A digest of JSON-able `inputs` (file digests, options, the keys of earlier stages) and of the program."""
-    text = json.dumps([code_version(), *inputs], sort_keys=True, default=str)
+def stage_key(inputs: Iterable[Any], rooms: tuple[str, ...] = SURFACE_ROOMS) -> str:
+    """A digest of JSON-able `inputs` (file digests, options, the keys of earlier stages), and of the rooms whose code
+    makes the stage."""
+    text = json.dumps([code_version(rooms), *inputs], sort_keys=True, default=str)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
@@ -84,7 +87,6 @@ class Stages:
         """The folder of a stage: the finished one, otherwise a new one.
 
         Args:
-            name: Of the stage.
             key: Digest of everything that its result depends on (`stage_key`).
             build: Writes the stage's files into the folder that it is given.
 

@@ -31,8 +31,6 @@ def detail_pictures(
     that fall on whole pixels look worse than they are. Outlines are sharper without blur.
 
     Args:
-        pictures: (V, H, W, 3) uint8 or packed.
-        gain: Factor of the detail.
         blur_sigma: Pixels by which the result is blurred; 0 for none.
         base_gain: Factor of the base; 0 where exposure or gloss may differ between the photographs.
 

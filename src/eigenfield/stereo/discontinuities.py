@@ -27,7 +27,6 @@ def find_discontinuities(
     those near there with |e| > max(STEP_MIN_EDGE_PIXELS, STEP_NOISE_FACTOR times the local median of |e|).
 
     Args:
-        d: (h, w) labels.
         pixel_labels: The difference in d that moves a point by one pixel in the outermost view: the unit of e.
         cut_labels: Differences of more than this in d are steps whatever the slope.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import cv2
@@ -27,39 +26,18 @@ from eigenfield.stereo.views import (
 )
 from eigenfield.stereo.visibility import depth_buffers, mean_texture
 
-
-@dataclass(frozen=True)
-class DepthTuning:
-    """Constants of `estimate_depth`.
-
-    Attributes:
-        refinement_step_labels: Distance of the labels that each round of refinement tries.
-        min_views: Views that must see a point outside the reference picture.
-        min_view_fraction: Fraction of all views that must see it.
-        sweep_max_views: Views in the sweeps. More views tell nothing new about a label.
-        sweep_stride_pixels: Movement between two labels in the view that moves most.
-        sweep_max_labels: Labels of one sweep.
-        sweep_bias_labels: Labels behind the depth buffer at which a point still counts as visible in a sweep.
-        sweep_detail_gain: Gain of the detail pictures that are swept.
-        unseen_cost_levels: Cost in grey levels where too few views look, that of a fair match: smoothness then decides.
-        fine_reach_labels: Labels that the fine sweep tries beyond the local range of the coarse map.
-        fine_window_pixels: Window of that local range.
-    """
-
-    refinement_step_labels: tuple[float, ...] = (0.08, 0.06, 0.04, 0.03)
-    min_views: int = 3
-    min_view_fraction: float = 0.2
-    sweep_max_views: int = 49
-    sweep_stride_pixels: float = 0.5
-    sweep_max_labels: int = 256
-    sweep_bias_labels: float = 0.3
-    sweep_detail_gain: float = 3.0
-    unseen_cost_levels: float = 9.0
-    fine_reach_labels: int = 3
-    fine_window_pixels: int = 9
-
-
-DEPTH_TUNING = DepthTuning()
+DEPTH_REFINEMENT_STEP_LABELS = (0.08, 0.06, 0.04, 0.03)  # distance of the labels that each round of refinement tries
+DEPTH_MIN_VIEWS = 3  # views that must see a point outside the reference picture
+DEPTH_MIN_VIEW_FRACTION = 0.2  # fraction of all views that must see it
+DEPTH_SWEEP_MAX_VIEWS = 49  # views in the sweeps. More views tell nothing new about a label
+DEPTH_SWEEP_STRIDE_PIXELS = 0.5  # movement between two labels in the view that moves most
+DEPTH_SWEEP_MAX_LABELS = 256  # labels of one sweep
+DEPTH_SWEEP_BIAS_LABELS = 0.3  # labels behind the depth buffer at which a point still counts as visible in a sweep
+DEPTH_SWEEP_DETAIL_GAIN = 3.0  # gain of the detail pictures that are swept
+# Cost in grey levels where too few views look, that of a fair match: smoothness then decides
+DEPTH_UNSEEN_COST_LEVELS = 9.0
+DEPTH_FINE_REACH_LABELS = 3  # labels that the fine sweep tries beyond the local range of the coarse map
+DEPTH_FINE_WINDOW_PIXELS = 9  # window of that local range
 
 
 def estimate_depth(
@@ -68,7 +46,7 @@ def estimate_depth(
     shape: tuple[int, int],
     d_range: tuple[float, float],
     *,
-    rounds: int = len(DEPTH_TUNING.refinement_step_labels),
+    rounds: int = len(DEPTH_REFINEMENT_STEP_LABELS),
 ) -> NDArray[np.float32]:
     """The depth map of a reference view from V views, (h, w) labels.
 
@@ -79,11 +57,7 @@ def estimate_depth(
     first round, when visibility is better known.
 
     Args:
-        pictures: (V, H, W, 3) uint8 or packed.
-        matrices: (V, 3, 4) of the views.
-        shape: (h, w) of the reference view.
         d_range: Lowest and highest label.
-        rounds: Rounds of refinement over all views.
 
     Raises:
         ValueError: The range is empty, or pictures or matrices are malformed.
@@ -94,9 +68,9 @@ def estimate_depth(
     if not low < high:
         raise ValueError(f"an empty range of labels: {low} to {high}")
     frame = packed.shape[1:]
-    chosen = spread_views(label_parallax(matrices, shape, (low + high) / 2), DEPTH_TUNING.sweep_max_views)
+    chosen = spread_views(label_parallax(matrices, shape, (low + high) / 2), DEPTH_SWEEP_MAX_VIEWS)
     step = label_step(matrices, shape, low, high)
-    sharp = detail_pictures(packed[chosen], DEPTH_TUNING.sweep_detail_gain, blur_sigma=0)
+    sharp = detail_pictures(packed[chosen], DEPTH_SWEEP_DETAIL_GAIN, blur_sigma=0)
     detail = detail_pictures(packed)
     picture, known = _warp_reference_picture(packed, matrices, shape)
 
@@ -106,7 +80,7 @@ def estimate_depth(
     d = sweep_coarse(packed, matrices, shape, chosen, low, high, step)
     d = extend(np.asarray(cv2.resize(d, (shape[1], shape[0]), interpolation=cv2.INTER_NEAREST), np.float32))
     d = extend(_sweep_fine(packed, sharp, matrices, shape, chosen, d, low, high, step))
-    steps = DEPTH_TUNING.refinement_step_labels
+    steps = DEPTH_REFINEMENT_STEP_LABELS
     buffers = np.empty((len(packed), *frame), np.float32)
     for number in range(rounds):
         depth_buffers(matrices, d, frame, out=buffers)
@@ -147,28 +121,19 @@ def _seen_by_enough(
 ) -> NDArray[np.bool_]:
     """(h, w): points that enough of the pictures see to be judged without a reference picture."""
     _, count = mean_texture(pictures, matrices, d)
-    return count >= max(DEPTH_TUNING.min_views, DEPTH_TUNING.min_view_fraction * len(pictures))
+    return count >= max(DEPTH_MIN_VIEWS, DEPTH_MIN_VIEW_FRACTION * len(pictures))
 
 
 def label_step(matrices: NDArray[np.float64], shape: tuple[int, int], low: float, high: float) -> float:
-    """Distance of the labels of a sweep at full resolution.
-
-    Args:
-        matrices: (V, 3, 4) of the views.
-        shape: (h, w) of the reference view.
-        low: Lowest label.
-        high: Highest label.
-    """
+    """Distance of the labels of a sweep at full resolution."""
     fastest = np.hypot(*label_parallax(matrices, shape, (low + high) / 2).T).max(initial=1e-9)
-    return float(max(DEPTH_TUNING.sweep_stride_pixels / fastest, (high - low) / (DEPTH_TUNING.sweep_max_labels - 1)))
+    return float(max(DEPTH_SWEEP_STRIDE_PIXELS / fastest, (high - low) / (DEPTH_SWEEP_MAX_LABELS - 1)))
 
 
 def spaced_labels(low: float, high: float, step: float) -> NDArray[np.float32]:
     """At least three labels, evenly spaced.
 
     Args:
-        low: First label.
-        high: Last label.
         step: Largest distance between neighbours.
     """
     return np.linspace(low, high, max(3, int(np.ceil((high - low) / step)) + 1)).astype(np.float32)
@@ -179,7 +144,6 @@ def spread_views(moves: NDArray[np.float64], max_views: int) -> NDArray[np.int64
 
     Args:
         moves: (V, 2) parallax of each view (`label_parallax`). The view that moves least is chosen first.
-        max_views: How many are chosen.
 
     Returns:
         Sorted indices.
@@ -192,7 +156,7 @@ def spread_views(moves: NDArray[np.float64], max_views: int) -> NDArray[np.int64
 
 def _min_views(views: int) -> int:
     """Number of views that must see a label for its cost to count: a few alone agree by chance."""
-    return max(2, round(DEPTH_TUNING.min_view_fraction / 2 * views))
+    return max(2, round(DEPTH_MIN_VIEW_FRACTION / 2 * views))
 
 
 def sweep_and_match(
@@ -208,9 +172,6 @@ def sweep_and_match(
     Args:
         detail: (V, H, W) packed pictures that are compared.
         pictures: (V, H, W) packed; at edges of the reference camera's own one, depth may jump.
-        matrices: (V, 3, 4) of the views.
-        shape: (h, w) of the reference view.
-        labels: (L,) evenly spaced.
         options: Of `plane_sweep`.
     """
     compared, known = _warp_reference_picture(detail, matrices, shape)
@@ -226,21 +187,15 @@ def sweep_coarse(
     """Depth at half resolution (rounded up) over the whole range.
 
     Args:
-        packed: (V, H, W) packed pictures.
-        matrices: (V, 3, 4) of the views.
-        shape: (h, w) of the reference view.
         chosen: Indices of the views that are compared.
-        low: Lowest label.
-        high: Highest label.
         step: Of the labels at full resolution (`label_step`).
-        base_gain: Of `detail_pictures`.
     """
     small_shape = ((shape[0] + 1) // 2, (shape[1] + 1) // 2)
     small = halve_pictures(packed[chosen])
-    detail = detail_pictures(small, DEPTH_TUNING.sweep_detail_gain, blur_sigma=0, base_gain=base_gain)
+    detail = detail_pictures(small, DEPTH_SWEEP_DETAIL_GAIN, blur_sigma=0, base_gain=base_gain)
     d, _ = sweep_and_match(
         detail, small, halved_matrices(matrices[chosen]), small_shape, spaced_labels(low, high, 2 * step),
-        unseen_cost=DEPTH_TUNING.unseen_cost_levels, min_views=_min_views(len(chosen)),
+        unseen_cost=DEPTH_UNSEEN_COST_LEVELS, min_views=_min_views(len(chosen)),
     )  # fmt: skip
     return d
 
@@ -255,14 +210,14 @@ def _sweep_fine(
     every view, which keeps outlines from growing.
     """
     labels = spaced_labels(low, high, step)
-    window = np.ones((DEPTH_TUNING.fine_window_pixels, DEPTH_TUNING.fine_window_pixels), np.uint8)
-    reach = DEPTH_TUNING.fine_reach_labels * float(labels[1] - labels[0])
+    window = np.ones((DEPTH_FINE_WINDOW_PIXELS, DEPTH_FINE_WINDOW_PIXELS), np.uint8)
+    reach = DEPTH_FINE_REACH_LABELS * float(labels[1] - labels[0])
     floor, ceiling = cv2.erode(before, window) - reach, cv2.dilate(before, window) + reach
     chosen_matrices = matrices[chosen]
     buffers = depth_buffers(chosen_matrices, before, packed.shape[1:])
     d, _ = sweep_and_match(
         sharp, packed[chosen], chosen_matrices, shape, labels, floor=floor, ceiling=ceiling, buffers=buffers,
-        unseen_cost=DEPTH_TUNING.unseen_cost_levels, min_views=_min_views(len(chosen)),
-        bias=DEPTH_TUNING.sweep_bias_labels, half_plane_fraction=1.0,
+        unseen_cost=DEPTH_UNSEEN_COST_LEVELS, min_views=_min_views(len(chosen)),
+        bias=DEPTH_SWEEP_BIAS_LABELS, half_plane_fraction=1.0,
     )  # fmt: skip
     return d

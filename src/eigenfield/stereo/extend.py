@@ -20,8 +20,6 @@ def extend_depth(d: NDArray[np.float32], known: NDArray[np.bool_], low: float, h
     Slopes are least squares over a Gaussian window of known points. If nothing is known, d is returned unchanged.
 
     Args:
-        d: (h, w) labels.
-        known: (h, w) where they are known.
         low: Lower bound of extrapolated labels.
         high: Upper bound.
     """
@@ -71,9 +69,7 @@ def remove_speckles(
     becomes sharp.
 
     Args:
-        d: (h, w) labels.
         discontinuities: Masks of the horizontal and vertical pixel edges (`find_discontinuities`).
-        min_pixels: Smaller regions are removed.
     """
     index = np.arange(d.size).reshape(d.shape)
     one = np.concatenate([index[:, :-1][~discontinuities[0]], index[:-1][~discontinuities[1]]])

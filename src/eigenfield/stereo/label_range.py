@@ -31,12 +31,6 @@ def depth_range(
 
     Only pixels count at which one label fits clearly better than most others: flat paint fits anywhere.
 
-    Args:
-        pictures: (V, H, W, 3) uint8 or packed.
-        matrices: (V, 3, 4) of the views.
-        shape: (h, w) of the reference view.
-        search_range: Lowest and highest label tried.
-
     Returns:
         (low, high), or None if hardly any pixel matches: nothing in `search_range` is consistent with the photographs.
     """

@@ -76,7 +76,6 @@ def match_patches(
 
     Args:
         pictures: (V, H, W, 3) uint8 or packed; the first is the reference camera's own.
-        matrices: (V, 3, 4) of the views.
         shape: (h, w) of the reference view, at most (H, W).
         high: Highest label; the lowest is 0.
         planes: To begin with. None: those of a sweep.
@@ -125,7 +124,6 @@ def upsample_planes(planes: NDArray[np.float32], shape: tuple[int, int]) -> NDAr
 
     Args:
         planes: (ceil(h / 2), ceil(w / 2), 3) of `match_patches`.
-        shape: (h, w).
     """
     result = np.empty(shape, np.float32)
     for row in (0, 1):

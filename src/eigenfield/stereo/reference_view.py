@@ -44,14 +44,7 @@ class ReferenceView:
 
     @staticmethod
     def with_margin(camera: Camera, margin: int, offset: float, scale: float) -> ReferenceView:
-        """The reference view of a camera whose frame is widened on every side.
-
-        Args:
-            camera: The camera of the photograph.
-            margin: Pixels added on every side.
-            offset: See `ReferenceView`.
-            scale: See `ReferenceView`.
-        """
+        """The reference view of a camera whose frame is widened on every side."""
         K = camera.K.copy()
         K[:2, 2] += margin
         wide = replace(camera, K=K, width=camera.width + 2 * margin, height=camera.height + 2 * margin)
@@ -64,11 +57,6 @@ class ReferenceView:
 
     def points(self, x: NDArray[np.float64], y: NDArray[np.float64], d: NDArray[np.float64]) -> NDArray[np.float64]:
         """World points of index coordinates and labels.
-
-        Args:
-            x: (...) index coordinates to the right.
-            y: (...) index coordinates downwards.
-            d: (...) labels.
 
         Returns:
             (..., 3) points; infinite or behind the camera where offset + scale d <= 0.
@@ -90,10 +78,6 @@ def view_matrices(reference: ReferenceView, cameras: Sequence[Camera]) -> NDArra
 
     With the ray q = K_r^-1 (x + 0.5, y + 0.5, 1), the world point is R_r^T (q / w - t_r), w = offset + scale d;
     times w it projects to K R R_r^T q + w K (t - R R_r^T t_r).
-
-    Args:
-        reference: The view whose points are projected.
-        cameras: The V cameras of the photographs.
 
     Returns:
         (V, 3, 4) matrices.

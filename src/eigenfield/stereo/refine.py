@@ -35,14 +35,9 @@ def refine_depth(
     """One round of refinement: each point tries five labels over all views that see it.
 
     Args:
-        pictures: (V, H, W, 3) uint8 or packed.
-        matrices: (V, 3, 4) of the views.
-        d: (h, w) present labels.
         step: Distance of the five labels.
-        buffers: (V, H, W) of `depth_buffers` for the present d; None: nothing is hidden.
         texture: (h, w, 3) mean of the same pictures (`mean_texture`).
         guide: (h, w, 3) colours that weigh the aggregation window. Default: the texture.
-        bias: Labels behind the depth buffer at which a point still counts as visible.
         depth_scale: Difference of labels at which the weight of a point of the window falls by e.
 
     Returns:

@@ -29,7 +29,6 @@ def semi_global_matching(
     Args:
         cost: (h, w, L) uint8 of `plane_sweep`.
         guide: (h, w) grey levels; jumps are cheap at its edges.
-        labels: (L,) evenly spaced.
         p1: Penalty in grey levels for a step of one label.
         p2: Penalty in grey levels for a jump.
 

@@ -32,8 +32,6 @@ def smooth_depth(
     Wide taps move only uncertain points.
 
     Args:
-        d: (h, w) labels.
-        confidence: (h, w) of each point.
         guide: (h, w, 3) grey levels; planes stop at its edges.
         half_confidence: Confidence at which a point's weight is 1/2.
         depth_scale: Labels off the plane at which the weight of a tap falls to a quarter.

@@ -37,10 +37,6 @@ def plane_sweep(
     The equations are those of `sweep_rows`. Memory: one byte a pixel and label.
 
     Args:
-        pictures: (V, H, W, 3) uint8 or packed.
-        matrices: (V, 3, 4) from (x, y, d, 1) to index coordinates of each view.
-        shape: (h, w) of the reference view.
-        labels: (L,) increasing.
         reference: (h, w, 3) the reference camera's own picture. Without it, colours are compared with the views' robust
             mean.
         known: (h, w) where `reference` is valid. Default: everywhere.
@@ -48,7 +44,6 @@ def plane_sweep(
         floor: (h, w) lowest label tried at each pixel.
         ceiling: (h, w) highest label tried.
         buffers: (V, H, W) depth buffers that hide points.
-        bias: Labels behind the depth buffer at which a point still counts as visible.
         half_plane_fraction: The cost is the least mean over half-planes of parallax directions that hold at least this
             fraction of the visible views; 1: over all views.
         max_difference: Grey levels at which differences are cut off.

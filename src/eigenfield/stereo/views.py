@@ -14,9 +14,6 @@ def pack_pictures(pictures: Pictures) -> NDArray[np.uint32]:
 
     Every function of this package takes either form. Packing once saves time where many are called.
 
-    Args:
-        pictures: (V, H, W, 3) uint8, or (V, H, W) uint32.
-
     Returns:
         (V, H, W) uint32.
 
@@ -35,11 +32,7 @@ def pack_pictures(pictures: Pictures) -> NDArray[np.uint32]:
 
 
 def unpack_pictures(pictures: NDArray[np.uint32]) -> NDArray[np.uint8]:
-    """(..., H, W, 3) uint8 of packed pictures.
-
-    Args:
-        pictures: (..., H, W) uint32.
-    """
+    """(..., H, W, 3) uint8 of packed pictures."""
     return np.ascontiguousarray(pictures[..., None]).view(np.uint8)[..., :3]
 
 
@@ -48,7 +41,6 @@ def check_matrices(matrices: NDArray[np.float64], count: int) -> NDArray[np.floa
 
     Args:
         matrices: (count, 3, 4), finite.
-        count: Number of views.
 
     Raises:
         ValueError: Another shape, or not finite.
@@ -60,11 +52,7 @@ def check_matrices(matrices: NDArray[np.float64], count: int) -> NDArray[np.floa
 
 
 def halve_pictures(pictures: Pictures) -> NDArray[np.uint32]:
-    """Packed pictures at half the size (rounded up), each pixel the mean of four.
-
-    Args:
-        pictures: (V, H, W, 3) uint8 or packed.
-    """
+    """Packed pictures at half the size (rounded up), each pixel the mean of four."""
     packed = pack_pictures(pictures)
     count, height, width = packed.shape
     result = np.empty((count, (height + 1) // 2, (width + 1) // 2), np.uint32)
@@ -81,11 +69,7 @@ FULL_FROM_HALF_POINT = np.array([[2, 0, 0, 0.5], [0, 2, 0, 0.5], [0, 0, 1, 0], [
 
 
 def halved_matrices(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
-    """View matrices for a reference view and pictures of half the resolution.
-
-    Args:
-        matrices: (V, 3, 4) at full resolution.
-    """
+    """View matrices for a reference view and pictures of half the resolution."""
     return HALF_FROM_FULL_INDEX @ matrices @ FULL_FROM_HALF_POINT
 
 
@@ -93,8 +77,6 @@ def label_parallax(matrices: NDArray[np.float64], shape: tuple[int, int], d: flo
     """Pixels that the centre of the reference view moves in each view for one unit of d.
 
     Args:
-        matrices: (V, 3, 4) of the views.
-        shape: (h, w) of the reference view.
         d: The label at which it is measured.
 
     Returns:

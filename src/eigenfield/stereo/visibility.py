@@ -23,8 +23,6 @@ def depth_buffers(
     """The largest label of the reference view's points on each pixel of each view.
 
     Args:
-        matrices: (V, 3, 4) of the views.
-        d: (h, w) labels.
         shape: (H, W) of the views.
         valid: (h, w) points that count. Default: all finite ones.
         out: Where the result is written. Default: a new array.
@@ -51,13 +49,6 @@ def mean_texture(
 ) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
     """The mean colour over the views that see each point (x, y, d).
 
-    Args:
-        pictures: (V, H, W, 3) uint8 or packed.
-        matrices: (V, 3, 4) of the views.
-        d: (h, w) labels.
-        buffers: (V, H, W) of `depth_buffers`; None: nothing is hidden.
-        bias: Labels behind the depth buffer at which a point still counts as visible.
-
     Returns:
         (h, w, 3) float32 texture in grey levels, 0 where no view looks, and (h, w) int32 number of views.
     """
@@ -74,10 +65,6 @@ def mean_texture(
 
 def flatten_buffers(buffers: NDArray[np.float32] | None, count: int) -> NDArray[np.float32]:
     """Depth buffers as kernels read them.
-
-    Args:
-        buffers: (V, H, W), or None for none.
-        count: Number of views V.
 
     Returns:
         (V, H W) float32, or (V, 0) for none.

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import pickle
 from collections.abc import Sequence
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -22,10 +20,10 @@ from eigenfield.core.errors import CaptureError
 from eigenfield.core.progress import Progress, track
 from eigenfield.runtime.parallel import pieces
 from eigenfield.runtime.parts import Parts
+from eigenfield.runtime.shared import Shared, share
 
 PHOTOGRAPHS_A_TASK = 4
 PAIRS_A_TASK = 32
-KEPT_PHOTOGRAPHS = 64  # whose features a worker keeps from task to task, 1 MB each
 # Measured: 0.89 GB for four photographs of half a megapixel, 3.09 for four of twelve
 PROGRAM_MEMORY_BYTES, PHOTOGRAPH_MEMORY_BYTES, PIXEL_MEMORY_BYTES = 0.25e9, 0.18e9, 48.0
 MATCHES_MEMORY_BYTES = 1.3e9  # measured: 6,000 features each, 16 threads; 0.4 with one
@@ -83,28 +81,24 @@ def match_on_workers(
         name: Of the parts: each list of pairs has its own.
     """
     groups = [pairs[first:last] for first, last in pieces(len(pairs), PAIRS_A_TASK)]
-    with parts.shared([pickle.dumps(photograph) for photograph in zip(features, cameras, strict=True)]) as files:
-        made = parts.make(name, build_matches, [(files, group, seed) for group in groups], MATCHES_MEMORY_BYTES)
+    with share(zip(features, cameras, strict=True), parts.folder) as shared:
+        made = parts.make(name, build_matches, [(shared, group, seed) for group in groups], MATCHES_MEMORY_BYTES)
         found = track(made, "matches", len(groups), progress)
         return [match for folder in found for match in read_matches(folder / MATCHES_FILE)]
 
 
-def build_matches(folder: Path, files: Sequence[Path], pairs: Sequence[Pair], seed: int) -> None:
+def build_matches(
+    folder: Path, shared: Sequence[Shared[tuple[Features, Any]]], pairs: Sequence[Pair], seed: int
+) -> None:
     """Write the matches of pairs, on a worker.
 
     Args:
         folder: That takes the file.
-        files: Of each photograph, with its features and its camera.
+        shared: Features and camera of each photograph.
         pairs: Pairs (i, j), i < j.
         seed: Of RANSAC.
     """
     needed = {index for pair in pairs for index in pair}
-    photographs = [_photograph(file) if index in needed else (NO_FEATURES, None) for index, file in enumerate(files)]
+    photographs = [each.value() if index in needed else (NO_FEATURES, None) for index, each in enumerate(shared)]
     features, cameras = zip(*photographs, strict=True)
     write_matches(folder / MATCHES_FILE, match_pairs(features, cameras, pairs, seed))
-
-
-@lru_cache(maxsize=KEPT_PHOTOGRAPHS)
-def _photograph(file: Path) -> tuple[Features, Any]:
-    photograph: tuple[Features, Any] = pickle.loads(file.read_bytes())
-    return photograph

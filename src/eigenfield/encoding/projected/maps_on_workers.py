@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import pickle
 import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -21,11 +20,11 @@ from eigenfield.encoding.projected.project import texture_map
 from eigenfield.runtime.executor import refuse_unshared, spread
 from eigenfield.runtime.files import output_errors, rename
 from eigenfield.runtime.parallel import parallel_stream, pieces
+from eigenfield.runtime.shared import Shared, share
 from eigenfield.runtime.tasks import Workers
-from eigenfield.runtime.temporary import temporary_file, temporary_folder
+from eigenfield.runtime.temporary import temporary_file
 
 MAPS_A_TASK = 8
-JOB_FILE = "job.pickle"
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +44,11 @@ class MapsJob:
     cameras: Sequence[Camera]
     observations: Observations
     max_angle: int
+
+    @cached_property
+    def atlas(self) -> Atlas:
+        """Made once by each worker."""
+        return make_atlas(self.mesh, *self.size)
 
 
 def maps_on_workers(
@@ -69,25 +73,19 @@ def maps_on_workers(
     folder = Path(tempfile.gettempdir()) if work is None else work
     refuse_unshared(workers, folder)
     groups = pieces(len(observations), MAPS_A_TASK)
-    with temporary_folder("eigenfield-maps", folder) as place:
-        job = MapsJob(atlas.mesh, (atlas.width, atlas.height), cameras, observations, max_angle)
-        (place / JOB_FILE).write_bytes(pickle.dumps(job))
-        made = spread(workers, ((make_maps, place, *group) for group in groups))
+    job = MapsJob(atlas.mesh, (atlas.width, atlas.height), cameras, observations, max_angle)
+    with share([job], folder) as (shared,):
+        made = spread(workers, ((make_maps, shared, *group) for group in groups))
         for file in track(made, "texture maps", len(groups), progress):
             with np.load(file) as maps:
                 yield from zip(maps["values"], maps["seen"], strict=True)
             file.unlink()
 
 
-def make_maps(place: Path, first: int, last: int) -> Path:
-    """The file of the maps of observations `first` to `last` - 1, on a worker.
-
-    Args:
-        place: Folder of the job.
-        first: Of the observations.
-        last: Not one of them.
-    """
-    job, atlas = _job(place / JOB_FILE)
+def make_maps(shared: Shared[MapsJob], first: int, last: int) -> Path:
+    """The file of the maps of observations `first` to `last` - 1, on a worker."""
+    job, place = shared.value(), shared.file.parent
+    atlas = job.atlas
 
     def project(index: int) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
         photograph, camera = job.observations.photograph(index), job.cameras[job.observations.camera_of(index)]
@@ -98,11 +96,6 @@ def make_maps(place: Path, first: int, last: int) -> Path:
     with output_errors(place), temporary_file(file.name, place) as part:  # another worker may write the same file
         with part.open("wb") as target:
             np.savez(target, values=np.stack(values), seen=np.stack(seen))
+        part.chmod(0o644)  # it was the worker's alone
         rename(part, file)
     return file
-
-
-@lru_cache(maxsize=1)
-def _job(path: Path) -> tuple[MapsJob, Atlas]:
-    job: MapsJob = pickle.loads(path.read_bytes())
-    return job, make_atlas(job.mesh, *job.size)

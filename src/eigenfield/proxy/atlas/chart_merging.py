@@ -62,8 +62,6 @@ def merge_charts(mesh: Mesh, charts: Sequence[Chart], layout: LayoutFunction) ->
     """The charts of a mesh after small ones were merged into others.
 
     Args:
-        mesh: The mesh.
-        charts: Its charts.
         layout: Lays out (n, 3) vertices with (m, 3) corners as (n, 2) UVs; None if there is no usable layout.
     """
     edges = shared_edges(mesh.vertices, mesh.faces)
@@ -95,7 +93,6 @@ def shared_edges(vertices: NDArray[np.float32], faces: NDArray[np.int32]) -> Sha
 
     Args:
         vertices: (n, 3); vertices at the same place count as one.
-        faces: (m, 3).
     """
     place = np.unique(vertices, axis=0, return_inverse=True)[1].reshape(-1)[faces].astype(np.int64)
     begin, end = place.reshape(-1), np.roll(place, -1, axis=1).reshape(-1)

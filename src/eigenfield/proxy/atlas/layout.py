@@ -101,13 +101,7 @@ def _stretch(
 
 
 def l2_stretch(vertices: NDArray[np.float64], uv: NDArray[np.float64], faces: NDArray[np.int32]) -> float:
-    """L2 stretch of Sander et al., as in `AtlasStatistics`; infinite if a triangle has no area in the layout.
-
-    Args:
-        vertices: (n, 3).
-        uv: (n, 2) layout.
-        faces: (m, 3).
-    """
+    """L2 stretch of Sander et al., as in `AtlasStatistics`; infinite if a triangle has no area in the layout."""
     p, q = vertices[faces], uv[faces]
     surface, signed = triangle_areas(p), signed_areas(q)
     if (signed == 0).any() or surface.sum() == 0:
@@ -116,11 +110,7 @@ def l2_stretch(vertices: NDArray[np.float64], uv: NDArray[np.float64], faces: ND
 
 
 def chart_labels(mesh: Mesh) -> NDArray[np.int32]:
-    """(m,) index of the chart of each triangle: triangles that share a vertex are in one chart.
-
-    Args:
-        mesh: The mesh.
-    """
+    """(m,) index of the chart of each triangle: triangles that share a vertex are in one chart."""
     return face_components(mesh.faces, len(mesh.vertices))
 
 
@@ -128,10 +118,6 @@ def starved_fraction(mesh: Mesh, cameras: Sequence[Camera]) -> float:
     """The part of what the cameras see whose triangles have hardly any texels beside the others.
 
     A triangle's pixels are those of the camera that sees it largest.
-
-    Args:
-        mesh: With UVs.
-        cameras: All cameras.
     """
     assert mesh.uv is not None
     area, shown = np.zeros(len(mesh.faces)), np.zeros(len(mesh.faces))
@@ -158,7 +144,6 @@ def atlas_fault(mesh: Mesh, cameras: Sequence[Camera] | None = None) -> str | No
     """Why the mesh's own UVs are no atlas, as the end of a sentence; None if they are one.
 
     Args:
-        mesh: The mesh.
         cameras: Whose pictures the texels are for. None: any share of texels will do.
     """
     if mesh.uv is None:

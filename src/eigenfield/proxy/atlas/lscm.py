@@ -56,10 +56,6 @@ def conformal_map(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> ND
 def conformal_energy(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> csr_array:
     """Matrix of the energy for (x_1 .. x_n, y_1 .. y_n): zero for similarities.
 
-    Args:
-        vertices: (n, 3).
-        faces: (m, 3).
-
     Returns:
         (2 n, 2 n) symmetric.
     """
@@ -83,12 +79,7 @@ def conformal_energy(vertices: NDArray[np.float64], faces: NDArray[np.int32]) ->
 
 
 def boundary_vertices(faces: NDArray[np.int32], n: int) -> NDArray[np.bool_]:
-    """(n,) vertices on an edge of only one triangle; all vertices of a closed surface.
-
-    Args:
-        faces: (m, 3).
-        n: Number of vertices.
-    """
+    """(n,) vertices on an edge of only one triangle; all vertices of a closed surface."""
     ends, edge = face_edges(faces)
     boundary = np.zeros(n, np.bool_)
     boundary[ends[np.bincount(edge)[edge] == 1]] = True

@@ -39,9 +39,6 @@ def conformal_charts(mesh: Mesh) -> Mesh:
     overlaps or stretches more than the mesh's own UVs, those are kept (at the same area). If those fold or overlap as
     well, the triangles that do are cut out. Then small charts are merged (`merge_charts`). The charts of the result
     overlap each other and are still to be packed. Faces keep their order.
-
-    Args:
-        mesh: With UVs.
     """
     assert mesh.uv is not None
     groups = _group_faces(np.arange(len(mesh.faces)), edge_components(mesh.faces))
@@ -183,10 +180,6 @@ def chart_scales(mesh: Mesh, cameras: Sequence[Camera]) -> NDArray[np.float64]:
     The density of a chart is the median over the views that see it of pixels per surface area. The scale is relative to
     the median over the pixels of all views, and within a factor of DENSITY_MAX_RATIO of it. Charts that no view sees
     get the smallest scale.
-
-    Args:
-        mesh: With charts.
-        cameras: The views.
 
     Returns:
         (charts,) factors.

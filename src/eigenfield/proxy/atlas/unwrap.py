@@ -21,12 +21,11 @@ from eigenfield.core.progress import Progress
 from eigenfield.proxy.atlas.layout import ATLAS_MAX_OVERLAP_FRACTION, atlas_fault, atlas_statistics, chart_labels
 from eigenfield.proxy.atlas.lscm_charts import chart_scales, conformal_charts
 from eigenfield.proxy.child import run_child
-from eigenfield.proxy.meshes.read import is_sliver
+from eigenfield.proxy.simplify import PROXY_DEFAULT_TRIANGLES, normalisation, simplify_mesh, weld_vertices
 from eigenfield.proxy.topology import remove_unused_vertices
 
 log = logging.getLogger("eigenfield.proxy")
 
-PROXY_DEFAULT_TRIANGLES = 30_000
 UNWRAP_MIN_TRIANGLES = 4
 UNWRAP_MAX_LOST_FRACTION = 0.01  # of the surface, in no chart
 
@@ -41,12 +40,10 @@ def unwrap_mesh(
     """The mesh with a valid atlas (see `atlas_fault`), one UV a vertex.
 
     Args:
-        mesh: With or without UVs.
         triangles: Simplify to at most this many. None keeps a mesh with an atlas as it is, and simplifies others to
             PROXY_DEFAULT_TRIANGLES. A simplified mesh gets new charts.
         cameras: Give each new chart an area in proportion to their resolution (`chart_scales`), and give up an atlas
             that leaves hardly any texels to what they see. None: all charts alike.
-        progress: Called for each step.
 
     Raises:
         OptionError: `triangles`: too few.
@@ -79,61 +76,10 @@ def unwrap_mesh(
     return result
 
 
-def weld_vertices(mesh: Mesh) -> Mesh:
-    """Merge vertices at identical positions and drop UVs: undoes the duplication along the seams of an atlas.
-
-    Args:
-        mesh: The mesh.
-    """
-    vertices, first, index = np.unique(mesh.vertices, axis=0, return_index=True, return_inverse=True)
-    order = np.argsort(first)  # keep the order of first occurrence
-    rank = np.empty_like(order)
-    rank[order] = np.arange(len(order))
-    faces = rank[index.reshape(-1)][mesh.faces].astype(np.int32)
-    whole = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
-    return Mesh(vertices[order], faces[whole])
-
-
-def simplify_mesh(mesh: Mesh, triangles: int) -> Mesh:
-    """The mesh with at most about `triangles` triangles, by quadric edge collapse, without UVs.
-
-    Args:
-        mesh: The mesh.
-        triangles: How many.
-
-    Raises:
-        ProxyError: `proxy-degenerate`: nothing is left.
-    """
-    from fast_simplification import simplify
-
-    centre, scale = _normalisation(mesh)
-    points, faces = simplify(
-        (mesh.vertices.astype(np.float64) - centre) / scale, mesh.faces.astype(np.int64), target_count=triangles
-    )
-    vertices = (np.asarray(points, np.float64) * scale + centre).astype(np.float32)
-    kept = np.asarray(faces, np.int32)
-    kept = kept[~is_sliver(vertices, kept)]
-    if len(kept) == 0:
-        raise ProxyError(
-            "proxy-degenerate",
-            f"nothing is left of the mesh at {triangles} triangles",
-            remedy="ask for more --triangles",
-        )
-    return remove_unused_vertices(Mesh(vertices, kept))
-
-
-def _normalisation(mesh: Mesh) -> tuple[NDArray[np.float64], float]:
-    """Centre and mean edge length: thresholds of the libraries are absolute, meant for numbers near 1."""
-    corners = mesh.vertices[mesh.faces].astype(np.float64)
-    edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
-    low, high = mesh.vertices.min(axis=0).astype(np.float64), mesh.vertices.max(axis=0).astype(np.float64)
-    return (low + high) / 2, float(edges.mean()) or 1.0
-
-
 def _make_atlas(mesh: Mesh, cameras: Sequence[Camera] | None, progress: Progress | None) -> Mesh:
     report = progress or (lambda stage, done, total: None)
     report("atlas", 0, 3)
-    centre, scale = _normalisation(mesh)
+    centre, scale = normalisation(mesh)
     cut = _apply_xatlas(mesh, _run_xatlas((mesh.vertices - centre) / scale, mesh.faces, None, report, 0))
     report("atlas", 1, 3)
     laid = conformal_charts(cut)

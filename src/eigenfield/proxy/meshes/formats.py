@@ -29,9 +29,6 @@ class RawMesh(NamedTuple):
 def parse_numbers(text: bytes) -> NDArray[np.float64]:
     """(n,) all numbers of a text, with white space between them.
 
-    Args:
-        text: In ASCII.
-
     Raises:
         ValueError: It holds something else.
     """
@@ -67,11 +64,7 @@ class MeshFormat:
 
 
 def list_of_formats(formats: tuple[MeshFormat, ...]) -> str:
-    """The list of `docs/meshes.md`, in Markdown.
-
-    Args:
-        formats: Its parts.
-    """
+    """The list of `docs/meshes.md`, in Markdown."""
     parts = [
         f"### {each.name}: {', '.join(f'`{suffix}`' for suffix in each.suffixes)}\n\n"
         f"- **Read**: {each.reads}\n- **Refused, by name**: {each.refuses}\n- **Left out**: {each.ignores}\n"

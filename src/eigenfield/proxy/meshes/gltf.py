@@ -46,7 +46,6 @@ def read_gltf(data: bytes, path: Path) -> RawMesh:
     """All triangles of a scene.
 
     Args:
-        data: The file, binary or text.
         path: Of the file, for external buffers and messages.
 
     Raises:
@@ -233,7 +232,6 @@ class _GltfFile:
         """The primitives of a mesh that have triangles.
 
         Args:
-            mesh: Its index.
             weights: Of its morph targets; without, the mesh's own.
         """
         entry = self.root["meshes"].at(mesh)

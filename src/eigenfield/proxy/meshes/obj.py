@@ -17,10 +17,6 @@ from eigenfield.proxy.meshes.polygons import Polygons, split_seams, triangulate_
 def read_obj(data: bytes, path: Path) -> RawMesh:
     """Geometry and texture coordinates of an OBJ file.
 
-    Args:
-        data: The file.
-        path: Of the file.
-
     Raises:
         ProxyError: `proxy-index-range`, with the number of the line; `proxy-polygon`.
         ValueError: Damaged data, with the number of the line.

@@ -14,10 +14,6 @@ from eigenfield.proxy.meshes.polygons import Polygons, triangulate_polygons
 def read_off(data: bytes, path: Path) -> RawMesh:
     """The triangles of an OFF file.
 
-    Args:
-        data: The file.
-        path: Of the file.
-
     Raises:
         ProxyError: `proxy-index-range`, `proxy-polygon`.
         ValueError: Damaged data, or a kind of OFF that is not read.

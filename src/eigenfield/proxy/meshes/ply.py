@@ -71,10 +71,6 @@ class _Table(NamedTuple):
 def read_ply(data: bytes, path: Path) -> RawMesh:
     """Geometry and texture coordinates of a PLY file.
 
-    Args:
-        data: The file.
-        path: Of the file.
-
     Raises:
         ProxyError: `proxy-index-range`, `proxy-polygon`.
         ValueError: Damaged data.

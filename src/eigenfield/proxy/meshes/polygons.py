@@ -42,9 +42,7 @@ def triangulate_polygons(
     cut by ear clipping (Meisters, "Polygons have ears", 1975), in the plane along two axes that shows most of them.
 
     Args:
-        polygons: The polygons.
         uv: (c, 2) UVs of the corners, if any.
-        vertices: (n, 3) positions.
 
     Returns:
         (m, 3) vertices, and (m, 3, 2) UVs of the corners.
@@ -158,7 +156,6 @@ def split_seams(
     """One UV a vertex from one UV a corner.
 
     Args:
-        faces: (m, 3) vertices.
         uv: (m, 3, 2) UVs of the corners.
 
     Returns:
@@ -173,11 +170,6 @@ def split_seams(
 
 def check_range(indices: NDArray[np.int64], count: int, path: Path | None = None) -> None:
     """Check that all indices are in [0, count).
-
-    Args:
-        indices: Vertex indices.
-        count: Number of vertices.
-        path: Of the file, for the message.
 
     Raises:
         ProxyError: `proxy-index-range`.

@@ -10,13 +10,12 @@ import codecs
 import logging
 import os
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.errors import FormatError, ProxyError
-from eigenfield.core.mesh import Mesh, triangle_areas
+from eigenfield.core.mesh import Mesh
 from eigenfield.core.recognise import read_head, recognise, refuse_address
 from eigenfield.proxy.meshes.formats import RawMesh
 from eigenfield.proxy.meshes.gltf import GLTF
@@ -26,14 +25,13 @@ from eigenfield.proxy.meshes.ply import PLY
 from eigenfield.proxy.meshes.polygons import check_range
 from eigenfield.proxy.meshes.sound import make_sound
 from eigenfield.proxy.meshes.stl import STL
-from eigenfield.proxy.topology import remove_unused_vertices
+from eigenfield.proxy.topology import is_sliver, remove_unused_vertices
 from eigenfield.runtime.objects import local_copy
 
 log = logging.getLogger("eigenfield.proxy")
 
 MESH_FORMATS = (PLY, OBJ, GLTF, STL, OFF)
 MESH_SUFFIXES = tuple(suffix for each in MESH_FORMATS for suffix in each.suffixes)
-MESH_SLIVER_RATIO = 1e-9  # area over the square of the longest edge: below, a triangle is degenerate
 MESH_MAX_ROUNDING_RATIO = 1e-5  # float32 spacing over the mesh's extent: above, rounding is noticeable
 
 
@@ -71,9 +69,6 @@ def read_mesh(path: str | os.PathLike[str], origin: NDArray[np.float64] | None =
 
 def refuse_no_mesh(path: Path) -> None:
     """Before any work: refuse what is no file of a mesh, by its name and its first bytes.
-
-    Args:
-        path: The file.
 
     Raises:
         ProxyError: `proxy-missing`, `proxy-format`.
@@ -128,10 +123,6 @@ def _without_mark(data: bytes) -> bytes:
 def check_mesh(raw: RawMesh, path: Path | None) -> Mesh:
     """The usable part of a mesh, as float32.
 
-    Args:
-        raw: As read from a file.
-        path: Of the file, for messages.
-
     Raises:
         ProxyError: See `read_mesh`.
     """
@@ -171,19 +162,6 @@ def check_mesh(raw: RawMesh, path: Path | None) -> Mesh:
     if not used.all():
         log.info("%s: %d vertices that no triangle uses are dropped", path or "mesh", len(vertices) - used.sum())
     return remove_unused_vertices(make_sound(mesh, path))
-
-
-def is_sliver(vertices: NDArray[np.float32], faces: NDArray[Any]) -> NDArray[np.bool_]:
-    """(m,) whether a triangle is degenerate at float32 precision.
-
-    Args:
-        vertices: (n, 3).
-        faces: (m, 3).
-    """
-    corners = vertices[faces].astype(np.float64)
-    sides = corners - np.roll(corners, 1, axis=1)
-    longest = (sides**2).sum(axis=2).max(axis=1)
-    return np.asarray(triangle_areas(corners) <= MESH_SLIVER_RATIO * longest)
 
 
 def _warn_of_rounding(vertices: NDArray[np.float32], path: Path | None) -> None:

@@ -28,7 +28,6 @@ def make_sound(mesh: Mesh, path: Path | None) -> Mesh:
 
     Args:
         mesh: Without degenerate faces.
-        path: Of the file, for the log.
     """
     place = number_places(mesh.vertices)
     count, total = int(place.max()) + 1, len(mesh.faces)
@@ -91,7 +90,6 @@ def _find_quads_again(
     Args:
         positions: (m, 3, 3) of the corners.
         corners: (m, 3) their places.
-        edges: Of the faces.
     """
     faces = np.stack([edges.one // 3, edges.other // 3], axis=1)
     last = edges.other % 3
@@ -125,11 +123,7 @@ def _find_quads_again(
 
 
 def number_places(vertices: NDArray[np.float32]) -> NDArray[np.int64]:
-    """(n,) the number of each vertex's position: equal positions have one.
-
-    Args:
-        vertices: (n, 3).
-    """
+    """(n,) the number of each vertex's position: equal positions have one."""
     bits = np.ascontiguousarray(vertices + np.float32(0)).view(np.uint32).astype(np.uint64)  # + 0: -0 is 0
     found = bits[:, 0]
     for axis in (1, 2):
@@ -138,11 +132,7 @@ def number_places(vertices: NDArray[np.float32]) -> NDArray[np.int64]:
 
 
 def mix_places(place: NDArray[np.int64]) -> NDArray[np.uint64]:
-    """Numbers of which the sums of two different sets hardly ever agree.
-
-    Args:
-        place: Numbers of places.
-    """
+    """Numbers of which the sums of two different sets hardly ever agree."""
     mixed = place.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15)  # 2^64 over the golden ratio
     return mixed ^ mixed >> np.uint64(29)
 

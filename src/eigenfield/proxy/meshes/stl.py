@@ -24,10 +24,6 @@ _END = re.compile(rb"^[ \t]*end[ \t]*solid\b", re.MULTILINE | re.IGNORECASE)
 def read_stl(data: bytes, path: Path) -> RawMesh:
     """The triangles of an STL file.
 
-    Args:
-        data: The file.
-        path: Of the file.
-
     Raises:
         ValueError: Damaged data.
     """

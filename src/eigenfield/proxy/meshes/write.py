@@ -19,10 +19,7 @@ def write_ply(mesh: Mesh, path: Path, *, origin: NDArray[np.float64] | None = No
     """Write a little-endian PLY. Positions, and UVs that are multiples of 2^-24, are restored exactly.
 
     Args:
-        mesh: The mesh.
-        path: The file.
         origin: (3,) added to every position, which are float64 then; None or zero: nothing.
-        overwrite: Replace an existing file.
 
     Raises:
         OutputError: The file cannot be written.
@@ -57,10 +54,7 @@ def write_mesh(mesh: Mesh, path: Path, *, origin: NDArray[np.float64] | None = N
     """Write a mesh as .ply or .glb, by the name's ending.
 
     Args:
-        mesh: The mesh.
-        path: The file.
         origin: (3,) as of `write_ply`; a .glb keeps it in its node.
-        overwrite: Replace an existing file.
 
     Raises:
         OptionError: `mesh-suffix`.
@@ -75,9 +69,6 @@ def write_mesh(mesh: Mesh, path: Path, *, origin: NDArray[np.float64] | None = N
 
 def check_mesh_name(path: Path) -> None:
     """Check that `write_mesh` can write a file of this name.
-
-    Args:
-        path: The file.
 
     Raises:
         OptionError: `mesh-suffix`.

@@ -22,10 +22,6 @@ def clip_mesh(mesh: Mesh, distance: DistanceFunction) -> Mesh:
 
     UVs are dropped. The distance is only evaluated at vertices: first split edges that are long against the clipped
     shape, by `split_long_edges`.
-
-    Args:
-        mesh: The mesh.
-        distance: Of (n, 3) points.
     """
     vertices = mesh.vertices.astype(np.float64)
     inside = distance(vertices) < 0
@@ -72,8 +68,6 @@ def split_long_edges(mesh: Mesh, distance: DistanceFunction, max_length: float) 
     Neighbours are split too, so that no crack opens. UVs are dropped.
 
     Args:
-        mesh: The mesh.
-        distance: Of (n, 3) points.
         max_length: World units.
     """
     vertices, faces = mesh.vertices.astype(np.float64), mesh.faces

@@ -56,11 +56,7 @@ class SpherePrimitive:
         return replace(self, centre=(x, y, z))
 
     def distance(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(n,) signed distance from the sphere, negative inside.
-
-        Args:
-            positions: (n, 3) points.
-        """
+        """(n,) signed distance from the sphere, negative inside."""
         return np.asarray(np.linalg.norm(positions - self.centre, axis=1) - self.radius)
 
     def mesh(self, cameras: Sequence[Camera]) -> Mesh:
@@ -115,20 +111,12 @@ class PlanePrimitive:
         return np.stack([u, np.cross(n, u), n])
 
     def distance(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(n,) the largest of the distances from the slab's sides, negative inside.
-
-        Args:
-            positions: (n, 3) points.
-        """
+        """(n,) the largest of the distances from the slab's sides, negative inside."""
         local = np.abs((positions - self.middle) @ self.axes().T)
         return np.asarray((local - (self.extent, self.extent, self.depth)).max(axis=1))
 
     def mesh(self, cameras: Sequence[Camera]) -> Mesh:
-        """The square, facing most of the cameras.
-
-        Args:
-            cameras: All cameras.
-        """
+        """The square, facing most of the cameras."""
         steps = np.linspace(-self.extent, self.extent, PLANE_SIDE_CELLS + 1)
         a, b = (grid.ravel() for grid in np.meshgrid(steps, steps))
         vertices = np.stack([a, b, np.zeros_like(a)], axis=1) @ self.axes() + self.middle
@@ -196,11 +184,6 @@ def insert_primitive(mesh: Mesh, primitive: Primitive, cameras: Sequence[Camera]
     Triangles are cut where they cross the primitive's surface, so that the border has no gap and no overlap. Loose
     remnants just outside it are removed too. Of the primitive, the faces that some camera sees are inserted, with those
     next to them. UVs are dropped.
-
-    Args:
-        mesh: The old surface.
-        primitive: The shape.
-        cameras: All cameras.
 
     Raises:
         ProxyError: `primitive-not-seen`; `primitive-camera-inside`: a camera stands in it.

@@ -26,49 +26,22 @@ from eigenfield.proxy.primitives.shapes import SpherePrimitive
 
 log = logging.getLogger("eigenfield.proxy")
 
-
-@dataclass(frozen=True)
-class SphereFitTuning:
-    """Constants of `fit_sphere`.
-
-    Attributes:
-        max_views: Photographs that take part.
-        max_side_pixels: Longer side of the pictures.
-        max_step: Sum of three channels' differences that counts as a full step.
-        blur_sigma_pixels: Blurs of the pictures, from coarse to fine.
-        side_distance_blurs: Distance of the two sides from the outline, in blurs.
-        swept_depths: Depths tried.
-        start_shifts: Shifts of the start's middle, in units of the box's radius.
-        start_growths: Factors of its radius.
-        start_circles: Best circles of the reference view, each tried at all depths.
-        starts: Best of those, optimised further.
-        finalists: Best of these, optimised at the finest scale with all photographs.
-        coarse_views: Photographs with which starts are compared.
-        box_weight: Cost of the squared deviation from the box, in units of its size.
-        search_pixels: Distance on both sides of the outline in which its step is searched.
-        min_outline_fraction: Fraction of the outline that a view must have in its frame.
-        min_contrast: Mean step below which there is no outline.
-    """
-
-    max_views: int = 25
-    max_side_pixels: int = 1024
-    max_step: float = 0.35
-    blur_sigma_pixels: tuple[float, float] = (2.5, 1.2)
-    side_distance_blurs: float = 1.4
-    swept_depths: int = 64
-    start_shifts: tuple[float, ...] = (-0.2, -0.1, 0.0, 0.1, 0.2)
-    start_growths: tuple[float, ...] = (0.85, 0.95, 1.05, 1.15)
-    start_circles: int = 8
-    starts: int = 5
-    finalists: int = 2
-    coarse_views: int = 9
-    box_weight: float = 1.0
-    search_pixels: float = 5.0
-    min_outline_fraction: float = 0.3
-    min_contrast: float = 0.06
-
-
-SPHERE_FIT_TUNING = SphereFitTuning()
+SPHERE_FIT_MAX_VIEWS = 25  # photographs that take part
+SPHERE_FIT_MAX_SIDE_PIXELS = 1024  # longer side of the pictures
+SPHERE_FIT_MAX_STEP = 0.35  # sum of three channels' differences that counts as a full step
+SPHERE_FIT_BLUR_SIGMA_PIXELS = (2.5, 1.2)  # blurs of the pictures, from coarse to fine
+SPHERE_FIT_SIDE_DISTANCE_BLURS = 1.4  # distance of the two sides from the outline, in blurs
+SPHERE_FIT_SWEPT_DEPTHS = 64  # depths tried
+SPHERE_FIT_START_SHIFTS = (-0.2, -0.1, 0.0, 0.1, 0.2)  # shifts of the start's middle, in units of the box's radius
+SPHERE_FIT_START_GROWTHS = (0.85, 0.95, 1.05, 1.15)  # factors of its radius
+SPHERE_FIT_START_CIRCLES = 8  # best circles of the reference view, each tried at all depths
+SPHERE_FIT_STARTS = 5  # best of those, optimised further
+SPHERE_FIT_FINALISTS = 2  # best of these, optimised at the finest scale with all photographs
+SPHERE_FIT_COARSE_VIEWS = 9  # photographs with which starts are compared
+SPHERE_FIT_BOX_WEIGHT = 1.0  # cost of the squared deviation from the box, in units of its size
+SPHERE_FIT_SEARCH_PIXELS = 5.0  # distance on both sides of the outline in which its step is searched
+SPHERE_FIT_MIN_OUTLINE_FRACTION = 0.3  # fraction of the outline that a view must have in its frame
+SPHERE_FIT_MIN_CONTRAST = 0.06  # mean step below which there is no outline
 
 SPHERE_OUTLINE_ANGLES_RADIANS = np.radians(np.arange(0, 360, 3.0))
 
@@ -155,10 +128,6 @@ def parse_region(text: str) -> ViewRegion:
 def find_view(region: ViewRegion, names: Sequence[str]) -> int:
     """The index of the region's view: by its name, else by its unique file name with or without the ending.
 
-    Args:
-        region: The region.
-        names: Of all views.
-
     Raises:
         OptionError: `fit-sphere-view`.
     """
@@ -185,10 +154,7 @@ def fit_sphere(
 
     Args:
         view: Index of the camera that shows the region.
-        region: The box around the sphere.
-        cameras: Of the observations.
         observations: At any times: the sphere does not move.
-        progress: Called for each photograph.
 
     Raises:
         OptionError: `fit-sphere-region`: the box lies outside the view.
@@ -207,13 +173,13 @@ def fit_sphere(
     baseline = float(np.median([np.linalg.norm(cameras[i].centre - camera.centre) for i in chosen[1:]]))
     circle = np.array([*middle, (region.width + region.height) / 4])
     search = _Search(camera, baseline, circle, np.array([region.width, region.height]))
-    coarse_views = views.first(SPHERE_FIT_TUNING.coarse_views)
+    coarse_views = views.first(SPHERE_FIT_COARSE_VIEWS)
     starts = _start_candidates(search, coarse_views)
     coarse = sorted((search.minimise(p, coarse_views, 0) for p in starts), key=lambda fit: fit[1])
-    fine = [search.minimise(p, views, -1) for p, _ in coarse[: SPHERE_FIT_TUNING.finalists]]
+    fine = [search.minimise(p, views, -1) for p, _ in coarse[:SPHERE_FIT_FINALISTS]]
     sphere = search.sphere(min(fine, key=lambda fit: fit[1])[0])
     contrast = _contrast(sphere, views, -1)
-    if not contrast > SPHERE_FIT_TUNING.min_contrast:
+    if not contrast > SPHERE_FIT_MIN_CONTRAST:
         raise ProxyError(
             "fit-sphere-outline",
             f"no outline of a sphere is found around {middle[0]:g}, {middle[1]:g} (mean step {contrast:.3f})",
@@ -234,7 +200,6 @@ def sphere_outlines(
     """(V, G, n, 2) pixels of a sphere's outline in V cameras; NaN for a camera that stands in the sphere.
 
     Args:
-        sphere: The sphere.
         K: (V, 3, 3) of the cameras.
         R: (V, 3, 3) likewise.
         t: (V, 3) likewise.
@@ -288,10 +253,10 @@ class _Search:
     def cost(self, p: NDArray[np.float64], views: _BlurredViews, level: int) -> float:
         """The negative mean step, plus the penalty for leaving the box."""
         off = np.append((p[:2] - self.circle[:2]) / self.size, np.log(max(p[2], 1e-3) / self.circle[2]))
-        return SPHERE_FIT_TUNING.box_weight * float(off @ off) - _contrast(self.sphere(p), views, level)
+        return SPHERE_FIT_BOX_WEIGHT * float(off @ off) - _contrast(self.sphere(p), views, level)
 
     def minimise(self, p: NDArray[np.float64], views: _BlurredViews, level: int) -> tuple[NDArray[np.float64], float]:
-        step = SPHERE_FIT_TUNING.blur_sigma_pixels[level]
+        step = SPHERE_FIT_BLUR_SIGMA_PIXELS[level]
         return _simplex(lambda q: self.cost(q, views, level), p, step, 250, 1e-5)
 
 
@@ -301,7 +266,7 @@ def _choose_views(view: int, cameras: Sequence[Camera]) -> list[int]:
     facing = np.array([camera.R[2] @ axis > 0.3 for camera in cameras])
     centres = np.array([camera.centre for camera in cameras])
     distance = distances_to(centres)
-    count = SPHERE_FIT_TUNING.max_views
+    count = SPHERE_FIT_MAX_VIEWS
     chosen = farthest_points(lambda index: np.where(facing, distance(index), -1), view, count).tolist()
     if len(chosen) < 2:
         raise ProxyError(
@@ -317,12 +282,12 @@ def _blur_views(
     small, blurred, scales = [], [], []
     for index in track(range(len(some)), "fit sphere", len(some), progress):
         camera, pixels = cameras[chosen[some.camera_of(index)]], some.photograph(index).pixels
-        scale = min(1.0, SPHERE_FIT_TUNING.max_side_pixels / max(camera.width, camera.height))
+        scale = min(1.0, SPHERE_FIT_MAX_SIDE_PIXELS / max(camera.width, camera.height))
         small.append(camera.resize(max(1, round(camera.width * scale)), max(1, round(camera.height * scale))))
         if scale < 1:
             size = (small[-1].width, small[-1].height)
             pixels = np.asarray(cv2.resize(pixels, size, interpolation=cv2.INTER_AREA), np.float32)
-        blurs = (cv2.GaussianBlur(pixels, (0, 0), sigma) for sigma in SPHERE_FIT_TUNING.blur_sigma_pixels)
+        blurs = (cv2.GaussianBlur(pixels, (0, 0), sigma) for sigma in SPHERE_FIT_BLUR_SIGMA_PIXELS)
         blurred.append(tuple(np.asarray(blur, np.float32) for blur in blurs))
         scales.append(scale)
     K, R, t = (np.stack([getattr(camera, name) for camera in small]) for name in ("K", "R", "t"))
@@ -344,10 +309,10 @@ def _colour_steps(
     level: int,
     sphere: SpherePrimitive,
     grow: float = 0.0,
-    cap: float = SPHERE_FIT_TUNING.max_step,
+    cap: float = SPHERE_FIT_MAX_STEP,
 ) -> NDArray[np.float64]:
     """(V, n) capped colour steps across the outline, `grow` pixels outside it; NaN where it leaves the picture."""
-    reach = SPHERE_FIT_TUNING.side_distance_blurs * SPHERE_FIT_TUNING.blur_sigma_pixels[level]
+    reach = SPHERE_FIT_SIDE_DISTANCE_BLURS * SPHERE_FIT_BLUR_SIGMA_PIXELS[level]
     sides = sphere_outlines(sphere, views.K, views.R, views.t, (grow + reach, grow - reach))
     steps = np.empty((len(views), len(SPHERE_OUTLINE_ANGLES_RADIANS)))
     for row, pictures, at in zip(steps, views.blurred, sides, strict=True):
@@ -360,7 +325,7 @@ def _contrast(sphere: SpherePrimitive, views: _BlurredViews, level: int) -> floa
     """The mean step over the views that see enough of the outline; 0 if fewer than two (of several) do."""
     steps = _colour_steps(views, level, sphere)
     there = ~np.isnan(steps)
-    enough = there.mean(axis=1) > SPHERE_FIT_TUNING.min_outline_fraction
+    enough = there.mean(axis=1) > SPHERE_FIT_MIN_OUTLINE_FRACTION
     if int(enough.sum()) < min(2, len(views)):
         return 0.0
     return float((np.where(there, steps, 0).sum(axis=1)[enough] / there.sum(axis=1)[enough]).mean())
@@ -386,7 +351,7 @@ def _start_candidates(search: _Search, views: _BlurredViews) -> list[NDArray[np.
     Depths are parallaxes, evenly up to the picture's size.
     """
     nearest = 0.6 * max(search.camera.width, search.camera.height)
-    depths = nearest * (np.arange(SPHERE_FIT_TUNING.swept_depths) + 0.5) / SPHERE_FIT_TUNING.swept_depths
+    depths = nearest * (np.arange(SPHERE_FIT_SWEPT_DEPTHS) + 0.5) / SPHERE_FIT_SWEPT_DEPTHS
     x, y, r = search.circle
     typical = float(np.median(depths))
     alone = views.first(1)
@@ -394,16 +359,16 @@ def _start_candidates(search: _Search, views: _BlurredViews) -> list[NDArray[np.
     def outline(p: NDArray[np.float64]) -> float:
         return search.cost(np.append(p, typical), alone, 0)
 
-    shifts, growths = SPHERE_FIT_TUNING.start_shifts, SPHERE_FIT_TUNING.start_growths
+    shifts, growths = SPHERE_FIT_START_SHIFTS, SPHERE_FIT_START_GROWTHS
     grid = [np.array([x + dx * r, y + dy * r, g * r]) for dx in shifts for dy in shifts for g in growths]
-    fits = [_simplex(outline, p, SPHERE_FIT_TUNING.blur_sigma_pixels[0], 60, 1e-4) for p in grid]
+    fits = [_simplex(outline, p, SPHERE_FIT_BLUR_SIGMA_PIXELS[0], 60, 1e-4) for p in grid]
     near = np.full(3, 0.03 * r)
     found, costs = (np.array(part) for part in zip(*fits, strict=True))
-    circles = _best_distinct(costs, found, near, SPHERE_FIT_TUNING.start_circles)
+    circles = _best_distinct(costs, found, near, SPHERE_FIT_START_CIRCLES)
     solid = np.array([[*circle, w] for circle in circles for w in depths])
     costs = np.array([search.cost(p, views, 0) for p in solid])
     step = 1.5 * float(np.diff(depths).max())
-    return _best_distinct(costs, solid, np.append(near, step), SPHERE_FIT_TUNING.starts)
+    return _best_distinct(costs, solid, np.append(near, step), SPHERE_FIT_STARTS)
 
 
 def _best_distinct(
@@ -420,7 +385,7 @@ def _best_distinct(
 
 
 def _outline_residual(sphere: SpherePrimitive, views: _BlurredViews) -> float:
-    offsets = np.arange(-SPHERE_FIT_TUNING.search_pixels, SPHERE_FIT_TUNING.search_pixels + 0.25, 0.25)
+    offsets = np.arange(-SPHERE_FIT_SEARCH_PIXELS, SPHERE_FIT_SEARCH_PIXELS + 0.25, 0.25)
     steps = np.array([_colour_steps(views, -1, sphere, float(offset), 3.0) for offset in offsets])
     there = ~np.isnan(steps).any(axis=0)
     off = np.abs(offsets[np.where(np.isnan(steps), -1, steps).argmax(axis=0)]) / views.scale[:, None]

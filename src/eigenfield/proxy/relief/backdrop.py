@@ -53,12 +53,7 @@ def make_backdrop(
     """The triangles of the backdrop that some camera sees past all layers; None if the layers leave nothing open.
 
     Args:
-        reference: The reference view.
-        layers: The layers of the relief.
-        cameras: The views.
         gap: Labels by which it stays behind the layers.
-        limit: Most triangles, approximately.
-        progress: Called for each view.
     """
     views = [*cameras, *(cameras_between(cameras) if len(cameras) < BACKDROP_SPARSE_CAMERAS else [])]
     meshes = [height_field_to_world(reference, layer) for layer in layers]

@@ -25,8 +25,6 @@ def find_cut_edges(
     """Which edges between neighbouring pixels are cut.
 
     Args:
-        d: (h, w) labels.
-        valid: (h, w) where there is surface.
         cut: Difference of labels at which an edge is cut.
 
     Returns:
@@ -103,7 +101,6 @@ def straighten_chain(chain: NDArray[np.float64], tolerance: float) -> NDArray[np
     """A polyline with one line for each straight run of the chain, fitted to all points; the ends stay.
 
     Args:
-        chain: (n, 2) points.
         tolerance: Pixels within which a run is straight.
     """
     if len(chain) < 4:

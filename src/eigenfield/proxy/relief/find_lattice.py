@@ -9,7 +9,7 @@ by the rows and columns of vertices.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,56 +21,25 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.core.proxy import Proxy
 from eigenfield.imaging.graph import vertex_components
 
-
-@dataclass(frozen=True)
-class LatticeTuning:
-    """Constants of `relief_lattice`.
-
-    Attributes:
-        max_vertices: Vertices that the camera is fitted to.
-        max_coordinate_steps: Largest magnitude of a lattice coordinate.
-        max_error_pixels: Distance of vertices from the fitted camera, in pixels of the lattice.
-        min_whole_fraction: Fraction of the vertices that must stand on whole pixels.
-        max_uv_error_pixels: Distance of texture coordinates from the camera's pixels, shifted chart by chart.
-        min_uv_fraction: Fraction of the vertices that must keep it: a flat wall behind a scene does not make it a
-            relief.
-        contour_digits: Binary digits that vertices of contours may have.
-        spectrum_bins: Bins of a chart's extent, in which columns are searched.
-        spectrum_oversampling: How much finer than the bins their number is searched.
-        min_columns: Columns of a chart, at least.
-        max_columns: Columns of a chart, at most.
-        min_peak_fraction: Height of the coarsest peak, relative to the highest.
-        same_peak_fraction: Two peaks are equally high if the lower has this fraction of the other.
-        min_peak_noise_ratio: Height of a peak, relative to that of random phases.
-    """
-
-    max_vertices: int = 4000
-    max_coordinate_steps: int = 2**20 - 1
-    max_error_pixels: float = 0.05
-    min_whole_fraction: float = 0.7
-    max_uv_error_pixels: float = 0.5
-    min_uv_fraction: float = 0.999
-    contour_digits: int = 2
-    spectrum_bins: int = 2**16
-    spectrum_oversampling: int = 8
-    min_columns: int = 16
-    max_columns: int = 8192
-    min_peak_fraction: float = 0.75
-    same_peak_fraction: float = 0.95
-    min_peak_noise_ratio: float = 6.0
-
-
-LATTICE_TUNING = LatticeTuning()
+LATTICE_MAX_VERTICES = 4000  # vertices that the camera is fitted to
+LATTICE_MAX_COORDINATE_STEPS = 2**20 - 1  # largest magnitude of a lattice coordinate
+LATTICE_MAX_ERROR_PIXELS = 0.05  # distance of vertices from the fitted camera, in pixels of the lattice
+LATTICE_MIN_WHOLE_FRACTION = 0.7  # fraction of the vertices that must stand on whole pixels
+LATTICE_MAX_UV_ERROR_PIXELS = 0.5  # distance of texture coordinates from the camera's pixels, shifted chart by chart
+# Fraction of the vertices that must keep it: a flat wall behind a scene does not make it a relief
+LATTICE_MIN_UV_FRACTION = 0.999
+LATTICE_CONTOUR_DIGITS = 2  # binary digits that vertices of contours may have
+LATTICE_SPECTRUM_BINS = 2**16  # bins of a chart's extent, in which columns are searched
+LATTICE_SPECTRUM_OVERSAMPLING = 8  # how much finer than the bins their number is searched
+LATTICE_MIN_COLUMNS = 16  # columns of a chart, at least
+LATTICE_MAX_COLUMNS = 8192  # columns of a chart, at most
+LATTICE_MIN_PEAK_FRACTION = 0.75  # height of the coarsest peak, relative to the highest
+LATTICE_SAME_PEAK_FRACTION = 0.95  # two peaks are equally high if the lower has this fraction of the other
+LATTICE_MIN_PEAK_NOISE_RATIO = 6.0  # height of a peak, relative to that of random phases
 
 
 def relief_proxy(mesh: Mesh, cameras: Sequence[Camera], depth_error: float) -> Proxy:
-    """The mesh with its lattice, if it is a relief.
-
-    Args:
-        mesh: See `relief_lattice`.
-        cameras: See `relief_lattice`.
-        depth_error: See `relief_lattice`.
-    """
+    """The mesh with its lattice, if it is a relief."""
     return Proxy(mesh, relief_lattice(mesh, cameras, depth_error))
 
 
@@ -78,14 +47,13 @@ def relief_lattice(mesh: Mesh, cameras: Sequence[Camera], depth_error: float) ->
     """The lattice of a relief; None for other meshes.
 
     Args:
-        mesh: With UVs.
         cameras: The array, one of which may be the relief's camera.
         depth_error: Pixels by which a rounded depth may move a point in the camera that it moves most.
     """
     assert mesh.uv is not None
     label = vertex_components(mesh.faces, len(mesh.vertices))
     chart = np.flatnonzero(label == np.argmax(np.bincount(label)))
-    chart = chart[np.linspace(0, len(chart) - 1, min(LATTICE_TUNING.max_vertices, len(chart))).astype(int)]
+    chart = chart[np.linspace(0, len(chart) - 1, min(LATTICE_MAX_VERTICES, len(chart))).astype(int)]
     place, uv = mesh.vertices[chart].astype(np.float64), mesh.uv[chart].astype(np.float64)
     matrix = _camera_from_columns(place, uv)
     if matrix is None:
@@ -99,7 +67,7 @@ def relief_lattice(mesh: Mesh, cameras: Sequence[Camera], depth_error: float) ->
     drawn = found[:, :2] / found[:, 2:]
     if not _is_affine_by_chart(drawn, mesh.uv.astype(np.float64), label, chart):
         return None
-    fine = 0 if _whole_fraction(drawn - _phase(drawn)) > 0.999 else LATTICE_TUNING.contour_digits
+    fine = 0 if _whole_fraction(drawn - _phase(drawn)) > 0.999 else LATTICE_CONTOUR_DIGITS
     return _lattice(matrix, mesh, cameras, depth_error, _phase(drawn), fine)
 
 
@@ -110,11 +78,8 @@ def lattice_of_camera(
 
     Args:
         matrix: (3, 4) of that camera, whose pixels' centres most vertices stand on.
-        mesh: The relief.
-        cameras: See `relief_lattice`.
-        depth_error: See `relief_lattice`.
     """
-    return _lattice(matrix, mesh, cameras, depth_error, np.array([0.5, 0.5]), LATTICE_TUNING.contour_digits)
+    return _lattice(matrix, mesh, cameras, depth_error, np.array([0.5, 0.5]), LATTICE_CONTOUR_DIGITS)
 
 
 def _lattice(
@@ -136,7 +101,7 @@ def _lattice(
 def _rounding_is_harmless(lattice: Lattice, mesh: Mesh, cameras: Sequence[Camera]) -> bool:
     """Whether rounding to the lattice moves vertices by less than a pixel; a degenerate camera fails."""
     steps = np.rint(lattice.coordinates(mesh.vertices))
-    if not (np.abs(steps) < LATTICE_TUNING.max_coordinate_steps).all():
+    if not (np.abs(steps) < LATTICE_MAX_COORDINATE_STEPS).all():
         return False
     rounded = lattice.points(steps.astype(np.int64))
     for camera in (cameras[0], cameras[-1]):
@@ -157,9 +122,9 @@ def _camera_from_columns(place: NDArray[np.float64], uv: NDArray[np.float64]) ->
         return None
     found = place @ matrix[:, :3].T + matrix[:, 3]
     drawn = found[:, :2] / found[:, 2:]
-    if not (found[:, 2] > 0).all() or np.quantile(np.abs(drawn - uv / spacing), 0.99) > LATTICE_TUNING.max_error_pixels:
+    if not (found[:, 2] > 0).all() or np.quantile(np.abs(drawn - uv / spacing), 0.99) > LATTICE_MAX_ERROR_PIXELS:
         return None
-    return matrix if _whole_fraction(drawn - _phase(drawn)) > LATTICE_TUNING.min_whole_fraction else None
+    return matrix if _whole_fraction(drawn - _phase(drawn)) > LATTICE_MIN_WHOLE_FRACTION else None
 
 
 def _is_camera_of(matrix: NDArray[np.float64], place: NDArray[np.float64], uv: NDArray[np.float64]) -> bool:
@@ -170,7 +135,7 @@ def _is_camera_of(matrix: NDArray[np.float64], place: NDArray[np.float64], uv: N
     pixels = np.concatenate([found[:, :2] / found[:, 2:], np.ones((len(place), 1))], axis=1)
     affine = np.linalg.lstsq(pixels, uv, rcond=None)[0]
     size = np.sqrt(abs(np.linalg.det(affine[:2])))
-    return bool(size > 0 and np.quantile(np.abs(pixels @ affine - uv), 0.99) < LATTICE_TUNING.max_error_pixels * size)
+    return bool(size > 0 and np.quantile(np.abs(pixels @ affine - uv), 0.99) < LATTICE_MAX_ERROR_PIXELS * size)
 
 
 def _is_affine_by_chart(
@@ -184,12 +149,12 @@ def _is_affine_by_chart(
     off = pixels - uv @ affine[:2]
     shift = [median(along, label, np.arange(label.max() + 1)) for along in off.T]
     off -= np.stack(shift, axis=1)[label]
-    return bool((np.abs(off).max(axis=1) < LATTICE_TUNING.max_uv_error_pixels).mean() > LATTICE_TUNING.min_uv_fraction)
+    return bool((np.abs(off).max(axis=1) < LATTICE_MAX_UV_ERROR_PIXELS).mean() > LATTICE_MIN_UV_FRACTION)
 
 
 def _whole_fraction(pixels: NDArray[np.float64]) -> float:
     """The fraction of (n, 2) coordinates that are whole."""
-    return float(np.mean(np.abs(pixels - np.rint(pixels)).max(axis=1) < LATTICE_TUNING.max_error_pixels))
+    return float(np.mean(np.abs(pixels - np.rint(pixels)).max(axis=1) < LATTICE_MAX_ERROR_PIXELS))
 
 
 def _column_spacing(values: NDArray[np.float64]) -> float:
@@ -201,18 +166,18 @@ def _column_spacing(values: NDArray[np.float64]) -> float:
     low, high = float(values.min()), float(values.max())
     if len(values) < 16 or not high - low > 0:
         return 0.0
-    bins, finer = LATTICE_TUNING.spectrum_bins, LATTICE_TUNING.spectrum_oversampling
+    bins, finer = LATTICE_SPECTRUM_BINS, LATTICE_SPECTRUM_OVERSAMPLING
     counts = np.bincount(((values - low) / (high - low) * (bins - 1)).round().astype(np.int64), minlength=bins)
-    length = np.abs(np.fft.rfft(counts, finer * bins))[: finer * LATTICE_TUNING.max_columns] / len(values)
-    length[: finer * LATTICE_TUNING.min_columns] = 0
+    length = np.abs(np.fft.rfft(counts, finer * bins))[: finer * LATTICE_MAX_COLUMNS] / len(values)
+    length[: finer * LATTICE_MIN_COLUMNS] = 0
 
     def coarsest_peak(height: float) -> int:
         first = int(np.argmax(length > height))
         return first + int(np.argmax(length[first : first + finer]))
 
-    near = coarsest_peak(LATTICE_TUNING.min_peak_fraction * length.max())
-    near = coarsest_peak(LATTICE_TUNING.same_peak_fraction * length[near])  # a coarser one may just miss the limit
-    if not length[near] > LATTICE_TUNING.min_peak_noise_ratio / np.sqrt(len(values)):
+    near = coarsest_peak(LATTICE_MIN_PEAK_FRACTION * length.max())
+    near = coarsest_peak(LATTICE_SAME_PEAK_FRACTION * length[near])  # a coarser one may just miss the limit
+    if not length[near] > LATTICE_MIN_PEAK_NOISE_RATIO / np.sqrt(len(values)):
         return 0.0
     columns = near * (bins - 1) / (finer * bins) / (high - low)
     for step in (0.1, 0.01, 0.001):  # of a column, over the whole extent

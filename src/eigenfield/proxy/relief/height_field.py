@@ -31,37 +31,17 @@ from eigenfield.stereo import ReferenceView
 
 log = logging.getLogger("eigenfield.proxy")
 
-
-@dataclass(frozen=True)
-class HeightFieldTuning:
-    """Constants of `triangulate_height_field`.
-
-    Attributes:
-        contour_tolerance_pixels: Distance of cut edges from their line: a straight edge leaves them up to 0.5 off.
-        max_contour_tolerance_pixels: The same, when the limit of triangles leaves no other way.
-        max_contour_fraction: Fraction of the limit that triangles at contours may take.
-        padding_pixels: Pixels added around the depth map.
-        frame_pixels: Distance of the enclosing rectangle from the depth map.
-        wedge_pixels: Distance from a contour's vertex within which it may take depths.
-        slope_ridge: Ridge on the slope of a vertex plane, squared pixels.
-        depth_weight: Weight of a vertex's present depth in the last fit, in pixels.
-        min_inverse_ratio: Smallest inverse depth, relative to the nearest vertex.
-        outlier_tolerances: Errors beyond this many tolerances do not take part in the last fit.
-    """
-
-    contour_tolerance_pixels: float = 0.6
-    max_contour_tolerance_pixels: float = 4.0
-    max_contour_fraction: float = 0.6
-    padding_pixels: int = 2
-    frame_pixels: int = 4
-    wedge_pixels: int = 4
-    slope_ridge: float = 0.03
-    depth_weight: float = 0.05
-    min_inverse_ratio: float = 0.0001
-    outlier_tolerances: float = 3.0
-
-
-HEIGHT_FIELD_TUNING = HeightFieldTuning()
+# Distance of cut edges from their line: a straight edge leaves them up to 0.5 off
+HEIGHT_FIELD_CONTOUR_TOLERANCE_PIXELS = 0.6
+HEIGHT_FIELD_MAX_CONTOUR_TOLERANCE_PIXELS = 4.0  # the same, when the limit of triangles leaves no other way
+HEIGHT_FIELD_MAX_CONTOUR_FRACTION = 0.6  # fraction of the limit that triangles at contours may take
+HEIGHT_FIELD_PADDING_PIXELS = 2  # pixels added around the depth map
+HEIGHT_FIELD_FRAME_PIXELS = 4  # distance of the enclosing rectangle from the depth map
+HEIGHT_FIELD_WEDGE_PIXELS = 4  # distance from a contour's vertex within which it may take depths
+HEIGHT_FIELD_SLOPE_RIDGE = 0.03  # ridge on the slope of a vertex plane, squared pixels
+HEIGHT_FIELD_DEPTH_WEIGHT = 0.05  # weight of a vertex's present depth in the last fit, in pixels
+HEIGHT_FIELD_MIN_INVERSE_RATIO = 0.0001  # smallest inverse depth, relative to the nearest vertex
+HEIGHT_FIELD_OUTLIER_TOLERANCES = 3.0  # errors beyond this many tolerances do not take part in the last fit
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,18 +80,16 @@ def triangulate_height_field(
     it a little). If `limit` triangles do not suffice, it is as near as they allow, and the log says so.
 
     Args:
-        d: (h, w) labels.
-        valid: (h, w) where there is surface.
         cut: Difference of neighbouring labels at which the surface is cut.
         tolerance: In labels.
         limit: Most triangles. Default: no limit.
     """
     d, valid, ground = _pad_depth(d, valid)
     beside, below = find_cut_edges(d, ground, cut)
-    at_contours = None if limit is None else int(HEIGHT_FIELD_TUNING.max_contour_fraction * limit)
+    at_contours = None if limit is None else int(HEIGHT_FIELD_MAX_CONTOUR_FRACTION * limit)
     triangulation = _triangulate_contours(trace_contours(beside, below), d.shape, at_contours)
     mesh = _refine(_cut_open(triangulation, ground), d, valid, _cut_pixels(beside, below, valid), tolerance, limit)
-    pad = HEIGHT_FIELD_TUNING.padding_pixels
+    pad = HEIGHT_FIELD_PADDING_PIXELS
     return HeightFieldMesh(mesh.x - pad, mesh.y - pad, mesh.d, mesh.faces)
 
 
@@ -123,7 +101,7 @@ def _pad_depth(
     The ground is one pixel larger than the valid part, so that straightening its border uncovers nothing. There d is
     that of the nearest valid pixel, which only determines where cuts continue.
     """
-    d, valid = np.pad(d, HEIGHT_FIELD_TUNING.padding_pixels), np.pad(valid, HEIGHT_FIELD_TUNING.padding_pixels)
+    d, valid = np.pad(d, HEIGHT_FIELD_PADDING_PIXELS), np.pad(valid, HEIGHT_FIELD_PADDING_PIXELS)
     if not valid.any():
         return d, valid, valid
     row, column = distance_transform_edt(~valid, return_distances=False, return_indices=True)
@@ -133,14 +111,14 @@ def _pad_depth(
 def _triangulate_contours(
     chains: list[NDArray[np.float64]], shape: tuple[int, int], limit: int | None
 ) -> _Triangulation:
-    straight = HEIGHT_FIELD_TUNING.contour_tolerance_pixels
+    straight = HEIGHT_FIELD_CONTOUR_TOLERANCE_PIXELS
     while True:
         lines = [straighten_chain(chain, straight) for chain in chains]
         few = limit is None or sum(map(len, lines)) * 2 <= limit
-        if few or straight >= HEIGHT_FIELD_TUNING.max_contour_tolerance_pixels:
+        if few or straight >= HEIGHT_FIELD_MAX_CONTOUR_TOLERANCE_PIXELS:
             break
         straight *= 1.4
-    if straight > HEIGHT_FIELD_TUNING.contour_tolerance_pixels:
+    if straight > HEIGHT_FIELD_CONTOUR_TOLERANCE_PIXELS:
         log.warning("contours are straightened by up to %.1f px to keep the number of triangles", straight)
     while True:
         triangulation, clash = _constrained_delaunay(lines, shape)
@@ -154,8 +132,8 @@ def _constrained_delaunay(
     lines: list[NDArray[np.float64]], shape: tuple[int, int]
 ) -> tuple[_Triangulation, NDArray[np.bool_]]:
     """The triangulation that contains every line, and which lines cross another."""
-    low = -HEIGHT_FIELD_TUNING.frame_pixels
-    bottom, right = (side + HEIGHT_FIELD_TUNING.frame_pixels for side in shape)
+    low = -HEIGHT_FIELD_FRAME_PIXELS
+    bottom, right = (side + HEIGHT_FIELD_FRAME_PIXELS for side in shape)
     frame = [(low, low), (right, low), (right, bottom), (low, bottom)]
     points = np.rint(np.concatenate([np.array(frame, np.float64), *lines]) * DELAUNAY_STEPS_PER_PIXEL).astype(np.int64)
     sizes = np.array([len(each) for each in lines], np.int64)
@@ -242,7 +220,7 @@ def _initial_depths(
     """(n,) depth of every vertex: the plane through the pixels near it on its own side of the cuts."""
     n = len(mesh.points)
     clear, near = np.zeros((n, 9)), np.zeros((n, 9))
-    wedge_moments(mesh.points, mesh.tri, d, valid, at_cut, HEIGHT_FIELD_TUNING.wedge_pixels, clear, near)
+    wedge_moments(mesh.points, mesh.tri, d, valid, at_cut, HEIGHT_FIELD_WEDGE_PIXELS, clear, near)
     moments = np.where(clear[:, :1] > 0, clear, near)
     known = moments[:, 0] > 0
     depth = _fit_planes(moments)
@@ -265,7 +243,7 @@ def _fit_planes(moments: NDArray[np.float64]) -> NDArray[np.float64]:
     A ridge holds the slope at zero if there are only few pixels in a row.
     """
     w, x, y, xx, xy, yy, d, xd, yd = moments.T
-    ridge = HEIGHT_FIELD_TUNING.slope_ridge * w
+    ridge = HEIGHT_FIELD_SLOPE_RIDGE * w
     matrix = np.stack([w, x, y, x, xx + ridge, xy, y, xy, yy + ridge], axis=1).reshape(-1, 3, 3)
     matrix[w == 0] = np.eye(3)
     return np.asarray(np.linalg.solve(matrix, np.stack([d, xd, yd], axis=1)[..., None])[:, 0, 0])
@@ -325,12 +303,12 @@ def _fit_depths(
     corners = tri[owner[y, x]]
     weights = barycentric_coordinates(points[corners], np.stack([x, y], axis=1) * DELAUNAY_STEPS_PER_PIXEL)
     off = d[y, x] - (weights * height[corners]).sum(axis=1)
-    most = HEIGHT_FIELD_TUNING.outlier_tolerances * tolerance
+    most = HEIGHT_FIELD_OUTLIER_TOLERANCES * tolerance
     used = np.abs(off) <= most
     corners, weights, off = corners[used], weights[used], off[used]
     rows = np.repeat(np.arange(len(off)), 3)
     A = coo_array((weights.reshape(-1), (rows, corners.reshape(-1))), shape=(len(off), len(height))).tocsr()
-    normal = A.T @ A + HEIGHT_FIELD_TUNING.depth_weight * diags_array(np.ones(len(height)))
+    normal = A.T @ A + HEIGHT_FIELD_DEPTH_WEIGHT * diags_array(np.ones(len(height)))
     change, _ = cg(normal, A.T @ off, rtol=1e-4, maxiter=200, M=diags_array(1 / normal.diagonal()))
     return np.asarray(height + np.clip(change, -most, most))
 
@@ -351,13 +329,9 @@ def height_field_to_world(reference: ReferenceView, mesh: HeightFieldMesh) -> Me
     """A mesh in the world, without UVs, counter-clockwise for the reference camera.
 
     Nothing is farther than 1 / `min_inverse_ratio` times the nearest vertex.
-
-    Args:
-        reference: The reference view of the labels.
-        mesh: The height field.
     """
     nearest = reference.offset + reference.scale * mesh.d.max()
-    d = np.maximum(mesh.d, (HEIGHT_FIELD_TUNING.min_inverse_ratio * nearest - reference.offset) / reference.scale)
+    d = np.maximum(mesh.d, (HEIGHT_FIELD_MIN_INVERSE_RATIO * nearest - reference.offset) / reference.scale)
     faces = np.ascontiguousarray(mesh.faces[:, ::-1])  # y is down: positive area is clockwise for the camera
     return Mesh(reference.points(mesh.x, mesh.y, d).astype(np.float32), faces)
 
@@ -366,7 +340,6 @@ def extract_faces(mesh: HeightFieldMesh, faces: NDArray[np.int64] | None = None)
     """Some triangles of a mesh, with only the vertices that they use.
 
     Args:
-        mesh: The height field.
         faces: Which. Default: all.
     """
     kept = mesh.faces if faces is None else mesh.faces[faces]

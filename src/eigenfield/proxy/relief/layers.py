@@ -9,7 +9,6 @@ plate that is attached to the far side of the cut.
 from __future__ import annotations
 
 import logging
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,56 +29,26 @@ log = logging.getLogger("eigenfield.proxy")
 SECOND_LAYER_STAGE = "second layer"  # steps: uncovered pixels; sweep and optimisation (two); plate
 
 
-@dataclass(frozen=True)
-class SecondLayerTuning:
-    """Constants of `estimate_second_layer`.
-
-    Attributes:
-        sweep_max_views: Views of the sweep. More views tell little new.
-        sweep_step_pixels: Distance of two labels in the view with most parallax.
-        sweep_max_labels: Labels of the sweep.
-        nearer_cuts: How much nearer than the far side of a cut the second layer may come, in cuts.
-        behind_cuts: How far it stays behind the first layer, in cuts.
-        visibility_bias_cuts: Bias of the depth test, in cuts.
-        min_views: Views that must see past the first layer.
-        max_difference_levels: Grey levels at which differences are cut off.
-        unseen_cost_levels: Cost of points that too few views see.
-        cost_window_pixels: Side of the window over which costs are averaged.
-        anchor_levels_per_label: How strongly the far side holds its depth in the optimisation.
-        sgm_p1_levels: Penalty of `semi_global_matching` for a step of one label.
-        sgm_p2_levels: Penalty for a jump.
-        ring_pixels: Width of the far side to which the layer is attached.
-        overlap_pixels: Width by which the layer extends under the far side, so that no gap opens.
-        half_confidence: Confidence of `semi_global_matching` at which a depth has half its weight.
-        max_cost_levels: Cost above which photographs do not agree.
-        curvature_weight: Weight of curvature, relative to a depth.
-        slope_weight: Weight of slope.
-        far_side_weight: Weight of the far side.
-    """
-
-    sweep_max_views: int = 100
-    sweep_step_pixels: float = 0.8
-    sweep_max_labels: int = 128
-    nearer_cuts: float = 0.3
-    behind_cuts: float = 0.3
-    visibility_bias_cuts: float = 0.3
-    min_views: int = 3
-    max_difference_levels: float = 30.0
-    unseen_cost_levels: float = 21.0
-    cost_window_pixels: int = 5
-    anchor_levels_per_label: float = 60.0
-    sgm_p1_levels: float = 1.5
-    sgm_p2_levels: float = 25.0
-    ring_pixels: int = 12
-    overlap_pixels: int = 4
-    half_confidence: float = 2.0
-    max_cost_levels: float = 12.0
-    curvature_weight: float = 100.0
-    slope_weight: float = 0.02
-    far_side_weight: float = 100.0
-
-
-SECOND_LAYER_TUNING = SecondLayerTuning()
+SECOND_LAYER_SWEEP_MAX_VIEWS = 100  # views of the sweep. More views tell little new
+SECOND_LAYER_SWEEP_STEP_PIXELS = 0.8  # distance of two labels in the view with most parallax
+SECOND_LAYER_SWEEP_MAX_LABELS = 128
+SECOND_LAYER_NEARER_CUTS = 0.3  # how much nearer than the far side of a cut the second layer may come, in cuts
+SECOND_LAYER_BEHIND_CUTS = 0.3  # how far it stays behind the first layer, in cuts
+SECOND_LAYER_VISIBILITY_BIAS_CUTS = 0.3  # bias of the depth test, in cuts
+SECOND_LAYER_MIN_VIEWS = 3  # views that must see past the first layer
+SECOND_LAYER_MAX_DIFFERENCE_LEVELS = 30.0  # grey levels at which differences are cut off
+SECOND_LAYER_UNSEEN_COST_LEVELS = 21.0  # cost of points that too few views see
+SECOND_LAYER_COST_WINDOW_PIXELS = 5  # side of the window over which costs are averaged
+SECOND_LAYER_ANCHOR_LEVELS_PER_LABEL = 60.0  # how strongly the far side holds its depth in the optimisation
+SECOND_LAYER_SGM_P1_LEVELS = 1.5  # penalty of `semi_global_matching` for a step of one label
+SECOND_LAYER_SGM_P2_LEVELS = 25.0  # penalty for a jump
+SECOND_LAYER_RING_PIXELS = 12  # width of the far side to which the layer is attached
+SECOND_LAYER_OVERLAP_PIXELS = 4  # width by which the layer extends under the far side, so that no gap opens
+SECOND_LAYER_HALF_CONFIDENCE = 2.0  # confidence of `semi_global_matching` at which a depth has half its weight
+SECOND_LAYER_MAX_COST_LEVELS = 12.0  # cost above which photographs do not agree
+SECOND_LAYER_CURVATURE_WEIGHT = 100.0  # weight of curvature, relative to a depth
+SECOND_LAYER_SLOPE_WEIGHT = 0.02
+SECOND_LAYER_FAR_SIDE_WEIGHT = 100.0
 
 
 def estimate_second_layer(
@@ -94,12 +63,8 @@ def estimate_second_layer(
     """The layer behind a depth map.
 
     Args:
-        pictures: (V, H, W, 3) uint8 or packed.
-        matrices: (V, 3, 4) of the views, as for `plane_sweep`.
-        d: (h, w) labels of the first layer.
         valid: (h, w) where it has surface. Default: everywhere.
         cut: Difference of neighbouring labels at which the first layer is cut.
-        progress: Called for each step.
 
     Returns:
         (h, w) float32 labels of the second layer, below d, and (h, w) bool where there is one. It extends a few pixels
@@ -116,17 +81,17 @@ def estimate_second_layer(
         return d.copy(), want
     report(SECOND_LAYER_STAGE, 1, 4)
     far = _far_side(d, valid, want, ceiling, cut)
-    floor = _label_floor(d, far, want, parallax) - np.float32(SECOND_LAYER_TUNING.nearer_cuts * cut)
+    floor = _label_floor(d, far, want, parallax) - np.float32(SECOND_LAYER_NEARER_CUTS * cut)
     guess, trust = _sweep_behind(pictures, matrices, d, valid, want, floor, ceiling, cut, parallax)
     report(SECOND_LAYER_STAGE, 3, 4)
     inside = want | far
-    weight = np.where(want, trust, SECOND_LAYER_TUNING.far_side_weight)
+    weight = np.where(want, trust, SECOND_LAYER_FAR_SIDE_WEIGHT)
     plate = _fit_thin_plate(np.where(want, guess, d), weight, inside)
     report(SECOND_LAYER_STAGE, 4, 4)
-    behind = SECOND_LAYER_TUNING.behind_cuts
+    behind = SECOND_LAYER_BEHIND_CUTS
     below = d - np.where(want, np.float32(behind * cut), np.float32(0.1 * behind * cut))
     result = np.where(want, np.minimum(np.maximum(plate, floor), np.minimum(ceiling, below)), below)
-    overlap = far & binary_dilation(want, iterations=SECOND_LAYER_TUNING.overlap_pixels)
+    overlap = far & binary_dilation(want, iterations=SECOND_LAYER_OVERLAP_PIXELS)
     return result.astype(np.float32), want | overlap
 
 
@@ -136,7 +101,7 @@ def _find_revealed(
     """Pixels of the near sides that some view uncovers, and the largest d that the surface behind may have there."""
     want, ceiling = np.zeros(d.shape, np.bool_), np.full(d.shape, np.inf, np.float32)
     reach = np.maximum(np.r_[parallax.max(axis=0), -parallax.min(axis=0)], 0.0)
-    mark_revealed(d, valid, np.float32(cut), reach, np.float32(SECOND_LAYER_TUNING.nearer_cuts * cut), want, ceiling)
+    mark_revealed(d, valid, np.float32(cut), reach, np.float32(SECOND_LAYER_NEARER_CUTS * cut), want, ceiling)
     return want, ceiling
 
 
@@ -144,9 +109,9 @@ def _far_side(
     d: NDArray[np.float32], valid: NDArray[np.bool_], want: NDArray[np.bool_], ceiling: NDArray[np.float32], cut: float
 ) -> NDArray[np.bool_]:
     """Pixels beside the uncovered ones that are no nearer than the surface behind may be."""
-    ring = binary_dilation(want, iterations=SECOND_LAYER_TUNING.ring_pixels) & ~want & valid
-    allowed = minimum_filter(np.where(want, ceiling, np.inf), 2 * SECOND_LAYER_TUNING.ring_pixels + 1)
-    return np.asarray(ring & (d <= allowed + np.float32(SECOND_LAYER_TUNING.nearer_cuts * cut)))
+    ring = binary_dilation(want, iterations=SECOND_LAYER_RING_PIXELS) & ~want & valid
+    allowed = minimum_filter(np.where(want, ceiling, np.inf), 2 * SECOND_LAYER_RING_PIXELS + 1)
+    return np.asarray(ring & (d <= allowed + np.float32(SECOND_LAYER_NEARER_CUTS * cut)))
 
 
 def _label_floor(
@@ -154,7 +119,7 @@ def _label_floor(
 ) -> NDArray[np.float32]:
     """The smallest d on the far side in the neighbourhood: without it the second layer would drop away."""
     jump = float(d[want].max() - d[far].min()) if far.any() else 0.0
-    near = 2 * int(np.ceil(np.abs(parallax).max(initial=0.0) * jump)) + 2 * SECOND_LAYER_TUNING.ring_pixels + 1
+    near = 2 * int(np.ceil(np.abs(parallax).max(initial=0.0) * jump)) + 2 * SECOND_LAYER_RING_PIXELS + 1
     least = minimum_filter(np.where(far, d, np.inf), min(near, 2 * max(d.shape) + 1))
     return np.where(np.isfinite(least), least, d[want].min()).astype(np.float32)
 
@@ -171,20 +136,20 @@ def _sweep_behind(
     parallax: NDArray[np.float64],
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Depth of the uncovered pixels from the views that see past the first layer, and its weight (0..1)."""
-    chosen = np.arange(0, len(matrices), -(-len(matrices) // SECOND_LAYER_TUNING.sweep_max_views))
+    chosen = np.arange(0, len(matrices), -(-len(matrices) // SECOND_LAYER_SWEEP_MAX_VIEWS))
     packed, matrices = pack_pictures(pictures[chosen]), matrices[chosen]
     low, high = float(floor[want].min()), float(ceiling[want].max())
     fastest = max(float(np.abs(parallax).max()), 1e-9)
-    fewest = (high - low) / (SECOND_LAYER_TUNING.sweep_max_labels - 4)
-    step = max(SECOND_LAYER_TUNING.sweep_step_pixels / fastest, fewest)
+    fewest = (high - low) / (SECOND_LAYER_SWEEP_MAX_LABELS - 4)
+    step = max(SECOND_LAYER_SWEEP_STEP_PIXELS / fastest, fewest)
     labels = (low - step + step * np.arange(int(np.ceil((high - low) / step)) + 3)).astype(np.float32)
     buffers = depth_buffers(matrices, d, packed.shape[1:], valid)
     cost = plane_sweep(
         packed, matrices, d.shape, labels, mask=want, floor=floor, ceiling=ceiling, buffers=buffers,
-        bias=SECOND_LAYER_TUNING.visibility_bias_cuts * cut, max_difference=SECOND_LAYER_TUNING.max_difference_levels,
-        min_views=SECOND_LAYER_TUNING.min_views, unseen_cost=SECOND_LAYER_TUNING.unseen_cost_levels,
+        bias=SECOND_LAYER_VISIBILITY_BIAS_CUTS * cut, max_difference=SECOND_LAYER_MAX_DIFFERENCE_LEVELS,
+        min_views=SECOND_LAYER_MIN_VIEWS, unseen_cost=SECOND_LAYER_UNSEEN_COST_LEVELS,
     )  # fmt: skip
-    side, most = SECOND_LAYER_TUNING.cost_window_pixels, np.float32(SECOND_LAYER_TUNING.max_difference_levels)
+    side, most = SECOND_LAYER_COST_WINDOW_PIXELS, np.float32(SECOND_LAYER_MAX_DIFFERENCE_LEVELS)
     window = np.maximum(uniform_filter(want.astype(np.float32), side), np.float32(1 / side**2))
 
     def smooth(index: int) -> NDArray[np.floating]:
@@ -192,7 +157,7 @@ def _sweep_behind(
         tried = want & (cost[..., index] < 255)
         level = np.where(tried, cost[..., index] / np.float32(8), most) * want
         level = uniform_filter(level, side) / window
-        anchored = np.abs(labels[index] - d) * np.float32(SECOND_LAYER_TUNING.anchor_levels_per_label)
+        anchored = np.abs(labels[index] - d) * np.float32(SECOND_LAYER_ANCHOR_LEVELS_PER_LABEL)
         layer = np.where(want, np.where(tried, level, most), np.minimum(most, anchored))
         cost[..., index] = np.rint(np.clip(layer * 8, 0, 240)).astype(np.uint8)
         return np.where(tried, level, np.float32(np.inf))
@@ -200,10 +165,10 @@ def _sweep_behind(
     best = np.full(d.shape, np.inf, np.float32)
     for level in parallel_stream(smooth, range(len(labels))):
         np.minimum(best, level, out=best)
-    penalties = SECOND_LAYER_TUNING.sgm_p1_levels, SECOND_LAYER_TUNING.sgm_p2_levels
+    penalties = SECOND_LAYER_SGM_P1_LEVELS, SECOND_LAYER_SGM_P2_LEVELS
     guess, confidence = semi_global_matching(cost, np.zeros(d.shape, np.float32), labels, *penalties)
-    sure = confidence / (confidence + np.float32(SECOND_LAYER_TUNING.half_confidence))
-    trust = np.where(best < SECOND_LAYER_TUNING.max_cost_levels, sure, 0)
+    sure = confidence / (confidence + np.float32(SECOND_LAYER_HALF_CONFIDENCE))
+    trust = np.where(best < SECOND_LAYER_MAX_COST_LEVELS, sure, 0)
     return np.minimum(guess, np.where(want, ceiling, np.inf)).astype(np.float32), trust.astype(np.float32)
 
 
@@ -219,11 +184,11 @@ def _fit_thin_plate(
     n = int(inside.sum())
     normal = diags_array(weight[inside].astype(np.float64) + 1e-6)
     for stencil, factor in (
-        (((0, -1, 1.0), (0, 0, -2.0), (0, 1, 1.0)), SECOND_LAYER_TUNING.curvature_weight),
-        (((-1, 0, 1.0), (0, 0, -2.0), (1, 0, 1.0)), SECOND_LAYER_TUNING.curvature_weight),
-        (((0, 0, 1.0), (0, 1, -1.0), (1, 0, -1.0), (1, 1, 1.0)), 2 * SECOND_LAYER_TUNING.curvature_weight),
-        (((0, 0, 1.0), (0, 1, -1.0)), SECOND_LAYER_TUNING.slope_weight),
-        (((0, 0, 1.0), (1, 0, -1.0)), SECOND_LAYER_TUNING.slope_weight),
+        (((0, -1, 1.0), (0, 0, -2.0), (0, 1, 1.0)), SECOND_LAYER_CURVATURE_WEIGHT),
+        (((-1, 0, 1.0), (0, 0, -2.0), (1, 0, 1.0)), SECOND_LAYER_CURVATURE_WEIGHT),
+        (((0, 0, 1.0), (0, 1, -1.0), (1, 0, -1.0), (1, 1, 1.0)), 2 * SECOND_LAYER_CURVATURE_WEIGHT),
+        (((0, 0, 1.0), (0, 1, -1.0)), SECOND_LAYER_SLOPE_WEIGHT),
+        (((0, 0, 1.0), (1, 0, -1.0)), SECOND_LAYER_SLOPE_WEIGHT),
     ):
         rows = _stencil(index, stencil, n)
         normal = normal + factor * (rows.T @ rows)

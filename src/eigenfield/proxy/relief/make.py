@@ -17,7 +17,6 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress
-from eigenfield.proxy.atlas.unwrap import PROXY_DEFAULT_TRIANGLES
 from eigenfield.proxy.relief.backdrop import make_backdrop
 from eigenfield.proxy.relief.height_field import (
     extract_faces,
@@ -26,6 +25,7 @@ from eigenfield.proxy.relief.height_field import (
     triangulate_height_field,
 )
 from eigenfield.proxy.relief.packing import pack_layers
+from eigenfield.proxy.simplify import PROXY_DEFAULT_TRIANGLES
 from eigenfield.stereo import ReferenceView
 
 RELIEF_SECOND_LAYER_FRACTION = 0.3  # of the triangles, for the second layer at most
@@ -51,16 +51,12 @@ def relief_mesh(
     Faces are counter-clockwise seen from the reference camera.
 
     Args:
-        reference: The reference view.
-        d: (h, w) labels (larger is nearer).
-        valid: (h, w) where there is surface.
         second: The same for the layer behind, which has no cuts.
         cut: The surface is cut where neighbouring pixels of the first layer differ by more than this.
         tolerance: Largest difference of the mesh from the depth map in labels, except within a pixel of a cut. The
             second layer is allowed RELIEF_SECOND_TOLERANCE_RATIO times as much.
         triangles: Most triangles, at the cost of the tolerance. Default: PROXY_DEFAULT_TRIANGLES.
         cameras: What they see past both layers is closed by a backdrop (`make_backdrop`).
-        progress: Called for each view of the backdrop.
 
     Raises:
         ProxyError: `relief-empty`: the depth map has no surface.

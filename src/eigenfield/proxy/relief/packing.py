@@ -35,10 +35,6 @@ def pack_layers(
     Pieces too wide for the strips that a square leaves beside the first layer would waste most of it. Several widths
     are tried, and the smallest square is taken.
 
-    Args:
-        first: The first layer.
-        others: The other layers.
-
     Returns:
         The parts, (2,) by how much each moves, and the side of the square.
     """
@@ -58,9 +54,6 @@ def pack_sheets(
     meshes: Sequence[HeightFieldMesh],
 ) -> tuple[list[HeightFieldMesh], list[int], list[NDArray[np.float64]], float]:
     """Several layers, each in pieces, packed into a square.
-
-    Args:
-        meshes: The layers.
 
     Returns:
         The parts, the layer of each, (2,) by how much each moves, and the side of the square.

@@ -15,7 +15,6 @@ from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import barycentric_coordinates
 from eigenfield.core.progress import Progress
 from eigenfield.core.proxy import Proxy, Sheets
-from eigenfield.proxy.atlas.unwrap import PROXY_DEFAULT_TRIANGLES
 from eigenfield.proxy.relief.backdrop import cameras_between
 from eigenfield.proxy.relief.find_lattice import lattice_of_camera
 from eigenfield.proxy.relief.height_field import (
@@ -25,35 +24,20 @@ from eigenfield.proxy.relief.height_field import (
     triangulate_height_field,
 )
 from eigenfield.proxy.relief.packing import chart_pixels, pack_sheets
+from eigenfield.proxy.simplify import PROXY_DEFAULT_TRIANGLES
 from eigenfield.stereo import ReferenceView
 from eigenfield.stereo.multiplane import SoftSheets
 from eigenfield.stereo.multiplane.visibility import sheet_visibility
 
-
-@dataclass(frozen=True)
-class SoftReliefTuning:
-    """Constants of `soft_relief`. Visibility is the part of a texel's light that reaches the view that sees it best.
-
-    Attributes:
-        min_visibility: Of texels that are drawn, times their opacity.
-        min_peak: What some texel of a connected region must reach.
-        min_weight_texels: Visibility times opacity, summed over a connected region.
-        min_back_visibility: Of texels of the backmost sheet.
-        reach_texels: By which a sheet reaches beyond what it draws: the widest filter, and a texel of its outline.
-        back_reach_fraction: The same of the backmost sheet, of the reference view's width.
-        sheet_min_fraction: Of the reference view that a sheet must draw.
-    """
-
-    min_visibility: float = 0.05
-    min_peak: float = 0.2
-    min_weight_texels: float = 4.0
-    min_back_visibility: float = 0.02
-    reach_texels: int = 3
-    back_reach_fraction: float = 0.03
-    sheet_min_fraction: float = 0.001
-
-
-SOFT_RELIEF_TUNING = SoftReliefTuning()
+# Visibility is the part of a texel's light that reaches the view that sees it best.
+SOFT_RELIEF_MIN_VISIBILITY = 0.05  # of texels that are drawn, times their opacity
+SOFT_RELIEF_MIN_PEAK = 0.2  # what some texel of a connected region must reach
+SOFT_RELIEF_MIN_WEIGHT_TEXELS = 4.0  # visibility times opacity, summed over a connected region
+SOFT_RELIEF_MIN_BACK_VISIBILITY = 0.02  # of texels of the backmost sheet
+# By which a sheet reaches beyond what it draws: the widest filter, and a texel of its outline
+SOFT_RELIEF_REACH_TEXELS = 3
+SOFT_RELIEF_BACK_REACH_FRACTION = 0.03  # the same of the backmost sheet, of the reference view's width
+SOFT_RELIEF_SHEET_MIN_FRACTION = 0.001  # of the reference view that a sheet must draw
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,13 +69,10 @@ def soft_relief(
     The backmost sheet is opaque and is drawn wherever others let something through: nothing is left open.
 
     Args:
-        reference: The reference view.
         sheets: Back to front; sheets that draw next to nothing are left out.
-        cameras: The views.
         tolerance: Largest difference of the mesh from a sheet's labels.
         depth_error: Pixels by which the lattice's depths may move a point in the camera that they move most.
         triangles: Most triangles, at the cost of the tolerance. Default: PROXY_DEFAULT_TRIANGLES.
-        progress: Called for each view.
 
     Raises:
         ProxyError: `relief-empty`: no sheet draws anything.
@@ -100,7 +81,7 @@ def soft_relief(
     views = [*cameras, *cameras_between(cameras)]
     visibility = sheet_visibility(sheets, reference, views, progress)
     masks = [_back_mask(visibility[0]), *map(_drawn_mask, visibility[1:], sheets.layers[1:, ..., 3])]
-    kept = [k for k, mask in enumerate(masks) if mask.mean() > SOFT_RELIEF_TUNING.sheet_min_fraction]
+    kept = [k for k, mask in enumerate(masks) if mask.mean() > SOFT_RELIEF_SHEET_MIN_FRACTION]
     if not kept:
         raise ProxyError(
             "relief-empty", "no sheet draws anything", remedy="widen the depth range, or look at the masks"
@@ -133,20 +114,20 @@ def soft_relief(
 def _drawn_mask(visibility: NDArray[np.float32], opacity: NDArray[np.float32]) -> NDArray[np.bool_]:
     """(h, w) what is worth a triangle: regions that are seen and opaque enough, and what a filter reads around them."""
     weight = visibility * opacity
-    regions, count = label(weight >= SOFT_RELIEF_TUNING.min_visibility, np.ones((3, 3), np.int8))
+    regions, count = label(weight >= SOFT_RELIEF_MIN_VISIBILITY, np.ones((3, 3), np.int8))
     numbers = np.arange(1, count + 1)
     worth = np.zeros(count + 1, np.bool_)
     if count:
-        worth[1:] = np.asarray(maximum(weight, regions, numbers)) >= SOFT_RELIEF_TUNING.min_peak
-        worth[1:] &= np.asarray(sum_labels(weight, regions, numbers)) >= SOFT_RELIEF_TUNING.min_weight_texels
-    return _dilated(worth[regions], SOFT_RELIEF_TUNING.reach_texels)
+        worth[1:] = np.asarray(maximum(weight, regions, numbers)) >= SOFT_RELIEF_MIN_PEAK
+        worth[1:] &= np.asarray(sum_labels(weight, regions, numbers)) >= SOFT_RELIEF_MIN_WEIGHT_TEXELS
+    return _dilated(worth[regions], SOFT_RELIEF_REACH_TEXELS)
 
 
 def _back_mask(visibility: NDArray[np.float32]) -> NDArray[np.bool_]:
     """(h, w) where the backmost sheet is drawn."""
-    reach = round(SOFT_RELIEF_TUNING.back_reach_fraction * visibility.shape[1])
-    seen = visibility >= SOFT_RELIEF_TUNING.min_back_visibility
-    return _dilated(seen, max(reach, SOFT_RELIEF_TUNING.reach_texels))
+    reach = round(SOFT_RELIEF_BACK_REACH_FRACTION * visibility.shape[1])
+    seen = visibility >= SOFT_RELIEF_MIN_BACK_VISIBILITY
+    return _dilated(seen, max(reach, SOFT_RELIEF_REACH_TEXELS))
 
 
 def _dilated(mask: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
@@ -168,7 +149,6 @@ def _draw_chart(
 
     Args:
         layer: (h, w, 4) of the sheet.
-        part: A part of it.
         depth: (n,) of its vertices in the reference view.
         place: (2,) of the part in the atlas.
         atlas: (S, S, 4), drawn into.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +14,7 @@ from eigenfield.core.progress import Progress, track
 from eigenfield.proxy.surface.fusion import DepthView
 from eigenfield.proxy.surface.neighbours import project_inside
 from eigenfield.runtime.parts import Parts
+from eigenfield.runtime.shared import Shared, share
 from eigenfield.stereo import ReferenceView, view_matrices
 from eigenfield.stereo.patches import OtherMaps, match_patches, upsample_planes
 from eigenfield.stereo.smooth import smooth_depth
@@ -27,7 +27,8 @@ DEPTH_QUANTILES = (0.15, 0.5, 0.85)  # of the labels that the neighbours' maps p
 DEPTH_SMOOTHING_SCALE_LABELS = 0.3  # off a plane, at which the weight of a point falls to a quarter
 DEPTH_DOUBT = 2 / 3  # where no other map agrees; measured on thirteen photographs of a cube, to 2 % of the depth
 DEPTH_MAP_FILE = "depth.npz"
-DEPTH_MAP_MEMORY_BYTES = 1.5e9  # measured: nine views of 600,000 pixels, 16 threads; 1.0 with two
+# Measured: 1.5 GB for nine views of 600,000 pixels with 16 threads, 1.0 with two; and 3 MB for each picture kept
+DEPTH_MAP_MEMORY_BYTES = 1.7e9
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,10 +108,7 @@ def make_depth_maps(
 
     Args:
         jobs: At most one a view.
-        pictures: Of all views.
         parts: Workers that make the maps; None: this process does.
-        stage: Name for `progress`.
-        progress: Called for each map of both passes.
     """
     numbers = {job.index: number for number, job in enumerate(jobs)}
     if parts is None:
@@ -118,12 +116,12 @@ def make_depth_maps(
         first = dict(zip(numbers, track(made, f"first {stage}", len(jobs), progress), strict=True))
         finished = track((_second_map(job, pictures, first) for job in jobs), stage, len(jobs), progress)
         return _views(jobs, pictures, finished), [first[job.index].tolerance for job in jobs]
-    with parts.shared([pickle.dumps(picture) for picture in pictures]) as files:
-        calls = [(job, files) for job in jobs]
+    with share(pictures, parts.folder) as shared:
+        calls = [(job, shared) for job in jobs]
         parted = parts.make("first-depth", build_first_map, calls, DEPTH_MAP_MEMORY_BYTES)
         folders = list(track(parted, f"first {stage}", len(jobs), progress))
         places = {index: folders[number] / DEPTH_MAP_FILE for index, number in numbers.items()}
-        again = [(job, files, places) for job in jobs]
+        again = [(job, shared, places) for job in jobs]
         parted = parts.make("depth", build_depth_map, again, DEPTH_MAP_MEMORY_BYTES)
         maps = (_load_second(folder / DEPTH_MAP_FILE) for folder in track(parted, stage, len(jobs), progress))
         return _views(jobs, pictures, maps), [_load_first(places[job.index]).tolerance for job in jobs]
@@ -136,34 +134,23 @@ def _views(
     return [DepthView(own.camera, w, own.mask, c) for own, (w, c) in zip(used, maps, strict=True)]
 
 
-def build_first_map(folder: Path, job: DepthJob, files: Sequence[Path]) -> None:
-    """Write one first map into a folder, on a worker.
-
-    Args:
-        folder: Exists.
-        job: The depth map.
-        files: Of all pictures.
-    """
-    made = _first_map(job, _load_pictures(job, files))
+def build_first_map(folder: Path, job: DepthJob, pictures: Sequence[Shared[WorkingPicture]]) -> None:
+    """Write one first map into a folder, on a worker. The pictures are those of all views."""
+    made = _first_map(job, _load_pictures(job, pictures))
     np.savez(folder / DEPTH_MAP_FILE, **vars(made))
 
 
-def build_depth_map(folder: Path, job: DepthJob, files: Sequence[Path], places: Mapping[int, Path]) -> None:
-    """Write one depth map into a folder, on a worker.
-
-    Args:
-        folder: Exists.
-        job: The depth map.
-        files: Of all pictures.
-        places: Of the first maps, by the index of the view.
-    """
+def build_depth_map(
+    folder: Path, job: DepthJob, pictures: Sequence[Shared[WorkingPicture]], places: Mapping[int, Path]
+) -> None:
+    """Write one depth map into a folder, on a worker; the first maps lie at `places`, by the index of the view."""
     first = {index: _load_first(places[index]) for index in (job.index, *job.others) if index in places}
-    inverse_depth, confidence = _second_map(job, _load_pictures(job, files), first)
+    inverse_depth, confidence = _second_map(job, _load_pictures(job, pictures), first)
     np.savez(folder / DEPTH_MAP_FILE, inverse_depth=inverse_depth, confidence=confidence)
 
 
-def _load_pictures(job: DepthJob, files: Sequence[Path]) -> dict[int, WorkingPicture]:
-    return {index: pickle.loads(files[index].read_bytes()) for index in (job.index, *job.others)}
+def _load_pictures(job: DepthJob, pictures: Sequence[Shared[WorkingPicture]]) -> dict[int, WorkingPicture]:
+    return {index: pictures[index].value() for index in (job.index, *job.others)}
 
 
 def _load_first(place: Path) -> _FirstMap:

@@ -108,10 +108,8 @@ def fuse_depth_maps(
     The result does not depend on the number of threads.
 
     Args:
-        views: Depth maps.
         tolerance: Relative difference of depth up to which two views agree.
         limit: Merge points into growing cells until at most so many remain.
-        progress: Called for each part.
 
     Raises:
         ProxyError: `surface-masked`: the masks leave nothing. `surface-no-points`: no views agree.
@@ -166,10 +164,6 @@ def subsample_points(points: OrientedPoints, limit: int) -> OrientedPoints:
 
     The width of a cell is the spacing of its points times a factor that grows. Points whose normals lie in different
     octants stay apart, so that thin walls keep two sides.
-
-    Args:
-        points: The points.
-        limit: How many may remain.
     """
     factor, result = 1.0, points
     while len(result) > limit:
@@ -179,11 +173,7 @@ def subsample_points(points: OrientedPoints, limit: int) -> OrientedPoints:
 
 
 def join_points(*parts: OrientedPoints) -> OrientedPoints:
-    """Several sets of points as one.
-
-    Args:
-        parts: In order.
-    """
+    """Several sets of points as one."""
     return OrientedPoints(
         np.concatenate([part.positions for part in parts]),
         np.concatenate([part.normals for part in parts]),
@@ -197,7 +187,6 @@ def sort_cells(
     """The order (n,) that sorts points into cells, the start (c,) of each cell in it, and (n,) sizes.
 
     Args:
-        positions: (n, 3).
         spacing: (n,) of the points; a point's size is the next power of 2.
         factor: Width of a cell in units of its points' size.
         apart: (n,) integers: points that differ in one have different cells.
@@ -225,11 +214,7 @@ def _merge_cells(points: OrientedPoints, factor: float) -> OrientedPoints:
 
 
 def stack_views(views: Sequence[DepthView]) -> StackedViews:
-    """Depth maps with the normals of their pixels, for the kernels.
-
-    Args:
-        views: Depth maps.
-    """
+    """Depth maps with the normals of their pixels, for the kernels."""
     layout = np.zeros((len(views), 3), np.int64)
     layout[:, 1:] = [view.inverse_depth.shape for view in views]
     layout[1:, 0] = np.cumsum(layout[:, 1] * layout[:, 2])[:-1]

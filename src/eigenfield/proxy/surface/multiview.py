@@ -20,9 +20,9 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress
-from eigenfield.proxy.atlas.unwrap import PROXY_DEFAULT_TRIANGLES
 from eigenfield.proxy.background import fill_background
 from eigenfield.proxy.primitives.shapes import Primitive, insert_primitive
+from eigenfield.proxy.simplify import PROXY_DEFAULT_TRIANGLES
 from eigenfield.proxy.surface.depth_maps import DepthJob, WorkingPicture, make_depth_maps
 from eigenfield.proxy.surface.fusion import DepthView, fuse_depth_maps
 from eigenfield.proxy.surface.neighbours import choose_neighbours, frustum_points, inside_frame, spread_views
@@ -34,53 +34,25 @@ from eigenfield.runtime.parts import Parts
 
 log = logging.getLogger("eigenfield.proxy")
 
-
-@dataclass(frozen=True)
-class MultiviewTuning:
-    """Constants of `surface_from_views`.
-
-    Attributes:
-        max_views: Views that get a depth map.
-        max_pixels: Pixels of one depth map.
-        max_total_pixels: Pixels of all depth maps together.
-        coarse_pixels: Pixels of a depth map of the coarse pass.
-        coarse_views: Views of the coarse pass.
-        neighbours: Views that each is compared with.
-        min_neighbours: A view with fewer neighbours gets no depth map.
-        max_parallax_sides: Largest parallax of the coarse pass, in units of the picture's longer side.
-        min_parallax_pixels: Smallest parallax of the coarse pass.
-        range_margin_fraction: Added at both ends of the range of the points' inverse depths.
-        range_percentiles: Percentiles of the points' inverse depths that bound the range.
-        min_points: Points in view that determine a range.
-        mask_border_fraction: Fraction of the pixels that a mask may hide beyond the lens's border and still be that
-            border.
-        points_per_triangle: Points a triangle of the result: more are merged, so that noise is averaged, not
-            reconstructed.
-        min_fused_points: Fused points, at least.
-        background_fraction: Fraction of the triangles reserved for the background.
-        tolerance_range: Smallest and largest relative tolerance of fusion.
-    """
-
-    max_views: int = 60
-    max_pixels: int = 600_000
-    max_total_pixels: int = 9_000_000
-    coarse_pixels: int = 40_000
-    coarse_views: int = 24
-    neighbours: int = 8
-    min_neighbours: int = 2
-    max_parallax_sides: float = 0.5
-    min_parallax_pixels: float = 0.1
-    range_margin_fraction: float = 0.15
-    range_percentiles: tuple[float, float] = (0.5, 99.5)
-    min_points: int = 30
-    mask_border_fraction: float = 0.01
-    points_per_triangle: int = 16
-    min_fused_points: int = 100_000
-    background_fraction: float = 0.05
-    tolerance_range: tuple[float, float] = (0.004, 0.02)
-
-
-MULTIVIEW_TUNING = MultiviewTuning()
+MULTIVIEW_MAX_VIEWS = 60  # views that get a depth map
+MULTIVIEW_MAX_PIXELS = 600_000  # pixels of one depth map
+MULTIVIEW_MAX_TOTAL_PIXELS = 9_000_000  # pixels of all depth maps together
+MULTIVIEW_COARSE_PIXELS = 40_000  # pixels of a depth map of the coarse pass
+MULTIVIEW_COARSE_VIEWS = 24  # views of the coarse pass
+MULTIVIEW_NEIGHBOURS = 8  # views that each is compared with
+MULTIVIEW_MIN_NEIGHBOURS = 2  # a view with fewer neighbours gets no depth map
+MULTIVIEW_MAX_PARALLAX_SIDES = 0.5  # largest parallax of the coarse pass, in units of the picture's longer side
+MULTIVIEW_MIN_PARALLAX_PIXELS = 0.1  # smallest parallax of the coarse pass
+MULTIVIEW_RANGE_MARGIN_FRACTION = 0.15  # added at both ends of the range of the points' inverse depths
+MULTIVIEW_RANGE_PERCENTILES = (0.5, 99.5)  # percentiles of the points' inverse depths that bound the range
+MULTIVIEW_MIN_POINTS = 30  # points in view that determine a range
+# Fraction of the pixels that a mask may hide beyond the lens's border and still be that border
+MULTIVIEW_MASK_BORDER_FRACTION = 0.01
+# Points a triangle of the result: more are merged, so that noise is averaged, not reconstructed
+MULTIVIEW_POINTS_PER_TRIANGLE = 16
+MULTIVIEW_MIN_FUSED_POINTS = 100_000  # fused points, at least
+MULTIVIEW_BACKGROUND_FRACTION = 0.05  # fraction of the triangles reserved for the background
+MULTIVIEW_TOLERANCE_RANGE = (0.004, 0.02)  # smallest and largest relative tolerance of fusion
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,14 +85,12 @@ def surface_from_views(
     """The surface that the photographs show, by multi-view stereo and Poisson reconstruction.
 
     Args:
-        light_field: Photographs with cameras.
         points: (n, 3) world points on the scene from structure from motion, for the range of depths and the choice of
             neighbours. Without them a coarse pass finds its own.
         triangles: Most triangles, approximately.
         background: Add a far surface (`fill_background`). None: unless there are masks.
         primitives: Shapes that replace the result of stereo.
         parts: Workers that make the depth maps; None: this process does.
-        progress: Called for each view and step.
 
     Raises:
         ProxyError: `surface-masked`, `surface-no-points`, `surface-empty`; `surface-overlap`: no view shares enough
@@ -128,18 +98,18 @@ def surface_from_views(
         CaptureError: A photograph cannot be read.
     """
     cameras = light_field.cameras
-    if points is None or len(points) < MULTIVIEW_TUNING.min_points:
-        chosen = spread_views(cameras, MULTIVIEW_TUNING.coarse_views)
-        pictures = _pictures(light_field, chosen, MULTIVIEW_TUNING.coarse_pixels, progress)
+    if points is None or len(points) < MULTIVIEW_MIN_POINTS:
+        chosen = spread_views(cameras, MULTIVIEW_COARSE_VIEWS)
+        pictures = _pictures(light_field, chosen, MULTIVIEW_COARSE_PIXELS, progress)
         views, tolerance = _depth_views(pictures, None, None, progress)  # too little work to pay for workers
-        limit = MULTIVIEW_TUNING.min_fused_points
+        limit = MULTIVIEW_MIN_FUSED_POINTS
         points = fuse_depth_maps(views, tolerance=tolerance, limit=limit, progress=progress).positions
         log.info("coarse pass: %d points", len(points))
-    chosen = spread_views(cameras, MULTIVIEW_TUNING.max_views)
-    most = min(MULTIVIEW_TUNING.max_pixels, MULTIVIEW_TUNING.max_total_pixels // len(chosen))
+    chosen = spread_views(cameras, MULTIVIEW_MAX_VIEWS)
+    most = min(MULTIVIEW_MAX_PIXELS, MULTIVIEW_MAX_TOTAL_PIXELS // len(chosen))
     pictures = _pictures(light_field, chosen, most, progress)
     views, tolerance = _depth_views(pictures, points, parts, progress)
-    limit = max(MULTIVIEW_TUNING.points_per_triangle * triangles, MULTIVIEW_TUNING.min_fused_points)
+    limit = max(MULTIVIEW_POINTS_PER_TRIANGLE * triangles, MULTIVIEW_MIN_FUSED_POINTS)
     fused = fuse_depth_maps(views, tolerance=tolerance, limit=limit, progress=progress)
     masked = any(picture.mask is not None for picture in pictures)
     middle = cameras[_central_camera(cameras)]
@@ -148,7 +118,7 @@ def surface_from_views(
     if masked:
         mesh = trim_by_masks(mesh, [p.camera for p in pictures], [p.mask for p in pictures])
     closed = (not masked) if background is None else background
-    share = 1 - MULTIVIEW_TUNING.background_fraction * closed
+    share = 1 - MULTIVIEW_BACKGROUND_FRACTION * closed
     mesh, error = simplify_with_error(mesh, fused, round(share * triangles), middle)
     for primitive in primitives:
         mesh = insert_primitive(mesh, primitive, cameras)
@@ -173,7 +143,7 @@ def _pictures(
         pixels = _resample(photograph.pixels, camera, small)
         mask = None if photograph.mask is None else _resample(photograph.mask, camera, small) > 0.5
         known = _lens_mask(light_field.views[index], small)
-        if mask is not None and known is not None and (known & ~mask).mean() < MULTIVIEW_TUNING.mask_border_fraction:
+        if mask is not None and known is not None and (known & ~mask).mean() < MULTIVIEW_MASK_BORDER_FRACTION:
             mask = None  # it only marks where the lens leaves no picture
         return WorkingPicture(small, np.rint(np.clip(pixels, 0, 1) * 255).astype(np.uint8), mask, known)
 
@@ -223,19 +193,19 @@ def _depth_views(
     for index, camera in enumerate(cameras):
         span = _inverse_range(camera, cameras, points)
         seen = frustum_points(camera, *span) if points is None else points[inside_frame(camera, points)]
-        others = choose_neighbours(index, cameras, seen, MULTIVIEW_TUNING.neighbours)
-        if len(others) < MULTIVIEW_TUNING.min_neighbours:
+        others = choose_neighbours(index, cameras, seen, MULTIVIEW_NEIGHBOURS)
+        if len(others) < MULTIVIEW_MIN_NEIGHBOURS:
             log.warning("a view shares too little with the others: it gets no depth map")
         else:
             jobs.append(DepthJob(index, tuple(others), span))
     views, tolerances = make_depth_maps(jobs, pictures, parts, stage, progress)
-    if len(views) < MULTIVIEW_TUNING.min_neighbours + 1:
+    if len(views) < MULTIVIEW_MIN_NEIGHBOURS + 1:
         raise ProxyError(
             "surface-overlap",
             f"only {len(views)} of {len(pictures)} photographs share enough with two others",
             remedy="photographs must overlap and be taken from different places; check the calibration",
         )
-    return views, float(np.clip(np.median(tolerances), *MULTIVIEW_TUNING.tolerance_range))
+    return views, float(np.clip(np.median(tolerances), *MULTIVIEW_TOLERANCE_RANGE))
 
 
 def _inverse_range(
@@ -247,14 +217,14 @@ def _inverse_range(
     """
     if points is not None:
         seen = points[inside_frame(camera, points)]
-        if len(seen) < MULTIVIEW_TUNING.min_points:
+        if len(seen) < MULTIVIEW_MIN_POINTS:
             seen = points[camera.project(points)[1] > 0]
         if len(seen):
-            low, high = np.percentile(1 / camera.project(seen)[1], MULTIVIEW_TUNING.range_percentiles).tolist()
-            room = MULTIVIEW_TUNING.range_margin_fraction * (high - low) + 1e-3 * high
+            low, high = np.percentile(1 / camera.project(seen)[1], MULTIVIEW_RANGE_PERCENTILES).tolist()
+            room = MULTIVIEW_RANGE_MARGIN_FRACTION * (high - low) + 1e-3 * high
             return max(low - room, 0.3 * low), high + room
     distances = np.sort([float(np.linalg.norm(other.centre - camera.centre)) for other in cameras])
     baseline = float(np.median(distances[distances > 0][:3])) if (distances > 0).any() else 1.0
     parallax = camera.K[0, 0] * baseline
-    most = MULTIVIEW_TUNING.max_parallax_sides * max(camera.width, camera.height)
-    return MULTIVIEW_TUNING.min_parallax_pixels / parallax, most / parallax
+    most = MULTIVIEW_MAX_PARALLAX_SIDES * max(camera.width, camera.height)
+    return MULTIVIEW_MIN_PARALLAX_PIXELS / parallax, most / parallax

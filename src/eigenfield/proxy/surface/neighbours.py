@@ -23,7 +23,6 @@ def frustum_points(camera: Camera, w_low: float, w_high: float) -> NDArray[np.fl
     """(75, 3) world points throughout a camera's frustum between two inverse depths.
 
     Args:
-        camera: The camera.
         w_low: Inverse depth of the far end.
         w_high: Inverse depth of the near end.
     """
@@ -36,12 +35,7 @@ def frustum_points(camera: Camera, w_low: float, w_high: float) -> NDArray[np.fl
 def project_inside(
     camera: Camera, points: NDArray[np.floating[Any]]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
-    """Pixels (n, 2) and depths (n,) of world points, and (n,) which of them a camera has in its frame.
-
-    Args:
-        camera: The camera.
-        points: (n, 3).
-    """
+    """Pixels (n, 2) and depths (n,) of world points, and (n,) which of them a camera has in its frame."""
     pixels, depth = camera.project(points)
     with np.errstate(invalid="ignore"):
         within = (pixels > 0).all(axis=1) & (pixels < (camera.width, camera.height)).all(axis=1)
@@ -49,12 +43,7 @@ def project_inside(
 
 
 def inside_frame(camera: Camera, points: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """(n,) which world points a camera has in its frame.
-
-    Args:
-        camera: The camera.
-        points: (n, 3).
-    """
+    """(n,) which world points a camera has in its frame."""
     return project_inside(camera, points)[2]
 
 
@@ -65,10 +54,7 @@ def choose_neighbours(reference: int, cameras: Sequence[Camera], points: NDArray
     camera beside a better one counts less, one at the same place not at all.
 
     Args:
-        reference: Index of the reference camera.
-        cameras: All cameras.
         points: (n, 3) points that the reference sees.
-        count: How many at most.
     """
     own = cameras[reference]
     to_own = own.centre - points
@@ -106,10 +92,6 @@ def spread_views(cameras: Sequence[Camera], count: int) -> list[int]:
 
     The first is nearest the middle, each other as far as possible from those before. Places are in units of the array's
     size.
-
-    Args:
-        cameras: All cameras.
-        count: How many at most.
     """
     if len(cameras) <= count:
         return list(range(len(cameras)))

@@ -28,10 +28,6 @@ def poisson_surface(points: OrientedPoints, *, progress: Progress | None = None)
 
     It runs in one thread of a child process: with more threads, the library's result differs from run to run.
 
-    Args:
-        points: Oriented points.
-        progress: Called while the child works.
-
     Raises:
         ProxyError: `surface-no-points`: too few points. `surface-poisson`: the library fails.
     """

@@ -14,7 +14,8 @@ from scipy.spatial import KDTree
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
-from eigenfield.proxy.atlas.unwrap import simplify_mesh
+from eigenfield.proxy.samples import surface_samples
+from eigenfield.proxy.simplify import simplify_mesh
 from eigenfield.proxy.surface.fusion import OrientedPoints
 from eigenfield.proxy.surface.neighbours import project_inside
 from eigenfield.proxy.topology import face_patches, fill_holes, make_manifold, remove_islands
@@ -52,10 +53,6 @@ class SurfaceError:
 def trim_surface(mesh: Mesh, points: OrientedPoints) -> Mesh:
     """Remove what no points support and close small holes; no small islands and nothing non-manifold remains.
 
-    Args:
-        mesh: The closed surface.
-        points: The points that it was reconstructed from.
-
     Raises:
         ProxyError: `surface-empty`: nothing remains.
     """
@@ -79,8 +76,6 @@ def trim_by_masks(mesh: Mesh, cameras: Sequence[Camera], masks: Sequence[NDArray
     """Remove what no view has in its frame, and what more than a tenth of those that do see outside their masks.
 
     Args:
-        mesh: The surface.
-        cameras: The views.
         masks: (H, W) bool at the cameras' sizes; one pixel outside is tolerated.
 
     Raises:
@@ -111,9 +106,6 @@ def simplify_with_error(
     """At most about `triangles` triangles, still manifold, and the distance of the points from the result.
 
     Args:
-        mesh: The surface.
-        points: The points that it was reconstructed from.
-        triangles: How many.
         camera: Whose pixels measure the error.
     """
     result = mesh if len(mesh.faces) <= triangles else make_manifold(simplify_mesh(mesh, triangles))
@@ -128,8 +120,6 @@ def surface_error(mesh: Mesh, positions: NDArray[np.float64], camera: Camera) ->
     """Distances of points from a mesh, measured at no more than SURFACE_ERROR_PROBES of them.
 
     Args:
-        mesh: The surface.
-        positions: (n, 3) points.
         camera: Whose pixels measure the error.
     """
     probes = positions[np.linspace(0, len(positions) - 1, min(len(positions), SURFACE_ERROR_PROBES)).astype(np.int64)]
@@ -152,10 +142,6 @@ def surface_distances(mesh: Mesh, positions: NDArray[np.float64]) -> NDArray[np.
     """(n,) distances of points from a surface.
 
     The distance is the least over the triangles of the nearest samples: sometimes a little too large, never too small.
-
-    Args:
-        mesh: The surface.
-        positions: (n, 3) points.
     """
     from trimesh.triangles import closest_point
 
@@ -168,26 +154,6 @@ def surface_distances(mesh: Mesh, positions: NDArray[np.float64]) -> NDArray[np.
         closest = closest_point(triangles[face[column]], positions)
         best = np.minimum(best, np.linalg.norm(closest - positions, axis=1))
     return best
-
-
-def surface_samples(mesh: Mesh, count: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Points spread evenly over a mesh, at least one a triangle, and the triangle of each.
-
-    They are the R2 sequence (Roberts, 2018) folded into each triangle, so that the same mesh gives the same points.
-
-    Args:
-        mesh: The surface.
-        count: How many, approximately.
-    """
-    area = mesh.face_areas()
-    number = np.maximum(np.rint(count * area / max(float(area.sum()), 1e-300)), 1).astype(np.int64)
-    face = np.repeat(np.arange(len(area)), number)
-    step = np.arange(len(face)) - np.repeat(np.cumsum(number) - number, number)
-    u, v = (0.5 + 0.7548776662466927 * step) % 1, (0.5 + 0.5698402909980532 * step) % 1
-    fold = u + v > 1
-    u, v = np.where(fold, 1 - u, u), np.where(fold, 1 - v, v)
-    p = mesh.vertices.astype(np.float64)[mesh.faces[face]]
-    return p[:, 0] + u[:, None] * (p[:, 1] - p[:, 0]) + v[:, None] * (p[:, 2] - p[:, 0]), face
 
 
 def _has_support(mesh: Mesh, points: OrientedPoints) -> NDArray[np.bool_]:

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,46 +35,24 @@ from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger("eigenfield.proxy")
 
-
-@dataclass(frozen=True)
-class VisibilityTuning:
-    """Constants of `visible_surface` and `add_weak_points`, chosen on the cube.
-
-    Attributes:
-        max_pixels: Pixels of all depth maps together that are merged, approximately.
-        max_vertices: Vertices that they are merged into, at most.
-        pixels_per_vertex: And at most one for this many pixels.
-        cell_growth_power: How fast cells grow until few enough vertices remain.
-        behind_noises: How far behind its vertex a line of sight votes for a full tetrahedron, in units of the noise.
-        face_weight: Cost of a face of the worst shape, in lines of sight.
-        capacity_scale: Costs are whole multiples of one over this, so that sums are exact.
-        smoothing_rounds: Of the cut, whose faces are as rough as the noise of depth.
-        box_sizes: Room around vertices and cameras, in units of their extent.
-        sample_pixels: Pixels of a view in which the surface is sampled.
-        min_cosine: Between a sample's normal and its ray. What is seen more obliquely joins what is near to what is
-            far.
-        support_spacings: A sample this near to a fused point adds nothing, in spacings.
-        max_weak_points: Samples that are added, at most.
-        margin_sizes: Samples farther outside of the box of the fused points are left out, in units of its size.
-    """
-
-    max_pixels: int = 800_000
-    max_vertices: int = 100_000
-    pixels_per_vertex: int = 32
-    cell_growth_power: float = 0.4
-    behind_noises: float = 3.0
-    face_weight: float = 1.0
-    capacity_scale: float = 1000.0
-    smoothing_rounds: int = 5
-    box_sizes: float = 1.0
-    sample_pixels: int = 40_000
-    min_cosine: float = 0.3
-    support_spacings: float = 4.0
-    max_weak_points: int = 100_000
-    margin_sizes: float = 0.25
-
-
-VISIBILITY_TUNING = VisibilityTuning()
+# Chosen on the cube
+VISIBILITY_MAX_PIXELS = 800_000  # pixels of all depth maps together that are merged, approximately
+VISIBILITY_MAX_VERTICES = 100_000  # vertices that they are merged into, at most
+VISIBILITY_PIXELS_PER_VERTEX = 32  # and at most one for this many pixels
+VISIBILITY_CELL_GROWTH_POWER = 0.4  # how fast cells grow until few enough vertices remain
+# How far behind its vertex a line of sight votes for a full tetrahedron, in units of the noise
+VISIBILITY_BEHIND_NOISES = 3.0
+VISIBILITY_FACE_WEIGHT = 1.0  # cost of a face of the worst shape, in lines of sight
+VISIBILITY_CAPACITY_SCALE = 1000.0  # costs are whole multiples of one over this, so that sums are exact
+VISIBILITY_SMOOTHING_ROUNDS = 5  # of the cut, whose faces are as rough as the noise of depth
+VISIBILITY_BOX_SIZES = 1.0  # room around vertices and cameras, in units of their extent
+VISIBILITY_SAMPLE_PIXELS = 40_000  # pixels of a view in which the surface is sampled
+# Between a sample's normal and its ray. What is seen more obliquely joins what is near to what is far
+VISIBILITY_MIN_COSINE = 0.3
+VISIBILITY_SUPPORT_SPACINGS = 4.0  # a sample this near to a fused point adds nothing, in spacings
+VISIBILITY_MAX_WEAK_POINTS = 100_000  # samples that are added, at most
+# Samples farther outside of the box of the fused points are left out, in units of its size
+VISIBILITY_MARGIN_SIZES = 0.25
 
 
 def add_weak_points(
@@ -85,21 +62,19 @@ def add_weak_points(
 
     Args:
         fused: Points that several views confirm.
-        views: Depth maps.
         tolerance: Relative noise of their depths.
-        progress: Called before and after.
     """
     report = progress or (lambda stage, done, total: None)
     report("visibility", 0, 1)
     mesh = visible_surface(views, tolerance)
     seen = np.unique(_visible_samples(mesh, views)[1])  # without those that join near and far: smoothing would, too
     samples, _ = _visible_samples(_smoothed(remove_unused_vertices(Mesh(mesh.vertices, mesh.faces[seen]))), views)
-    size = np.ptp(fused.positions, axis=0).max() * VISIBILITY_TUNING.margin_sizes
+    size = np.ptp(fused.positions, axis=0).max() * VISIBILITY_MARGIN_SIZES
     low, high = fused.positions.min(axis=0) - size, fused.positions.max(axis=0) + size
     distance, nearest = KDTree(fused.positions).query(samples.positions)
-    reach = VISIBILITY_TUNING.support_spacings * np.maximum(fused.spacing[nearest], samples.spacing / 2)
+    reach = VISIBILITY_SUPPORT_SPACINGS * np.maximum(fused.spacing[nearest], samples.spacing / 2)
     weak = (distance > reach) & ((samples.positions > low) & (samples.positions < high)).all(axis=1)
-    added = subsample_points(samples[weak], VISIBILITY_TUNING.max_weak_points)
+    added = subsample_points(samples[weak], VISIBILITY_MAX_WEAK_POINTS)
     report("visibility", 1, 1)
     log.info("visibility: %d points where few views agree", len(added))
     return join_points(fused, added)
@@ -109,7 +84,6 @@ def visible_surface(views: Sequence[DepthView], tolerance: float) -> Mesh:
     """The minimal cut between what cameras see through and what lies behind what they see.
 
     Args:
-        views: Depth maps.
         tolerance: Relative noise of their depths.
     """
     vertices, line_vertex, line_view = _merge_pixels(views)
@@ -128,10 +102,10 @@ def visible_surface(views: Sequence[DepthView], tolerance: float) -> Mesh:
     capacity, excess = np.zeros(neighbours.shape), np.zeros(len(neighbours))
     cast_votes(
         points, tetrahedra, neighbours, back, first, order // 4, centres, line_vertex[used], line_view[used],
-        np.ones(used.sum()), tolerance * distance, VISIBILITY_TUNING.behind_noises, capacity, excess,
+        np.ones(used.sum()), tolerance * distance, VISIBILITY_BEHIND_NOISES, capacity, excess,
     )  # fmt: skip
-    capacity += VISIBILITY_TUNING.face_weight * _face_costs(points, tetrahedra, neighbours, back)
-    whole, rest = (np.rint(VISIBILITY_TUNING.capacity_scale * x).astype(np.int64) for x in (capacity, excess))
+    capacity += VISIBILITY_FACE_WEIGHT * _face_costs(points, tetrahedra, neighbours, back)
+    whole, rest = (np.rint(VISIBILITY_CAPACITY_SCALE * x).astype(np.int64) for x in (capacity, excess))
     tree = np.zeros(len(tetrahedra), np.int8)
     cut(neighbours, back, whole, rest, tree)
     full = tree != SOURCE
@@ -149,9 +123,7 @@ def _smoothed(mesh: Mesh) -> Mesh:
     import trimesh
 
     rough = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
-    trimesh.smoothing.filter_laplacian(
-        rough, lamb=0.5, iterations=VISIBILITY_TUNING.smoothing_rounds, volume_constraint=False
-    )
+    trimesh.smoothing.filter_laplacian(rough, lamb=0.5, iterations=VISIBILITY_SMOOTHING_ROUNDS, volume_constraint=False)
     return Mesh(rough.vertices.astype(np.float32), mesh.faces)
 
 
@@ -160,18 +132,18 @@ def _merge_pixels(
 ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
     """(n, 3) vertices, and (L,) vertex and (L,) view of each line of sight."""
     stack = stack_views(views)
-    step = max(1, round(np.sqrt(len(stack.inverse_depth) / VISIBILITY_TUNING.max_pixels)))
+    step = max(1, round(np.sqrt(len(stack.inverse_depth) / VISIBILITY_MAX_PIXELS)))
     parts = parallel_map(lambda view: _pixel_points(stack, view, step), range(len(views)))
     positions, spacing = np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
     number = np.repeat(np.arange(len(views)), [len(part[0]) for part in parts])
     factor, pixels = float(step), len(stack.inverse_depth)
-    most = max(1, min(VISIBILITY_TUNING.max_vertices, pixels // VISIBILITY_TUNING.pixels_per_vertex))
+    most = max(1, min(VISIBILITY_MAX_VERTICES, pixels // VISIBILITY_PIXELS_PER_VERTEX))
     while True:
         order, starts, _ = sort_cells(positions, spacing, factor)
         excess = len(starts) / most
         if excess <= 1:
             break
-        factor *= max(1.05, excess**VISIBILITY_TUNING.cell_growth_power)
+        factor *= max(1.05, excess**VISIBILITY_CELL_GROWTH_POWER)
     vertices = np.add.reduceat(positions[order], starts, axis=0) / np.diff(np.append(starts, len(order)))[:, None]
     vertex = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(order))))
     lines = np.unique(vertex * len(views) + number[order])
@@ -195,7 +167,7 @@ def _visible_samples(mesh: Mesh, views: Sequence[DepthView]) -> tuple[OrientedPo
 
     def sample(view: DepthView) -> tuple[OrientedPoints, NDArray[np.int32]]:
         camera = view.camera
-        scale = min(1.0, float(np.sqrt(VISIBILITY_TUNING.sample_pixels / (camera.width * camera.height))))
+        scale = min(1.0, float(np.sqrt(VISIBILITY_SAMPLE_PIXELS / (camera.width * camera.height))))
         small = camera.resize(max(2, round(camera.width * scale)), max(2, round(camera.height * scale)))
         raster = rasterise_view(mesh, small)
         row, column = np.nonzero(raster.face >= 0)
@@ -206,12 +178,12 @@ def _visible_samples(mesh: Mesh, views: Sequence[DepthView]) -> tuple[OrientedPo
         normal = normals[face]
         cosine = -(normal * rays).sum(axis=1) / np.linalg.norm(rays, axis=1)
         positions = camera.centre + rays * depth[:, None]
-        kept = cosine > VISIBILITY_TUNING.min_cosine
+        kept = cosine > VISIBILITY_MIN_COSINE
         if view.mask is not None:
             at, _, inside = project_inside(camera, positions)
             across, down = np.where(inside[:, None], at, 0).astype(np.int64).T
             kept &= inside & view.mask[down, across]
-        spacing = depth / (small.K[0, 0] * np.sqrt(np.maximum(cosine, VISIBILITY_TUNING.min_cosine)))
+        spacing = depth / (small.K[0, 0] * np.sqrt(np.maximum(cosine, VISIBILITY_MIN_COSINE)))
         return OrientedPoints(positions, normal.astype(np.float32), spacing.astype(np.float32))[kept], face[kept]
 
     points, faces = zip(*parallel_map(sample, views), strict=True)
@@ -221,7 +193,7 @@ def _visible_samples(mesh: Mesh, views: Sequence[DepthView]) -> tuple[OrientedPo
 def _box_around(positions: NDArray[np.float64]) -> NDArray[np.float64]:
     """(8, 3) corners of a box with room around points."""
     low, high = positions.min(axis=0), positions.max(axis=0)
-    room = VISIBILITY_TUNING.box_sizes * float((high - low).max())
+    room = VISIBILITY_BOX_SIZES * float((high - low).max())
     corners = np.array(np.meshgrid([0, 1], [0, 1], [0, 1])).reshape(3, -1).T
     return np.where(corners == 0, low - room, high + room)
 

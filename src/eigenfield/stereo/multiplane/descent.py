@@ -33,7 +33,6 @@ class DescentTuning:
     """Constants of a descent.
 
     Attributes:
-        steps: Number of steps.
         levels: Grids of the pyramid of corrections.
         rate: Movement of a colour in the first step.
         opacity_rate_ratio: Movement of an opacity to that of a colour.
@@ -65,17 +64,13 @@ class Descent:
     Attributes:
         labels: (D,) of planes, or (D, h, w) of height fields.
         layers: (D, h, w, 4) float32.
-        tuning: Constants.
     """
 
     def __init__(self, labels: Labels, layers: NDArray[np.float32], tuning: DescentTuning, views: int) -> None:
         """Prepare the first step.
 
         Args:
-            labels: (D,) of planes, or (D, h, w) of height fields.
             layers: (D, h, w, 4) float32, contiguous.
-            tuning: Constants.
-            views: Number of photographs.
         """
         self.labels, self.layers, self.tuning = labels, layers, tuning
         _, height, width, channels = layers.shape
@@ -94,8 +89,6 @@ class Descent:
         """Take all steps, in an order of photographs that is drawn anew when all had their turn.
 
         Args:
-            pictures: (V, H, W) packed.
-            matrices: (V, 3, 4) of the views.
             tick: Is called after each step with its number, from 1 on.
         """
         order, waiting, tuning = np.random.default_rng(0), np.zeros(0, np.int64), self.tuning
@@ -132,13 +125,10 @@ class Descent:
         """Turn a layer's gradient into a step, and take it.
 
         Args:
-            number: Of the step.
             falling: Part of the rates that is left.
-            scale: Of the gradient.
             rays: (H, W, 4) of the photograph's view.
             places: Of `draw_layers`.
             drawn: The gradient of the drawn layers, see `backpropagate`.
-            index: Of the layer.
         """
         tuning, width = self.tuning, self.layers.shape[2]
         layer, pyramid = self.layers[index].reshape(-1, CHANNELS * width), self._pyramids[index]

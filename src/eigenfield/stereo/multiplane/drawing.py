@@ -30,9 +30,6 @@ def inverse_view(matrix: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDAr
 
     The plane of label d maps the reference view to a photograph by H + d m e3', with m a column of the view's matrix.
     Its inverse, by Sherman and Morrison, is H^-1 + d (c_3 I - c e3') H^-1 but for a scale, with c = H^-1 m.
-
-    Args:
-        matrix: (3, 4) of the view, see `view_matrices`.
     """
     base = np.asarray(np.linalg.inv(matrix[:, [0, 1, 3]]), np.float64)
     centre = base @ matrix[:, 2]
@@ -44,7 +41,6 @@ def view_rays(matrix: NDArray[np.float64], shape: tuple[int, int]) -> NDArray[np
     """(H, W, 4) of `pixel_rays`, for a view.
 
     Args:
-        matrix: (3, 4) of the view, see `view_matrices`.
         shape: (H, W) of its picture.
     """
     rays = np.empty((*shape, 4), np.float32)
@@ -85,14 +81,7 @@ def draw_layers(
 def draw_picture(
     labels: Labels, layers: NDArray[np.float32], matrix: NDArray[np.float64], shape: tuple[int, int]
 ) -> NDArray[np.float32]:
-    """(H, W, 3) layers, one over the other, as a view sees them; black where none is.
-
-    Args:
-        labels: As of `draw_layers`.
-        layers: As of `draw_layers`.
-        matrix: (3, 4) of the view, see `view_matrices`.
-        shape: (H, W) of its picture.
-    """
+    """(H, W, 3) layers, one over the other, as a view sees them; black where none is."""
     places, drawn = (np.empty((len(layers), *shape, numbers), np.float32) for numbers in (2, 4))
     draw_layers(labels, layers, view_rays(matrix, shape), places, drawn)
     picture = np.empty((*shape, 3), np.float32)

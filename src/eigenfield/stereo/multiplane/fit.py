@@ -86,12 +86,7 @@ def fit_multiplane(
     Memory is about 90 bytes for a texel of each layer, and 16 for a pixel of each.
 
     Args:
-        pictures: (V, H, W, 3) uint8 or packed.
-        matrices: (V, 3, 4) of the views, see `view_matrices`.
-        shape: (h, w) of the reference view.
         labels: (D,) at least two, ascending: the planes, back to front.
-        tuning: Constants.
-        progress: Reports the steps.
 
     Raises:
         ValueError: Pictures, matrices or labels are malformed.
@@ -123,16 +118,10 @@ def fit_sheets(
     First planes are fitted at a small size, from which all start, then sheets at each larger one.
 
     Args:
-        pictures: As of `fit_multiplane`.
-        matrices: As of `fit_multiplane`.
-        shape: As of `fit_multiplane`.
-        labels: As of `fit_multiplane`, at about equal distances.
+        labels: (D,) ascending, at about equal distances: the planes, back to front.
         counts: Numbers of sheets, at most that of labels.
         halvings: How often the size is halved for the planes; with 0 sheets are fitted at the planes' size.
-        planes: Constants of the planes.
-        tuning: Constants of the sheets.
         enough: Called with the sheets of each number; after True the numbers that follow are left out.
-        progress: Reports the steps.
 
     Raises:
         ValueError: As `fit_multiplane`; or a count is not from 1 to the number of labels.
@@ -166,12 +155,7 @@ def fit_sheets(
 
 
 def enlarged(sheets: SoftSheets, shape: tuple[int, int]) -> SoftSheets:
-    """The same sheets at another size.
-
-    Args:
-        sheets: Of a reference view.
-        shape: (h, w) of the same view at another resolution.
-    """
+    """The same sheets at another size."""
     size = shape[::-1]
     labels = np.stack([cv2.resize(one, size, interpolation=cv2.INTER_LINEAR) for one in sheets.labels])
     layers = np.stack([cv2.resize(one, size, interpolation=cv2.INTER_LINEAR) for one in sheets.layers])
@@ -193,8 +177,6 @@ class _SheetDescent(Descent):
         Args:
             sheets: Are changed in place.
             spacing: Distance of the planes, in labels.
-            tuning: Constants.
-            views: Number of photographs.
         """
         super().__init__(sheets.labels, sheets.layers, tuning, views)
         self._spacing = spacing
@@ -226,12 +208,7 @@ class _SheetDescent(Descent):
 
 
 def plane_homographies(matrix: NDArray[np.float64], labels: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(D, 3, 3) from a view's index coordinates to those of the reference view, by the plane of each label.
-
-    Args:
-        matrix: (3, 4) of the view, see `view_matrices`.
-        labels: (D,).
-    """
+    """(D, 3, 3) from a view's index coordinates to those of the reference view, by the plane of each label."""
     base, slope = inverse_view(matrix)
     homographies = np.repeat(base[None], len(labels), axis=0)
     homographies[:, :2] += labels[:, None, None] * slope
@@ -245,15 +222,7 @@ def start_layers(
     labels: NDArray[np.float64],
     tuning: MultiplaneTuning = MULTIPLANE_TUNING,
 ) -> NDArray[np.float32]:
-    """(D, h, w, 4): the mean of the photographs on each plane, opaque where they differ least among all planes.
-
-    Args:
-        pictures: (V, H, W) packed.
-        matrices: (V, 3, 4) of the views.
-        shape: (h, w) of the layers.
-        labels: (D,) of the planes.
-        tuning: Constants.
-    """
+    """(D, h, w, 4): the mean of the photographs on each plane, opaque where they differ least among all planes."""
     codes = unpack_pictures(pictures)
     homographies = np.stack([plane_homographies(matrix, labels) for matrix in matrices])
 

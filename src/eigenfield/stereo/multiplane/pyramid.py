@@ -49,8 +49,6 @@ class Pyramid:
         """Corrections of zero.
 
         Args:
-            shape: (h, w) of the layer.
-            channels: C.
             levels: Number of grids, the layer's own among them.
         """
         self._grids = [_corrections((*shape, channels), ())]
@@ -86,7 +84,6 @@ def interpolation(fine: int, coarse: int) -> Interpolation:
     """For each of `fine` texels along a line, the coarse texel before it and the weight of the next.
 
     Args:
-        fine: Texels of the finer grid.
         coarse: Texels of the coarser one, at least two.
     """
     place = np.clip((np.arange(fine) + 0.5) * coarse / fine - 0.5, 0, coarse - 1)

@@ -43,7 +43,6 @@ def sheets_of(image: MultiplaneImage, count: int) -> SoftSheets:
     by opacity, by dynamic programming. Within a sheet the label of a texel is the mean of its planes, smoothed.
 
     Args:
-        image: The planes.
         count: K, at most the number of planes.
     """
     labels, layers = image.labels, image.layers

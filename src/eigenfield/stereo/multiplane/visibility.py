@@ -24,12 +24,6 @@ def sheet_visibility(
     """(K, h, w) the part of each texel's light that reaches the view that sees it best, 0..1.
 
     Views are drawn at half their size, and a pixel stands for the four texels around its place.
-
-    Args:
-        sheets: K of them.
-        reference: Their reference view.
-        cameras: The views.
-        progress: Called for each view.
     """
     seen = np.zeros(sheets.labels.shape, np.float32)
     matrices = HALF_FROM_FULL_INDEX @ view_matrices(reference, cameras)

@@ -43,11 +43,8 @@ def prepare_proxy(
 
     Args:
         path_or_mesh: A mesh file, or a mesh in the cameras' world.
-        cameras: All cameras.
         origin: (3,) the origin of the cameras' world in that of a mesh file. None: they are the same.
-        triangles: As in `unwrap_mesh`.
         simplified: Returns the mesh with fewer triangles and without UVs, or None where all are to stay.
-        progress: Called for each step.
 
     Raises:
         ProxyError: As `read_mesh` and `unwrap_mesh`; `proxy-not-seen`: no camera sees the mesh.
