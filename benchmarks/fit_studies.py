@@ -34,12 +34,13 @@ import measure
 from eigenfield import LightField
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import Scene
-from eigenfield.encoding import EncodeOptions, plan
+from eigenfield.encoding import EncodeOptions, prepare
 from eigenfield.encoding import options as encode_options
 from eigenfield.encoding.fitted import encoder, fit, planes, rate
-from eigenfield.encoding.fitted.encoder import FittedEncoder, open_encoder, open_fitted
+from eigenfield.encoding.fitted.encoder import FittedEncoder, open_encoder
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data
 from eigenfield.encoding.plan import EncodePlan
+from eigenfield.encoding.reach_target import open_fitted
 from eigenfield.gltf import save
 from eigenfield.rendering.software import drawing
 from eigenfield.runtime.parallel import parallel_map
@@ -130,8 +131,8 @@ FITTING = {
     "unseen": Part("texels that no photograph sees left as they are", _replaced(fit, "fill_unseen", lambda *_: None)),
 }
 PLANNING = {
-    "surface": Part("the proxy's surface as it was given", _replaced(plan, "fit_surface", lambda mesh, *_: mesh)),
-    "triangles": Part("triangles not chosen by what they cost", _replaced(plan, "_simplifies", lambda _: False)),
+    "surface": Part("the proxy's surface as it was given", _replaced(prepare, "fit_surface", lambda mesh, *_: mesh)),
+    "triangles": Part("triangles not chosen by what they cost", _replaced(prepare, "_simplifies", lambda _: False)),
     "edges": Part("one sample a pixel at edges too, in the fit and in drawing", _one_sample),
 }
 PARTS = CODING | FITTING | PLANNING
@@ -196,7 +197,7 @@ class Fit:
 
     @cached_property
     def plan(self) -> EncodePlan:
-        return plan.plan_encoding(self.field, self.mesh, EncodeOptions(fit="photographs"), self.work)
+        return prepare.plan_encoding(self.field, self.mesh, EncodeOptions(fit="photographs"), self.work)
 
     @cached_property
     def data(self) -> FitData:

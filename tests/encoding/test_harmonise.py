@@ -15,7 +15,7 @@ import eigenfield as ef
 from eigenfield.capture import open_capture
 from eigenfield.core.appearance import COLOUR_STEP
 from eigenfield.core.errors import FormatError, OptionError
-from eigenfield.encoding.projected.atlas import make_atlas
+from eigenfield.encoding.atlas import make_atlas
 from eigenfield.encoding.projected.harmonise import fit_colours, harmonised_map
 from eigenfield.encoding.projected.project import texture_map
 from eigenfield.evaluation import evaluate

@@ -15,7 +15,7 @@ from eigenfield.capture import match_photographs
 from eigenfield.cli.evaluate import COLUMNS
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, OptionError, OutputError
-from eigenfield.encoding.projected.atlas import make_atlas
+from eigenfield.encoding.atlas import make_atlas
 from eigenfield.encoding.projected.project import texture_map
 from eigenfield.evaluation import ExcludedCircle, evaluate, reconstruct_maps, stored_scores
 from eigenfield.evaluation.uv import measure_map

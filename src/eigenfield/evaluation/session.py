@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from eigenfield.capture import LightField, Photograph, match_photographs
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.scene import Scene
+from eigenfield.encoding.atlas import Atlas, make_atlas
 from eigenfield.encoding.options import DEFAULT_MAX_ANGLE
 from eigenfield.encoding.projected.align import align_map
-from eigenfield.encoding.projected.atlas import Atlas, make_atlas
 from eigenfield.encoding.projected.harmonise import harmonised_map
 from eigenfield.encoding.projected.project import RESAMPLING, texture_map
 from eigenfield.encoding.residual.views import captured_samples, corrected_picture

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from eigenfield.encoding.fitted.model import Block, PlaneModel
 from eigenfield.encoding.fitted.solve import Scales
-from eigenfield.encoding.projected.spread import push_pull
+from eigenfield.encoding.spread import push_pull
 from eigenfield.imaging.raster import rasterise
 from eigenfield.rendering.software.drawing import Surface
 from eigenfield.runtime.parallel import parallel_map

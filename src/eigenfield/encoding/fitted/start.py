@@ -18,7 +18,7 @@ from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.encoding.fitted.passes import MINUS, PASS_TASKS
 from eigenfield.encoding.fitted.products import combine, one_blas_thread, weighted_gram
 from eigenfield.encoding.fitted.solve import Scales
-from eigenfield.encoding.projected.spread import push_pull
+from eigenfield.encoding.spread import push_pull
 from eigenfield.runtime.files import scratch_array
 from eigenfield.runtime.parallel import even_pieces, parallel_map
 

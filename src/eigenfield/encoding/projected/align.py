@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.progress import Progress
-from eigenfield.encoding.projected.atlas import Atlas
+from eigenfield.encoding.atlas import Atlas
 from eigenfield.encoding.projected.project import TextureMaps
 from eigenfield.runtime.parallel import tracked_map
 

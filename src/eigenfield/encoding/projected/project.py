@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from eigenfield.core.camera import Camera
 from eigenfield.core.observations import Observations
 from eigenfield.core.progress import Progress
+from eigenfield.encoding.atlas import Atlas
 from eigenfield.encoding.options import DEFAULT_MAX_ANGLE
 from eigenfield.encoding.projected import kernels
-from eigenfield.encoding.projected.atlas import Atlas
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.runtime.files import scratch_array
 from eigenfield.runtime.parallel import tracked_map

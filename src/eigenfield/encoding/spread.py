@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from eigenfield.encoding.projected.atlas import Atlas
+from eigenfield.encoding.atlas import Atlas
 from eigenfield.imaging.sampling import halve_picture
 
 GUTTER_TEXELS = 4.0  # round each chart that repeat the nearest chart texel: bicubic taps reach 2

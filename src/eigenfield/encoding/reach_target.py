@@ -5,19 +5,26 @@ A file that is to reach a size, a PSNR or an SSIM gets a second fit where anothe
 
 from __future__ import annotations
 
+import contextlib
 import logging
+import os
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.observations import CalibratedObservations
 from eigenfield.core.progress import Progress
+from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import Scene
-from eigenfield.encoding.between import has_scores
 from eigenfield.encoding.fitted.encoder import FittedEncoder, open_encoder
 from eigenfield.encoding.fitted.observations import FitData
-from eigenfield.encoding.options import resolved_value
+from eigenfield.encoding.left_out import has_scores
+from eigenfield.encoding.options import EncodeOptions, resolved_value
 from eigenfield.encoding.plan import EncodePlan
+from eigenfield.encoding.prepare import plan_at_quality, plan_encoding
 from eigenfield.encoding.target import TARGET_FIRST_QUALITY, Attempt, Target, search_quality
 from eigenfield.gltf import encode_scene
 from eigenfield.imaging.metrics import psnr, ssim
@@ -94,7 +101,7 @@ def _other_plan(
     """The plan for the quality that was found, where its mesh or atlas differs enough for a second fit; else None."""
     if abs(found.quality - resolved_value(plan.options.quality)) <= REFIT_MAX_NEAR_QUALITIES:
         return None
-    other = plan.at_quality(found.quality, work, progress)
+    other = plan_at_quality(plan, found.quality, work, progress)
     mesh = abs(other.mesh_bytes - plan.mesh_bytes) >= REFIT_MIN_MESH_RATIO * found.size
     atlas = abs(other.atlas[0] / plan.atlas[0] - 1) >= REFIT_MIN_ATLAS_RATIO
     return other if mesh or atlas else None
@@ -144,3 +151,22 @@ def _warn_of_miss(target: Target, nearest: Attempt[Scene]) -> None:
     else:
         words = "%g cannot be reached: the finest file has %.4g; take more textures, or a higher density"
         log.warning(words, target.goal, nearest.measured)
+
+
+@contextlib.contextmanager
+def open_fitted(
+    capture: CalibratedObservations,
+    proxy: str | os.PathLike[str] | Mesh | Proxy,
+    options: EncodeOptions,
+    work: str | os.PathLike[str] | None = None,
+    progress: Progress | None = None,
+) -> Iterator[FittedEncoder]:
+    """Fit once, to code at many qualities.
+
+    Arguments and errors are those of `encode`, which makes the same of `fit="photographs"` at each quality. Mesh and
+    atlas are those of the options' quality.
+    """
+    folder = None if work is None else Path(work)
+    plan = plan_encoding(capture, proxy, replace(options, fit="photographs"), folder, progress)
+    with open_encoder(plan, folder, progress) as encoder:
+        yield encoder
