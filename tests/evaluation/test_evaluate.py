@@ -70,7 +70,7 @@ def test_drawing_and_projecting_back_each_resample_once(scene, tmp_path):
 
     def plain(index, picture):
         camera, row = scene.rig.cameras[index], camera_weights(scene, index)
-        return renderer.draw_uint8(camera, row, samples=1)
+        return renderer.draw(camera, row, samples=1).to_uint8()
 
     assert evaluate(scene, write_capture(scene, tmp_path / "c", plain))["uv"]["ssim"] > 0.9
 

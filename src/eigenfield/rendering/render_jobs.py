@@ -20,6 +20,7 @@ from eigenfield.core.scene import Scene
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.imaging.png import png_bytes
 from eigenfield.rendering.opengl.renderer import OpenGLRenderer
+from eigenfield.rendering.options import PictureOptions
 from eigenfield.rendering.picture import Picture
 from eigenfield.rendering.software.renderer import at_resolution, renderer_of, viewpoint
 from eigenfield.rendering.video import write_video
@@ -34,33 +35,25 @@ Drawn = TypeVar("Drawn")
 
 
 @dataclass(frozen=True, eq=False)
-class RenderJob:
-    """A scene and how it is drawn.
+class RenderJob(PictureOptions):
+    """A scene, and how pictures of it are drawn.
 
     Attributes:
-        scene: The scene.
         resolution: (width, height). Default: the camera's own.
-        background: 1 or 3 numbers in 0..1; None: transparent.
         weights: One of `WEIGHT_MODES`.
-        filter: One of `TEXTURE_FILTERS`.
-        textures: Number of eigen textures of each basis. Default: all.
-        samples: As of `Renderer.draw`.
         renderer: `software`, or `opengl`, which has no `samples` but smooths edges, and draws in one thread.
 
     Raises:
-        OptionError: `renderer`, `samples`.
+        OptionError: `filter`, `textures`, `renderer`, `samples`.
     """
 
     scene: Scene
     resolution: tuple[int, int] | None = None
-    background: tuple[float, ...] | None = (0.0, 0.0, 0.0)
     weights: str = "delaunay"
-    filter: str = "bicubic"
-    textures: int | None = None
-    samples: int | None = None
     renderer: str = "software"
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         if self.renderer not in RENDERERS:
             remedy = f"use one of {', '.join(RENDERERS)}"
             raise OptionError("renderer", f"no renderer is called {self.renderer!r}", remedy=remedy)
@@ -86,10 +79,7 @@ class RenderJob:
         refuse_attributes(renderer.channels)
         if renderer.channels != len(behind):
             behind = (sum(behind) / len(behind),)  # a grey
-        return renderer.draw(
-            view, weights, filter=self.filter, background=behind, textures=self.textures, samples=self.samples,
-            colour=colour,
-        )  # fmt: skip
+        return renderer.draw(view, weights, self, background=behind, colour=colour)
 
     def rgb(self, camera: Camera, weights: ViewWeights) -> NDArray[np.uint8]:
         """(H, W, 3) uint8 of `picture`; greys are repeated.

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from eigenfield.core.arguments import checked
 from eigenfield.core.scene import Scene
 from eigenfield.gltf import as_scene
-from eigenfield.rendering.checks import check_textures
+from eigenfield.rendering.options import check_textures
 from eigenfield.rendering.software.composite import compose_scene, make_buffers, make_composite
 from eigenfield.rendering.software.renderer import viewpoint
 from eigenfield.rendering.software.tiles import empty_layers, read_layers, tile_shape

@@ -12,11 +12,10 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.proxy import Sheets
 from eigenfield.core.scene import Scene
-from eigenfield.rendering.checks import TEXTURE_FILTERS, check_filter, check_textures
 from eigenfield.rendering.opengl.composer import GLSL_HEAD, Composer, set_uniforms, shader
+from eigenfield.rendering.options import BLACK, TEXTURE_FILTERS, background_of, check_filter, check_textures
 from eigenfield.rendering.picture import Picture, colour_changes, mixed_colour
 from eigenfield.rendering.software.drawing import RENDER_ONE_SAMPLE_PX, make_surface, median_footprint
-from eigenfield.rendering.software.renderer import BLACK, background_of
 from eigenfield.rendering.weights import ViewWeights, view_weights
 
 OPENGL_VERSION = 330  # OpenGL 3.3: texture arrays, and GLSL that reads as WebGL2's does

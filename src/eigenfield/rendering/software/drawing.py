@@ -247,8 +247,7 @@ def shade(
     layers: NDArray[np.float32],
     filter: str,
     background: NDArray[np.float32],
-    dtype: type[np.uint8] | type[np.float32] = np.float32,
-) -> tuple[NDArray[Any], NDArray[np.float32]]:
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Filter the texture at each sample.
 
     Args:
@@ -257,20 +256,18 @@ def shade(
         layers: (L, tiles, TILE_AREA, 4) the texture.
         filter: `bilinear` or `bicubic`.
         background: (C,) colour of what is not covered.
-        dtype: Of the picture's numbers; of uint8 they are times 255, rounded half to even and clipped.
 
     Returns:
         (H, W, C) the picture, and (H, W) the part of each pixel's samples that show the surface.
     """
     height, width = surface.size
-    picture, coverage = np.empty((*frame.size, len(background)), dtype), np.empty(frame.size, np.float32)
+    picture, coverage = np.empty((*frame.size, len(background)), np.float32), np.empty(frame.size, np.float32)
     behind = np.zeros((len(layers), LAYER_CHANNELS), np.float32)
     behind.reshape(-1)[: len(background)] = background
     parallel_map(
         lambda rows: shade_rows(
             frame.inverse_depth, frame.column_of, frame.row_of, frame.spans, frame.multisampled, frame.subsamples,
-            layers, width, height, filter == "bicubic", frame.sampling.side, behind, picture.dtype == np.uint8, *rows,
-            picture, coverage,
+            layers, width, height, filter == "bicubic", frame.sampling.side, behind, *rows, picture, coverage,
         ),
         pieces(picture.shape[0], RASTER_BAND_ROWS),
     )  # fmt: skip

@@ -213,7 +213,7 @@ def draw_sheet(
 @kernel(fastmath=True)
 def draw_sheets(
     faces, texels, edges, bounds, listing, starts, first, last, slack, middles, seen, layers, size, bicubic, samples,
-    background, eight_bit, picture, coverage,
+    background, picture, coverage,
 ):  # fmt: skip
     """Rows [first, last) of a picture of sheets: each pixel is the mean of its k x k samples.
 
@@ -227,8 +227,7 @@ def draw_sheets(
         layers, size, bicubic: As of `draw_sheet`.
         samples: k.
         background: (L, LAYER_CHANNELS) what is behind all sheets.
-        eight_bit: Whether values are multiplied by 255, rounded half to even and clipped.
-        picture: (H, W, C) uint8 or float32, written.
+        picture: (H, W, C) float32, written.
         coverage: (H, W), written.
     """
     pixels, depth = picture.shape[1], layers.shape[0]
@@ -247,7 +246,6 @@ def draw_sheets(
         )  # fmt: skip
     line = np.empty(pixels * LAYER_CHANNELS, np.float32)
     share = np.float32(1) / np.float32(samples * samples)
-    scale = share * np.float32(255 if eight_bit else 1)
     for row in range(first, last):
         sources = range((row - first) * samples, (row - first + 1) * samples)
         covered = coverage[row]
@@ -258,4 +256,4 @@ def draw_sheets(
             line[:] = 0
             for source in sources:
                 add_background(through[source], samples, background[layer], sums[layer, source], line)
-            store_layer(line, layer, scale, eight_bit, picture[row])
+            store_layer(line, layer, share, picture[row])
