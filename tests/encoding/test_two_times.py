@@ -116,7 +116,7 @@ def test_mean_textures_and_weights_fitted_to_the_same_photographs_twice_are_thos
     for times in (1, 2):
         with opened(repeated(PHOTOGRAPHS[:3], times)) as data:
             model = model_of(3 * times)
-            fit_textures(data, model, measure_scales(data, model), residual(data, model), 5)
+            fit_textures(data, model, measure_scales(data, model), 5)
             fit_weights(data, model, 4)
             found.append(model)
     one, two = found

@@ -37,9 +37,7 @@ def warn_of_disagreement(
     Args:
         squares: (No,) squared deviations from the mean, of values 0..1.
         seen: (No,) texels or pixels that these are over.
-        channels: Of each texel or pixel.
         total: Squared deviations of all observations from one colour.
-        names: Of each observation's camera.
         places: (No, 2) of each observation's camera on the view plane.
         aligned: Whether texture maps were aligned, which may have failed for one.
 

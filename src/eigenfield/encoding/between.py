@@ -23,8 +23,9 @@ import numpy as np
 from eigenfield.core.observations import select_cameras
 from eigenfield.core.progress import Progress
 from eigenfield.core.scene import Scene
+from eigenfield.core.spread import spread_indices
 from eigenfield.encoding.fitted.colour import split_matrix
-from eigenfield.encoding.fitted.fit import MEAN_WANTED, NOTHING_WANTED
+from eigenfield.encoding.fitted.fit import NOTHING_WANTED
 from eigenfield.encoding.fitted.model import PlaneModel
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_subsampled
 from eigenfield.encoding.fitted.passes import psnr_of
@@ -59,9 +60,7 @@ def measure_scene(
 
     Args:
         scene: Made of the plan's photographs.
-        plan: Its plan.
         work: Folder for scratch files of 4 bytes a pixel of the cameras that take part, and about 9 more.
-        progress: Reports the photographs.
 
     Raises:
         CaptureError: A photograph cannot be read.
@@ -70,7 +69,7 @@ def measure_scene(
     rig, encoded = plan.views.rig, plan.views.rig.encoded
     if not has_scores(plan):
         return {}
-    some = np.unique(np.linspace(0, len(encoded) - 1, min(len(encoded), MEASURED_MAX_CAMERAS)).round().astype(int))
+    some = spread_indices(len(encoded), MEASURED_MAX_CAMERAS)
     image = {"encoded": _drawn(scene, plan, encoded[some].tolist())}
     held_out = np.flatnonzero(rig.held_out).tolist()
     if held_out:
@@ -134,8 +133,7 @@ def _drawn_by_others(
             model = replace(model, mean=np.ascontiguousarray(finer, np.float32).reshape(1, rows, columns))
             scales = measure_scales(known, model)
             scales = replace(scales, smooth=(BETWEEN_SMOOTHNESS * scales.smooth[0], scales.smooth[1]))
-            left = residual(known, model, MEAN_WANTED)
-            fit_textures(known, model, scales, left, BETWEEN_ITERATIONS, mean_only=True)
+            fit_textures(known, model, scales, BETWEEN_ITERATIONS, mean_only=True)
         block = principal_block(
             known, model, scales, len(others) - 1, (0, grid[0], 0, grid[1]), scattered=False, work=work
         )

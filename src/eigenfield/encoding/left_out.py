@@ -46,12 +46,7 @@ def is_sparse(plan: EncodePlan) -> bool:
 
 
 def neighbour_parallax(cameras: Sequence[Camera], proxy: Proxy) -> float:
-    """What `inspect` says of neighbouring photographs, by the surface: the median parallax, over the longer side.
-
-    Args:
-        cameras: Two or more.
-        proxy: That they see.
-    """
+    """What `inspect` says of neighbouring photographs, by the surface: the median parallax, over the longer side."""
     mesh = opaque_mesh(proxy)
 
     def measure(pair: tuple[int, int]) -> float:
@@ -75,8 +70,7 @@ def neighbour_parallax(cameras: Sequence[Camera], proxy: Proxy) -> float:
 def spread_inside(rig: Rig) -> list[int]:
     """Cameras to leave out, counted among the encoded ones: inside their hull if any are, and no two are neighbours.
 
-    Args:
-        rig: With at least `BETWEEN_MIN_CAMERAS` encoded cameras.
+    The rig has at least BETWEEN_MIN_CAMERAS encoded cameras.
     """
     near = _neighbours(rig)
     rim = set(hull(rig.triangles).ravel().tolist()) or {index for index, ones in enumerate(near) if len(ones) < 2}
@@ -121,7 +115,6 @@ def others_around(rig: Rig, left_out: Sequence[int]) -> set[int]:
     With all around it, a camera left out lies in the same triangle of others as with the whole array.
 
     Args:
-        rig: The rig.
         left_out: Of `spread_inside`.
     """
     if len(rig.encoded) <= BETWEEN_FEW_CAMERAS:
@@ -133,13 +126,7 @@ def others_around(rig: Rig, left_out: Sequence[int]) -> set[int]:
 
 
 def interpolation(rig: Rig, others: Sequence[int], left_out: Sequence[int]) -> NDArray[np.float64]:
-    """(left out, others): what each camera left out takes of the others, all counted among the encoded ones.
-
-    Args:
-        rig: The rig.
-        others: Cameras.
-        left_out: Other cameras.
-    """
+    """(left out, others): what each camera left out takes of the others, all counted among the encoded ones."""
     places = rig.view_plane.coordinates([camera.centre for camera in rig.encoded_cameras])
     known, matrix = places[list(others)], np.zeros((len(left_out), len(others)))
     triangles = delaunay_triangles(known)

@@ -96,9 +96,6 @@ class EncodePlan:
         Args:
             planes: As in `Scene`, with a row of weights for each encoded camera.
             own: Settings that record how the planes were made.
-            payloads: The coded planes.
-            colours: As in `Scene`.
-            to_rgb: As in `Scene`.
         """
         views, rig = self.views, self.views.rig
         sizes = [rig.cameras[index].width * rig.cameras[index].height for index in views.taken_by]

@@ -54,11 +54,8 @@ def plan_encoding(
     Of sheets the opacity is fitted too.
 
     Args:
-        capture: Photographs and cameras.
         proxy: A mesh, its file, or a proxy with sheets.
         asked: The options; a target is planned for at its preset's quality.
-        work: Folder for scratch files.
-        progress: Reports each stage.
         warn: Whether a mesh that does not lie where the photographs say is named in a warning.
 
     Raises:

@@ -44,12 +44,7 @@ class Spreader:
 
 
 def make_spreader(atlas: Atlas, seen: NDArray[np.bool_]) -> Spreader:
-    """The spreader of an atlas.
-
-    Args:
-        atlas: The atlas of n chart texels.
-        seen: (n,) bool, chart texels that at least one observation shows.
-    """
+    """The spreader of an atlas; seen: (n,) bool, chart texels that at least one observation shows."""
     shape = (atlas.height, atlas.width)
     chart = np.zeros(shape, bool)
     chart.reshape(-1)[atlas.texel] = True

@@ -29,7 +29,6 @@ def fill_unseen(model: PlaneModel, scales: Scales, surface: Surface) -> None:
     Args:
         model: Is changed in place.
         scales: Of the data that it was fitted to.
-        surface: The mesh under the finest atlas.
     """
     model.mean = _fill_smoothly(model.mean, _observed_mask(scales.mean, surface))
     coarse = _observed_mask(scales.coarse, surface)

@@ -26,8 +26,6 @@ class FittedEncoder:
     Attributes:
         plan: The plan whose photographs they are fitted to.
         data: The observations of the encoded cameras, and their footprints on the mesh.
-        fits: The planes.
-        progress: Reports each coding.
     """
 
     plan: EncodePlan
@@ -72,7 +70,6 @@ def open_encoder(
     Args:
         plan: One whose options ask for a fit.
         work: Folder for scratch files of up to 17 bytes a pixel.
-        progress: Reports each stage.
         warn: Whether photographs that do not show what the others do are named in a warning.
     """
     begin_step(progress, "fit")

@@ -39,7 +39,6 @@ def fit_exposures(
     Args:
         plan: Its `harmonise` says what is fitted; None: what pays.
         work: Folder for a scratch file of 0.8 MB a photograph.
-        progress: Reports the maps.
 
     Raises:
         CaptureError: A photograph cannot be read.

@@ -36,9 +36,7 @@ def encode_projected(
     """A scene by the paper's sections 3.2 and 3.3; its textures are numbers, which `save` codes.
 
     Args:
-        plan: Cameras, mesh and atlas, and the options.
         work: Folder for a scratch file of 4 bytes x channels x cameras x texels.
-        progress: Reports each stage.
         workers: Of `open_executor`: they make the texture maps. None: this process does.
 
     Raises:
@@ -47,17 +45,17 @@ def encode_projected(
     """
     begin_step(progress, "maps")
     options, views = plan.options, plan.views
-    own = {"uvSsim": options.uv_ssim, "align": "dis" if options.align else None, "resampling": RESAMPLING}
+    settings = {"uvSsim": options.uv_ssim, "align": "dis" if options.align else None, "resampling": RESAMPLING}
     max_angle = resolved_value(options.max_angle)
     if max_angle != DEFAULT_MAX_ANGLE:
-        own["maxAngle"] = max_angle
-    colours, made = None, None
-    given = make_atlas(plan.mesh, *plan.atlas), views.rig.encoded_cameras, views.observations
+        settings["maxAngle"] = max_angle
+    colours, maps_of_workers = None, None
+    sources = make_atlas(plan.mesh, *plan.atlas), views.rig.encoded_cameras, views.observations
     if workers is not None:
-        made = maps_on_workers(workers, *given, work, max_angle, progress)
-    with texture_maps(*given, max_angle=max_angle, made=made, work=work, progress=progress) as maps:
+        maps_of_workers = maps_on_workers(workers, *sources, work, max_angle, progress)
+    with texture_maps(*sources, max_angle=max_angle, made=maps_of_workers, work=work, progress=progress) as maps:
         if options.harmonise not in (None, "none"):
-            own["harmonise"] = options.harmonise
+            settings["harmonise"] = options.harmonise
             colours = views.for_all_cameras(harmonise_maps(maps, options.harmonise, progress))
         if options.align:
             reference = views.taken_by.tolist().index(views.rig.reference)
@@ -69,7 +67,7 @@ def encode_projected(
         basis = _basis_of(maps, mean, spreader, plan, work, progress)  # equations 2 to 6
         if options.keep_maps is not None:
             write_maps(maps, mean.values, spreader, views.observation_names, Path(options.keep_maps), progress=progress)
-    return plan.scene((Plane(spreader(mean.values), (basis,)),), own, colours=colours)
+    return plan.scene((Plane(spreader(mean.values), (basis,)),), settings, colours=colours)
 
 
 def _basis_of(
@@ -122,10 +120,8 @@ def write_maps(
     Args:
         maps: Of No observations.
         mean: (n, C) at the chart texels.
-        spreader: Of the maps' atlas.
         names: Of the observations, each once.
         folder: Is made if it does not exist.
-        progress: Reports the maps that are written.
     """
     with output_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)

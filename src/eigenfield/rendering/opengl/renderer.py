@@ -64,7 +64,6 @@ class OpenGLRenderer:
         """Put a scene on the GPU.
 
         Args:
-            scene: The scene.
             filter: `bilinear` or `bicubic` (Catmull-Rom).
             weights: Mode of the weights that texels look up, one of `WEIGHT_MODES`.
             multisample: Samples of an edge pixel; 0: edges are not smoothed. Those of sheets never are.
@@ -128,12 +127,8 @@ class OpenGLRenderer:
         """A view, with values exact to 1 / 255.
 
         Args:
-            camera: The camera.
             weights: As of `Renderer.draw`. Default: each point of the surface takes those of the place where its ray to
                 the camera meets the view plane, which suits a camera anywhere; on the plane both are the same.
-            background: As of `Renderer.draw`.
-            textures: As of `Renderer.draw`.
-            colour: As of `Renderer.draw`.
 
         Raises:
             OptionError: `textures`, `background`.
@@ -157,12 +152,6 @@ class OpenGLRenderer:
         """Draw R, G, B times coverage, and coverage, into a framebuffer, bottom row first.
 
         It stays on the GPU until the next call overwrites it. It has 8 bits, or halves if there are sheets.
-
-        Args:
-            camera: As of `draw`.
-            weights: As of `draw`.
-            textures: As of `draw`.
-            colour: As of `draw`.
 
         Raises:
             OptionError: `textures`.

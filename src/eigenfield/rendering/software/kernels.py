@@ -32,7 +32,6 @@ def draw_texels(
     Args:
         faces: (m, 3).
         texels: (n, 2) texel coordinates of the vertices.
-        edges, bounds, listing, first, last, slack: As of `draw_band`.
         inverse_depth: (H, W + LANE_PX) float32 1 / depth, 0 where nothing is drawn yet, written; the last columns are
             room for vectors.
         column_of, row_of: Likewise texel coordinates over depth, written.
@@ -272,7 +271,6 @@ def store_layer(line, layer, scale, out):
 
     Args:
         line: (pixels * LAYER_CHANNELS,).
-        layer: Number of the layer.
         out: (pixels, C), written.
     """
     first, channels = layer * LAYER_CHANNELS, out.shape[1]
@@ -311,13 +309,9 @@ def shade_line(near, u, v, per_pixel, texture, width, height, bicubic, backgroun
     Args:
         near: (n,) 1 / depth of the samples.
         u, v: (n,) texel coordinates over depth.
-        per_pixel: As of `sample_line`.
-        texture: As of `sample_line`.
         width, height: Of the atlas, in texels.
         bicubic: Whether the filter has 4 x 4 taps, not 2 x 2.
-        background: As of `sample_line`.
         room: Memory for `rows`, `columns`, `down` and `across` of `sample_line`.
-        line: As of `sample_line`.
     """
     rows, columns, down, across = room
     tile_row = -(-width // TILE_TEXELS) * TILE_AREA * 4
@@ -346,7 +340,6 @@ def shade_rows(
         bicubic: Whether the filter has 4 x 4 taps, not 2 x 2.
         samples: k.
         background: (L, LAYER_CHANNELS) for samples that show nothing.
-        first, last: Range of rows.
         picture: (H, W, C) float32, written.
         coverage: (H, W), written.
     """

@@ -47,18 +47,10 @@ class Buffers:
 
 
 class Renderer:
-    """Draws a scene; prepared once, then callable from any number of threads at a time.
-
-    Attributes:
-        channels: Of a drawn picture.
-    """
+    """Draws a scene; prepared once, then callable from any number of threads at a time."""
 
     def __init__(self, scene: Scene) -> None:
-        """Prepare a scene.
-
-        Args:
-            scene: The scene.
-        """
+        """Prepare a scene."""
         self.channels = scene.appearance.channels
         self._changes = colour_changes(scene)
         self._surface = drawing.make_surface(scene.proxy.mesh, *scene.appearance.atlas)
@@ -114,20 +106,11 @@ class Renderer:
         return Picture(image, coverage)
 
     def grid_side(self, camera: Camera) -> int:
-        """k of the k x k samples a pixel that are taken by default; 1: smooth edges.
-
-        Args:
-            camera: The camera.
-        """
+        """k of the k x k samples a pixel that are taken by default; 1: smooth edges."""
         return drawing.grid_side(self._surface, camera, self._detail)
 
     def texture(self, weights: ViewWeights, textures: int | None = None) -> NDArray[np.float32]:
-        """(H, W, C): equation 8 for the tiles that the mesh uses; zero elsewhere.
-
-        Args:
-            weights: What is blended.
-            textures: Number of eigen textures of each basis. Default: all.
-        """
+        """(H, W, C): equation 8 for the tiles that the mesh uses, with so many eigen textures a basis; else zero."""
         layers = empty_layers(*self._surface.size, self.channels)
         compose_scene(self._composite, weights, textures, self._surface.used, make_buffers(self._composite), layers)
         return read_layers(layers, *self._surface.size, self.channels)
@@ -178,11 +161,7 @@ def draw_texture(
 
 
 def renderer_of(scene: Scene) -> Renderer:
-    """The scene's renderer, made on the first call and kept as long as the scene.
-
-    Args:
-        scene: The scene.
-    """
+    """The scene's renderer, made on the first call and kept as long as the scene."""
     return scene.derive("software renderer", lambda: Renderer(scene))
 
 
@@ -244,10 +223,6 @@ def viewpoint(
     """The camera and the view weights of a place, of a capture camera, or of the reference camera.
 
     Args:
-        scene: The scene.
-        at: As of `render`.
-        camera: As of `render`.
-        weights: As of `render`.
         time: As of `render`.
 
     Raises:
@@ -272,11 +247,6 @@ def viewpoint_colour(
 ) -> NDArray[np.float32] | None:
     """The `colour` of `Renderer.draw` for a view: that of `camera_colour` for a captured camera, None for a place.
 
-    Args:
-        scene: The scene.
-        at: As of `render`.
-        camera: As of `render`.
-
     Raises:
         OptionError: `unknown-camera`.
     """
@@ -289,7 +259,6 @@ def camera_index(scene: Scene, name: str) -> int:
     """The index of a camera.
 
     Args:
-        scene: The scene.
         name: Of the camera, with or without its ending.
 
     Raises:
@@ -302,7 +271,6 @@ def at_resolution(camera: Camera, resolution: tuple[int, int]) -> Camera:
     """The camera with another resolution.
 
     Args:
-        camera: The camera.
         resolution: (width, height), 1 to 16384 each.
 
     Raises:

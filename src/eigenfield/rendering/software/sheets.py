@@ -44,12 +44,7 @@ class Stack:
 
 
 def make_stack(sheets: Sheets, size: tuple[int, int]) -> Stack:
-    """Bring sheets' opacity to the atlas's size.
-
-    Args:
-        sheets: The sheets.
-        size: (H, W) of the atlas, in texels.
-    """
+    """Bring sheets' opacity to the size (H, W) of the atlas, in texels."""
     starts = np.concatenate([[0], np.cumsum(sheets.faces)]).astype(np.int32)
     shape = tile_shape(size)
     tiles = np.zeros((shape[0] * shape[1], 1, TILE_AREA), np.float32)
@@ -65,8 +60,6 @@ def set_up_sheets(surface: Surface, camera: Camera, frame: Framebuffer) -> list[
     """Project the triangles of all sheets, and find the tiles that those in view read.
 
     Args:
-        surface: All sheets.
-        camera: The camera.
         frame: Of the camera's size and sampling, written.
 
     Returns:
@@ -94,13 +87,8 @@ def shade_sheets(
     """Composite sheets.
 
     Args:
-        surface: All sheets.
-        stack: How they are stacked.
-        bands: Of `set_up_sheets`.
         frame: As `set_up_sheets` leaves it; overwritten.
         layers: (L, tiles, TILE_AREA, 4) the texture; `OPACITY_LANE` is `stack.opacity`.
-        filter: As of `shade`.
-        background: As of `shade`.
 
     Returns:
         (H, W, C) the picture, and (H, W) how much of each pixel the sheets cover: 1 less the product of 1 - A.
