@@ -51,7 +51,7 @@ def make_draft(
 
     Args:
         capture: Photographs, with cameras if there is a proxy.
-        proxy: As of `encode`; None: it is made.
+        proxy: None: it is made.
         options: Of the whole scene, of which the draft takes what is not about quality and size.
         settings: Arguments of `reconstruct` for the whole scene.
 

@@ -18,9 +18,6 @@ def weight_map(scene: Scene, mode: str = "delaunay", nodes: int = WEIGHT_MAP_NOD
 
     Args:
         mode: One of `WEIGHT_MODES`.
-
-    Raises:
-        OptionError: As `view_weights`.
     """
     steps = np.linspace(-1.0, 1.0, nodes)
     rows = component_rows(scene)

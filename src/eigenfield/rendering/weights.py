@@ -66,9 +66,6 @@ def view_weights(scene: Scene, at: tuple[float, float], mode: str = "delaunay", 
     Args:
         mode: One of `WEIGHT_MODES`.
         time: Index of the instant.
-
-    Raises:
-        OptionError: As `place_weights`.
     """
     cameras, values = place_weights(scene, at, mode)
     return ViewWeights(scene.rows(cameras, time), values)
@@ -128,9 +125,6 @@ def camera_weights(scene: Scene, index: int, mode: str = "delaunay", time: int =
     Args:
         mode: One of `WEIGHT_MODES`.
         time: Index of the instant.
-
-    Raises:
-        OptionError: As `place_weights`.
     """
     _check_mode(mode)
     row = int(scene.rows(index, time))

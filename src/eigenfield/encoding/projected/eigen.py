@@ -31,6 +31,7 @@ def gram_matrix(maps: TextureMaps, mean: Mean, progress: Progress | None = None)
 
     Tiles are summed in float64 and in a fixed order: float32 sums lose the small eigenvalues, free order changes the
     last bits with the number of threads.
+    Matrices of frames that share their weights are added.
     """
 
     def product(part: tuple[int, int]) -> NDArray[np.float64]:

@@ -38,9 +38,6 @@ def with_differences(
         scene: With a residual, if one is wanted.
         cameras: Counted among all.
         wanted: False: all cameras without a residual.
-
-    Raises:
-        OptionError, FormatError: As `differences`.
     """
     left = dict.fromkeys(cameras)
     if wanted:

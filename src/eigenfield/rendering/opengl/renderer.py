@@ -127,7 +127,7 @@ class OpenGLRenderer:
         """A view, with values exact to 1 / 255.
 
         Args:
-            weights: As of `Renderer.draw`. Default: each point of the surface takes those of the place where its ray to
+            weights: What is blended. Default: each point of the surface takes those of the place where its ray to
                 the camera meets the view plane, which suits a camera anywhere; on the plane both are the same.
 
         Raises:
