@@ -139,9 +139,10 @@ def _drawn_by_others(
         )
         weights = np.concatenate([block.weights, interpolation(rig, others, left_out) @ block.weights])
         model = replace(model, blocks=[replace(block, weights=weights.astype(np.float32))])
-        found = residual(data, model, NOTHING_WANTED)
+        equations = residual(data, model, NOTHING_WANTED)
     at = range(len(others), len(order))
-    return [psnr_of(found.squares[i : i + 1], found.pixels[i : i + 1]) if found.pixels[i] else np.inf for i in at]
+    squares, pixels = equations.squares, equations.pixels
+    return [psnr_of(squares[i : i + 1], pixels[i : i + 1]) if pixels[i] else np.inf for i in at]
 
 
 def _first(data: FitData, count: int) -> FitData:

@@ -168,15 +168,15 @@ def fit_plane(
     tick()
     reached, variance = -math.inf, None
     for number in range(turns.rounds if count else 0):
-        left = residual(fitted, model, variance=variance)
-        before, reached = reached, psnr_of(left.squares, left.pixels, channels)
+        equations = residual(fitted, model, variance=variance)
+        before, reached = reached, psnr_of(equations.squares, equations.pixels, channels)
         log.info("%s, after round %d: %.2f dB", name, number, reached)
         if abs(reached - before) < FIT_STOP_DB:
             break
-        fit_textures(fitted, model, scales, turns.texture_iterations, left=left)
+        fit_textures(fitted, model, scales, turns.texture_iterations, equations=equations)
         tick()
         fit_weights(pixels.weighed, model, FIT_WEIGHT_ITERATIONS)
-        variance = FIT_SIGMA_RATIO**2 * float(left.squares.sum() / max(left.pixels.sum(), 1.0))
+        variance = FIT_SIGMA_RATIO**2 * float(equations.squares.sum() / max(equations.pixels.sum(), 1.0))
         whiten(model, scales)
         tick()
     surface = pixels.every.footprints.surface
@@ -237,8 +237,8 @@ def code_plane(
             stream, block.weights = encoder(WEIGHTS_CODEC)(block.weights, _weight_steps(block, scales), grid)
             bases[number] = with_weights(bases[number], block.weights, Payload(WEIGHTS_CODEC, stream))
     tick()
-    left = residual(pixels.fitted, model, MEAN_WANTED, fit.composer)
-    fit_textures(pixels.fitted, model, scales, FIT_CLOSING_ITERATIONS, mean_only=True, left=left)
+    equations = residual(pixels.fitted, model, MEAN_WANTED, fit.composer)
+    fit_textures(pixels.fitted, model, scales, FIT_CLOSING_ITERATIONS, mean_only=True, equations=equations)
     mean = np.ascontiguousarray(model.mean.transpose(1, 2, 0))
     white = pixels.every.white(model.matrix)
     plane = coded_plane(mean, bases, rate.mean_step, rate.coder, precision, white)
@@ -282,13 +282,13 @@ def fit_mean(data: FitData, model: PlaneModel, scales: Scales, iterations: int =
         model: Is changed in place.
         scales: Of these data.
     """
-    left = residual(data, model, MEAN_WANTED)
+    equations = residual(data, model, MEAN_WANTED)
     # the filter's weights sum to 1, so that G^T leaves the sum of what it brings back as it is
-    sums = left.mean.sum(axis=(1, 2), dtype=np.float64)
-    total = float(left.squares.sum() - np.square(sums).sum() / max(float(left.pixels.sum()), 1.0))
-    fit_textures(data, model, scales, iterations, mean_only=True, left=left)
-    found = residual(data, model, NOTHING_WANTED)
-    return MeanAlone(found.squares, found.pixels, model.channels, total)
+    sums = equations.mean.sum(axis=(1, 2), dtype=np.float64)
+    total = float(equations.squares.sum() - np.square(sums).sum() / max(float(equations.pixels.sum()), 1.0))
+    fit_textures(data, model, scales, iterations, mean_only=True, equations=equations)
+    equations = residual(data, model, NOTHING_WANTED)
+    return MeanAlone(equations.squares, equations.pixels, model.channels, total)
 
 
 def _weight_steps(block: Block, scales: Scales) -> NDArray[np.float32]:

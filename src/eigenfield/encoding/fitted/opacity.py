@@ -77,8 +77,8 @@ def fit_opacity(
                 progress("fit opacity", number, OPACITY_ROUNDS)
             with open_on_proxy(every, used, proxy, work) if number else nullcontext(every) as data:
                 iterations = OPACITY_ITERATIONS if number else OPACITY_FIRST_ITERATIONS
-                left = fit_mean(data, model, measure_scales(data, model), iterations)
-                log.info("opacity, before round %d: %.2f dB by the mean alone", number, left.psnr)
+                mean_alone = fit_mean(data, model, measure_scales(data, model), iterations)
+                log.info("opacity, before round %d: %.2f dB by the mean alone", number, mean_alone.psnr)
                 opacity = _stepped(opacity, given, *_sums(data, model))
             proxy = replace(proxy, sheets=replace(proxy.sheets, opacity=opacity))
     if progress is not None:

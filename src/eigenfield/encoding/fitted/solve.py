@@ -147,7 +147,7 @@ def fit_textures(
     iterations: int,
     *,
     mean_only: bool = False,
-    left: NormalEquations | None = None,
+    equations: NormalEquations | None = None,
 ) -> None:
     """Fit mean and textures to the photographs for the weights that the model has, by conjugate gradients.
 
@@ -158,9 +158,10 @@ def fit_textures(
         model: Where the solution begins, and where it is put.
         scales: Of these data.
         mean_only: Whether the textures stay as they are.
-        left: `residual` of the model as it is, where it is known; its sums are used up.
+        equations: `residual` of the model as it is, where it is known; its sums are used up.
     """
-    left = residual(data, model, (True, not mean_only, False)) if left is None else left
+    if equations is None:
+        equations = residual(data, model, (True, not mean_only, False))
     blocks = [] if mean_only else model.blocks
     weights = [block.weights for block in model.blocks]
     scales_of_parts = [_PartScales(scales.mean, scales.smooth[0], 1.0)]
@@ -169,8 +170,8 @@ def fit_textures(
         scales_of_parts += [_PartScales(share, scales.smooth[1], max(float(e), 1e-6)) for e in energy.mean(axis=0)]
     mean, textures = np.zeros_like(model.mean), [np.zeros_like(block.textures) for block in blocks]
     gradients = _ConjugateGradients(
-        scales_of_parts, _parts(model.mean, [block.textures for block in blocks]), _parts(left.mean, left.textures),
-        _parts(mean, textures),
+        scales_of_parts, _parts(model.mean, [block.textures for block in blocks]),
+        _parts(equations.mean, equations.textures), _parts(mean, textures),
     )  # fmt: skip
     product = gradients.begin()
     for _ in range(iterations):

@@ -136,13 +136,13 @@ def fit_surface(
             moved = open_on_proxy(every, used, replace(proxy, mesh=mesh), work) if number else nullcontext(every)
             with moved as whole, open_subsampled(whole, step, work) as data:
                 iterations = SURFACE_MEAN_ITERATIONS if number else FIT_MEAN_ITERATIONS
-                left = fit_mean(data, model, measure_scales(data, model), iterations)
-                if not left.pixels.any():
+                mean_alone = fit_mean(data, model, measure_scales(data, model), iterations)
+                if not mean_alone.pixels.any():
                     break
-                log.info("surface, after round %d: %.2f dB by the mean alone", number, left.psnr)
-                if left.psnr <= reached:
+                log.info("surface, after round %d: %.2f dB by the mean alone", number, mean_alone.psnr)
+                if mean_alone.psnr <= reached:
                     break
-                best, reached = mesh, left.psnr
+                best, reached = mesh, mean_alone.psnr
                 if number == SURFACE_ROUNDS:
                     break
                 further, promised = _step(movable, mesh, off, data, used, model)
