@@ -43,7 +43,7 @@ def principal_components() -> None:
     from sklearn.decomposition import PCA
 
     from eigenfield.capture import open_capture
-    from eigenfield.encoding.projected.atlas import make_atlas
+    from eigenfield.encoding.atlas import make_atlas
     from eigenfield.encoding.projected.mean import mean_map
     from eigenfield.encoding.projected.project import texture_maps
     from eigenfield.proxy import prepare_proxy

@@ -23,7 +23,7 @@ import eigenfield as ef
 import measure
 from eigenfield.capture import open_capture
 from eigenfield.demo import draw_demo_capture
-from eigenfield.encoding.projected.atlas import make_atlas
+from eigenfield.encoding.atlas import make_atlas
 from eigenfield.encoding.projected.project import texture_map
 from eigenfield.evaluation import read_circles
 from eigenfield.imaging.metrics import ssim, to_codes

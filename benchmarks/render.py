@@ -136,7 +136,7 @@ def frames(scene: Scene, way: str, count: int = FRAMES) -> dict[str, Any]:
         at = (0.7 * np.cos(angle), 0.7 * np.sin(angle))
         started = time.perf_counter()
         camera = novel_camera(scene, at).resize(WIDTH, HEIGHT)
-        renderer.draw_uint8(camera, view_weights(scene, at), filter=filter, samples=samples)
+        renderer.draw(camera, view_weights(scene, at), filter=filter, samples=samples).to_uint8()
         if number >= 0:
             taken.append(time.perf_counter() - started)
     worked = time.process_time() - before

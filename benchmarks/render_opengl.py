@@ -21,8 +21,8 @@ import measure
 from eigenfield.core.camera import Camera
 from eigenfield.core.scene import Scene
 from eigenfield.rendering import OpenGLRenderer, novel_camera, view_weights
-from eigenfield.rendering.checks import TEXTURE_FILTERS
 from eigenfield.rendering.opengl.renderer import make_context
+from eigenfield.rendering.options import TEXTURE_FILTERS
 from render import COUNTS, SIDE, array, relief, scene_of
 
 MONO, EYE = (1920, 1080), (1832, 1920)

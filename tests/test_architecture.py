@@ -26,6 +26,7 @@ FLOORS = [  # from the ground up; rooms of one floor do not know each other
     ["cli"],
     ["__init__", "__main__"],
 ]
+ROOMS_WITH_CIRCLES = {"coding", "proxy"}  # of folders
 FLOOR = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
 
 
@@ -52,6 +53,11 @@ def room_of(module):
     return [*module.split("."), "__init__"][1]
 
 
+def folder_of(module):
+    """The folder in a module's room, or the module itself where it is in none."""
+    return [*module.split("."), "__init__", "__init__"][2]
+
+
 def test_rooms_import_only_from_rooms_below():
     offenders = []
     for name, path in MODULES.items():
@@ -68,6 +74,24 @@ def test_no_circle_of_imports():
         TopologicalSorter(graph).prepare()
     except CycleError as error:
         raise AssertionError(f"a circle of imports: {' <- '.join(error.args[1])}") from None
+
+
+def test_no_circle_of_folders():
+    """Within a room its folders stand on floors too, and so does each of its modules that is in no folder."""
+    graphs = {}
+    for name, path in MODULES.items():
+        for other in imports(path):
+            room, folder, another = room_of(name), folder_of(name), folder_of(other)
+            if room == room_of(other) and folder != another:
+                graphs.setdefault(room, {}).setdefault(folder, set()).add(another)
+    assert len(graphs) > 10
+    for room, graph in graphs.items():
+        try:
+            TopologicalSorter(graph).prepare()
+            circle = ""
+        except CycleError as error:
+            circle = " <- ".join(error.args[1])
+        assert bool(circle) == (room in ROOMS_WITH_CIRCLES), f"a circle of folders in {room}: {circle}"
 
 
 def test_every_room_has_a_floor():

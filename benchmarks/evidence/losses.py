@@ -18,8 +18,8 @@ from eigenfield.capture import LightField, match_photographs
 from eigenfield.coding.pictures.quantise import basis_scale, is_photographic, mean_codes, mean_values, texture_codes
 from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.scene import Scene
-from eigenfield.encoding.projected.atlas import ATLAS_SIDE_CAP_TEXELS, Atlas, make_atlas
-from eigenfield.encoding.projected.spread import Spreader, make_spreader
+from eigenfield.encoding.atlas import ATLAS_SIDE_CAP_TEXELS, Atlas, make_atlas
+from eigenfield.encoding.spread import Spreader, make_spreader
 from eigenfield.evaluation.image import covered_pixels
 from eigenfield.evaluation.session import Session, start_session
 from eigenfield.gltf import save

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.encoding.projected.project import DEPTH_BIAS_RATIO
-from eigenfield.encoding.projected.spread import push_pull
+from eigenfield.encoding.spread import push_pull
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.runtime.parallel import parallel_map, pieces

@@ -14,8 +14,8 @@ import eigenfield as ef
 from eigenfield.capture import LightField
 from eigenfield.core.proxy import Proxy
 from eigenfield.encoding import EncodeOptions
-from eigenfield.encoding.fitted.encoder import open_fitted
 from eigenfield.encoding.options import DEFAULT_PRESET
+from eigenfield.encoding.reach_target import open_fitted
 from eigenfield.gltf import parts, save
 from eigenfield.rendering import Renderer
 from eigenfield.runtime.parallel import parallel_stream

@@ -137,7 +137,7 @@ def look():
 def test_a_view_is_the_surface_where_the_mesh_says_it_is(look):
     """A surface that glows with its own world position, without reflections, is seen where it projects to."""
     mesh, camera = build_geometry().mesh, array_camera(0.2, -0.3, 96)
-    from eigenfield.encoding.projected.atlas import make_atlas
+    from eigenfield.encoding.atlas import make_atlas
 
     atlas = make_atlas(mesh, 512, 512)
     glow = np.zeros((512 * 512, 8), np.float32)

@@ -14,8 +14,8 @@ from eigenfield.capture import open_capture
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.proxy import Proxy
-from eigenfield.encoding import between as between_module
-from eigenfield.encoding.between import neighbour_parallax, spread_inside
+from eigenfield.encoding import left_out as left_out_module
+from eigenfield.encoding.left_out import interpolation, neighbour_parallax, others_around, spread_inside
 from eigenfield.encoding.views import make_rig
 from eigenfield.gltf import load, save
 from eigenfield.imaging.metrics import psnr
@@ -75,17 +75,17 @@ def test_many_cameras_near_each_other_are_drawn_by_the_finished_scene(tmp_path, 
     cameras = [replace(camera, t=camera.t + by) for camera, by in zip(row_grid(9, 192, 168), moved, strict=True)]
     folder = write_capture(tmp_path / "moved", tuple(cameras))
     whole = encoded(folder, fit="none").scores["between"]
-    monkeypatch.setattr(between_module, "BETWEEN_FEW_CAMERAS", 8)
+    monkeypatch.setattr(left_out_module, "BETWEEN_FEW_CAMERAS", 8)
     scene = encoded(folder, fit="none")
     drawn = scene.scores["between"]
     (left_out,) = spread_inside(scene.rig)
     others = np.delete(np.arange(9), left_out)
-    mixed = between_module.interpolation(scene.rig, others.tolist(), [left_out])[0]
+    mixed = interpolation(scene.rig, others.tolist(), [left_out])[0]
     picture = Renderer(scene).draw(scene.rig.cameras[left_out], ViewWeights(others, mixed))
     truth = psnr(picture.image, open_capture(folder).photograph(left_out).pixels, picture.covered)
     assert drawn == {"cameras": 1, "psnr": pytest.approx(truth, abs=0.01)}
     assert drawn["psnr"] < scene.scores["image"]["encoded"]["psnr"]
-    monkeypatch.setattr(between_module, "NEIGHBOUR_MAX_PARALLAX_RATIO", 0.001)
+    monkeypatch.setattr(left_out_module, "NEIGHBOUR_MAX_PARALLAX_RATIO", 0.001)
     some = encoded(folder, fit="none").scores["between"]
     assert some["cameras"] == 1 and some["psnr_luma_at_least"] == pytest.approx(whole["psnr_luma_at_least"], abs=1)
 
@@ -93,7 +93,7 @@ def test_many_cameras_near_each_other_are_drawn_by_the_finished_scene(tmp_path, 
 def test_of_many_cameras_those_around_each_are_taken():
     rig = grid_rig([(x, y) for y in range(9) for x in range(9)])
     left_out = spread_inside(rig)
-    taken = between_module.others_around(rig, left_out)
+    taken = others_around(rig, left_out)
     beside = {i + d for i in left_out for d in (-9, -1, 1, 9)}
     assert (
         len(left_out) == 12 and beside <= taken and not taken & set(left_out) and rig.reference in taken | {*left_out}

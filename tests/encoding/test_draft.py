@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -42,11 +41,12 @@ def array(tmp_path_factory):
 
 @pytest.fixture
 def worth_it(monkeypatch):
-    monkeypatch.setattr(drafts, "DRAFT_TUNING", replace(drafts.DRAFT_TUNING, worth_seconds=0.0))
+    monkeypatch.setattr(drafts, "DRAFT_WORTH_SECONDS", 0.0)
 
 
 def small(monkeypatch, **changes):
-    monkeypatch.setattr(drafts, "DRAFT_TUNING", replace(drafts.DRAFT_TUNING, min_side=16, **changes))
+    for name, value in {"min_side": 16, **changes}.items():
+        monkeypatch.setattr(drafts, f"DRAFT_{name.upper()}", value)
 
 
 def encode(folder, *options):
@@ -101,7 +101,7 @@ def test_what_is_named_in_pixels_or_by_photographs_stays_with_the_scene(array, m
     with pytest.raises(ProxyError):
         make_draft(open_any(array), None, ef.EncodeOptions(hold_out="every:4"), given)
     del asked["progress"]
-    assert asked == ESTIMATED | {"layers": 1, "triangles": drafts.DRAFT_TUNING.triangles}
+    assert asked == ESTIMATED | {"layers": 1, "triangles": drafts.DRAFT_TRIANGLES}
 
 
 def test_the_command_writes_a_draft_and_says_what_it_is(row, tmp_path, worth_it, monkeypatch, capsys):

@@ -11,8 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import reference
+from eigenfield.encoding.agreement import warn_of_disagreement
+from eigenfield.encoding.plan import component_count
 from eigenfield.encoding.projected import eigen, mean
-from eigenfield.encoding.projected.agreement import warn_of_disagreement
 from eigenfield.encoding.projected.align import align_maps
 from eigenfield.encoding.projected.project import TextureMaps
 from eigenfield.runtime.parallel import set_threads
@@ -126,9 +127,9 @@ def test_weights_are_white_and_errors_fall(cameras, texels, channels, seed):
 
 
 def test_asking_for_too_many_components_is_said(caplog):
-    assert eigen.component_count(40, 17) == 16
+    assert component_count(40, 17) == 16
     assert "at most 16" in caplog.text
-    assert eigen.component_count(3, 17) == 3
+    assert component_count(3, 17) == 3
 
 
 def warned_of(levels, caplog):

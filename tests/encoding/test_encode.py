@@ -18,11 +18,11 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
 from eigenfield.core.viewplane import fit_view_plane
-from eigenfield.encoding.projected.atlas import make_atlas
+from eigenfield.encoding.atlas import make_atlas
 from eigenfield.encoding.projected.eigen import eigen_textures, eigenvectors, gram_matrix, weights_of
 from eigenfield.encoding.projected.mean import filled_map, mean_map
 from eigenfield.encoding.projected.project import texture_map, texture_maps
-from eigenfield.encoding.projected.spread import make_spreader
+from eigenfield.encoding.spread import make_spreader
 from eigenfield.gltf import save
 from eigenfield.rendering import camera_weights, delaunay_triangles, renderer_of
 from eigenfield.runtime.parallel import set_threads
@@ -222,7 +222,7 @@ def read(folder):
 
 
 def test_a_world_far_from_its_origin_is_said(caplog):
-    from eigenfield.encoding.plan import _warn_of_rounding
+    from eigenfield.encoding.prepare import _warn_of_rounding
 
     far = np.array([500_000.37, 4_000_000.61, 100.0])
     cameras = [Camera(c.K, c.R, c.t - c.R @ far, c.width, c.height) for c in row_grid(4)]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from eigenfield.core.proxy import Proxy
-from eigenfield.encoding import between
+from eigenfield.encoding import left_out
 from eigenfield.encoding.fitted.colour import split_matrix
 from eigenfield.encoding.fitted.exposures import fit_exposures
 from eigenfield.encoding.fitted.fit import fit_mean
@@ -52,7 +52,7 @@ def plan_of(photographs, harmonise=None, times=(0.0,)):
 
 def test_known_exposures_are_found_where_they_pay(exposed, monkeypatch):
     assert fit_exposures(plan_of(exposed)) is None, "small photographs are not tried"
-    monkeypatch.setattr(between, "BETWEEN_MIN_SIDE_PIXELS", 32)
+    monkeypatch.setattr(left_out, "BETWEEN_MIN_SIDE_PIXELS", 32)
     found = fit_exposures(plan_of(exposed))
     np.testing.assert_allclose(found[:, 0], GAINS, rtol=0.01)
     np.testing.assert_allclose(found[:, 1], OFFSETS, atol=0.004)
@@ -61,7 +61,7 @@ def test_known_exposures_are_found_where_they_pay(exposed, monkeypatch):
 
 
 def test_equal_exposures_stay(pictures, monkeypatch):
-    monkeypatch.setattr(between, "BETWEEN_MIN_SIDE_PIXELS", 32)
+    monkeypatch.setattr(left_out, "BETWEEN_MIN_SIDE_PIXELS", 32)
     assert fit_exposures(plan_of(pictures)) is None
     shone = [0.9 * draw_texture(backdrop(), shaded_texture(k, 9), camera).image for k, camera in enumerate(CAMERAS)]
     assert fit_exposures(plan_of(shone)) is None, "a highlight that wanders is no exposure"

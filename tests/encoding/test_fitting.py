@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from dataclasses import replace
 
 import numpy as np
@@ -34,7 +35,7 @@ from eigenfield.encoding.fitted.passes import psnr_of, render_and_backproject
 from eigenfield.encoding.fitted.planes import fitted_textures
 from eigenfield.encoding.fitted.rate import Rate
 from eigenfield.encoding.fitted.solve import fit_textures, fit_weights, measure_scales, residual, whiten
-from eigenfield.encoding.fitted.start import _residual_map
+from eigenfield.encoding.fitted.start import _residual_map, open_residual_maps, principal_weights
 from eigenfield.encoding.options import PRESETS
 from eigenfield.evaluation import evaluate
 from eigenfield.gltf import encode_scene, parts, save, validate
@@ -187,11 +188,30 @@ def test_mean_and_textures_of_known_weights_draw_the_photographs(world):
     data, _, model = world
     block = model.blocks[0]
     guess = PlaneModel(RGB, np.full_like(model.mean, 0.5), GRID, [replace_textures(block, block.textures * 0)])
-    scales = measure_scales(data, guess)
-    left = residual(data, guess)
-    before = left.squares.sum()
-    fit_textures(data, guess, scales, left, 25)
+    before = residual(data, guess).squares.sum()
+    fit_textures(data, guess, measure_scales(data, guess), 25)
     assert residual(data, guess).squares.sum() < before / 1000
+
+
+def test_frames_that_share_their_weights_are_decomposed_by_the_sum_of_their_gram_matrices(world):
+    """As all their maps below each other are, by the singular value decomposition, of which nothing better exists."""
+    data, _, model = world
+    scales, rectangle = measure_scales(data, model), (0, GRID[0], 0, GRID[1])
+    frames = [PlaneModel(RGB, np.full_like(model.mean, grey), GRID, []) for grey in (0.2, 0.7)]
+    with ExitStack() as stack:
+        opened = [stack.enter_context(open_residual_maps(data, one, scales, rectangle, False)) for one in frames]
+        gram = np.sum([maps.gram() for maps in opened], axis=0)
+        stacked = np.concatenate([maps.values * maps.share for maps in opened], axis=1).astype(np.float64)
+        np.testing.assert_allclose(gram, stacked @ stacked.T, rtol=1e-4, atol=1e-4 * gram.max())
+        values = np.linalg.svd(stacked, compute_uv=False)
+        for count in (1, 4):
+            weights = principal_weights(gram, count)
+            np.testing.assert_allclose(weights.T @ weights / len(data), np.eye(count), atol=1e-6)
+            shown = [np.tensordot(weights, maps.textures(weights), 1).reshape(len(data), -1) for maps in opened]
+            left = sum(
+                np.square((maps.values - one) * maps.share).sum() for maps, one in zip(opened, shown, strict=True)
+            )
+            assert left == pytest.approx(np.square(values[count:]).sum(), rel=1e-3)
 
 
 def replace_textures(block: Block, textures: np.ndarray) -> Block:

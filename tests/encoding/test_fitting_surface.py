@@ -226,7 +226,7 @@ def test_a_mesh_that_is_off_costs_an_encode_little(tmp_path, monkeypatch):
     wrong = replace(true, vertices=lattice.points(exact).astype(np.float32))
     capture, made = open_capture(folder), {}
     for rounds in (4, 0):
-        monkeypatch.setattr(surface, "SURFACE_TUNING", replace(surface.SURFACE_TUNING, rounds=rounds))
+        monkeypatch.setattr(surface, "SURFACE_ROUNDS", rounds)
         scene = ef.encode(capture, wrong, textures=2, fit="photographs")
         made[rounds] = len(encode_scene(scene)), scene.settings["fitted"]["psnr"]["luma"]["coded"]
     assert made[4][1] > made[0][1] + 0.3 and made[4][0] < 1.03 * made[0][0]

@@ -8,10 +8,10 @@ import eigenfield as ef
 from eigenfield.capture import open_capture
 from eigenfield.core.payloads import mesh_key, size_of
 from eigenfield.encoding import EncodeOptions, Target
-from eigenfield.encoding.fitted.encode import FIGURES_MAX_BYTES
 from eigenfield.encoding.fitted.fit import coded_psnr
 from eigenfield.encoding.fitted.planes import PLANE_PRESETS, plane_size
 from eigenfield.encoding.options import density_for_quality
+from eigenfield.encoding.reach_target import FIGURES_MAX_BYTES
 from eigenfield.evaluation import evaluate
 from eigenfield.gltf import encode_scene, validate
 from eigenfield.gltf.container import parse_glb
@@ -25,7 +25,7 @@ def test_figures_are_measured_of_the_file_that_is_kept(fitted, monkeypatch):
     folder, output = fitted
     files, drawn = [], []
     monkeypatch.setattr(
-        "eigenfield.encoding.fitted.encode.encode_scene", lambda scene: files.append(encode_scene(scene)) or files[-1]
+        "eigenfield.encoding.reach_target.encode_scene", lambda scene: files.append(encode_scene(scene)) or files[-1]
     )
     monkeypatch.setattr(
         "eigenfield.encoding.fitted.planes.coded_psnr", lambda *given: drawn.append(coded_psnr(*given)) or drawn[-1]
@@ -71,10 +71,10 @@ def test_a_target_far_from_the_preset_has_a_mesh_of_its_own(tmp_path, caplog, mo
     capture, options = open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "density": 1.5}
     asked = Target(psnr=26)
     with caplog.at_level("INFO", "eigenfield.encode"):
-        monkeypatch.setattr("eigenfield.encoding.fitted.encode.REFIT_MIN_MESH_RATIO", 0.1)
+        monkeypatch.setattr("eigenfield.encoding.reach_target.REFIT_MIN_MESH_RATIO", 0.1)
         once = ef.encode(capture, **options, target=asked)
         assert "fitted again for quality" not in caplog.text  # the meshes differ by less
-        monkeypatch.setattr("eigenfield.encoding.fitted.encode.REFIT_MIN_MESH_RATIO", 1e-3)
+        monkeypatch.setattr("eigenfield.encoding.reach_target.REFIT_MIN_MESH_RATIO", 1e-3)
         found = ef.encode(capture, **options, target=asked)
     assert "fitted again for quality" in caplog.text and "not kept" not in caplog.text
     assert len(found.proxy.mesh.faces) < len(once.proxy.mesh.faces)
@@ -97,7 +97,7 @@ def test_of_two_fits_the_better_is_kept(tmp_path, caplog, monkeypatch, asked):
     capture, options = open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "density": 1.5}
     made = []
     for share in (1.0, 1e-3):
-        monkeypatch.setattr("eigenfield.encoding.fitted.encode.REFIT_MIN_MESH_RATIO", share)
+        monkeypatch.setattr("eigenfield.encoding.reach_target.REFIT_MIN_MESH_RATIO", share)
         with caplog.at_level("INFO", "eigenfield.encode"):
             made.append(ef.encode(capture, **options, target=asked))
         assert ("fitted again" in caplog.text) == (share < 1)

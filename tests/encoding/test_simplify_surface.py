@@ -13,7 +13,7 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.encoding import EncodeOptions
 from eigenfield.encoding.geometry.simplify_surface import _loss, _points, _view, simplify_surface_rd
 from eigenfield.encoding.options import density_for_quality
-from eigenfield.encoding.plan import plan_encoding
+from eigenfield.encoding.prepare import plan_at_quality, plan_encoding
 from eigenfield.proxy import simplify_mesh, unwrap_mesh
 from support.captures import write_capture
 from support.observations import greys, repeated
@@ -134,16 +134,16 @@ def test_a_fit_has_fewer_triangles_the_coarser_its_quality_and_as_many_as_were_a
     given = replace(smooth, vertices=(smooth.vertices * bumps).astype(np.float32))
     field = open_capture(write_capture(tmp_path / "ball", tuple(nine_cameras()), unwrap_mesh(given)))
     coarse = plan_encoding(field, given, EncodeOptions(quality=55))
-    fine = coarse.at_quality(92)
+    fine = plan_at_quality(coarse, 92)
     counts = [len(plan.mesh.faces) for plan in (coarse, fine)]
     assert counts[0] < 0.6 * counts[1] and counts[1] <= len(given.faces)
     assert fine.options.quality == 92 and fine.mesh_bytes > coarse.mesh_bytes
-    again = fine.at_quality(55)
+    again = plan_at_quality(fine, 55)
     np.testing.assert_array_equal(again.mesh.vertices, coarse.mesh.vertices)
     assert len(plan_encoding(field, given, EncodeOptions(fit="none")).mesh.faces) == len(given.faces)
     asked = plan_encoding(field, given, EncodeOptions(quality=55, triangles=1000))
     assert 960 <= len(asked.mesh.faces) <= 1000
-    assert len(asked.at_quality(92).mesh.faces) == len(asked.mesh.faces)
+    assert len(plan_at_quality(asked, 92).mesh.faces) == len(asked.mesh.faces)
 
 
 def test_the_mesh_is_the_one_whose_pictures_were_measured():

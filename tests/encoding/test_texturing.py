@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, ProxyError
 from eigenfield.core.mesh import Mesh
-from eigenfield.encoding.projected.atlas import atlas_side, make_atlas, texels_per_pixel
+from eigenfield.encoding.atlas import atlas_side, make_atlas, texels_per_pixel
 from eigenfield.encoding.projected.encode import write_maps
 from eigenfield.encoding.projected.project import texture_map, texture_maps
-from eigenfield.encoding.projected.spread import make_spreader, push_pull
+from eigenfield.encoding.spread import make_spreader, push_pull
 from eigenfield.runtime.parallel import set_threads
 from support.observations import InMemory
 

@@ -8,11 +8,11 @@ import pytest
 import eigenfield as ef
 from eigenfield.core.errors import FormatError, OptionError
 from eigenfield.core.proxy import Proxy
+from eigenfield.encoding.atlas import make_atlas
 from eigenfield.encoding.fitted.fit import Pixels, PlaneSettings, Turns, fit_plane
 from eigenfield.encoding.fitted.model import Block, PlaneModel
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_subsampled, with_robust_weights
 from eigenfield.encoding.fitted.solve import fit_textures, fit_weights, measure_scales, residual
-from eigenfield.encoding.projected.atlas import make_atlas
 from eigenfield.encoding.projected.eigen import eigen_textures, eigenvectors, gram_matrix, weights_of
 from eigenfield.encoding.projected.mean import mean_map
 from eigenfield.encoding.projected.project import texture_map, texture_maps
@@ -116,7 +116,7 @@ def test_mean_textures_and_weights_fitted_to_the_same_photographs_twice_are_thos
     for times in (1, 2):
         with opened(repeated(PHOTOGRAPHS[:3], times)) as data:
             model = model_of(3 * times)
-            fit_textures(data, model, measure_scales(data, model), residual(data, model), 5)
+            fit_textures(data, model, measure_scales(data, model), 5)
             fit_weights(data, model, 4)
             found.append(model)
     one, two = found

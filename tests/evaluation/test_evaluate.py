@@ -15,7 +15,7 @@ from eigenfield.capture import match_photographs
 from eigenfield.cli.evaluate import COLUMNS
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, OptionError, OutputError
-from eigenfield.encoding.projected.atlas import make_atlas
+from eigenfield.encoding.atlas import make_atlas
 from eigenfield.encoding.projected.project import texture_map
 from eigenfield.evaluation import ExcludedCircle, evaluate, reconstruct_maps, stored_scores
 from eigenfield.evaluation.uv import measure_map
@@ -70,7 +70,7 @@ def test_drawing_and_projecting_back_each_resample_once(scene, tmp_path):
 
     def plain(index, picture):
         camera, row = scene.rig.cameras[index], camera_weights(scene, index)
-        return renderer.draw_uint8(camera, row, samples=1)
+        return renderer.draw(camera, row, samples=1).to_uint8()
 
     assert evaluate(scene, write_capture(scene, tmp_path / "c", plain))["uv"]["ssim"] > 0.9
 

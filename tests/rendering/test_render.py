@@ -119,15 +119,6 @@ def test_samples_average_within_a_pixel():
     np.testing.assert_allclose(coarse, fine.reshape(SIZE, 2, SIZE, 2, 3).mean(axis=(1, 3)), atol=1e-5)
 
 
-def test_eight_bit_pictures_are_the_rounded_ones():
-    scene = tiny_scene()
-    renderer, weights = Renderer(scene), view_weights(scene, (0.1, 0.2))
-    picture = renderer.draw(scene.rig.cameras[0], weights)
-    direct = renderer.draw_uint8(scene.rig.cameras[0], weights)
-    assert np.abs(picture.to_uint8().astype(int) - direct).max() <= 1
-    assert (picture.to_uint8() != direct).mean() < 0.01
-
-
 def test_same_picture_at_any_number_of_threads_and_from_many_at_once():
     scene = tiny_scene(textures=5, size=64)
     single = []

@@ -291,7 +291,7 @@ def _capture(folder: Path, loaded: Scene) -> None:
     folder.mkdir(exist_ok=True)
     frames = []
     for index, (name, camera) in enumerate(zip(loaded.rig.names, loaded.rig.cameras, strict=True)):
-        picture = renderer_of(loaded).draw_uint8(camera, ViewWeights.one(index), samples=1).astype(int)
+        picture = renderer_of(loaded).draw(camera, ViewWeights.one(index), samples=1).to_uint8().astype(int)
         picture[:, : WIDTH // 4] += 10
         Image.fromarray(np.clip(picture, 0, 255).astype(np.uint8)).save(folder / f"{name}.png")
         to_world = np.eye(4)

@@ -18,6 +18,7 @@ from threadpoolctl import threadpool_limits
 from eigenfield.calibration.planar.tracks import find_features, mutual_matches
 from eigenfield.capture import Capture
 from eigenfield.core.progress import Progress
+from eigenfield.core.spread import spread_indices
 from eigenfield.imaging.colour import LUMA_BT709
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.runtime.parallel import parallel_map, tracked_map
@@ -140,8 +141,7 @@ def spread_pairs(pairs: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
     Args:
         pairs: In order.
     """
-    most = min(NEIGHBOUR_TUNING.max_pairs, len(pairs))
-    return [pairs[place] for place in np.unique(np.linspace(0, len(pairs) - 1, most).round().astype(int)).tolist()]
+    return [pairs[place] for place in spread_indices(len(pairs), NEIGHBOUR_TUNING.max_pairs)]
 
 
 def _look(capture: Capture, index: int) -> _Look:

@@ -44,11 +44,11 @@ def draft_of(
         quiet: Whether nothing is noted.
     """
     from eigenfield.encoding.cost import expected_cost
-    from eigenfield.encoding.draft import DRAFT_TUNING, make_draft
+    from eigenfield.encoding.draft import DRAFT_WORTH_SECONDS, make_draft
     from eigenfield.runtime.parallel import threads
 
     seconds = expected_cost(capture, options, settings, threads()).seconds
-    if seconds <= DRAFT_TUNING.worth_seconds:
+    if seconds <= DRAFT_WORTH_SECONDS:
         note(f"a draft saves nothing here: the scene itself takes {duration_range(seconds)}", quiet)
         return None
     if isinstance(progress, StepProgress):

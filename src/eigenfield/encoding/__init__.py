@@ -82,9 +82,9 @@ def encode(
     # what the stages need takes a second to load, and the command line's help needs none of it
     from eigenfield.encoding.between import measure_scene
     from eigenfield.encoding.estimated import calibrated, estimate, reconstruction_settings, refuse_unused
-    from eigenfield.encoding.fitted.encode import encode_fitted
-    from eigenfield.encoding.plan import plan_encoding
+    from eigenfield.encoding.prepare import plan_encoding
     from eigenfield.encoding.projected.encode import encode_projected
+    from eigenfield.encoding.reach_target import encode_fitted
     from eigenfield.encoding.residual.make import check_residual, with_residual
     from eigenfield.gltf import encode_scene, read_scene
 

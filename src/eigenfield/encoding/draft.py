@@ -8,7 +8,7 @@ from __future__ import annotations
 import logging
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import Scene
+from eigenfield.core.spread import spread_indices
 from eigenfield.encoding.options import EncodeOptions
 from eigenfield.proxy.surface.neighbours import spread_views
 from eigenfield.reconstruction import reconstruct
@@ -25,33 +26,15 @@ from eigenfield.reconstruction.unseen import held_out_names, without
 
 log = logging.getLogger("eigenfield.encode")
 
-
-@dataclass(frozen=True)
-class DraftTuning:
-    """Constants of `make_draft`, chosen on the cube, Antinous and Temple.
-
-    Attributes:
-        max_views: Photographs, at most.
-        surface_pixels: Of all photographs together, from which cameras and surface are made.
-        texture_pixels: Of all photographs together, from which the textures are made.
-        min_side: Photographs are not made smaller than this, pixels.
-        triangles: Of the mesh, at most.
-        textures: Eigen textures.
-        atlas: Side of the atlas, at most, texels.
-        worth_seconds: A scene that takes no longer is made at once.
-    """
-
-    max_views: int = 25
-    surface_pixels: int = 800_000
-    texture_pixels: int = 4_000_000
-    min_side: int = 180
-    triangles: int = 5000
-    textures: int = 8
-    atlas: int = 1024
-    worth_seconds: float = 40.0
-
-
-DRAFT_TUNING = DraftTuning()
+# Chosen on the cube, Antinous and Temple
+DRAFT_MAX_VIEWS = 25
+DRAFT_SURFACE_PIXELS = 800_000  # of all photographs together, from which cameras and surface are made
+DRAFT_TEXTURE_PIXELS = 4_000_000  # of all photographs together, from which the textures are made
+DRAFT_MIN_SIDE = 180  # pixels, below which photographs are not made smaller
+DRAFT_TRIANGLES = 5000
+DRAFT_TEXTURES = 8
+DRAFT_ATLAS = 1024  # side of the atlas, at most, texels
+DRAFT_WORTH_SECONDS = 40.0  # a scene that takes no longer is made at once
 DRAFT_KEY = "draft"  # of a draft's settings: how many times smaller its photographs are, along one axis
 
 
@@ -68,10 +51,9 @@ def make_draft(
 
     Args:
         capture: Photographs, with cameras if there is a proxy.
-        proxy: As of `encode`; None: it is made.
+        proxy: None: it is made.
         options: Of the whole scene, of which the draft takes what is not about quality and size.
         settings: Arguments of `reconstruct` for the whole scene.
-        progress: Called within stages.
 
     Raises:
         CaptureError, ProxyError, OptionError: As `encode`, of which some may not apply to the whole scene.
@@ -80,27 +62,27 @@ def make_draft(
 
     chosen = _some_views(capture, options)
     if proxy is None:
-        factor = _factor(chosen, DRAFT_TUNING.surface_pixels)
+        factor = _factor(chosen, DRAFT_SURFACE_PIXELS)
         own = {
             **settings,
             "surface": "auto" if settings["surface"] == "layers" else settings["surface"],
             "layers": 1,
             "fit_spheres": (),  # whose regions are in pixels of the whole photographs
-            "triangles": min(DRAFT_TUNING.triangles, settings["triangles"]),
+            "triangles": min(DRAFT_TRIANGLES, settings["triangles"]),
             "blind": None,  # who is held out takes no part at all
             "hold_out": None,
         }
         made = reconstruct(chosen.reduced(factor), progress=_within(progress), **own)
         proxy, chosen = made.proxy, _as_photographed(made.light_field, chosen, factor)
     assert isinstance(chosen, LightField)
-    factor = _factor(chosen, DRAFT_TUNING.texture_pixels)
+    factor = _factor(chosen, DRAFT_TEXTURE_PIXELS)
     small = chosen.reduced(factor)
     reference = options.reference if options.reference in small.names else None
     pixels = max(camera.width * camera.height for camera in small.cameras)
     plain = EncodeOptions(
         fit="none",
-        textures=min(DRAFT_TUNING.textures, len(small) - 1),
-        atlas=min(DRAFT_TUNING.atlas, round(2 * np.sqrt(pixels))),
+        textures=min(DRAFT_TEXTURES, len(small) - 1),
+        atlas=min(DRAFT_ATLAS, round(2 * np.sqrt(pixels))),
         metres_per_unit=options.metres_per_unit,
         reference=reference,
     )
@@ -122,7 +104,7 @@ def _some_views(capture: Capture, options: EncodeOptions) -> Capture:
     shown = (
         capture if rule is None or (rule == "odd" and not known) else without(capture, held_out_names(rule, capture))
     )
-    count, most = len(shown), DRAFT_TUNING.max_views
+    count, most = len(shown), DRAFT_MAX_VIEWS
     if count <= most:
         return shown
     if shown.layout is not None:
@@ -132,14 +114,14 @@ def _some_views(capture: Capture, options: EncodeOptions) -> Capture:
         return shown.subset(np.flatnonzero(on_both).tolist())
     if shown.light_field is not None:
         return shown.subset(spread_views(shown.light_field.cameras, most))
-    return shown.subset(np.linspace(0, count - 1, most).round().astype(int).tolist())
+    return shown.subset(spread_indices(count, most))
 
 
 def _factor(capture: Capture, pixels: int) -> int:
     """By how much photographs are made smaller so that all together have about so many pixels."""
     sizes = np.array(capture.sizes)
     wanted = int(np.ceil(np.sqrt(sizes.prod(axis=1).sum() / pixels)))
-    return max(1, min(wanted, int(sizes.min()) // DRAFT_TUNING.min_side))
+    return max(1, min(wanted, int(sizes.min()) // DRAFT_MIN_SIDE))
 
 
 def _as_photographed(made: LightField, capture: Capture, factor: int) -> LightField:

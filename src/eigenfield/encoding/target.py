@@ -100,11 +100,6 @@ def search_quality(target: Target, code: Callable[[int], Attempt[T]], first: int
     """The largest file within a size, or the smallest that reaches a PSNR or SSIM; where there is none the nearest.
 
     There are at most TARGET_MAX_ATTEMPTS codings. Size and measures are assumed to rise with the quality.
-
-    Args:
-        target: Size, PSNR or SSIM.
-        code: Codes at a quality.
-        first: The quality that is tried first.
     """
     tried: dict[int, Attempt[T]] = {}
     # The answer lies between, both excluded: low is too little or unknown

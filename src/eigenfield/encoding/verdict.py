@@ -33,11 +33,7 @@ class Verdict:
 
 
 def verdict_of_scores(scores: Mapping[str, Any]) -> Verdict | None:
-    """By the PSNR of held-out views, else by what was estimated between the photographs; None if neither is known.
-
-    Args:
-        scores: Of `measure_scene`.
-    """
+    """By the PSNR of held-out views, else by what was estimated between the photographs; None if neither is known."""
     found = _between(scores)
     if found is None:
         return None
@@ -62,11 +58,7 @@ def verdict_beforehand(parallax_ratio: float, overlap: float, remedy: str) -> Ve
 
 
 def score_words(scores: Mapping[str, Any]) -> list[str]:
-    """The scores of `measure_scene` as parts of a line for people.
-
-    Args:
-        scores: Of `measure_scene`.
-    """
+    """The scores of `measure_scene` as parts of a line for people."""
     image, between = scores.get("image", {}), scores.get("between", {})
     words = [f"{image['encoded']['psnr']:.1f} dB in captured views"] if image.get("encoded") else []
     if image.get("held_out"):

@@ -29,12 +29,7 @@ REFERENCE_MAX_SCALE_RATIO = 1.5  # to it
 
 @dataclass(frozen=True, eq=False)
 class CaptureViews:
-    """A capture, and its cameras as a file keeps them.
-
-    Attributes:
-        capture: The photographs, held-out ones too.
-        rig: The cameras.
-    """
+    """A capture, held-out photographs too, and its cameras as a file keeps them."""
 
     capture: CalibratedObservations
     rig: Rig
@@ -70,11 +65,7 @@ class CaptureViews:
         return select_cameras(self.capture, self.rig.encoded.tolist())
 
     def with_reference(self, reference: int) -> CaptureViews:
-        """The same with another reference camera.
-
-        Args:
-            reference: Index of an encoded camera.
-        """
+        """The same with another reference camera, by the index of an encoded one."""
         return CaptureViews(self.capture, replace(self.rig, reference=reference))
 
     @cached_property
@@ -121,7 +112,6 @@ def usual_reference(views: CaptureViews, points: NDArray[np.float32]) -> int:
     What an atlas made for a close view holds, a wide view shows in so few pixels that it cannot determine it.
 
     Args:
-        views: The views.
         points: (n, 3) of the scene.
     """
     rig = views.rig

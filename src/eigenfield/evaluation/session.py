@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from eigenfield.capture import LightField, Photograph, match_photographs
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.scene import Scene
+from eigenfield.core.spread import spread_indices
+from eigenfield.encoding.atlas import Atlas, make_atlas
 from eigenfield.encoding.options import DEFAULT_MAX_ANGLE
 from eigenfield.encoding.projected.align import align_map
-from eigenfield.encoding.projected.atlas import Atlas, make_atlas
 from eigenfield.encoding.projected.harmonise import harmonised_map
 from eigenfield.encoding.projected.project import RESAMPLING, texture_map
 from eigenfield.encoding.residual.views import captured_samples, corrected_picture
@@ -293,6 +294,4 @@ def sample_evenly(indices: Sequence[int], count: int) -> list[int]:
         indices: All indices.
         count: How many at most.
     """
-    if len(indices) <= count:
-        return list(indices)
-    return [indices[i] for i in np.rint(np.linspace(0, len(indices) - 1, count)).astype(int)]
+    return [indices[i] for i in spread_indices(len(indices), count)]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.appearance import Plane
-from eigenfield.encoding.projected.atlas import Atlas
+from eigenfield.encoding.atlas import Atlas
 from eigenfield.encoding.projected.uv_measure import measure_map as measure_pictures
 from eigenfield.runtime.jit import kernel
 

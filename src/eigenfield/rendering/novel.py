@@ -25,7 +25,6 @@ def novel_camera(scene: Scene, at: tuple[float, float]) -> Camera:
     the rotation nearest to their weighted mean.
 
     Args:
-        scene: The scene.
         at: View-plane coordinates, clamped to the array's [-1, 1].
 
     Raises:
@@ -45,11 +44,7 @@ def novel_camera(scene: Scene, at: tuple[float, float]) -> Camera:
 
 
 def nearest_rotation(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(3, 3) the rotation nearest to a matrix, by least squares (polar decomposition).
-
-    Args:
-        matrix: (3, 3).
-    """
+    """(3, 3) the rotation nearest to a matrix, by least squares (polar decomposition)."""
     u, _, vt = np.linalg.svd(matrix)
     turn = np.array([1.0, 1.0, np.sign(np.linalg.det(u @ vt))])
     return (u * turn) @ vt
@@ -64,7 +59,6 @@ def path_points(name: str, frames: int) -> NDArray[np.float64]:
 
     Args:
         name: One of `FLIGHT_PATHS`.
-        frames: Number of viewpoints.
 
     Raises:
         OptionError: `path`, `frames`.

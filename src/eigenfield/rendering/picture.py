@@ -74,23 +74,14 @@ class Picture:
 
 
 def camera_colour(scene: Scene, index: int) -> NDArray[np.float32] | None:
-    """(2, 3) gain and offset of a captured camera that its view weights do not mix, else None.
-
-    Args:
-        scene: The scene.
-        index: Of the camera.
-    """
+    """(2, 3) gain and offset of a captured camera that its view weights do not mix, else None."""
     colours, mixed = scene.appearance.colours, scene.appearance.mixed_colours
     return None if colours is None or mixed else colours[index]
 
 
 def colour_changes(scene: Scene) -> NDArray[np.float64] | None:
     """(No, 6) what draws each observation in its camera's own exposure: the factors of R, G, B, less 1, and what is
-    added. None where views are drawn in the common exposure.
-
-    Args:
-        scene: The scene.
-    """
+    added. None where views are drawn in the common exposure."""
     colours = scene.appearance.colours
     if colours is None or not scene.appearance.mixed_colours:
         return None
@@ -99,12 +90,7 @@ def colour_changes(scene: Scene) -> NDArray[np.float64] | None:
 
 
 def mixed_colour(changes: NDArray[np.float64] | None, weights: ViewWeights) -> NDArray[np.float32] | None:
-    """(2, 3) gain and offset of a view, which are mixed by its weights as the textures are; None for None.
-
-    Args:
-        changes: Of `colour_changes`.
-        weights: Of the view.
-    """
+    """(2, 3) gain and offset of a view, mixed of `colour_changes` by its weights as the textures are; None for None."""
     if changes is None:
         return None
     scale, bias = weights.blend(changes).reshape(2, 3)

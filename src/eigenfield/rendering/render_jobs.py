@@ -20,6 +20,7 @@ from eigenfield.core.scene import Scene
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.imaging.png import png_bytes
 from eigenfield.rendering.opengl.renderer import OpenGLRenderer
+from eigenfield.rendering.options import PictureOptions
 from eigenfield.rendering.picture import Picture
 from eigenfield.rendering.software.renderer import at_resolution, renderer_of, viewpoint
 from eigenfield.rendering.video import write_video
@@ -34,33 +35,25 @@ Drawn = TypeVar("Drawn")
 
 
 @dataclass(frozen=True, eq=False)
-class RenderJob:
-    """A scene and how it is drawn.
+class RenderJob(PictureOptions):
+    """A scene, and how pictures of it are drawn.
 
     Attributes:
-        scene: The scene.
         resolution: (width, height). Default: the camera's own.
-        background: 1 or 3 numbers in 0..1; None: transparent.
         weights: One of `WEIGHT_MODES`.
-        filter: One of `TEXTURE_FILTERS`.
-        textures: Number of eigen textures of each basis. Default: all.
-        samples: As of `Renderer.draw`.
         renderer: `software`, or `opengl`, which has no `samples` but smooths edges, and draws in one thread.
 
     Raises:
-        OptionError: `renderer`, `samples`.
+        OptionError: `filter`, `textures`, `renderer`, `samples`.
     """
 
     scene: Scene
     resolution: tuple[int, int] | None = None
-    background: tuple[float, ...] | None = (0.0, 0.0, 0.0)
     weights: str = "delaunay"
-    filter: str = "bicubic"
-    textures: int | None = None
-    samples: int | None = None
     renderer: str = "software"
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         if self.renderer not in RENDERERS:
             remedy = f"use one of {', '.join(RENDERERS)}"
             raise OptionError("renderer", f"no renderer is called {self.renderer!r}", remedy=remedy)
@@ -69,11 +62,6 @@ class RenderJob:
 
     def picture(self, camera: Camera, weights: ViewWeights, colour: NDArray[np.float32] | None = None) -> Picture:
         """One picture, on black where the background is transparent.
-
-        Args:
-            camera: The camera.
-            weights: What is blended.
-            colour: As of `Renderer.draw`.
 
         Raises:
             OptionError: `not-a-picture`: the scene has other than 1 or 3 channels; as `Renderer.draw`.
@@ -86,39 +74,21 @@ class RenderJob:
         refuse_attributes(renderer.channels)
         if renderer.channels != len(behind):
             behind = (sum(behind) / len(behind),)  # a grey
-        return renderer.draw(
-            view, weights, filter=self.filter, background=behind, textures=self.textures, samples=self.samples,
-            colour=colour,
-        )  # fmt: skip
+        return renderer.draw(view, weights, self, background=behind, colour=colour)
 
     def rgb(self, camera: Camera, weights: ViewWeights) -> NDArray[np.uint8]:
-        """(H, W, 3) uint8 of `picture`; greys are repeated.
-
-        Args:
-            camera: The camera.
-            weights: What is blended.
-        """
+        """(H, W, 3) uint8 of `picture`; greys are repeated."""
         image = self.picture(camera, weights).to_uint8()
         return image if image.shape[2] == 3 else np.repeat(image, 3, axis=2)
 
     def pixels(
         self, camera: Camera, weights: ViewWeights, colour: NDArray[np.float32] | None = None
     ) -> NDArray[np.uint8]:
-        """(H, W, 1 to 4) uint8 as `png` takes it, with straight alpha where the background is transparent.
-
-        Args:
-            camera: The camera.
-            weights: What is blended.
-            colour: As of `Renderer.draw`.
-        """
+        """(H, W, 1 to 4) uint8 as `png` takes it, with straight alpha where the background is transparent."""
         return self.pixels_of(self.picture(camera, weights, colour))
 
     def pixels_of(self, picture: Picture) -> NDArray[np.uint8]:
-        """`pixels` of a drawn picture.
-
-        Args:
-            picture: Drawn by `picture`.
-        """
+        """`pixels` of a drawn picture."""
         if self.background is not None:
             return picture.to_uint8()
         part = picture.coverage[..., None]
@@ -126,13 +96,7 @@ class RenderJob:
         return to_codes(np.concatenate([straight, part], axis=2))
 
     def png(self, camera: Camera, weights: ViewWeights, colour: NDArray[np.float32] | None = None) -> bytes:
-        """The bytes of a .png.
-
-        Args:
-            camera: The camera.
-            weights: What is blended.
-            colour: As of `Renderer.draw`.
-        """
+        """The bytes of a .png."""
         return png(self.pixels(camera, weights, colour))
 
     def along(
@@ -146,18 +110,12 @@ class RenderJob:
         Args:
             draw: A method such as `png`.
             points: (n, 2) viewpoints.
-            progress: Reports each picture.
         """
         views = (viewpoint(self.scene, at=(float(x), float(y)), weights=self.weights) for x, y in points)
         return track(self.each(lambda view: draw(*view), views), "drawing", len(points), progress)
 
     def each(self, draw: Callable[[Item], Drawn], items: Iterable[Item]) -> Iterator[Drawn]:
-        """draw(item) for each item, in order; in several threads where the renderer allows it.
-
-        Args:
-            draw: Draws one.
-            items: What is drawn.
-        """
+        """draw(item) for each item, in order; in several threads where the renderer allows it."""
         return map(draw, items) if self.renderer == "opengl" else parallel_stream(draw, items)
 
     @cached_property
@@ -166,11 +124,7 @@ class RenderJob:
 
 
 def png(picture: NDArray[np.uint8]) -> bytes:
-    """The bytes of a .png.
-
-    Args:
-        picture: (H, W, 1 to 4) uint8: grey, grey and alpha, RGB, RGBA.
-    """
+    """The bytes of a .png of (H, W, 1 to 4) uint8: grey, grey and alpha, RGB, RGBA."""
     if picture.shape[2] in (1, 3):
         return png_bytes(picture)
     from PIL import Image
@@ -182,9 +136,6 @@ def png(picture: NDArray[np.uint8]) -> bytes:
 
 def refuse_attributes(channels: int) -> None:
     """Refuse scenes whose channels make no picture.
-
-    Args:
-        channels: Their number.
 
     Raises:
         OptionError: `not-a-picture`: neither 1 nor 3.
@@ -206,12 +157,9 @@ def write_flight(
     """Draw viewpoints into a video, or into a .png each. All files appear at the end, or none.
 
     Args:
-        job: What is drawn, and how.
         points: (n, 2) viewpoints.
         output: An .mp4, or a .png whose name has a %04d.
         fps: Pictures a second of the video.
-        overwrite: Whether existing files are replaced.
-        progress: Reports each picture.
 
     Raises:
         OptionError: As `Renderer.draw`.
@@ -227,11 +175,6 @@ def write_flight(
 
 def refuse_flight(output: Path, count: int, overwrite: bool) -> None:
     """Before any work: check that all files may be written.
-
-    Args:
-        output: As of `write_flight`.
-        count: Number of pictures.
-        overwrite: Whether existing files may be replaced.
 
     Raises:
         OutputError: One of the files may not or cannot be written.

@@ -17,8 +17,9 @@ from eigenfield.core.notebook import notebook_progress
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
 from eigenfield.gltf import as_scene
+from eigenfield.rendering.options import BLACK, PictureOptions
 from eigenfield.rendering.picture import Picture
-from eigenfield.rendering.software.renderer import BLACK, at_resolution, renderer_of, viewpoint, viewpoint_colour
+from eigenfield.rendering.software.renderer import at_resolution, renderer_of, viewpoint, viewpoint_colour
 from eigenfield.rendering.weights import ViewWeights
 from eigenfield.runtime.parallel import parallel_stream
 
@@ -71,13 +72,12 @@ def render_many(
     )
     views = [(viewpoint(found, weights=weights, **place), viewpoint_colour(found, **place)) for place in places]
     renderer = renderer_of(found)
+    options = PictureOptions(filter=filter, background=background, textures=textures, samples=samples)
 
     def draw(view: View) -> Picture:
         (camera, mix), colour = view
-        return renderer.draw(
-            camera if resolution is None else at_resolution(camera, resolution), mix, filter=filter,
-            background=background, textures=textures, samples=samples, colour=colour,
-        )  # fmt: skip
+        view_camera = camera if resolution is None else at_resolution(camera, resolution)
+        return renderer.draw(view_camera, mix, options, colour=colour)
 
     first = [draw(view) for view in views[:1]]
     return track(chain(first, parallel_stream(draw, views[1:])), "drawing", len(views), progress)

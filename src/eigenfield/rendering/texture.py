@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from eigenfield.core.arguments import checked
 from eigenfield.core.scene import Scene
 from eigenfield.gltf import as_scene
-from eigenfield.rendering.checks import check_textures
+from eigenfield.rendering.options import check_textures
 from eigenfield.rendering.software.composite import compose_scene, make_buffers, make_composite
 from eigenfield.rendering.software.renderer import viewpoint
 from eigenfield.rendering.software.tiles import empty_layers, read_layers, tile_shape
@@ -53,11 +53,7 @@ def texture(
 
 def mean_texture(scene: Scene) -> NDArray[np.float32]:
     """(H, W, C) float32: the means of all planes as one texture at the atlas's size, not clipped. It is computed once,
-    and cannot be written to.
-
-    Args:
-        scene: The scene.
-    """
+    and cannot be written to."""
 
     def make() -> NDArray[np.float32]:
         planes = (
@@ -73,11 +69,7 @@ def mean_texture(scene: Scene) -> NDArray[np.float32]:
 
 def atlas_composer(scene: Scene) -> Callable[[ViewWeights, int | None], NDArray[np.float32]]:
     """A function of view weights and a number of eigen textures of each basis, or None for all: the (H, W, C) texture.
-    May be called from any thread.
-
-    Args:
-        scene: The scene.
-    """
+    May be called from any thread."""
     size, channels = scene.appearance.atlas, scene.appearance.channels
     every = np.ones(tile_shape(size), np.bool_)
     composite = make_composite(scene, every)

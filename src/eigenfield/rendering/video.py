@@ -25,10 +25,8 @@ def write_video(path: Path, pictures: Iterable[NDArray[np.uint8]], fps: Fraction
     Odd sizes gain a row or column, a copy of the last: 4:2:0 needs even ones.
 
     Args:
-        path: The .mp4.
         pictures: (H, W, 3) uint8, of one size.
         fps: Pictures a second.
-        overwrite: Whether an existing file is replaced.
 
     Raises:
         OutputError: The file cannot be written.

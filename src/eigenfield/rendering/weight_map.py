@@ -17,12 +17,7 @@ def weight_map(scene: Scene, mode: str = "delaunay", nodes: int = WEIGHT_MAP_NOD
     N counts the components of all bases of all planes.
 
     Args:
-        scene: The scene.
         mode: One of `WEIGHT_MODES`.
-        nodes: Along each axis.
-
-    Raises:
-        OptionError: As `view_weights`.
     """
     steps = np.linspace(-1.0, 1.0, nodes)
     rows = component_rows(scene)
@@ -37,11 +32,7 @@ def weight_map(scene: Scene, mode: str = "delaunay", nodes: int = WEIGHT_MAP_NOD
 
 
 def component_rows(scene: Scene) -> NDArray[np.float64]:
-    """(No, N) float64: the weights of all bases of all planes, side by side.
-
-    Args:
-        scene: The scene.
-    """
+    """(No, N) float64: the weights of all bases of all planes, side by side."""
     parts = [basis.weights for plane in scene.appearance.planes for basis in plane.bases]
     return np.concatenate([np.zeros((scene.observations, 0)), *parts], axis=1, dtype=np.float64)
 

@@ -46,29 +46,17 @@ class ViewWeights:
 
     @classmethod
     def one(cls, row: int) -> ViewWeights:
-        """An observation as it is: weight 1.
-
-        Args:
-            row: Its row.
-        """
+        """An observation as it is: weight 1."""
         return cls(np.array([row]), np.ones(1))
 
     def dense(self, observations: int) -> NDArray[np.float64]:
-        """(No,) a weight for each observation.
-
-        Args:
-            observations: How many there are.
-        """
+        """(No,) a weight for each observation."""
         weights = np.zeros(observations)
         weights[self.rows] = self.values
         return weights
 
     def blend(self, matrix: NDArray[np.floating]) -> NDArray[np.float64]:
-        """(n,) float64, equation 7: the weighted sum of rows, added in their order on every machine.
-
-        Args:
-            matrix: (No, n) a row for each observation.
-        """
+        """(n,) float64, equation 7: the weighted sum of rows of (No, n), added in their order on every machine."""
         return (self.values[:, None] * matrix[self.rows]).sum(axis=0)
 
 
@@ -76,13 +64,8 @@ def view_weights(scene: Scene, at: tuple[float, float], mode: str = "delaunay", 
     """The weights of a place at one instant: those of `place_weights`, for the observations of its cameras.
 
     Args:
-        scene: The scene.
-        at: View-plane coordinates.
         mode: One of `WEIGHT_MODES`.
         time: Index of the instant.
-
-    Raises:
-        OptionError: As `place_weights`.
     """
     cameras, values = place_weights(scene, at, mode)
     return ViewWeights(scene.rows(cameras, time), values)
@@ -98,7 +81,6 @@ def place_weights(
     scene's triangulation that holds `at`, outside the hull its nearest point. `bilinear` needs a grid.
 
     Args:
-        scene: The scene.
         at: View-plane coordinates, clamped to the array's [-1, 1].
         mode: One of `WEIGHT_MODES`.
 
@@ -141,13 +123,8 @@ def camera_weights(scene: Scene, index: int, mode: str = "delaunay", time: int =
     """The weights of a capture camera: its own observation for an encoded one, else those of where it stands.
 
     Args:
-        scene: The scene.
-        index: Of the camera.
         mode: One of `WEIGHT_MODES`.
         time: Index of the instant.
-
-    Raises:
-        OptionError: As `place_weights`.
     """
     _check_mode(mode)
     row = int(scene.rows(index, time))
@@ -183,11 +160,7 @@ def delaunay_triangles(coordinates: ArrayLike) -> NDArray[np.int32]:
 
 
 def encoded_places(scene: Scene) -> NDArray[np.float64]:
-    """(Ne, 2) view-plane coordinates of the encoded cameras, computed once for a scene.
-
-    Args:
-        scene: The scene.
-    """
+    """(Ne, 2) view-plane coordinates of the encoded cameras, computed once for a scene."""
 
     def make() -> NDArray[np.float64]:
         return scene.rig.view_plane.coordinates([camera.centre for camera in scene.rig.encoded_cameras])
@@ -235,11 +208,7 @@ def delaunay_weights(
 
 
 def hull(triangles: NDArray[np.int32]) -> NDArray[np.int32]:
-    """(E, 2) edges that belong to one triangle only.
-
-    Args:
-        triangles: (T, 3).
-    """
+    """(E, 2) edges that belong to one triangle of (T, 3) only."""
     edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     unique, count = np.unique(edges, axis=0, return_counts=True)
     return unique[count == 1]

@@ -23,6 +23,7 @@ from eigenfield.capture.messages import natural_key
 from eigenfield.capture.photographs.read import decode, read_header
 from eigenfield.capture.readers.video import find_film
 from eigenfield.core.errors import CaptureError, one_line
+from eigenfield.core.spread import spread_indices
 
 CHART_VIDEO_SUFFIXES = (".mp4", ".mov", ".avi", ".mkv", ".webm", ".m4v")
 CHART_MAX_VIDEO_FRAMES = 300  # evenly spread over the video
@@ -60,7 +61,7 @@ class ChartCamera:
         """
         if len(self.moments) <= count:
             return self
-        chosen = np.unique(np.linspace(0, len(self.moments) - 1, count).round().astype(int)).tolist()
+        chosen = spread_indices(len(self.moments), count)
         return replace(
             self,
             paths=self.paths if self.is_video else tuple(self.paths[i] for i in chosen),

@@ -23,6 +23,7 @@ from eigenfield.calibration.charts.corners import DetectedCorners
 from eigenfield.calibration.charts.intrinsics import board_pose
 from eigenfield.calibration.charts.lens_models import project_points
 from eigenfield.core.brief import brief_repr
+from eigenfield.core.spread import spread_indices
 
 log = logging.getLogger("eigenfield.calibration")
 
@@ -143,7 +144,7 @@ def _relative_pose(a: _ObservingCamera, b: _ObservingCamera) -> tuple[int, float
     common = sorted(a.poses.keys() & b.poses.keys())
     if not common:
         return None
-    tried = [common[i] for i in np.unique(np.linspace(0, len(common) - 1, RIG_MAX_PROPOSALS).round().astype(int))]
+    tried = [common[i] for i in spread_indices(len(common), RIG_MAX_PROPOSALS)]
     into_b, into_a = _Transfer(a, b, tried), _Transfer(b, a, tried)
     best: tuple[float, int, RigPose] | None = None
     for moment in tried:

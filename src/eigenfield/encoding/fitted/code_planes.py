@@ -78,9 +78,7 @@ def code_mean(
     overshoot of a filter is clipped, for codes twice as coarse need 2 to 3 % more bytes.
 
     Args:
-        mean: (H, W, C) float32.
         step: Of the quantiser, in the values' unit, where the precision is 1.
-        coder: Of the picture.
         precision: (h, w) in 0..1, how finely each place is coded; None: all alike.
         white: Value of the brightest that a photograph shows, 1 or more.
     """
@@ -111,7 +109,6 @@ def code_opacity(opacity: NDArray[np.float32], step: float, coder: Coder) -> Cod
     Args:
         opacity: Sides even, and at least 64.
         step: Of the quantiser, in units of opacity.
-        coder: Of the picture.
     """
     data = coder(np.rint(opacity * np.float32(MAX_CODE)).astype(np.uint16), crf_of(step * MAX_CODE))
     values = opacity_values(decode_10bit(data, False, "opacity"))
@@ -124,7 +121,6 @@ def code_basis(basis: Basis, step: float, coder: Coder) -> CodedBasis:
     Args:
         basis: Of float textures (N, H, W, C).
         step: Of the quantiser, in the values' unit.
-        coder: Of the pictures.
     """
     count, height, _, channels = basis.textures.shape
     values = basis.values()
@@ -165,16 +161,7 @@ def coded_plane(
     precision: NDArray[np.float32] | None = None,
     white: float = 1.0,
 ) -> Coded[Plane]:
-    """A plane of coded bases with its mean coded, as its files give it back.
-
-    Args:
-        mean: (H, W, C) float32.
-        bases: The coded bases.
-        step: As `code_mean`.
-        coder: As `code_mean`.
-        precision: As `code_mean`.
-        white: As `code_mean`.
-    """
+    """A plane of coded bases with its mean, (H, W, C) float32, coded; as its files give it back."""
     values, picture = code_mean(mean, step, coder, precision, white)
     payloads = Payloads.merge(coded.payloads for coded in bases) | {mean_key(values): [picture]}
     return Coded(Plane(values, tuple(coded.basis for coded in bases)), payloads)

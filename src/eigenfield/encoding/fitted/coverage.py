@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from eigenfield.encoding.fitted.model import Block, PlaneModel
 from eigenfield.encoding.fitted.solve import Scales
-from eigenfield.encoding.projected.spread import push_pull
+from eigenfield.encoding.spread import push_pull
 from eigenfield.imaging.raster import rasterise
 from eigenfield.rendering.software.drawing import Surface
 from eigenfield.runtime.parallel import parallel_map
@@ -29,7 +29,6 @@ def fill_unseen(model: PlaneModel, scales: Scales, surface: Surface) -> None:
     Args:
         model: Is changed in place.
         scales: Of the data that it was fitted to.
-        surface: The mesh under the finest atlas.
     """
     model.mean = _fill_smoothly(model.mean, _observed_mask(scales.mean, surface))
     coarse = _observed_mask(scales.coarse, surface)

@@ -3,25 +3,20 @@
 from __future__ import annotations
 
 import contextlib
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from eigenfield.core.mesh import Mesh
-from eigenfield.core.observations import CalibratedObservations
 from eigenfield.core.payloads import Payloads
 from eigenfield.core.progress import Progress, begin_step
-from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import Scene
+from eigenfield.encoding.agreement import warn_of_disagreement
 from eigenfield.encoding.fitted.colour import to_rgb
 from eigenfield.encoding.fitted.exposures import EXPOSURE_MODEL, fit_exposures
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data
 from eigenfield.encoding.fitted.planes import Fits, fitted_textures, open_fits
-from eigenfield.encoding.options import PRESETS, EncodeOptions, resolved_value
-from eigenfield.encoding.plan import EncodePlan, plan_encoding
-from eigenfield.encoding.projected.agreement import warn_of_disagreement
-from eigenfield.encoding.projected.eigen import component_count
+from eigenfield.encoding.options import PRESETS, resolved_value
+from eigenfield.encoding.plan import EncodePlan, component_count
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,8 +26,6 @@ class FittedEncoder:
     Attributes:
         plan: The plan whose photographs they are fitted to.
         data: The observations of the encoded cameras, and their footprints on the mesh.
-        fits: The planes.
-        progress: Reports each coding.
     """
 
     plan: EncodePlan
@@ -77,7 +70,6 @@ def open_encoder(
     Args:
         plan: One whose options ask for a fit.
         work: Folder for scratch files of up to 17 bytes a pixel.
-        progress: Reports each stage.
         warn: Whether photographs that do not show what the others do are named in a warning.
     """
     begin_step(progress, "fit")
@@ -98,22 +90,3 @@ def open_encoder(
             names, places = views.observation_names, views.coordinates[views.taken_by]
             warn_of_disagreement(mean.squares, mean.pixels, mean.channels, mean.total, names, places)
         yield FittedEncoder(plan, data, fits, progress)
-
-
-@contextlib.contextmanager
-def open_fitted(
-    capture: CalibratedObservations,
-    proxy: str | os.PathLike[str] | Mesh | Proxy,
-    options: EncodeOptions,
-    work: str | os.PathLike[str] | None = None,
-    progress: Progress | None = None,
-) -> Iterator[FittedEncoder]:
-    """Fit once, to code at many qualities.
-
-    Arguments and errors are those of `encode`, which makes the same of `fit="photographs"` at each quality. Mesh and
-    atlas are those of the options' quality.
-    """
-    folder = None if work is None else Path(work)
-    plan = plan_encoding(capture, proxy, replace(options, fit="photographs"), folder, progress)
-    with open_encoder(plan, folder, progress) as encoder:
-        yield encoder

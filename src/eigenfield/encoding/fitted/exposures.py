@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from eigenfield.core.progress import Progress
 from eigenfield.core.proxy import opaque_mesh
-from eigenfield.encoding.between import interpolation, is_sparse, spread_inside
+from eigenfield.encoding.atlas import make_atlas
+from eigenfield.encoding.left_out import interpolation, is_sparse, spread_inside
 from eigenfield.encoding.plan import EncodePlan
-from eigenfield.encoding.projected.atlas import make_atlas
 from eigenfield.encoding.projected.harmonise import Cells, average_cells
 from eigenfield.encoding.projected.project import texture_maps
 
@@ -39,7 +39,6 @@ def fit_exposures(
     Args:
         plan: Its `harmonise` says what is fitted; None: what pays.
         work: Folder for a scratch file of 0.8 MB a photograph.
-        progress: Reports the maps.
 
     Raises:
         CaptureError: A photograph cannot be read.

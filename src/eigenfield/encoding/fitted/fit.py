@@ -21,6 +21,7 @@ from eigenfield.coding.codecs import encoder
 from eigenfield.core.appearance import Plane
 from eigenfield.core.payloads import Coded, Payload
 from eigenfield.core.progress import Progress
+from eigenfield.core.spread import spread_indices
 from eigenfield.encoding.fitted.code_planes import CodedBasis, coded_plane, with_weights
 from eigenfield.encoding.fitted.coverage import fill_unseen
 from eigenfield.encoding.fitted.kernels import forward, squares_of
@@ -72,12 +73,7 @@ class PlaneSettings:
 
 @dataclass(frozen=True)
 class Turns:
-    """Of textures and weights.
-
-    Attributes:
-        rounds: at most.
-        texture_iterations: of conjugate gradients in each.
-    """
+    """How many times textures and weights are fitted in turns, at most, and by how many iterations the textures."""
 
     rounds: int
     texture_iterations: int = 5
@@ -105,7 +101,6 @@ class MeanAlone:
     Attributes:
         squares: (No,) squared deviations of each observation.
         pixels: (No,) that these are over.
-        channels: of a pixel.
         total: squared deviations of all observations from one colour.
     """
 
@@ -114,20 +109,20 @@ class MeanAlone:
     channels: int
     total: float
 
+    @property
+    def psnr(self) -> float:
+        """dB, the mean over observations that show anything."""
+        return psnr_of(self.squares, self.pixels, self.channels)
+
 
 @dataclass(frozen=True, eq=False)
 class OpenFit:
     """A plane fitted, not coded.
 
     Attributes:
-        name: of the plane.
-        pixels: what it was fitted to.
-        model: what was found.
         scales: of `pixels.fitted`.
-        composer: by which renderers draw it.
         mean_alone: what the mean left before there were textures.
         uncoded: dB of its channels, mean over PSNR_MAX_OBSERVATIONS, what is drawn not rounded.
-        scattered: as of its settings.
     """
 
     name: str
@@ -149,14 +144,6 @@ def fit_plane(
     progress: Progress | None = None,
 ) -> OpenFit:
     """Fit one plane in open loop.
-
-    Args:
-        pixels: the observations.
-        settings: what the plane is to be.
-        name: of the plane.
-        turns: of textures and weights.
-        work: folder for scratch files.
-        progress: reports the steps.
 
     Raises:
         CaptureError: `nothing-seen`, no camera covers a pixel.
@@ -181,15 +168,15 @@ def fit_plane(
     tick()
     reached, variance = -math.inf, None
     for number in range(turns.rounds if count else 0):
-        left = residual(fitted, model, variance=variance)
-        before, reached = reached, psnr_of(left.squares, left.pixels, channels)
+        equations = residual(fitted, model, variance=variance)
+        before, reached = reached, psnr_of(equations.squares, equations.pixels, channels)
         log.info("%s, after round %d: %.2f dB", name, number, reached)
         if abs(reached - before) < FIT_STOP_DB:
             break
-        fit_textures(fitted, model, scales, left, turns.texture_iterations)
+        fit_textures(fitted, model, scales, turns.texture_iterations, equations=equations)
         tick()
         fit_weights(pixels.weighed, model, FIT_WEIGHT_ITERATIONS)
-        variance = FIT_SIGMA_RATIO**2 * float(left.squares.sum() / max(left.pixels.sum(), 1.0))
+        variance = FIT_SIGMA_RATIO**2 * float(equations.squares.sum() / max(equations.pixels.sum(), 1.0))
         whiten(model, scales)
         tick()
     surface = pixels.every.footprints.surface
@@ -224,11 +211,9 @@ def code_plane(
 
     Args:
         fit: stays as it is, for other rates.
-        rate: how finely.
         grid: (rows, columns) of observations, which are the rows of the weights, whose cameras stand on a regular
             array, -1 where none stands; None where they do not.
         precision: of the mean, see `mean_precision`; None: alike everywhere.
-        progress: reports the steps.
     """
     pixels, scales, open_loop = fit.pixels, fit.scales, fit.model
     tick = _ticker(progress, f"code {fit.name}", 3)
@@ -252,8 +237,8 @@ def code_plane(
             stream, block.weights = encoder(WEIGHTS_CODEC)(block.weights, _weight_steps(block, scales), grid)
             bases[number] = with_weights(bases[number], block.weights, Payload(WEIGHTS_CODEC, stream))
     tick()
-    left = residual(pixels.fitted, model, MEAN_WANTED, fit.composer)
-    fit_textures(pixels.fitted, model, scales, left, FIT_CLOSING_ITERATIONS, mean_only=True)
+    equations = residual(pixels.fitted, model, MEAN_WANTED, fit.composer)
+    fit_textures(pixels.fitted, model, scales, FIT_CLOSING_ITERATIONS, mean_only=True, equations=equations)
     mean = np.ascontiguousarray(model.mean.transpose(1, 2, 0))
     white = pixels.every.white(model.matrix)
     plane = coded_plane(mean, bases, rate.mean_step, rate.coder, precision, white)
@@ -286,8 +271,7 @@ def _drawn_psnr(data: FitData, model: PlaneModel, composer: AtlasComposer) -> fl
         forward(*footprint, data.size, texture, MINUS, image)
         return squares_of(footprint[0], image, data.observations.mask(index))
 
-    some = np.unique(np.linspace(0, len(data) - 1, min(len(data), PSNR_MAX_OBSERVATIONS)).round().astype(int))
-    squares, pixels = np.array(parallel_map(measure, some.tolist())).T
+    squares, pixels = np.array(parallel_map(measure, spread_indices(len(data), PSNR_MAX_OBSERVATIONS))).T
     return psnr_of(squares, pixels, model.channels)
 
 
@@ -295,18 +279,16 @@ def fit_mean(data: FitData, model: PlaneModel, scales: Scales, iterations: int =
     """Fit the mean of a model without components, from what it is.
 
     Args:
-        data: To be drawn.
         model: Is changed in place.
         scales: Of these data.
-        iterations: Of conjugate gradients.
     """
-    left = residual(data, model, MEAN_WANTED)
+    equations = residual(data, model, MEAN_WANTED)
     # the filter's weights sum to 1, so that G^T leaves the sum of what it brings back as it is
-    sums = left.mean.sum(axis=(1, 2), dtype=np.float64)
-    total = float(left.squares.sum() - np.square(sums).sum() / max(float(left.pixels.sum()), 1.0))
-    fit_textures(data, model, scales, left, iterations, mean_only=True)
-    found = residual(data, model, NOTHING_WANTED)
-    return MeanAlone(found.squares, found.pixels, model.channels, total)
+    sums = equations.mean.sum(axis=(1, 2), dtype=np.float64)
+    total = float(equations.squares.sum() - np.square(sums).sum() / max(float(equations.pixels.sum()), 1.0))
+    fit_textures(data, model, scales, iterations, mean_only=True, equations=equations)
+    equations = residual(data, model, NOTHING_WANTED)
+    return MeanAlone(equations.squares, equations.pixels, model.channels, total)
 
 
 def _weight_steps(block: Block, scales: Scales) -> NDArray[np.float32]:

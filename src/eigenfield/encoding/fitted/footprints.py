@@ -78,11 +78,8 @@ def open_footprints(
     files have 9 bytes a pixel and some more at edges, and 10 for each sheet that a pixel shows.
 
     Args:
-        surface: the mesh under the finest atlas.
-        cameras: whose footprints are wanted.
         detail: texels for one pixel of the reference camera.
         sheets: of the mesh; None: it is opaque.
-        work: folder for the scratch files.
     """
     shapes = tuple((camera.height, camera.width) for camera in cameras)
     pixels = offsets_of([h * w for h, w in shapes])

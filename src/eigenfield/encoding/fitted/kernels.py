@@ -117,8 +117,6 @@ def bicubic_taps(point, across, down, width, height):
         point: (2,) in the finest atlas.
         across: `ratio` of `position` along rows.
         down: `ratio` of `position` along columns.
-        width: Of the texture.
-        height: Of the texture.
     """
     x = position(point[0], across, np.float32(width - 1))
     y = position(point[1], down, np.float32(height - 1))
@@ -199,10 +197,6 @@ def adjoint(counts, coordinates, shares, size, image, weight, out):
     """The transpose of `forward`: out += G^T w image.
 
     Args:
-        counts: As `forward`.
-        coordinates: As `forward`.
-        shares: As `forward`.
-        size: As `forward`.
         image: (C, h, w).
         weight: w, see `part_of`.
         out: (C, rows, columns).
@@ -248,7 +242,6 @@ def robust_weights(image, weight, variance, out):
 
     Args:
         image: (C, h, w), the errors.
-        weight: See `part_of`.
         variance: sigma^2, the squared error of pixels that count half.
         out: (h, w) uint8, 255 for whole.
     """

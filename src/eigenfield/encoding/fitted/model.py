@@ -26,7 +26,6 @@ class Block:
     """Components with one region.
 
     Attributes:
-        rectangle: The region.
         textures: (n, C, rows, columns) float32.
         weights: (No, n) float32, a row for each observation.
     """
@@ -101,8 +100,6 @@ class Upsampler:
     """From a coarse atlas to the finest one, by Catmull-Rom.
 
     Attributes:
-        rows: The taps of each fine row.
-        columns: The taps of each fine column.
         spans: (H, 2) columns in use, see the kernel.
         coarse: (rows, columns) of the coarse atlas.
         fine: (rows, columns) of the fine atlas.
@@ -127,7 +124,6 @@ class AtlasComposer:
 
     Attributes:
         mean: None where the mean is as fine as the atlas.
-        grid: of the components.
     """
 
     mean: Upsampler | None

@@ -35,13 +35,8 @@ def multiply(counts, coordinates, shares, size, weight, texture, product):
     """product += G^T w G texture.
 
     Args:
-        counts: As `kernels.forward`.
-        coordinates: As `kernels.forward`.
-        shares: As `kernels.forward`.
-        size: As `kernels.forward`.
         weight: w, see `kernels.part_of`.
         texture: (C, rows, columns).
-        product: As `texture`.
     """
     flat, into, points, shape = texture.reshape(-1), product.reshape(-1), coordinates.reshape(-1), texture.shape
     ratio, colour = ratio_of(shape, size), np.empty(texture.shape[0], np.float32)
@@ -63,15 +58,9 @@ def multiply_both(counts, coordinates, shares, size, weight, fine, coarse, fine_
     """fine_product += G^T w (G fine + G coarse), and coarse_product likewise.
 
     Args:
-        counts: As `kernels.forward`.
-        coordinates: As `kernels.forward`.
-        shares: As `kernels.forward`.
-        size: As `kernels.forward`.
         weight: w, see `kernels.part_of`.
         fine: (C, H, W).
         coarse: (C, h, w).
-        fine_product: As `fine`.
-        coarse_product: As `coarse`.
     """
     one, one_into, one_shape = fine.reshape(-1), fine_product.reshape(-1), fine.shape
     other, other_into, other_shape = coarse.reshape(-1), coarse_product.reshape(-1), coarse.shape

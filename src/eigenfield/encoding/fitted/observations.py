@@ -83,12 +83,7 @@ class DecodedObservations:
 
 @dataclass(frozen=True, eq=False)
 class FitData:
-    """The data of a fit. Several observations of a camera, at different times, share its footprint.
-
-    Attributes:
-        observations: The photographs.
-        footprints: Of their cameras on a mesh.
-    """
+    """The data of a fit. Several observations of a camera, at different times, share its footprint."""
 
     observations: DecodedObservations
     footprints: Footprints
@@ -106,11 +101,8 @@ class FitData:
         return self.footprints.of(self.observations.camera_of(index))
 
     def white(self, matrix: NDArray[np.float32]) -> float:
-        """What white of the darkest photograph is in the common exposure, in the channel of most; 1 without colours.
-
-        Args:
-            matrix: (C, 3) from R, G, B.
-        """
+        """What white of the darkest photograph is in the common exposure, in the channel of most of `matrix` (C, 3); 1
+        without colours."""
         colours = self.observations.colours
         return 1.0 if colours is None else max(1.0, float((colours.sum(axis=1) @ matrix.T).max()))
 
@@ -119,12 +111,7 @@ class FitData:
         return np.zeros((channels, *self.observations.shapes[index]), np.float32)
 
     def target(self, index: int, matrix: NDArray[np.float32]) -> NDArray[np.float32]:
-        """(C, h, w): what is to be drawn of an observation, in the common exposure.
-
-        Args:
-            index: Of the observation.
-            matrix: (C, 3) from R, G, B.
-        """
+        """(C, h, w): what is to be drawn of an observation, in the common exposure, by `matrix` (C, 3) from R, G, B."""
         image, colours = self.blank(index, len(matrix)), self.observations.colours
         gain, offset = (np.float32(1), np.zeros(3, np.float32)) if colours is None else colours[index]
         affine = np.concatenate([matrix * gain / np.float32(255), (matrix @ offset)[:, None]], axis=1)
@@ -151,8 +138,6 @@ def open_fit_data(
         observations: R, G, B.
         proxy: The surface at all their times.
         atlas: (rows, columns) of the finest texture.
-        work: Folder for the scratch files.
-        progress: Reports the photographs that are decoded.
         reference: Index of the scene's reference camera in `cameras`.
         colours: As of `DecodedObservations`; errors then count as in the photographs' own exposures.
 
@@ -209,14 +194,7 @@ def _whole_weights(count: int, colours: NDArray[np.float32] | None) -> NDArray[n
 def open_on_proxy(
     data: FitData, cameras: Sequence[Camera], proxy: Proxy, work: Path | None = None
 ) -> Iterator[FitData]:
-    """The same observations on another proxy under as large an atlas.
-
-    Args:
-        data: The observations.
-        cameras: Theirs.
-        proxy: The other proxy.
-        work: Folder for scratch files.
-    """
+    """The same observations on another proxy under as large an atlas."""
     surface = make_surface(proxy.mesh, *data.size)
     with open_footprints(surface, cameras, data.footprints.detail, proxy.sheets, work) as footprints:
         yield replace(data, footprints=footprints)
@@ -224,13 +202,7 @@ def open_on_proxy(
 
 @contextlib.contextmanager
 def open_subsampled(data: FitData, step: int, work: Path | None = None) -> Iterator[FitData]:
-    """Every `step`-th pixel each way, from a corner that changes with the camera; step 1: the data themselves.
-
-    Args:
-        data: To take from.
-        step: 1 or more.
-        work: Folder for scratch files.
-    """
+    """Every `step`-th pixel each way, from a corner that changes with the camera; step 1: the data themselves."""
     if step == 1:
         yield data
         return

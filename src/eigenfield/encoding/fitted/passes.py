@@ -68,7 +68,6 @@ def render_and_backproject(
     """Draw every observation from a mean and textures, and bring back what is asked for.
 
     Args:
-        data: the observations, and the footprints of their cameras.
         model: whose weights the textures that are asked for go with, and whose textures the weights go with.
         mean: is drawn; None: nothing.
         textures: are drawn, for each block of the model; None: nothing.

@@ -36,7 +36,6 @@ class PlanePreset:
     """How a plane is fitted and coded beside the others; chosen on Tarot.
 
     Attributes:
-        name: Of the plane.
         matrix: (C, 3) its channels from R, G, B.
         mean_share: Density of the mean, of the atlas's along an axis.
         texture_share: Density of the components, likewise.
@@ -68,7 +67,6 @@ class PlanePreset:
             size: (rows, columns) of the atlas.
             density: Its texels per photograph pixel along one axis.
             textures: Luma's number, also of each region's own.
-            scattered: As of `PlaneSettings`.
         """
         count = round(self.textures * textures)
         wanted = max(min(density + self.ahead, FIT_MAX_DENSITY), density)
@@ -80,7 +78,6 @@ class PlanePreset:
         """How finely the plane is coded.
 
         Args:
-            step: See `step_of`.
             soft: Whether it is on sheets.
             patient: Whether libaom codes it, which the machine must have.
         """
@@ -115,12 +112,7 @@ def fitted_textures(observations: int) -> int:
 
 @dataclass(frozen=True, eq=False)
 class Fits:
-    """Planes fitted, not coded yet.
-
-    Attributes:
-        planes: The planes and how each is coded.
-        patient: See `PlanePreset.rate`.
-    """
+    """Planes fitted, not coded yet."""
 
     planes: tuple[tuple[PlanePreset, OpenFit], ...]
     patient: bool
@@ -128,13 +120,7 @@ class Fits:
     def code_planes(
         self, quality: int, grid: NDArray[np.int64] | None = None, progress: Progress | None = None
     ) -> dict[str, Coded[Plane]]:
-        """All planes coded at a quality, by name, in the order of `to_rgb`'s columns.
-
-        Args:
-            quality: 0 to 100.
-            grid: As `code_plane`.
-            progress: Reports the steps.
-        """
+        """All planes coded at a quality of 0 to 100, by name, in the order of `to_rgb`'s columns."""
         step = step_of(quality)
         precision = mean_precision(self.planes[0][1].scales)
         return {
@@ -171,10 +157,6 @@ def open_fits(
         data: What they are fitted to, which stays open.
         density: Texels of its atlas for a pixel, along an axis.
         textures: Luma's number.
-        scattered: As of `PlaneSettings`.
-        preset: What the fit aims at.
-        work: Folder for scratch files.
-        progress: Reports the steps.
     """
     few = len(data) < SUBSAMPLE_MIN_OBSERVATIONS
     least = next((rounds for most, rounds in FEW_OBSERVATIONS_ROUNDS if len(data) <= most), 0)

@@ -181,12 +181,7 @@ def return_point(typing_context, texture, shape, ratio, points, at, part, image,
 
 @intrinsic
 def multiply_point(typing_context, texture, product, shape, ratio, points, at, part):
-    """part times what the point shows of each channel of a texture goes to the same texels of the product.
-
-    Args:
-        texture, shape, ratio, points, at, part: As of `draw_point`.
-        product: Flat float32 array of the same shape.
-    """
+    """part times what the point shows of each channel of a texture goes to the same texels of the product."""
 
     def generate(context, builder, signature, arguments):
         texture, product, points = _pointers(context, builder, signature, arguments, (0, 1, 4))
@@ -204,13 +199,7 @@ def multiply_point_twice(
     typing_context, fine, fine_product, fine_shape, fine_ratio, coarse, coarse_product, coarse_shape, coarse_ratio,
     points, at, part,
 ):  # fmt: skip
-    """As `multiply_point`, of what the point shows of two textures together, which goes to the texels of both.
-
-    Args:
-        fine, fine_product, fine_shape, fine_ratio: As of `multiply_point`.
-        coarse, coarse_product, coarse_shape, coarse_ratio: Likewise, of as many channels.
-        points, at, part: As of `multiply_point`.
-    """
+    """As `multiply_point`, of what the point shows of two textures together, which goes to the texels of both."""
 
     def generate(context, builder, signature, arguments):
         fine, fine_product, coarse, coarse_product, points = _pointers(
@@ -237,7 +226,6 @@ def return_two(typing_context, one, other, shape, ratio, points, at, value, size
 
     Args:
         one, other: Flat float32 arrays of one channel.
-        shape, ratio, points, at: As of `draw_point`.
         value, size: float32.
     """
 

@@ -30,8 +30,6 @@ class Rate:
 
     Attributes:
         mean_step: Of the quantiser, in the photographs' range.
-        texture_step: Likewise.
-        coder: Of the pictures.
         trial: A faster coder, by which components are chosen; None: the same.
     """
 
@@ -42,24 +40,14 @@ class Rate:
 
 
 def plane_lambda(scales: Scales, rate: Rate) -> float:
-    """Lagrange multiplier of a plane: squared error over all pictures that a byte of its mean takes off.
-
-    Args:
-        scales: Of the data that it was fitted to.
-        rate: How finely it is coded.
-    """
+    """Lagrange multiplier of a plane: squared error over all pictures that a byte of its mean takes off."""
     return lambda_of_step(rate.mean_step) * scales.usual if scales.mean.any() else 0.0
 
 
 def code_block_rd(block: Block, grid: tuple[int, int], scales: Scales, rate: Rate, lambda_: float) -> CodedBasis:
     """The components of a block that take off more squared error than lambda x their bytes, coded.
 
-    Args:
-        block: The components.
-        grid: (rows, columns) that its rectangle is part of.
-        scales: Of the data that it was fitted to.
-        rate: How finely it is coded.
-        lambda_: Of the plane.
+    The block's rectangle is part of `grid` (rows, columns).
     """
     step = rate.texture_step * _coarsening(scales)
     coded = code_basis(_basis_of(block, grid), step, rate.trial or rate.coder)

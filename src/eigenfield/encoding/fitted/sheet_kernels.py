@@ -61,13 +61,10 @@ def opacity_steps(counts, coordinates, shares, texture, image, weight, out):
     through, c what the point shows, and b what is seen behind it. r is what the photograph has more than is drawn.
 
     Args:
-        counts: As `forward`.
         coordinates: As `forward`, in an atlas as large as the texture.
         shares: (n,) uint16.
         texture: (1, H, W) what is drawn.
         image: (1, h, w) r.
-        weight: See `part_of`.
-        out: The sums.
     """
     shape, flat, points, one = texture.shape, texture.reshape(-1), coordinates.reshape(-1), np.float32(1)
     height, width, ratio = shape[1], shape[2], (one, one)

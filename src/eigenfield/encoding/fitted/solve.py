@@ -78,7 +78,6 @@ def measure_scales(data: FitData, model: PlaneModel) -> Scales:
     around it, on either grid.
 
     Args:
-        data: The observations.
         model: A model of the same grids; of a mean alone, nothing is measured for components and their rate.
     """
     fine, coarse = _texel_sums(data, model, squared=False)
@@ -116,11 +115,7 @@ def _texel_sums(data: FitData, model: PlaneModel, squared: bool) -> tuple[NDArra
 
 
 def squared_shares(footprint: Footprint) -> Footprint:
-    """The footprint with the squares of its shares; that of an opaque surface has none.
-
-    Args:
-        footprint: Of a camera.
-    """
+    """The footprint with the squares of its shares; that of an opaque surface has none."""
     counts, points, shares = footprint
     return counts, points, (np.square(shares, dtype=np.float32) / SHARE_ONE).astype(np.uint16)
 
@@ -137,15 +132,7 @@ def residual(
     composer: AtlasComposer | None = None,
     variance: float | None = None,
 ) -> NormalEquations:
-    """The model's residual in the photographs, brought back to mean and textures unless something else is wanted.
-
-    Args:
-        data: The observations.
-        model: Is drawn.
-        wanted: As `render_and_backproject`.
-        composer: As `render_and_backproject`.
-        variance: As `render_and_backproject`.
-    """
+    """The model's residual in the photographs, brought back to mean and textures unless something else is wanted."""
     return render_and_backproject(
         data, model, mean=model.mean, textures=[block.textures for block in model.blocks],
         weights=[block.weights for block in model.blocks], photographs=True, wanted=wanted, composer=composer,
@@ -154,18 +141,27 @@ def residual(
 
 
 def fit_textures(
-    data: FitData, model: PlaneModel, scales: Scales, left: NormalEquations, iterations: int, mean_only: bool = False
+    data: FitData,
+    model: PlaneModel,
+    scales: Scales,
+    iterations: int,
+    *,
+    mean_only: bool = False,
+    equations: NormalEquations | None = None,
 ) -> None:
-    """Mean and textures of the model for its weights, or the mean alone for its textures as well.
+    """Fit mean and textures to the photographs for the weights that the model has, by conjugate gradients.
+
+    For fixed weights this is one linear least squares problem, and observations of other frames take no part in it:
+    frames of a clip that share their weights are fitted each by itself.
 
     Args:
-        data: to be drawn.
-        model: is changed in place.
-        scales: of these data.
-        left: `residual` of the model as it is; its sums are used up.
-        iterations: of conjugate gradients.
-        mean_only: the textures stay.
+        model: Where the solution begins, and where it is put.
+        scales: Of these data.
+        mean_only: Whether the textures stay as they are.
+        equations: `residual` of the model as it is, where it is known; its sums are used up.
     """
+    if equations is None:
+        equations = residual(data, model, (True, not mean_only, False))
     blocks = [] if mean_only else model.blocks
     weights = [block.weights for block in model.blocks]
     scales_of_parts = [_PartScales(scales.mean, scales.smooth[0], 1.0)]
@@ -174,8 +170,8 @@ def fit_textures(
         scales_of_parts += [_PartScales(share, scales.smooth[1], max(float(e), 1e-6)) for e in energy.mean(axis=0)]
     mean, textures = np.zeros_like(model.mean), [np.zeros_like(block.textures) for block in blocks]
     gradients = _ConjugateGradients(
-        scales_of_parts, _parts(model.mean, [block.textures for block in blocks]), _parts(left.mean, left.textures),
-        _parts(mean, textures),
+        scales_of_parts, _parts(model.mean, [block.textures for block in blocks]),
+        _parts(equations.mean, equations.textures), _parts(mean, textures),
     )  # fmt: skip
     product = gradients.begin()
     for _ in range(iterations):
@@ -267,9 +263,7 @@ def fit_weights(data: FitData, model: PlaneModel, iterations: int) -> None:
     by side.
 
     Args:
-        data: whose observations the rows of weights are.
         model: is changed in place.
-        iterations: of conjugate gradients.
     """
     blocks = model.blocks
     textures = [block.textures for block in blocks]
@@ -314,7 +308,6 @@ def whiten(model: PlaneModel, scales: Scales) -> None:
 
     Args:
         model: Is changed in place.
-        scales: By which texels count.
     """
     for block in model.blocks:
         if not block.count:

@@ -7,6 +7,9 @@ Rectangles in which eigen textures of the whole atlas leave most get components 
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +21,7 @@ from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.encoding.fitted.passes import MINUS, PASS_TASKS
 from eigenfield.encoding.fitted.products import combine, one_blas_thread, weighted_gram
 from eigenfield.encoding.fitted.solve import Scales
-from eigenfield.encoding.projected.spread import push_pull
+from eigenfield.encoding.spread import push_pull
 from eigenfield.runtime.files import scratch_array
 from eigenfield.runtime.parallel import even_pieces, parallel_map
 
@@ -33,6 +36,70 @@ REGION_MAX_COUNT = 3
 REGION_MAX_PIXEL_RATIO = 0.4  # of the pixels seen
 
 
+@dataclass(frozen=True, eq=False)
+class ResidualMaps:
+    """What a model leaves of each photograph, on a rectangle of the components' grid.
+
+    Attributes:
+        values: (No, C h w) float32.
+        shape: C, h, w.
+        share: (C h w,) the square root of how much of the pictures each texel answers for.
+    """
+
+    values: NDArray[np.float32]
+    shape: tuple[int, int, int]
+    share: NDArray[np.float32]
+
+    @one_blas_thread
+    def gram(self) -> NDArray[np.float64]:
+        """(No, No) inner products of the maps, which are plain sums over texels.
+
+        Frames of a clip that share their weights are decomposed by the sum of their matrices, which may be made in any
+        process.
+        """
+        return weighted_gram(self.values, self.share)
+
+    @one_blas_thread
+    def textures(self, weights: NDArray[np.float64]) -> NDArray[np.float32]:
+        """(N, C, h, w) eigen textures for weights (No, N) of mean square 1: the maps projected on them."""
+        textures = np.zeros((weights.shape[1], self.values.shape[1]), np.float32)
+        combine((weights.T / len(weights)).astype(np.float32), self.values, textures)
+        return textures.reshape(-1, *self.shape)
+
+
+@contextlib.contextmanager
+def open_residual_maps(
+    data: FitData, model: PlaneModel, scales: Scales, rectangle: Rectangle, scattered: bool, work: Path | None = None
+) -> Iterator[ResidualMaps]:
+    """What the model leaves of the photographs, in a scratch file of 4 bytes an observation and number.
+
+    Each observation's residual is put into the texture by the transpose of drawing, divided by what the observation
+    has there. What it does not see is zero, which is the mean, as equation 2 fills it. Where cameras stand in no array
+    the residual fades to that: with nearly as many components as cameras, what is not seen stays as it begins, and a
+    step at the border of a photograph takes bytes and shows in the views between.
+    """
+    top, bottom, left, right = rectangle
+    shape = (model.channels, bottom - top, right - left)
+    seen = scales.coarse[scales.coarse > 0]
+    floor = np.float32(MAP_MIN_SHARE_RATIO * (float(np.median(seen)) if len(seen) else 1.0) / len(data))
+    share = np.tile(np.sqrt(scales.coarse[top:bottom, left:right]).reshape(-1), model.channels)
+    with scratch_array((len(data), int(np.prod(shape))), np.float32, work) as maps:
+
+        def put(index: int) -> None:
+            whole = _residual_map(data, model, index, floor, scattered)
+            maps[index] = whole[:, top:bottom, left:right].reshape(-1)
+
+        one_blas_thread(parallel_map)(put, range(len(data)))
+        yield ResidualMaps(maps, shape, share)
+
+
+@one_blas_thread
+def principal_weights(gram: NDArray[np.float64], count: int) -> NDArray[np.float64]:
+    """(No, count) weights of mean square 1 of the strongest components, by falling eigenvalue of a Gram matrix."""
+    _, vectors = np.linalg.eigh(gram)
+    return vectors[:, ::-1][:, :count] * np.sqrt(len(gram))
+
+
 @one_blas_thread
 def principal_block(
     data: FitData,
@@ -43,41 +110,10 @@ def principal_block(
     scattered: bool,
     work: Path | None = None,
 ) -> Block:
-    """Eigen textures of what the model leaves of the photographs.
-
-    Each observation's residual is put into the texture by the transpose of drawing, divided by what the observation
-    has there. What it does not see is zero, which is the mean, as equation 2 fills it. Where cameras stand in no array
-    the residual fades to that: with nearly as many components as cameras, what is not seen stays as it begins, and a
-    step at the border of a photograph takes bytes and shows in the views between.
-
-    Args:
-        data: No observations.
-        model: What is drawn so far.
-        scales: Of these data.
-        count: Of eigen textures.
-        rectangle: Of the grid, which they fill.
-        scattered: As of `PlaneSettings`.
-        work: Folder for a scratch file of 4 bytes an observation and number.
-    """
-    top, bottom, left, right = rectangle
-    shape = (model.channels, bottom - top, right - left)
-    size = int(np.prod(shape))
-    seen = scales.coarse[scales.coarse > 0]
-    floor = np.float32(MAP_MIN_SHARE_RATIO * (float(np.median(seen)) if len(seen) else 1.0) / len(data))
-    with scratch_array((len(data), size), np.float32, work) as maps:
-
-        def put(index: int) -> None:
-            found = _residual_map(data, model, index, floor, scattered)
-            maps[index] = found[:, top:bottom, left:right].reshape(-1)
-
-        parallel_map(put, range(len(data)))
-        share = np.sqrt(scales.coarse[top:bottom, left:right]).reshape(-1)
-        weight = np.tile(share, model.channels)
-        _, vectors = np.linalg.eigh(weighted_gram(maps, weight))
-        weights = vectors[:, ::-1][:, :count] * np.sqrt(len(data))
-        textures = np.zeros((weights.shape[1], size), np.float32)
-        combine((weights.T / len(data)).astype(np.float32), maps, textures)
-    return Block(rectangle, textures.reshape(-1, *shape), weights.astype(np.float32))
+    """Eigen textures of what the model leaves of the photographs (`open_residual_maps`), `count` of them."""
+    with open_residual_maps(data, model, scales, rectangle, scattered, work) as maps:
+        weights = principal_weights(maps.gram(), count)
+        return Block(rectangle, maps.textures(weights), weights.astype(np.float32))
 
 
 @one_blas_thread

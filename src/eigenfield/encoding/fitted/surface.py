@@ -40,7 +40,7 @@ from eigenfield.encoding.fitted.fit import FIT_MEAN_ITERATIONS, fit_mean
 from eigenfield.encoding.fitted.kernels import adjoint, forward
 from eigenfield.encoding.fitted.model import PlaneModel
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_on_proxy, open_subsampled
-from eigenfield.encoding.fitted.passes import MINUS, psnr_of
+from eigenfield.encoding.fitted.passes import MINUS
 from eigenfield.encoding.fitted.solve import measure_scales, squared_shares
 from eigenfield.encoding.fitted.surface_kernels import gather_steps
 from eigenfield.encoding.geometry.distortion import spread_cameras, texels_of
@@ -51,45 +51,20 @@ log = logging.getLogger("eigenfield.fit")
 
 STEP_TASK_TEXELS = 1 << 16  # whose equations one thread adds to at a time
 
-
-@dataclass(frozen=True)
-class SurfaceTuning:
-    """Numbers of the surface fit.
-
-    Attributes:
-        rounds: Rounds of Gauss-Newton steps, at most.
-        mean_iterations: Of conjugate gradients, by which the mean follows the mesh after a round.
-        max_cameras: Cameras, spread over the array, whose photographs are decoded.
-        subsample_observations: Observations of these from which every second pixel each way is enough.
-        subsample_pixels: Pixels of all of them together from which it is.
-        stop_fraction: Fraction of the squared error that a round must be expected to take off.
-        stiffness: Cost of vertices a texel apart being a pixel further apart than given, beside the data's weight.
-        ridge: Cost of a texel being a pixel off its given place, likewise.
-        max_step_pixels: Movement of a vertex in a round.
-        error_sigma_texels: Standard deviation of the window in which errors are averaged.
-        min_error: Error in the photographs' range that rounding leaves.
-        min_share_fraction: Fraction of the median texel's pixels that must show a texel for it to count.
-        max_side_texels: Side of the atlas.
-        sample_points: Points by which the length of lines in pixels is measured.
-    """
-
-    rounds: int = 4
-    mean_iterations: int = 5
-    max_cameras: int = 49
-    subsample_observations: int = 25
-    subsample_pixels: int = 1 << 25
-    stop_fraction: float = 0.003
-    stiffness: float = 0.5
-    ridge: float = 0.015
-    max_step_pixels: float = 4.0
-    error_sigma_texels: float = 4.0
-    min_error: float = 0.002
-    min_share_fraction: float = 1 / 8
-    max_side_texels: int = 2048
-    sample_points: int = 2000
-
-
-SURFACE_TUNING = SurfaceTuning()
+SURFACE_ROUNDS = 4  # of Gauss-Newton steps, at most
+SURFACE_MEAN_ITERATIONS = 5  # of conjugate gradients, by which the mean follows the mesh after a round
+SURFACE_MAX_CAMERAS = 49  # spread over the array, whose photographs are decoded
+SURFACE_SUBSAMPLE_OBSERVATIONS = 25  # of these, from which every second pixel each way is enough
+SURFACE_SUBSAMPLE_PIXELS = 1 << 25  # of all of them together, from which it is
+SURFACE_STOP_FRACTION = 0.003  # of the squared error that a round must be expected to take off
+SURFACE_STIFFNESS = 0.5  # cost of vertices a texel apart being a pixel further apart, beside the data's weight
+SURFACE_RIDGE = 0.015  # likewise, of a texel being a pixel off its given place
+SURFACE_MAX_STEP_PIXELS = 4.0  # of a vertex in a round
+SURFACE_ERROR_SIGMA_TEXELS = 4.0  # standard deviation of the window in which errors are averaged
+SURFACE_MIN_ERROR = 0.002  # in the photographs' range, that rounding leaves
+SURFACE_MIN_SHARE_FRACTION = 1 / 8  # of the median texel's pixels that must show a texel for it to count
+SURFACE_MAX_SIDE_TEXELS = 2048  # of the atlas
+SURFACE_SAMPLE_POINTS = 2000  # by which the length of lines in pixels is measured
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,49 +113,45 @@ def fit_surface(
     Args:
         proxy: With UVs, the same at all times of the observations. Vertices of a relief stay on their rays of its
             lattice, others move along their normals.
-        cameras: Of the observations.
-        observations: Those of `max_cameras` cameras, spread over the array, are decoded.
+        observations: Those of SURFACE_MAX_CAMERAS cameras, spread over the array, are decoded.
         side: Texels of the atlas, about a pixel each.
-        work: Folder for scratch files.
-        progress: Reports the rounds.
 
     Raises:
         CaptureError: A photograph cannot be read.
         OutputError: `disk-full`.
     """
-    chosen = spread_cameras(cameras, SURFACE_TUNING.max_cameras)
+    chosen = spread_cameras(cameras, SURFACE_MAX_CAMERAS)
     some, used = select_cameras(observations, chosen), [cameras[index] for index in chosen]
-    shape = (min(side, SURFACE_TUNING.max_side_texels),) * 2
+    shape = (min(side, SURFACE_MAX_SIDE_TEXELS),) * 2
     pixels = sum(used[camera].width * used[camera].height for camera in cameras_of(some))
-    step = 2 if len(some) >= SURFACE_TUNING.subsample_observations or pixels > SURFACE_TUNING.subsample_pixels else 1
+    step = 2 if len(some) >= SURFACE_SUBSAMPLE_OBSERVATIONS or pixels > SURFACE_SUBSAMPLE_PIXELS else 1
     mesh = proxy.mesh
     movable = _movable_mesh(mesh, proxy.lattice, used, shape)
     best, reached, off = mesh, -np.inf, np.zeros(len(movable.lines))
     model = PlaneModel.grey(split_matrix()[0], shape)
     with open_fit_data(used, some, proxy, shape, work) as every:
-        for number in range(SURFACE_TUNING.rounds + 1):
+        for number in range(SURFACE_ROUNDS + 1):
             if progress is not None:
-                progress("fit surface", number, SURFACE_TUNING.rounds + 1)
+                progress("fit surface", number, SURFACE_ROUNDS + 1)
             moved = open_on_proxy(every, used, replace(proxy, mesh=mesh), work) if number else nullcontext(every)
             with moved as whole, open_subsampled(whole, step, work) as data:
-                iterations = SURFACE_TUNING.mean_iterations if number else FIT_MEAN_ITERATIONS
-                left = fit_mean(data, model, measure_scales(data, model), iterations)
-                if not left.pixels.any():
+                iterations = SURFACE_MEAN_ITERATIONS if number else FIT_MEAN_ITERATIONS
+                mean_alone = fit_mean(data, model, measure_scales(data, model), iterations)
+                if not mean_alone.pixels.any():
                     break
-                now = psnr_of(left.squares, left.pixels)
-                log.info("surface, after round %d: %.2f dB by the mean alone", number, now)
-                if now <= reached:
+                log.info("surface, after round %d: %.2f dB by the mean alone", number, mean_alone.psnr)
+                if mean_alone.psnr <= reached:
                     break
-                best, reached = mesh, now
-                if number == SURFACE_TUNING.rounds:
+                best, reached = mesh, mean_alone.psnr
+                if number == SURFACE_ROUNDS:
                     break
                 further, promised = _step(movable, mesh, off, data, used, model)
-            if promised < SURFACE_TUNING.stop_fraction:
+            if promised < SURFACE_STOP_FRACTION:
                 break
             off += further
             mesh = movable.displaced_mesh(off)
     if progress is not None:
-        progress("fit surface", SURFACE_TUNING.rounds + 1, SURFACE_TUNING.rounds + 1)
+        progress("fit surface", SURFACE_ROUNDS + 1, SURFACE_ROUNDS + 1)
     return replace(proxy, mesh=best)
 
 
@@ -196,8 +167,8 @@ def _movable_mesh(
     spread = coo_array((weights.reshape(-1), (rows, same[corners].reshape(-1))), shape=size).tocsr()
     area: NDArray[np.float64] = np.asarray(spread.sum(axis=0)).reshape(-1)
     uv = mesh.uv.astype(np.float64) * [shape[1], shape[0]]
-    stiff = SURFACE_TUNING.stiffness * _laplacian(same, mesh.faces, uv)
-    prior = stiff + SURFACE_TUNING.ridge * diags_array(np.maximum(area, 1))
+    stiff = SURFACE_STIFFNESS * _laplacian(same, mesh.faces, uv)
+    prior = stiff + SURFACE_RIDGE * diags_array(np.maximum(area, 1))
     lines = _lines(points, same[mesh.faces], lattice, cameras)
     free = np.ones(len(points), bool)
     if lattice is None:
@@ -222,7 +193,7 @@ def _step(
     normal = (spread.T @ diags_array(weight) @ spread + movable.prior).tocsr()[free][:, free]
     right = np.asarray(spread.T @ pull - movable.prior @ off)[free]
     found, _ = cg(normal, right, rtol=1e-4, maxiter=400, M=diags_array(1 / normal.diagonal()))
-    step[free] = found.clip(-SURFACE_TUNING.max_step_pixels, SURFACE_TUNING.max_step_pixels)
+    step[free] = found.clip(-SURFACE_MAX_STEP_PIXELS, SURFACE_MAX_STEP_PIXELS)
     moved = spread @ step
     less = ((2 * moved * pull - moved * moved * weight) / scale).sum()
     return step, float(less) / max(squares, 1e-12)
@@ -269,13 +240,13 @@ def _step_equations(
     weight -= np.square(first) / least  # what is the same in all of them the mean takes
     pull -= first * rest / least
     usual = float(np.median(shown[shown > 0])) if (shown > 0).any() else 1.0
-    trusted = (weight > 0) & (shown > SURFACE_TUNING.min_share_fraction * usual)
+    trusted = (weight > 0) & (shown > SURFACE_MIN_SHARE_FRACTION * usual)
     often = np.zeros_like(mean)
     often[covered] = shown
-    sigma = SURFACE_TUNING.error_sigma_texels
+    sigma = SURFACE_ERROR_SIGMA_TEXELS
     error = gaussian_filter(squares, sigma) / np.maximum(gaussian_filter(often, sigma), 1e-6)
-    sure = len(cameras) / SURFACE_TUNING.max_cameras  # fewer cameras separate light from depth less well
-    scale = sure / (usual * np.maximum(error[covered].astype(np.float64), SURFACE_TUNING.min_error**2))
+    sure = len(cameras) / SURFACE_MAX_CAMERAS  # fewer cameras separate light from depth less well
+    scale = sure / (usual * np.maximum(error[covered].astype(np.float64), SURFACE_MIN_ERROR**2))
     return np.where(trusted, pull, 0) * scale, np.where(trusted, weight, 0) * scale, scale, float(squares.sum())
 
 
@@ -291,7 +262,7 @@ def _lines(
         normals = vertex_normals(points, faces)
         middle = np.mean([camera.centre for camera in cameras], axis=0)
         lines = normals * np.square(points - middle).sum(axis=1, keepdims=True)
-    few = np.unique(np.linspace(0, len(points) - 1, min(len(points), SURFACE_TUNING.sample_points)).astype(int))
+    few = np.unique(np.linspace(0, len(points) - 1, min(len(points), SURFACE_SAMPLE_POINTS)).astype(int))
     length = max(float(np.linalg.norm(lines[few])), 1e-30)
     small = 1e-4 * float(np.linalg.norm(points[few] - cameras[0].centre)) / length
     most = 0.0

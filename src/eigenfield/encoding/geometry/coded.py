@@ -38,7 +38,6 @@ def coded_mesh(proxy: Proxy, cameras: Sequence[Camera], reference: int) -> Coded
     Args:
         proxy: With its lattice if it is a relief. The opacity of its sheets stays as it is, and is not coded.
         cameras: All cameras of the file.
-        reference: Index of the reference camera.
     """
     mesh, lattice = proxy.mesh, proxy.lattice
     if lattice is not None:
@@ -89,7 +88,6 @@ def coded_cameras(cameras: Sequence[Camera], mesh: Mesh, grid: NDArray[np.int64]
     """The cameras as a file will have them: each number is off by at most CAMERA_STEP_PX / 2 at the median depth.
 
     Args:
-        cameras: All cameras of the file.
         mesh: Whose median depth counts.
         grid: (rows, columns) of indices of cameras that stand on a regular array; None where they do not.
     """

@@ -79,8 +79,6 @@ def depth_distortion(
 
     Args:
         mesh: The relief, with UVs.
-        lattice: Of the relief.
-        cameras: Of the observations.
         observations: Those of DISTORTION_MAX_CAMERAS cameras, spread over the array, are decoded.
         sheets: Of the mesh; None: it is opaque.
     """
@@ -131,8 +129,6 @@ class _Layers:
     """Sheets as a distortion map has them.
 
     Attributes:
-        mesh: Of the sheets.
-        sheets: Its sheets.
         of_texel: (t,) the sheet of each covered texel.
         opacity: (t,) of each covered texel.
     """
@@ -163,7 +159,6 @@ class _Layers:
         """(t,) the share that each covered texel has in its pixel.
 
         Args:
-            camera: The view.
             inside: (t,) whether a texel is in the picture.
             row: (t,) of its pixel.
             column: (t,) of its pixel.
@@ -302,7 +297,6 @@ def hole_error(
     Args:
         given: The mesh before it was simplified.
         mesh: The simplified one.
-        cameras: Of the observations.
         observations: Those of the chosen cameras are decoded.
 
     Returns:

@@ -16,8 +16,6 @@ def add_camera(first, last, matrix, world, deeper, nearest, ratio, shares, right
     the picture's square.
 
     Args:
-        first: First texel.
-        last: End of the texels.
         matrix: (3, 4) of the camera.
         world: (t, 3) points of the texels.
         deeper: (t, 3) the points a step of depth away.

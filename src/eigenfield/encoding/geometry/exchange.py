@@ -51,11 +51,7 @@ def with_mesh(scene: S, mesh: Mesh) -> S:
 
 
 def _raw(mesh: Mesh) -> RawMesh:
-    """The mesh with checked shapes and texture coordinates.
-
-    Raises:
-        ProxyError: As `with_mesh`.
-    """
+    """The mesh with checked shapes and texture coordinates."""
     if mesh.uv is None:
         remedy = "give it those of the scene's mesh, or encode the photographs with it"
         raise ProxyError("proxy-no-uv", "the mesh has no texture coordinates", remedy=remedy)

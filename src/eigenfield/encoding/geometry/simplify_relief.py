@@ -97,7 +97,6 @@ def simplify_relief_rd(
     Args:
         proxy: The relief, with UVs.
         lattice: Of `relief_lattice`.
-        cameras: Of the observations.
         observations: Some of them are decoded, see `depth_distortion`.
         lambda_: Squared error for one byte, for each pixel that a texel is seen in.
         texels: Of the atlas, for one pixel.

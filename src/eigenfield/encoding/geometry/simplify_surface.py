@@ -91,8 +91,6 @@ def simplify_surface_rd(
     """The mesh with the triangles of least rate-distortion cost, by `proxy.simplify_mesh`.
 
     Args:
-        mesh: To be simplified.
-        cameras: Of the observations.
         observations: Those of TRIANGLE_MAX_CAMERAS cameras, spread over the array, are decoded.
         lambda_: Squared error for one byte, for each pixel that a texel is seen in, at one texel a pixel.
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.progress import Progress
-from eigenfield.encoding.projected.atlas import Atlas
+from eigenfield.encoding.atlas import Atlas
 from eigenfield.encoding.projected.project import TextureMaps
 from eigenfield.runtime.parallel import tracked_map
 
@@ -37,7 +37,6 @@ def align_map(
     warped texel counts as seen if all texels it is interpolated from are.
 
     Args:
-        atlas: The atlas of n chart texels.
         values: (n, C) of the map.
         seen: (n,) where the map has values.
         reference: (n, C) of the reference.
@@ -70,9 +69,7 @@ def align_maps(maps: TextureMaps, reference: int, progress: Progress | None = No
     The mean must be taken again afterwards (equation 1): it changes the fill of every map (equation 2).
 
     Args:
-        maps: Are changed.
         reference: Index of the map that stays.
-        progress: Reports each map.
     """
     fixed, fixed_seen = np.array(maps.values[reference]), np.array(maps.seen[reference])
 

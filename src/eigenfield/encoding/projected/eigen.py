@@ -8,8 +8,6 @@ are No observations. With far fewer of them than texels the same vectors come fr
 
 from __future__ import annotations
 
-import logging
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import helmert
@@ -19,8 +17,6 @@ from eigenfield.core.progress import Progress, track
 from eigenfield.encoding.projected.mean import MAP_TILE_TEXELS, Mean
 from eigenfield.encoding.projected.project import TextureMaps
 from eigenfield.runtime.parallel import parallel_stream, pieces, tracked_map
-
-log = logging.getLogger("eigenfield.basis")
 
 
 def _deviations(maps: TextureMaps, mean: Mean, first: int, last: int) -> NDArray[np.float32]:
@@ -35,6 +31,7 @@ def gram_matrix(maps: TextureMaps, mean: Mean, progress: Progress | None = None)
 
     Tiles are summed in float64 and in a fixed order: float32 sums lose the small eigenvalues, free order changes the
     last bits with the number of threads.
+    Matrices of frames that share their weights are added.
     """
 
     def product(part: tuple[int, int]) -> NDArray[np.float64]:
@@ -61,14 +58,6 @@ def eigenvectors(gram: NDArray[np.float64]) -> NDArray[np.float64]:
         vectors = complement @ inner[:, ::-1]
     largest = np.abs(vectors).argmax(axis=0)
     return vectors * np.where(vectors[largest, np.arange(len(gram) - 1)] < 0, -1.0, 1.0)
-
-
-def component_count(asked: int, observations: int) -> int:
-    """At most No - 1 components exist (equation 6); asking for more is no error."""
-    most = observations - 1
-    if asked > most:
-        log.warning("%d eigen textures were asked for; %d photographs give at most %d", asked, observations, most)
-    return min(asked, most)
 
 
 def weights_of(vectors: NDArray[np.float64], count: int) -> NDArray[np.float32]:

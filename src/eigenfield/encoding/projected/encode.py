@@ -11,18 +11,18 @@ from numpy.typing import NDArray
 from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.progress import Progress, begin_step
 from eigenfield.core.scene import Scene
+from eigenfield.encoding.agreement import warn_of_disagreement
+from eigenfield.encoding.atlas import make_atlas
 from eigenfield.encoding.options import DEFAULT_MAX_ANGLE, resolved_value
-from eigenfield.encoding.plan import EncodePlan
-from eigenfield.encoding.projected.agreement import disagreement_of
+from eigenfield.encoding.plan import EncodePlan, component_count
 from eigenfield.encoding.projected.align import align_maps
-from eigenfield.encoding.projected.atlas import make_atlas
-from eigenfield.encoding.projected.eigen import component_count, eigen_textures, eigenvectors, gram_matrix, weights_of
+from eigenfield.encoding.projected.eigen import eigen_textures, eigenvectors, gram_matrix, weights_of
 from eigenfield.encoding.projected.harmonise import harmonise_maps
 from eigenfield.encoding.projected.maps_on_workers import maps_on_workers
 from eigenfield.encoding.projected.mean import Mean, mean_map
 from eigenfield.encoding.projected.project import RESAMPLING, TextureMaps, texture_maps
-from eigenfield.encoding.projected.spread import Spreader, make_spreader
 from eigenfield.encoding.projected.uv_measure import smallest_count
+from eigenfield.encoding.spread import Spreader, make_spreader
 from eigenfield.encoding.views import nothing_seen_error
 from eigenfield.imaging.png import png_bytes
 from eigenfield.runtime.files import output_errors, write_bytes
@@ -36,9 +36,7 @@ def encode_projected(
     """A scene by the paper's sections 3.2 and 3.3; its textures are numbers, which `save` codes.
 
     Args:
-        plan: Cameras, mesh and atlas, and the options.
         work: Folder for a scratch file of 4 bytes x channels x cameras x texels.
-        progress: Reports each stage.
         workers: Of `open_executor`: they make the texture maps. None: this process does.
 
     Raises:
@@ -47,17 +45,17 @@ def encode_projected(
     """
     begin_step(progress, "maps")
     options, views = plan.options, plan.views
-    own = {"uvSsim": options.uv_ssim, "align": "dis" if options.align else None, "resampling": RESAMPLING}
+    settings = {"uvSsim": options.uv_ssim, "align": "dis" if options.align else None, "resampling": RESAMPLING}
     max_angle = resolved_value(options.max_angle)
     if max_angle != DEFAULT_MAX_ANGLE:
-        own["maxAngle"] = max_angle
-    colours, made = None, None
-    given = make_atlas(plan.mesh, *plan.atlas), views.rig.encoded_cameras, views.observations
+        settings["maxAngle"] = max_angle
+    colours, maps_of_workers = None, None
+    sources = make_atlas(plan.mesh, *plan.atlas), views.rig.encoded_cameras, views.observations
     if workers is not None:
-        made = maps_on_workers(workers, *given, work, max_angle, progress)
-    with texture_maps(*given, max_angle=max_angle, made=made, work=work, progress=progress) as maps:
+        maps_of_workers = maps_on_workers(workers, *sources, work, max_angle, progress)
+    with texture_maps(*sources, max_angle=max_angle, made=maps_of_workers, work=work, progress=progress) as maps:
         if options.harmonise not in (None, "none"):
-            own["harmonise"] = options.harmonise
+            settings["harmonise"] = options.harmonise
             colours = views.for_all_cameras(harmonise_maps(maps, options.harmonise, progress))
         if options.align:
             reference = views.taken_by.tolist().index(views.rig.reference)
@@ -69,7 +67,7 @@ def encode_projected(
         basis = _basis_of(maps, mean, spreader, plan, work, progress)  # equations 2 to 6
         if options.keep_maps is not None:
             write_maps(maps, mean.values, spreader, views.observation_names, Path(options.keep_maps), progress=progress)
-    return plan.scene((Plane(spreader(mean.values), (basis,)),), own, colours=colours)
+    return plan.scene((Plane(spreader(mean.values), (basis,)),), settings, colours=colours)
 
 
 def _basis_of(
@@ -79,10 +77,9 @@ def _basis_of(
 
     Unseen texels deviate by nothing, which is equation 2 without filling any map.
     """
-    options, views = plan.options, plan.views
+    options = plan.options
     gram = gram_matrix(maps, mean, progress)  # of X, equations 3 to 5
-    names, places = views.observation_names, views.coordinates[views.taken_by]
-    disagreement_of(maps, mean, gram, names, places, aligned=bool(options.align))
+    _warn_of_disagreement(maps, mean, gram, plan)
     vectors = eigenvectors(gram)  # equation 6
     if options.uv_ssim is None:
         count = component_count(resolved_value(options.textures), maps.count)
@@ -96,6 +93,17 @@ def _basis_of(
         pictures[index] = spreader(compact[index])
     ones, zeros = np.ones((count, maps.channels), np.float32), np.zeros((count, maps.channels), np.float32)
     return Basis(pictures, ones, zeros, weights)
+
+
+def _warn_of_disagreement(maps: TextureMaps, mean: Mean, gram: NDArray[np.float64], plan: EncodePlan) -> None:
+    """`warn_of_disagreement` of texture maps: the diagonal of their Gram matrix holds the squared deviations."""
+    views, seen = plan.views, np.array([int(np.count_nonzero(row)) for row in maps.seen])
+    names, places = views.observation_names, views.coordinates[views.taken_by]
+    squares = np.diag(gram)
+    count, values = mean.count.astype(np.float64)[:, None], mean.values.astype(np.float64)
+    centre = (count * values).sum(axis=0) / max(float(count.sum()), 1.0)
+    total = float((count * (values - centre) ** 2).sum()) + float(squares.sum())
+    warn_of_disagreement(squares, seen, maps.channels, total, names, places, aligned=bool(plan.options.align))
 
 
 def write_maps(
@@ -112,10 +120,8 @@ def write_maps(
     Args:
         maps: Of No observations.
         mean: (n, C) at the chart texels.
-        spreader: Of the maps' atlas.
         names: Of the observations, each once.
         folder: Is made if it does not exist.
-        progress: Reports the maps that are written.
     """
     with output_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)

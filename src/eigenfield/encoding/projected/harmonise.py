@@ -34,49 +34,22 @@ log = logging.getLogger("eigenfield.texturing")
 
 Numbers = NDArray[np.float64]
 
-
-@dataclass(frozen=True)
-class HarmoniseTuning:
-    """Numbers of the colour fit.
-
-    Attributes:
-        dark: Up to here in 0..1 stray light, clipping and noise are as large as what a gain would change.
-        bright: From here in 0..1 a photograph is saturated.
-        max_cells: Cells of the atlas in the fit, at most.
-        max_numbers: Observations x cells, at most.
-        min_cell_fraction: Fraction of a cell's texels that a camera must see.
-        max_rounds: Rounds of reweighted least squares.
-        min_gain_change: A round that moves no gain further is the last.
-        half_weight_deviations: Residuals of so many standard deviations count half (Cauchy).
-        min_noise: Least noise in 0..1, that of rounding.
-        gain_prior: Standard deviation of gains round 1.
-        offset_prior: Standard deviation of offsets round 0.
-        prior_cells: Residuals of average size that the prior weighs as much as.
-        max_gain: Largest gain; its inverse is the smallest.
-        blocks_per_axis: Blocks of the surface along each of its two longest axes.
-        independent_blocks: How many of all blocks a gloss changes independently of each other.
-        min_shared_cells: Cells that a camera must share with others.
-    """
-
-    dark: float = 16 / 255
-    bright: float = 253 / 255
-    max_cells: int = 4096
-    max_numbers: int = 4_000_000
-    min_cell_fraction: float = 0.9
-    max_rounds: int = 30
-    min_gain_change: float = 1e-4
-    half_weight_deviations: float = 2.385
-    min_noise: float = 1 / 255
-    gain_prior: float = 0.1
-    offset_prior: float = 0.03
-    prior_cells: int = 25
-    max_gain: float = 4.0
-    blocks_per_axis: int = 4
-    independent_blocks: int = 4
-    min_shared_cells: int = 8
-
-
-HARMONISE_TUNING = HarmoniseTuning()
+HARMONISE_DARK = 16 / 255  # up to here stray light, clipping and noise are as large as what a gain would change
+HARMONISE_BRIGHT = 253 / 255  # from here on a photograph is saturated
+HARMONISE_MAX_CELLS = 4096  # of the atlas in the fit
+HARMONISE_MAX_NUMBERS = 4_000_000  # observations x cells
+HARMONISE_MIN_CELL_FRACTION = 0.9  # of a cell's texels that a camera must see
+HARMONISE_MAX_ROUNDS = 30  # of reweighted least squares
+HARMONISE_MIN_GAIN_CHANGE = 1e-4  # a round that moves no gain further is the last
+HARMONISE_HALF_WEIGHT_DEVIATIONS = 2.385  # residuals of so many standard deviations count half (Cauchy)
+HARMONISE_MIN_NOISE = 1 / 255  # that of rounding
+HARMONISE_GAIN_PRIOR = 0.1  # standard deviation of gains round 1
+HARMONISE_OFFSET_PRIOR = 0.03  # standard deviation of offsets round 0
+HARMONISE_PRIOR_CELLS = 25  # residuals of average size that the prior weighs as much as
+HARMONISE_MAX_GAIN = 4.0  # its inverse is the smallest
+HARMONISE_BLOCKS_PER_AXIS = 4  # of the surface along each of its two longest axes
+HARMONISE_INDEPENDENT_BLOCKS = 4  # of all blocks, that a gloss changes independently of each other
+HARMONISE_MIN_SHARED_CELLS = 8  # of a camera with others
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +90,6 @@ def harmonise_maps(maps: TextureMaps, model: str = "gain", progress: Progress | 
     Args:
         maps: Of No observations; they become gain * T + offset.
         model: "gain", or "affine" for gain and offset.
-        progress: Reports each pass.
 
     Returns:
         (No, 2, C) float32, gains then offsets. In each channel the gains have the geometric mean 1 and the offsets the
@@ -169,20 +141,20 @@ def fit_colours(values: Numbers, weights: Numbers, blocks: NDArray[np.int64], mo
     T, base, blocks = np.ascontiguousarray(T[:, shared]), np.ascontiguousarray(w[:, shared]), blocks[shared]
     a, b = np.ones(len(T)), np.zeros(len(T))
     M = _map(T, base, a, b)
-    for count in range(HARMONISE_TUNING.max_rounds):
+    for count in range(HARMONISE_MAX_ROUNDS):
         residual = T - a[:, None] * M - b[:, None]
-        noise = max(1.4826 * float(np.median(np.abs(residual[base > 0]))), HARMONISE_TUNING.min_noise)
-        w = base / (1 + (residual / (HARMONISE_TUNING.half_weight_deviations * noise)) ** 2) if count else base
+        noise = max(1.4826 * float(np.median(np.abs(residual[base > 0]))), HARMONISE_MIN_NOISE)
+        w = base / (1 + (residual / (HARMONISE_HALF_WEIGHT_DEVIATIONS * noise)) ** 2) if count else base
         M = _map(T, w, a, b)
-        prior = HARMONISE_TUNING.prior_cells * noise**2
+        prior = HARMONISE_PRIOR_CELLS * noise**2
         step_a, step_b = _step(T - a[:, None] * M - b[:, None], w, a, b, M, prior, model == "affine")
         before = 1 / a
-        a = np.clip(a + step_a, 1 / HARMONISE_TUNING.max_gain, HARMONISE_TUNING.max_gain)
+        a = np.clip(a + step_a, 1 / HARMONISE_MAX_GAIN, HARMONISE_MAX_GAIN)
         b = b + step_b
         a = a / np.exp(np.log(a).mean())
         b = b - a * (b / a).mean()
         M = _map(T, w, a, b)
-        if count and np.abs(1 / a - before).max() < HARMONISE_TUNING.min_gain_change:
+        if count and np.abs(1 / a - before).max() < HARMONISE_MIN_GAIN_CHANGE:
             break
     kept = _shrinkage(T, w, a, b, M, blocks)
     result[active] = np.stack([a**-kept, -kept * b / a], axis=1)
@@ -205,7 +177,7 @@ def _shrinkage(T: Numbers, w: Numbers, a: Numbers, b: Numbers, M: Numbers, block
         above = (w[:, here] * residual[:, here] * M[here]).sum(axis=1)
         below = (w[:, here] * M[here] ** 2).sum(axis=1)
         apart += float(np.divide(above**2, below, out=np.zeros_like(above), where=below > 0).sum())
-    return max(0.0, 1 - apart / (HARMONISE_TUNING.independent_blocks * explained)) if explained > 0 else 0.0
+    return max(0.0, 1 - apart / (HARMONISE_INDEPENDENT_BLOCKS * explained)) if explained > 0 else 0.0
 
 
 def _sharing(weights: Numbers) -> NDArray[np.bool_]:
@@ -214,7 +186,7 @@ def _sharing(weights: Numbers) -> NDArray[np.bool_]:
     while True:
         counts = weights > 0
         common = counts[active].sum(axis=0) >= 2
-        kept = active & ((counts & common).sum(axis=1) >= HARMONISE_TUNING.min_shared_cells)
+        kept = active & ((counts & common).sum(axis=1) >= HARMONISE_MIN_SHARED_CELLS)
         if (kept == active).all():
             return active
         active = kept
@@ -241,7 +213,7 @@ def _step(
     coupling = w * a[:, None] * root
     parts = [M, np.ones_like(M)] if affine else [M]
     start = [1 - a, -b]
-    strength = [prior / HARMONISE_TUNING.gain_prior**2, prior / HARMONISE_TUNING.offset_prior**2]
+    strength = [prior / HARMONISE_GAIN_PRIOR**2, prior / HARMONISE_OFFSET_PRIOR**2]
     B = np.concatenate([coupling * part for part in parts])
     H = -(B @ B.T)
     gradient = np.empty(len(B))
@@ -260,21 +232,17 @@ def _blocks(positions: Numbers) -> NDArray[np.int64]:
     centred = positions - positions.mean(axis=0)
     axes = np.linalg.eigh(centred.T @ centred)[1][:, :0:-1]
     rank = np.argsort(np.argsort(centred @ axes, axis=0, kind="stable"), axis=0, kind="stable")
-    quarter = rank * HARMONISE_TUNING.blocks_per_axis // len(positions)
-    return np.asarray(quarter[:, 0] * HARMONISE_TUNING.blocks_per_axis + quarter[:, 1], np.int64)
+    quarter = rank * HARMONISE_BLOCKS_PER_AXIS // len(positions)
+    return np.asarray(quarter[:, 0] * HARMONISE_BLOCKS_PER_AXIS + quarter[:, 1], np.int64)
 
 
 def average_cells(maps: TextureMaps, progress: Progress | None = None) -> Cells:
     """The cells of texture maps.
 
     Averages, since single texels differ from camera to camera by what calibration and proxy are off.
-
-    Args:
-        maps: Of all observations.
-        progress: Reports each.
     """
     atlas = maps.atlas
-    most = min(HARMONISE_TUNING.max_cells, max(HARMONISE_TUNING.max_numbers // maps.count, 64))
+    most = min(HARMONISE_MAX_CELLS, max(HARMONISE_MAX_NUMBERS // maps.count, 64))
     side = max(1, int(np.ceil(np.sqrt(atlas.width * atlas.height / most))))
     row, column = np.divmod(atlas.texel, atlas.width)
     _, cell = np.unique((row // side) * atlas.width + column // side, return_inverse=True)
@@ -286,10 +254,10 @@ def average_cells(maps: TextureMaps, progress: Progress | None = None) -> Cells:
         seen = maps.seen[index] > 0
         part = cell[seen]
         number = np.bincount(part, minlength=len(texels))
-        enough = number >= HARMONISE_TUNING.min_cell_fraction * texels
+        enough = number >= HARMONISE_MIN_CELL_FRACTION * texels
         for channel in range(maps.channels):
             shown = maps.values[index, :, channel][seen]
-            ends = np.bincount(part, (shown <= HARMONISE_TUNING.dark) | (shown >= HARMONISE_TUNING.bright), len(texels))
+            ends = np.bincount(part, (shown <= HARMONISE_DARK) | (shown >= HARMONISE_BRIGHT), len(texels))
             usable = enough & (ends == 0)
             values[index, :, channel] = np.bincount(part, shown, len(texels)) / np.maximum(number, 1)
             weights[index, :, channel] = np.where(usable, texels / side**2, 0)

@@ -15,7 +15,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import Observations
 from eigenfield.core.progress import Progress, track
-from eigenfield.encoding.projected.atlas import Atlas, make_atlas
+from eigenfield.encoding.atlas import Atlas, make_atlas
 from eigenfield.encoding.projected.project import texture_map
 from eigenfield.runtime.executor import refuse_unshared, spread
 from eigenfield.runtime.files import output_errors, rename

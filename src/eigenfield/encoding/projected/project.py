@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from eigenfield.core.camera import Camera
 from eigenfield.core.observations import Observations
 from eigenfield.core.progress import Progress
+from eigenfield.encoding.atlas import Atlas
 from eigenfield.encoding.options import DEFAULT_MAX_ANGLE
 from eigenfield.encoding.projected import kernels
-from eigenfield.encoding.projected.atlas import Atlas
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.runtime.files import scratch_array
 from eigenfield.runtime.parallel import tracked_map
@@ -60,11 +60,8 @@ def texture_map(
     """Project one photograph into the atlas, by a bicubic filter that is stretched where the photograph is denser.
 
     Args:
-        atlas: Of the mesh that is seen.
-        camera: Of the photograph.
         pixels: (H, W, C) float32.
         mask: (H, W) 0..1; what it hides is not seen.
-        max_angle: As of `EncodeOptions`.
 
     Returns:
         (n, C) float32 values, which may overshoot the photograph's range, and (n,) uint8
@@ -102,13 +99,8 @@ def texture_maps(
 
     Args:
         atlas: Of the mesh that is seen at all times.
-        cameras: Of the observations.
         observations: Each is decoded once, from several threads.
-        channels: Of a photograph.
-        max_angle: As of `EncodeOptions`.
         made: The maps in order, where something else makes them (`maps_on_workers`).
-        work: Folder for the scratch file.
-        progress: Reports the maps that are made.
     """
     total = len(observations)
     with (

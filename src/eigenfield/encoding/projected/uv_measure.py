@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.progress import Progress
-from eigenfield.encoding.projected.atlas import Atlas
+from eigenfield.core.spread import spread_indices
+from eigenfield.encoding.atlas import Atlas
 from eigenfield.encoding.projected.eigen import eigen_textures, weights_of
 from eigenfield.encoding.projected.mean import Mean
 from eigenfield.encoding.projected.project import TextureMaps
@@ -36,7 +37,6 @@ def measure_map(
     Args:
         pictures: (H, W, C), put together with more and more textures.
         mean: (H, W, C), which fills what is not seen (equation 2), in both pictures.
-        atlas: The atlas of n chart texels.
         values: (n, C) of the map.
         seen: (n,) where the map has values.
 
@@ -71,15 +71,11 @@ def smallest_count(
 
     Args:
         maps: Of No observations.
-        mean: Of the maps.
         average: (H, W, C), the mean without holes, as the file will keep it.
         vectors: (No, No - 1) of `eigenvectors`.
-        target: The SSIM to reach.
-        work: Folder for a scratch file.
-        progress: Reports each pass.
     """
     most, everyone = maps.count - 1, list(range(maps.count))
-    sample = np.unique(np.linspace(0, most, min(UV_SAMPLE_OBSERVATIONS, maps.count)).round().astype(int)).tolist()
+    sample = spread_indices(maps.count, UV_SAMPLE_OBSERVATIONS)
     limit = min(8, most)
     while True:
         weights = weights_of(vectors, limit)

@@ -41,7 +41,6 @@ def with_residual(
         scene: As its file gives it back (`gltf.read_scene`), since the residual holds what coding has lost too.
         capture: What it was encoded from.
         quality: Of the video, 0 to 100 (`crf_of`).
-        progress: Reports each photograph.
 
     Raises:
         OptionError: `not-photographs` for a scene that is not R, G, B; as `check_residual`.

@@ -38,9 +38,6 @@ def with_differences(
         scene: With a residual, if one is wanted.
         cameras: Counted among all.
         wanted: False: all cameras without a residual.
-
-    Raises:
-        OptionError, FormatError: As `differences`.
     """
     left = dict.fromkeys(cameras)
     if wanted:
@@ -77,7 +74,6 @@ def corrected_picture(
     before and after.
 
     Args:
-        picture: As drawn.
         difference: (H, W, 3) of `difference_of`.
         background: That it was drawn with.
     """
@@ -97,7 +93,6 @@ def captured_pixels(job: RenderJob, index: int, difference: NDArray[np.float32])
     """`RenderJob.pixels` of a captured camera with its residual.
 
     Args:
-        job: How pictures are drawn.
         index: Of the camera, counted among all.
         difference: (H, W, 3) of `difference_of`.
 

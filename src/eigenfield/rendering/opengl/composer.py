@@ -77,7 +77,6 @@ class _Grid:
     Attributes:
         target: Texture of the sum.
         frame: Framebuffer of it.
-        parts: What is summed.
         places: Texture of where each texel lies on the surface, made when a view needs it.
     """
 
@@ -99,8 +98,6 @@ class Composer:
         """Put a scene's textures on the GPU.
 
         Args:
-            context: Of moderngl.
-            scene: The scene.
             mode: Of the weights that texels look up, one of `WEIGHT_MODES`.
 
         Raises:
@@ -128,11 +125,7 @@ class Composer:
         self.texture = self._whole.target
 
     def keep(self, made: Any) -> Any:
-        """Return an object of the GPU, which `release` will free.
-
-        Args:
-            made: The object.
-        """
+        """Return an object of the GPU, which `release` will free."""
         self._made.append(made)
         return made
 
@@ -146,7 +139,6 @@ class Composer:
         """Fill `texture`, unless it holds the same already.
 
         Args:
-            count: Number of eigen textures of each basis.
             weights: Of the whole view; None: each texel takes those of the place where its ray to `eye` meets the view
                 plane.
             eye: (3,) the camera's centre.
@@ -309,21 +301,12 @@ class Composer:
 
 
 def shader(name: str) -> str:
-    """A GLSL body, shared with the web viewer; its first lines say what stands before it.
-
-    Args:
-        name: Of the file in `shaders/`.
-    """
+    """A GLSL body of `shaders/`, shared with the web viewer; its first lines say what stands before it."""
     return (resources.files("eigenfield.rendering") / "shaders" / f"{name}.glsl").read_text(encoding="utf-8")
 
 
 def set_uniforms(program: Any, **values: ArrayLike) -> None:
-    """Write uniforms, whole numbers as int. Those that the compiler found unused are left out.
-
-    Args:
-        program: Of moderngl.
-        values: Of the uniforms.
-    """
+    """Write uniforms, whole numbers as int. Those that the compiler found unused are left out."""
     for name, value in values.items():
         if name in program:
             array = np.asarray(value)

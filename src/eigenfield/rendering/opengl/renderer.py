@@ -12,11 +12,10 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.proxy import Sheets
 from eigenfield.core.scene import Scene
-from eigenfield.rendering.checks import TEXTURE_FILTERS, check_filter, check_textures
 from eigenfield.rendering.opengl.composer import GLSL_HEAD, Composer, set_uniforms, shader
+from eigenfield.rendering.options import BLACK, TEXTURE_FILTERS, background_of, check_filter, check_textures
 from eigenfield.rendering.picture import Picture, colour_changes, mixed_colour
 from eigenfield.rendering.software.drawing import RENDER_ONE_SAMPLE_PX, make_surface, median_footprint
-from eigenfield.rendering.software.renderer import BLACK, background_of
 from eigenfield.rendering.weights import ViewWeights, view_weights
 
 OPENGL_VERSION = 330  # OpenGL 3.3: texture arrays, and GLSL that reads as WebGL2's does
@@ -65,7 +64,6 @@ class OpenGLRenderer:
         """Put a scene on the GPU.
 
         Args:
-            scene: The scene.
             filter: `bilinear` or `bicubic` (Catmull-Rom).
             weights: Mode of the weights that texels look up, one of `WEIGHT_MODES`.
             multisample: Samples of an edge pixel; 0: edges are not smoothed. Those of sheets never are.
@@ -129,12 +127,8 @@ class OpenGLRenderer:
         """A view, with values exact to 1 / 255.
 
         Args:
-            camera: The camera.
-            weights: As of `Renderer.draw`. Default: each point of the surface takes those of the place where its ray to
+            weights: What is blended. Default: each point of the surface takes those of the place where its ray to
                 the camera meets the view plane, which suits a camera anywhere; on the plane both are the same.
-            background: As of `Renderer.draw`.
-            textures: As of `Renderer.draw`.
-            colour: As of `Renderer.draw`.
 
         Raises:
             OptionError: `textures`, `background`.
@@ -158,12 +152,6 @@ class OpenGLRenderer:
         """Draw R, G, B times coverage, and coverage, into a framebuffer, bottom row first.
 
         It stays on the GPU until the next call overwrites it. It has 8 bits, or halves if there are sheets.
-
-        Args:
-            camera: As of `draw`.
-            weights: As of `draw`.
-            textures: As of `draw`.
-            colour: As of `draw`.
 
         Raises:
             OptionError: `textures`.

@@ -39,7 +39,6 @@ class Part:
     Attributes:
         channels: Its own among the K of all planes.
         size: (rows, columns) of the grid.
-        tiled: The textures.
         weights: (No, n) float64 for each basis.
         number: (tile rows, tile columns) each tile's index in `tiled`; -1: the tile is left out.
         upsampler: Makes it as fine as the atlas; None where it is.
@@ -57,12 +56,7 @@ class Part:
     reached: NDArray[np.bool_]
 
     def omega(self, view: ViewWeights, count: int | None) -> NDArray[np.float64]:
-        """(N,) weights of the components.
-
-        Args:
-            view: What is blended.
-            count: Components of each basis from here on have the weight 0; None: none of them.
-        """
+        """(N,) weights of the components; those of each basis from `count` on are 0, and None means none of them."""
         each = [view.blend(weights) for weights in self.weights]
         return np.concatenate([np.where(np.arange(len(w)) < (len(w) if count is None else count), w, 0) for w in each])
 
@@ -76,8 +70,6 @@ class Composite:
         number: (tile rows, tile columns) each tile's index in `base`; -1: the tile is left out.
         base: (tiles, D, TILE_AREA) float32, what is drawn without eigen textures.
         matrix: (D, K) float32 from the planes' channels to the texture's.
-        parts: What is summed.
-        opacity: As of `compose_tiles`.
         plain: Whether the scene is one plane of one size: its part holds the mean, and nothing is joined.
     """
 
@@ -94,7 +86,6 @@ def make_composite(scene: Scene, used: NDArray[np.bool_], opacity: NDArray[np.fl
     """Lay out a scene's textures.
 
     Args:
-        scene: The scene.
         used: (tile rows, tile columns) the tiles of the atlas that are ever drawn.
         opacity: (tiles, TILE_AREA) of sheets. Default: zeros.
     """
@@ -129,8 +120,6 @@ def compose_scene(
     """Equation 8 for some tiles.
 
     Args:
-        composite: The scene's textures.
-        view: What is blended.
         count: Number of eigen textures of each basis; None: all.
         needed: (tile rows, tile columns) the tiles wanted; those that `composite` lacks are left out.
         buffers: Of `make_buffers`, overwritten.
@@ -163,11 +152,7 @@ def compose_scene(
 
 
 def make_buffers(composite: Composite) -> list[NDArray[np.float32]]:
-    """Memory for the sums of the parts.
-
-    Args:
-        composite: The scene's textures.
-    """
+    """Memory for the sums of the parts."""
     if composite.plain:
         return []
     return [make_image(part.size, part.channels.stop - part.channels.start) for part in composite.parts]

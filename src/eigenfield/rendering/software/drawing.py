@@ -75,13 +75,7 @@ class Surface:
 
 
 def make_surface(mesh: Mesh, height: int, width: int) -> Surface:
-    """Prepare a mesh.
-
-    Args:
-        mesh: With UVs.
-        height: H, of its textures.
-        width: W, of its textures.
-    """
+    """Prepare a mesh with UVs."""
     assert mesh.uv is not None, "a mesh without UVs cannot be textured"
     texels = mesh.uv.astype(np.float64) * (width, height) - 0.5
     last = np.array([width - 1, height - 1])
@@ -107,32 +101,15 @@ def sparse_zeros(shape: tuple[int, ...], dtype: type[np.float32] | type[np.int32
     """Zeros whose pages take no memory until they are written.
 
     NumPy asks Linux for huge pages, many of which would be taken by a few values.
-
-    Args:
-        shape: Of the array.
-        dtype: Of its numbers.
     """
     return np.frombuffer(mmap.mmap(-1, max(1, 4 * math.prod(shape))), dtype, math.prod(shape)).reshape(shape)
 
 
 class Scratch:
-    """Memory in which a thread finds a band's edge pixels.
-
-    Attributes:
-        coordinates: (2, RASTER_BAND_ROWS + 2, W) scratch of `find_edge_pixels`.
-        marks: Of `mark_rims`.
-        places: Of `find_edge_pixels`.
-        starts: Of `find_edge_pixels`.
-        sums: Of `find_edge_pixels`.
-        samples: Of `draw_samples`.
-    """
+    """Memory in which a thread finds a band's edge pixels: arguments of `edge_kernels`."""
 
     def __init__(self, width: int) -> None:
-        """Make room for a band.
-
-        Args:
-            width: W, of the picture.
-        """
+        """Make room for a band."""
         blocks = -(-width // edge_kernels.BLOCK_PX)
         self.coordinates = np.empty((2, RASTER_BAND_ROWS + 2, width), np.float32)
         self.marks = np.empty((RASTER_BAND_ROWS, blocks * edge_kernels.BLOCK_PX), np.bool_)
@@ -147,30 +124,18 @@ class Framebuffer:
 
     Attributes:
         size: (H, W) of the picture.
-        sampling: Where it is sampled.
         edges: (m, 3, 3) edge functions of the triangles.
         bounds: (m, 4) their rows and columns.
         pixels: (n, 2) the vertices in the picture.
-        inverse_depth: (H k, W k + LANE_PX), of `draw_texels`.
-        column_of: Likewise.
-        row_of: Likewise.
-        spans: (H, 2), of `keep_multisampled`.
-        multisampled: Likewise.
-        subsamples: Likewise.
+        inverse_depth, column_of, row_of: (H k, W k + LANE_PX), of `draw_texels`.
+        spans, multisampled, subsamples: Of `keep_multisampled`.
         scratch: Memory of threads that have none to do.
         seen: (m,) uint8 the triangles in view.
         needed: (tile rows, tile columns) uint8 the tiles that these read.
     """
 
     def __init__(self, surface: Surface, height: int, width: int, sampling: Sampling) -> None:
-        """Make room for a picture.
-
-        Args:
-            surface: What is drawn.
-            height: H.
-            width: W.
-            sampling: Where it is sampled.
-        """
+        """Make room for a picture."""
         count, k = len(surface.faces), sampling.side
         self.size, self.sampling = (height, width), sampling
         self.edges = np.empty((count, 3, 3))
@@ -186,26 +151,13 @@ class Framebuffer:
         self.needed = np.empty(surface.used.shape, np.uint8)
 
     def fits(self, height: int, width: int, sampling: Sampling) -> bool:
-        """Whether such a picture can be drawn in it.
-
-        Args:
-            height: Of the picture.
-            width: Of the picture.
-            sampling: Where it is sampled.
-        """
+        """Whether such a picture can be drawn in it."""
         mine = self.sampling
         return self.size == (height, width) and mine.side == sampling.side and mine.offsets is sampling.offsets
 
 
 def rasterise_surface(surface: Surface, camera: Camera, sampling: Sampling, frame: Framebuffer) -> None:
-    """Find where each sample lands in the atlas, and which tiles are needed.
-
-    Args:
-        surface: What is drawn.
-        camera: The camera.
-        sampling: Where the picture is sampled.
-        frame: Of the camera's size and this sampling, written.
-    """
+    """Find where each sample lands in the atlas, and which tiles are needed, in a frame of the camera's size."""
     k, offsets = sampling.side, sampling.offsets
     size, reach = (camera.width * k, camera.height * k), float(np.abs(offsets).max())
     corners = (camera.resize(*size) if k > 1 else camera).homogeneous(surface.vertices)
@@ -247,30 +199,26 @@ def shade(
     layers: NDArray[np.float32],
     filter: str,
     background: NDArray[np.float32],
-    dtype: type[np.uint8] | type[np.float32] = np.float32,
-) -> tuple[NDArray[Any], NDArray[np.float32]]:
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Filter the texture at each sample.
 
     Args:
-        surface: What is drawn.
         frame: As `rasterise_surface` leaves it.
         layers: (L, tiles, TILE_AREA, 4) the texture.
         filter: `bilinear` or `bicubic`.
         background: (C,) colour of what is not covered.
-        dtype: Of the picture's numbers; of uint8 they are times 255, rounded half to even and clipped.
 
     Returns:
         (H, W, C) the picture, and (H, W) the part of each pixel's samples that show the surface.
     """
     height, width = surface.size
-    picture, coverage = np.empty((*frame.size, len(background)), dtype), np.empty(frame.size, np.float32)
+    picture, coverage = np.empty((*frame.size, len(background)), np.float32), np.empty(frame.size, np.float32)
     behind = np.zeros((len(layers), LAYER_CHANNELS), np.float32)
     behind.reshape(-1)[: len(background)] = background
     parallel_map(
         lambda rows: shade_rows(
             frame.inverse_depth, frame.column_of, frame.row_of, frame.spans, frame.multisampled, frame.subsamples,
-            layers, width, height, filter == "bicubic", frame.sampling.side, behind, picture.dtype == np.uint8, *rows,
-            picture, coverage,
+            layers, width, height, filter == "bicubic", frame.sampling.side, behind, *rows, picture, coverage,
         ),
         pieces(picture.shape[0], RASTER_BAND_ROWS),
     )  # fmt: skip
@@ -284,8 +232,6 @@ def choose_sampling(surface: Surface, camera: Camera, asked: int | None = None, 
     the photographs or larger, `grid_side` samples in a smaller one.
 
     Args:
-        surface: What is drawn.
-        camera: The camera.
         asked: k of k x k samples a pixel. Default: see above.
         detail: Texels for one pixel of the photographs.
 
@@ -308,8 +254,6 @@ def grid_side(surface: Surface, camera: Camera, detail: float) -> int:
     already. Smaller pictures take as many samples as photograph pixels, at most `RENDER_MAX_SAMPLES` along a side.
 
     Args:
-        surface: What is drawn.
-        camera: The camera.
         detail: Texels for one pixel of the photographs.
     """
     footprint = median_footprint(surface, camera) / max(detail, 1.0)
@@ -317,21 +261,12 @@ def grid_side(surface: Surface, camera: Camera, detail: float) -> int:
 
 
 def smooth_edges(detail: float) -> Sampling:
-    """One sample a pixel, but four in edge pixels.
-
-    Args:
-        detail: Texels for one pixel of the photographs; 0: unknown.
-    """
+    """One sample a pixel, but four in edge pixels. `detail`: texels for one pixel of the photographs, 0 if unknown."""
     return Sampling(1, MULTISAMPLE_OFFSETS_PX, EDGE_LIMIT_PX * (detail or 1.0))
 
 
 def median_footprint(surface: Surface, camera: Camera) -> float:
-    """Texels a pixel along a side: the median over picture area of (some of) the triangles in view; 0: there are none.
-
-    Args:
-        surface: What is drawn.
-        camera: The camera.
-    """
+    """Texels a pixel along a side: the median over picture area of (some of) the triangles in view; 0 if none is."""
     some = surface.faces[:: max(1, len(surface.faces) // FOOTPRINT_TRIANGLES)]
     return _footprint(surface, camera, some) or _footprint(surface, camera, surface.faces)
 

@@ -43,8 +43,6 @@ def mark_near(near, start, step, first, end, mark):
 
     Args:
         near: (at least W,) 1 / depth of what is drawn.
-        start, step: Of the inverse depth.
-        first, end: Range of columns.
         mark: (at least W,), set.
     """
     for i in range(first, end):
@@ -59,10 +57,8 @@ def mark_rims(edges, bounds, listing, rims, near, first, last, slack, offsets, m
     nearer are left out: if the triangle is visible there, that surface ends within the pixel too.
 
     Args:
-        edges, bounds, listing, first, last, slack: As of `draw_texels`.
         rims: (m,) bool, triangles with an edge that they share with no other.
         near: `inverse_depth` of `draw_texels`.
-        offsets: As of `draw_samples`.
         marks: (at least last - first, at least W), written.
     """
     marks[: last - first] = False
@@ -104,7 +100,6 @@ def find_edge_pixels(near, column, row, first, last, limit, columns, rows, marks
 
     Args:
         near, column, row: (H, at least W) middles of pixels, of `draw_texels`.
-        first, last: Range of rows.
         limit: Texels by which the middle of an edge pixel deviates.
         columns, rows: (at least last - first + 2, W) scratch.
         marks: (at least last - first, BLOCK_PX * blocks) of `mark_rims`, changed.
@@ -155,11 +150,9 @@ def draw_samples(
     """As `draw_texels`, for the four samples of some pixels.
 
     Args:
-        faces, texels, edges, bounds, listing, first, last, slack: As of `draw_texels`.
         offsets: (4, 2) samples, in pixels right of and below a pixel's middle.
         places, starts, sums: Of `find_edge_pixels`.
         samples: (at least as many as places, 3, 4) 1 / depth and texel coordinates over depth, written.
-        seen: As of `draw_texels`.
     """
     samples[: starts[last - first - 1, starts.shape[1] - 1]] = 0
     flat, more = samples.reshape(-1), np.empty(3 * EDGE_SAMPLES)
@@ -231,10 +224,7 @@ def keep_multisampled(near, column, row, places, starts, samples, limit, first, 
     """List those of the pixels found in rows [first, last) that are multi-sampled.
 
     Args:
-        near, column, row, places, starts: As of `find_edge_pixels`.
         samples: Of `draw_samples`.
-        limit: As of `is_multisampled`.
-        first, last: Range of rows.
         spans: (H, 2) first and end of each row's pixels in the lists, written; a row has W places of its own.
         multisampled: (H W,) int32 columns of the multi-sampled pixels, row by row, written.
         subsamples: (3, 4 H W) their samples, written.

@@ -32,7 +32,6 @@ def draw_texels(
     Args:
         faces: (m, 3).
         texels: (n, 2) texel coordinates of the vertices.
-        edges, bounds, listing, first, last, slack: As of `draw_band`.
         inverse_depth: (H, W + LANE_PX) float32 1 / depth, 0 where nothing is drawn yet, written; the last columns are
             room for vectors.
         column_of, row_of: Likewise texel coordinates over depth, written.
@@ -260,39 +259,26 @@ def sample_line(taps, texture, near, rows, columns, down, across, per_pixel, bac
 
 
 @kernel(fastmath=True)
-def store_line(line, scale, eight_bit, out):
-    """Write a line.
-
-    Args:
-        line: Flat.
-        scale: Factor.
-        eight_bit: Whether values are rounded half to even and clipped to 8 bit.
-        out: Flat, written.
-    """
-    if eight_bit:
-        for i in range(line.shape[0]):
-            out[i] = np.int32(np.rint(min(max(line[i] * scale, np.float32(0)), np.float32(255))))
-    else:
-        for i in range(line.shape[0]):
-            out[i] = line[i] * scale
+def store_line(line, scale, out):
+    """Write a line, times a factor."""
+    for i in range(line.shape[0]):
+        out[i] = line[i] * scale
 
 
 @kernel(fastmath=True)
-def store_layer(line, layer, scale, eight_bit, out):
-    """Write a line's channels of one layer.
+def store_layer(line, layer, scale, out):
+    """Write a line's channels of one layer, times a factor.
 
     Args:
         line: (pixels * LAYER_CHANNELS,).
-        layer: Number of the layer.
-        scale, eight_bit: As of `store_line`.
         out: (pixels, C), written.
     """
     first, channels = layer * LAYER_CHANNELS, out.shape[1]
     if channels == LAYER_CHANNELS:
-        store_line(line, scale, eight_bit, out.reshape(-1))
+        store_line(line, scale, out.reshape(-1))
     else:
         for k in range(first, min(first + LAYER_CHANNELS, channels)):
-            store_line(line[k - first :: LAYER_CHANNELS], scale, eight_bit, out[:, k])
+            store_line(line[k - first :: LAYER_CHANNELS], scale, out[:, k])
 
 
 @kernel(fastmath=True)
@@ -323,13 +309,9 @@ def shade_line(near, u, v, per_pixel, texture, width, height, bicubic, backgroun
     Args:
         near: (n,) 1 / depth of the samples.
         u, v: (n,) texel coordinates over depth.
-        per_pixel: As of `sample_line`.
-        texture: As of `sample_line`.
         width, height: Of the atlas, in texels.
         bicubic: Whether the filter has 4 x 4 taps, not 2 x 2.
-        background: As of `sample_line`.
         room: Memory for `rows`, `columns`, `down` and `across` of `sample_line`.
-        line: As of `sample_line`.
     """
     rows, columns, down, across = room
     tile_row = -(-width // TILE_TEXELS) * TILE_AREA * 4
@@ -346,7 +328,7 @@ def shade_line(near, u, v, per_pixel, texture, width, height, bicubic, backgroun
 @kernel(fastmath=True)
 def shade_rows(
     inverse_depth, column_of, row_of, spans, multisampled, subsamples, layers, width, height, bicubic, samples,
-    background, eight_bit, first, last, picture, coverage,
+    background, first, last, picture, coverage,
 ):  # fmt: skip
     """Rows [first, last) of a picture: each pixel is the mean of its k x k samples, a multi-sampled one of its four.
 
@@ -358,9 +340,7 @@ def shade_rows(
         bicubic: Whether the filter has 4 x 4 taps, not 2 x 2.
         samples: k.
         background: (L, LAYER_CHANNELS) for samples that show nothing.
-        eight_bit: Whether values are multiplied by 255, rounded half to even and clipped.
-        first, last: Range of rows.
-        picture: (H, W, C) uint8 or float32, written.
+        picture: (H, W, C) float32, written.
         coverage: (H, W), written.
     """
     pixels = picture.shape[1]
@@ -371,7 +351,7 @@ def shade_rows(
     down, across = np.empty((4, most), np.float32), np.empty((4, most), np.float32)
     room = rows, columns, down, across
     line, edges = np.empty(pixels * LAYER_CHANNELS, np.float32), np.empty(pixels * LAYER_CHANNELS, np.float32)
-    scale = np.float32((255.0 if eight_bit else 1.0) / samples)
+    scale = np.float32(1.0 / samples)
     for row in range(first, last):
         sources = range(row * samples, row * samples + samples)
         one, end = spans[row]
@@ -393,4 +373,4 @@ def shade_rows(
                 for at in range(end - one):
                     for k in range(LAYER_CHANNELS):
                         line[multisampled[one + at] * LAYER_CHANNELS + k] = edges[at * LAYER_CHANNELS + k]
-            store_layer(line, layer, scale, eight_bit, picture[row])
+            store_layer(line, layer, scale, picture[row])

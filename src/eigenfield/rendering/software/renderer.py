@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections import deque
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,8 +18,8 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.scene import Scene
 from eigenfield.gltf import as_scene
-from eigenfield.rendering.checks import check_filter, check_textures
 from eigenfield.rendering.novel import novel_camera
+from eigenfield.rendering.options import BLACK, PICTURE_DEFAULTS, PictureOptions, background_of
 from eigenfield.rendering.picture import Picture, camera_colour, colour_changes, mixed_colour, undo_colour
 from eigenfield.rendering.software import drawing
 from eigenfield.rendering.software.composite import compose_scene, make_buffers, make_composite
@@ -27,7 +27,6 @@ from eigenfield.rendering.software.sheets import make_stack, set_up_sheets, shad
 from eigenfield.rendering.software.tiles import empty_layers, fill_layers, read_layers
 from eigenfield.rendering.weights import ViewWeights, camera_weights, view_weights
 
-BLACK = (0.0, 0.0, 0.0)
 RENDER_PLACE_TOLERANCE = 1e-6  # half widths of the array, by which a viewpoint may be rounded beyond its edge
 RENDER_SPARE_BUFFERS = 4  # sets kept for the next pictures
 
@@ -48,18 +47,10 @@ class Buffers:
 
 
 class Renderer:
-    """Draws a scene; prepared once, then callable from any number of threads at a time.
-
-    Attributes:
-        channels: Of a drawn picture.
-    """
+    """Draws a scene; prepared once, then callable from any number of threads at a time."""
 
     def __init__(self, scene: Scene) -> None:
-        """Prepare a scene.
-
-        Args:
-            scene: The scene.
-        """
+        """Prepare a scene."""
         self.channels = scene.appearance.channels
         self._changes = colour_changes(scene)
         self._surface = drawing.make_surface(scene.proxy.mesh, *scene.appearance.atlas)
@@ -76,113 +67,53 @@ class Renderer:
         self,
         camera: Camera,
         weights: ViewWeights,
+        options: PictureOptions = PICTURE_DEFAULTS,
         *,
-        filter: str = "bicubic",
-        background: Sequence[float] = BLACK,
-        textures: int | None = None,
-        samples: int | None = None,
         colour: NDArray[np.float32] | None = None,
+        **changes: Any,
     ) -> Picture:
         """A view.
 
         Args:
-            camera: The camera.
             weights: What is blended (`view_weights`, `camera_weights`).
-            filter: `bilinear` or `bicubic` (Catmull-Rom).
-            background: One number or C of them, 0..1.
-            textures: Number of eigen textures of each basis. Default: all.
-            samples: k of k x k samples a pixel, 1 to 16. Default: one, but four at edges (decision 24), or more in a
-                picture smaller than the photographs.
             colour: (2, 3) gain and offset of R, G, B that harmonised a captured camera (`camera_colour`): the surface
                 gets that camera's own exposure. Default: what the weights mix, or the scene's common exposure.
+            changes: Fields of `PictureOptions` by name, in place of those of `options`.
 
         Raises:
             OptionError: `filter`, `samples`, `textures`, `background`.
         """
-        image, coverage = self._draw(camera, weights, filter, background, textures, samples, np.float32)
-        colour = mixed_colour(self._changes, weights) if colour is None else colour
-        if colour is not None:
-            image = undo_colour(image, coverage, background_of(background, self.channels), colour)
-        return Picture(image, coverage)
-
-    def draw_uint8(
-        self,
-        camera: Camera,
-        weights: ViewWeights,
-        *,
-        filter: str = "bicubic",
-        background: Sequence[float] = BLACK,
-        textures: int | None = None,
-        samples: int | None = None,
-        colour: NDArray[np.float32] | None = None,
-    ) -> NDArray[np.uint8]:
-        """(H, W, C) uint8: `draw(...).to_uint8()`. Without colours no picture of floats is made.
-
-        Args:
-            camera: As of `draw`.
-            weights: As of `draw`.
-            filter: As of `draw`.
-            background: As of `draw`.
-            textures: As of `draw`.
-            samples: As of `draw`.
-            colour: As of `draw`.
-
-        Raises:
-            OptionError: As `draw`.
-        """
-        if colour is not None or self._changes is not None:
-            options: dict[str, Any] = {"background": background, "textures": textures, "samples": samples}
-            return self.draw(camera, weights, filter=filter, colour=colour, **options).to_uint8()
-        return self._draw(camera, weights, filter, background, textures, samples, np.uint8)[0]
-
-    def grid_side(self, camera: Camera) -> int:
-        """k of the k x k samples a pixel that are taken by default; 1: smooth edges.
-
-        Args:
-            camera: The camera.
-        """
-        return drawing.grid_side(self._surface, camera, self._detail)
-
-    def texture(self, weights: ViewWeights, textures: int | None = None) -> NDArray[np.float32]:
-        """(H, W, C): equation 8 for the tiles that the mesh uses; zero elsewhere.
-
-        Args:
-            weights: What is blended.
-            textures: Number of eigen textures of each basis. Default: all.
-        """
-        layers = empty_layers(*self._surface.size, self.channels)
-        compose_scene(self._composite, weights, textures, self._surface.used, make_buffers(self._composite), layers)
-        return read_layers(layers, *self._surface.size, self.channels)
-
-    def _draw(
-        self,
-        camera: Camera,
-        weights: ViewWeights,
-        filter: str,
-        background: Sequence[float] | float,
-        textures: int | None,
-        samples: int | None,
-        dtype: type[np.uint8] | type[np.float32],
-    ) -> tuple[NDArray[Any], NDArray[np.float32]]:
-        check_filter(filter)
-        check_textures(textures)
-        behind = background_of(background, self.channels)
+        options = replace(options, **changes)
+        behind, samples = background_of(options.background, self.channels), options.samples
         if samples is None and self._stack is not None:
             samples = self.grid_side(camera)  # no edge is smoothed
         sampling = drawing.choose_sampling(self._surface, camera, samples, self._detail)
         buffers = self._take(camera.height, camera.width, sampling)
-        frame, bands = buffers.frame, []
+        frame, layers, bands = buffers.frame, buffers.layers, []
         if self._stack is None:
             drawing.rasterise_surface(self._surface, camera, sampling, frame)
         else:
             bands = set_up_sheets(self._surface, camera, frame)
-        compose_scene(self._composite, weights, textures, frame.needed != 0, buffers.sums, buffers.layers)
+        compose_scene(self._composite, weights, options.textures, frame.needed != 0, buffers.sums, layers)
         if self._stack is None:
-            drawn = drawing.shade(self._surface, frame, buffers.layers, filter, behind, dtype)
+            image, coverage = drawing.shade(self._surface, frame, layers, options.filter, behind)
         else:
-            drawn = shade_sheets(self._surface, self._stack, bands, frame, buffers.layers, filter, behind, dtype)
+            image, coverage = shade_sheets(self._surface, self._stack, bands, frame, layers, options.filter, behind)
         self._spare.append(buffers)
-        return drawn
+        colour = mixed_colour(self._changes, weights) if colour is None else colour
+        if colour is not None:
+            image = undo_colour(image, coverage, behind, colour)
+        return Picture(image, coverage)
+
+    def grid_side(self, camera: Camera) -> int:
+        """k of the k x k samples a pixel that are taken by default; 1: smooth edges."""
+        return drawing.grid_side(self._surface, camera, self._detail)
+
+    def texture(self, weights: ViewWeights, textures: int | None = None) -> NDArray[np.float32]:
+        """(H, W, C): equation 8 for the tiles that the mesh uses, with so many eigen textures a basis; else zero."""
+        layers = empty_layers(*self._surface.size, self.channels)
+        compose_scene(self._composite, weights, textures, self._surface.used, make_buffers(self._composite), layers)
+        return read_layers(layers, *self._surface.size, self.channels)
 
     def _take(self, height: int, width: int, sampling: drawing.Sampling) -> Buffers:
         """Buffers for a picture of that size: spare ones, or new ones."""
@@ -197,66 +128,40 @@ class Renderer:
         return Buffers(frame, make_buffers(self._composite), empty_layers(*self._surface.size, self.channels))
 
 
-def background_of(background: Sequence[float] | float, channels: int) -> NDArray[np.float32]:
-    """(C,) float32; one number stands for all channels.
-
-    Args:
-        background: One number or C of them.
-        channels: C.
-
-    Raises:
-        OptionError: `background`: they are of another number, or not finite.
-    """
-    values = np.atleast_1d(np.asarray(background, np.float32))
-    if values.shape == (3,) and channels != 3 and not values.any():
-        values = values[:1]  # the default, for attributes that are no colours
-    if values.shape not in ((1,), (channels,)) or not np.isfinite(values).all():
-        remedy = f"give 1 or {channels} finite ones"
-        raise OptionError("background", f"the background has {values.size} values", remedy=remedy)
-    return np.ascontiguousarray(np.broadcast_to(values, (channels,)))
-
-
 def draw_texture(
     mesh: Mesh,
     texture: NDArray[np.float32],
     camera: Camera,
+    options: PictureOptions = PICTURE_DEFAULTS,
     *,
-    filter: str = "bicubic",
-    background: Sequence[float] = BLACK,
-    samples: int | None = None,
     detail: float = 1.0,
+    **changes: Any,
 ) -> Picture:
     """A view of one plain texture on a mesh: a camera's own texture map, or the mean.
 
     Args:
         mesh: With UVs.
         texture: (H, W, C) float32.
-        camera: The camera.
-        filter: As of `Renderer.draw`.
-        background: As of `Renderer.draw`.
-        samples: As of `Renderer.draw`.
-        detail: As of `choose_sampling`.
+        detail: Texels for one pixel of the photographs.
+        changes: Fields of `PictureOptions` by name, in place of those of `options`.
 
     Raises:
         OptionError: `filter`, `samples`, `background`.
     """
-    check_filter(filter)
+    options = replace(options, **changes)
     height, width, channels = texture.shape
     surface = drawing.make_surface(mesh, height, width)
-    sampling = drawing.choose_sampling(surface, camera, samples, detail)
+    sampling = drawing.choose_sampling(surface, camera, options.samples, detail)
     frame = drawing.Framebuffer(surface, camera.height, camera.width, sampling)
     drawing.rasterise_surface(surface, camera, sampling, frame)
     layers = empty_layers(height, width, channels)
     fill_layers(texture, layers)
-    return Picture(*drawing.shade(surface, frame, layers, filter, background_of(background, channels)))
+    behind = background_of(options.background, channels)
+    return Picture(*drawing.shade(surface, frame, layers, options.filter, behind))
 
 
 def renderer_of(scene: Scene) -> Renderer:
-    """The scene's renderer, made on the first call and kept as long as the scene.
-
-    Args:
-        scene: The scene.
-    """
+    """The scene's renderer, made on the first call and kept as long as the scene."""
     return scene.derive("software renderer", lambda: Renderer(scene))
 
 
@@ -318,10 +223,6 @@ def viewpoint(
     """The camera and the view weights of a place, of a capture camera, or of the reference camera.
 
     Args:
-        scene: The scene.
-        at: As of `render`.
-        camera: As of `render`.
-        weights: As of `render`.
         time: As of `render`.
 
     Raises:
@@ -346,11 +247,6 @@ def viewpoint_colour(
 ) -> NDArray[np.float32] | None:
     """The `colour` of `Renderer.draw` for a view: that of `camera_colour` for a captured camera, None for a place.
 
-    Args:
-        scene: The scene.
-        at: As of `render`.
-        camera: As of `render`.
-
     Raises:
         OptionError: `unknown-camera`.
     """
@@ -363,7 +259,6 @@ def camera_index(scene: Scene, name: str) -> int:
     """The index of a camera.
 
     Args:
-        scene: The scene.
         name: Of the camera, with or without its ending.
 
     Raises:
@@ -376,7 +271,6 @@ def at_resolution(camera: Camera, resolution: tuple[int, int]) -> Camera:
     """The camera with another resolution.
 
     Args:
-        camera: The camera.
         resolution: (width, height), 1 to 16384 each.
 
     Raises:

@@ -38,8 +38,6 @@ class TileUpsampler:
     """From a coarse atlas to the tiles of a fine one.
 
     Attributes:
-        rows: Along the rows.
-        columns: Along the columns.
         first: (tile columns,) int64 for each column of tiles the first coarse column that it reads, before clamping.
         count: (tile columns,) int64 how many it reads.
         matrix: (tile columns, most, TILE_TEXELS) float32 how much of each its texels take.
@@ -72,12 +70,7 @@ def make_tile_upsampler(fine: tuple[int, int], coarse: tuple[int, int]) -> TileU
 
 
 def make_taps(fine: int, coarse: int) -> Taps:
-    """Fine texel i lies at x = (i + 0.5) / fine * coarse - 0.5 among the coarse ones; Catmull-Rom (a = -1/2).
-
-    Args:
-        fine: Number of fine texels.
-        coarse: Number of coarse texels.
-    """
+    """Fine texel i lies at x = (i + 0.5) / fine * coarse - 0.5 among the coarse ones; Catmull-Rom (a = -1/2)."""
     x = (np.arange(fine) + 0.5) * (coarse / fine) - 0.5
     base = np.floor(x)
     weight = catmull_rom(x - base)
@@ -89,36 +82,21 @@ def make_taps(fine: int, coarse: int) -> Taps:
 
 
 def tap_matrix(fine: int, coarse: int) -> csr_array:
-    """(fine, coarse) float32: the taps along an axis, to enlarge whole pictures.
-
-    Args:
-        fine: As of `make_taps`.
-        coarse: Likewise.
-    """
+    """(fine, coarse) float32: the taps along an axis, to enlarge whole pictures."""
     taps = make_taps(fine, coarse)
     at = taps.at.ravel(), np.arange(0, taps.at.size + 1, taps.at.shape[1])
     return csr_array((taps.weight.ravel(), *at), (fine, coarse))
 
 
 def catmull_rom(f: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(n, 4) weights of the taps at distances 1 + f, f, 1 - f, 2 - f.
-
-    Args:
-        f: (n,) in 0..1.
-    """
+    """(n, 4) weights of the taps at distances 1 + f, f, 1 - f, 2 - f, for f (n,) in 0..1."""
     f2, f3 = f * f, f * f * f
     taps = [2 * f2 - f3 - f, 3 * f3 - 5 * f2 + 2, 4 * f2 - 3 * f3 + f, f3 - f2]
     return np.stack(taps, axis=1) / 2
 
 
 def tiles_reading(read: NDArray[np.bool_], rows: Taps, columns: Taps) -> NDArray[np.bool_]:
-    """(tile rows, tile columns) bool, the fine tiles that read any of some coarse ones.
-
-    Args:
-        read: (tile rows, tile columns) the coarse tiles.
-        rows: Along the rows.
-        columns: Along the columns.
-    """
+    """(tile rows, tile columns) bool, the fine tiles that read any of these (tile rows, tile columns) coarse ones."""
     sums = np.zeros((read.shape[0] + 1, read.shape[1] + 1), np.int64)
     sums[1:, 1:] = read.cumsum(axis=0).cumsum(axis=1)
     band = sums[rows.last + 1] - sums[rows.first]
@@ -130,8 +108,6 @@ def tiles_read(needed: NDArray[np.bool_], rows: Taps, columns: Taps, shape: tupl
 
     Args:
         needed: (tile rows, tile columns) the fine tiles.
-        rows: Along the rows.
-        columns: Along the columns.
         shape: (tile rows, tile columns) of the coarse atlas.
     """
     found = np.zeros(shape, np.bool_)

@@ -41,7 +41,6 @@ def compose_image(tiles, places, codes, groups, coefficients, offset, tile_colum
     """Equation 8 without the mean on some tiles of an image.
 
     Args:
-        tiles, places, codes, groups, coefficients, offset: As of `compose_tiles`.
         tile_columns: Width of the image, in tiles.
         rectangle: (4,) [top, bottom) x [left, right) outside of which the image is zero.
         image: (C, H, W), written.
@@ -111,7 +110,6 @@ def add_tiles(tiles, tile_columns, image, channel, total):
 
     Args:
         tiles: (n,) their numbers.
-        tile_columns: Width of the image, in tiles.
         image: (C, H, W).
         channel: First of the channels of `total`.
         total: (n, at least channel + C, TILE_AREA), added to.
@@ -136,7 +134,6 @@ def join_tiles(tiles, total, matrix, base, numbers, opacity, layers):
         matrix: (D, K).
         base: (stored tiles, D, TILE_AREA).
         numbers: (n,) which of the stored tiles.
-        opacity: As of `compose_tiles`.
         layers: (L, tiles of the atlas, TILE_AREA, 4), written.
     """
     values = np.zeros((LAYER_CHANNELS, TILE_AREA), np.float32)

@@ -31,7 +31,6 @@ def shows_any(near, through, first, last):
     Args:
         near: (n,) 1 / depth; 0: the sheet is not there.
         through: (n,) what sheets in front let through, 0..1.
-        first, last: Range of samples.
     """
     most = np.float32(0)
     for i in range(first, last):
@@ -41,12 +40,7 @@ def shows_any(near, through, first, last):
 
 @kernel()
 def find_run(near, through, first, last):
-    """The next samples of a line that have to be looked at, as [start, end); empty at the end of the line.
-
-    Args:
-        near, through: As of `shows_any`.
-        first, last: Range of samples.
-    """
+    """The next samples of a line that have to be looked at, as [start, end); empty at the end of the line."""
     start = first
     while start < last and not shows_any(near, through, start, min(start + RUN_SAMPLES, last)):
         start += RUN_SAMPLES
@@ -115,7 +109,6 @@ def add_samples(values, samples, factor, line):
     Args:
         values: (pixels * samples,).
         samples: Of a row that belong to one pixel.
-        factor: float32.
         line: (pixels,), added to.
     """
     if samples == 1:
@@ -162,7 +155,6 @@ def draw_sheet(
     Args:
         faces, texels, edges, bounds, listing, first, last, slack: As of `draw_texels`, with the sheet's triangles.
         middles: `inverse_depth`, `column_of` and `row_of` of `draw_texels`, overwritten in these rows.
-        seen: As of `draw_texels`.
         layers: (L, tiles, TILE_AREA, 4) the texture; `OPACITY_LANE` of the first is the opacity.
         size: (H, W) of the texture, in texels.
         bicubic: Whether the filter has 4 x 4 taps, not 2 x 2.
@@ -213,7 +205,7 @@ def draw_sheet(
 @kernel(fastmath=True)
 def draw_sheets(
     faces, texels, edges, bounds, listing, starts, first, last, slack, middles, seen, layers, size, bicubic, samples,
-    background, eight_bit, picture, coverage,
+    background, picture, coverage,
 ):  # fmt: skip
     """Rows [first, last) of a picture of sheets: each pixel is the mean of its k x k samples.
 
@@ -223,12 +215,9 @@ def draw_sheets(
     Args:
         faces, texels, edges, bounds, listing, slack, middles, seen: As of `draw_sheet`, with the triangles of all.
         starts: (sheets + 1,) first triangle of each sheet, back to front, and their number.
-        first, last: Range of rows of pixels.
-        layers, size, bicubic: As of `draw_sheet`.
         samples: k.
         background: (L, LAYER_CHANNELS) what is behind all sheets.
-        eight_bit: Whether values are multiplied by 255, rounded half to even and clipped.
-        picture: (H, W, C) uint8 or float32, written.
+        picture: (H, W, C) float32, written.
         coverage: (H, W), written.
     """
     pixels, depth = picture.shape[1], layers.shape[0]
@@ -247,7 +236,6 @@ def draw_sheets(
         )  # fmt: skip
     line = np.empty(pixels * LAYER_CHANNELS, np.float32)
     share = np.float32(1) / np.float32(samples * samples)
-    scale = share * np.float32(255 if eight_bit else 1)
     for row in range(first, last):
         sources = range((row - first) * samples, (row - first + 1) * samples)
         covered = coverage[row]
@@ -258,4 +246,4 @@ def draw_sheets(
             line[:] = 0
             for source in sources:
                 add_background(through[source], samples, background[layer], sums[layer, source], line)
-            store_layer(line, layer, scale, eight_bit, picture[row])
+            store_layer(line, layer, share, picture[row])

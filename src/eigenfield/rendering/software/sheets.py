@@ -9,7 +9,6 @@ of rows is drawn sheet after sheet while it stays in the cache, and samples behi
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import cv2
 import numpy as np
@@ -45,12 +44,7 @@ class Stack:
 
 
 def make_stack(sheets: Sheets, size: tuple[int, int]) -> Stack:
-    """Bring sheets' opacity to the atlas's size.
-
-    Args:
-        sheets: The sheets.
-        size: (H, W) of the atlas, in texels.
-    """
+    """Bring sheets' opacity to the size (H, W) of the atlas, in texels."""
     starts = np.concatenate([[0], np.cumsum(sheets.faces)]).astype(np.int32)
     shape = tile_shape(size)
     tiles = np.zeros((shape[0] * shape[1], 1, TILE_AREA), np.float32)
@@ -66,8 +60,6 @@ def set_up_sheets(surface: Surface, camera: Camera, frame: Framebuffer) -> list[
     """Project the triangles of all sheets, and find the tiles that those in view read.
 
     Args:
-        surface: All sheets.
-        camera: The camera.
         frame: Of the camera's size and sampling, written.
 
     Returns:
@@ -91,24 +83,17 @@ def shade_sheets(
     layers: NDArray[np.float32],
     filter: str,
     background: NDArray[np.float32],
-    dtype: type[np.uint8] | type[np.float32],
-) -> tuple[NDArray[Any], NDArray[np.float32]]:
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Composite sheets.
 
     Args:
-        surface: All sheets.
-        stack: How they are stacked.
-        bands: Of `set_up_sheets`.
         frame: As `set_up_sheets` leaves it; overwritten.
         layers: (L, tiles, TILE_AREA, 4) the texture; `OPACITY_LANE` is `stack.opacity`.
-        filter: As of `shade`.
-        background: As of `shade`.
-        dtype: As of `shade`.
 
     Returns:
         (H, W, C) the picture, and (H, W) how much of each pixel the sheets cover: 1 less the product of 1 - A.
     """
-    picture, coverage = np.empty((*frame.size, len(background)), dtype), np.empty(frame.size, np.float32)
+    picture, coverage = np.empty((*frame.size, len(background)), np.float32), np.empty(frame.size, np.float32)
     behind = np.zeros((len(layers), LAYER_CHANNELS), np.float32)
     behind.reshape(-1)[: len(background)] = background
     middles = frame.inverse_depth, frame.column_of, frame.row_of
@@ -118,7 +103,7 @@ def shade_sheets(
         draw_sheets(
             surface.faces, surface.texels, frame.edges, frame.bounds, listing, stack.starts, *rows,
             RASTER_EDGE_SLACK_FRACTION, middles, frame.seen, layers, surface.size, filter == "bicubic",
-            frame.sampling.side, behind, picture.dtype == np.uint8, picture, coverage,
+            frame.sampling.side, behind, picture, coverage,
         )  # fmt: skip
 
     parallel_map(draw, bands)

@@ -52,9 +52,7 @@ def tile(mean: NDArray[np.float32] | None, bases: Sequence[Basis], used: NDArray
 
     Args:
         mean: (H, W, C); None: zeros.
-        bases: The bases.
         used: (tile rows, tile columns) the tiles of the grid that are laid out.
-        channels: C.
     """
     places, none = np.flatnonzero(used), np.zeros((0, channels))
     textures = [texture for basis in bases for texture in basis.textures]
@@ -74,11 +72,7 @@ def tile(mean: NDArray[np.float32] | None, bases: Sequence[Basis], used: NDArray
 
 
 def tile_shape(size: tuple[int, int]) -> tuple[int, int]:
-    """(tile rows, tile columns) of an atlas.
-
-    Args:
-        size: (rows, columns) of its texels.
-    """
+    """(tile rows, tile columns) of an atlas of (rows, columns) texels."""
     return -(-size[0] // TILE_TEXELS), -(-size[1] // TILE_TEXELS)
 
 
@@ -93,12 +87,7 @@ def _in_grid(texture: NDArray[Any], size: tuple[int, int], corner: tuple[int, in
 
 
 def cut_tiles(texture: NDArray[Any], channels: int) -> NDArray[Any]:
-    """(tiles, C, TILE_AREA) of a texture, row by row; its border is repeated beyond it.
-
-    Args:
-        texture: (H, W, C).
-        channels: C.
-    """
+    """(tiles, C, TILE_AREA) of a texture (H, W, C), row by row; its border is repeated beyond it."""
     height, width, _ = texture.shape
     padded = np.pad(texture, ((0, -height % TILE_TEXELS), (0, -width % TILE_TEXELS), (0, 0)), mode="edge")
     rows, columns = tile_shape((height, width))
@@ -107,24 +96,13 @@ def cut_tiles(texture: NDArray[Any], channels: int) -> NDArray[Any]:
 
 
 def empty_layers(height: int, width: int, channels: int) -> NDArray[np.float32]:
-    """(L, tiles, TILE_AREA, 4) zeros for a texture as the shading reads it (`kernels`).
-
-    Args:
-        height: Of the atlas, in texels.
-        width: Of the atlas, in texels.
-        channels: Of the texture.
-    """
+    """(L, tiles, TILE_AREA, 4) zeros for a texture as the shading reads it (`kernels`)."""
     rows, columns = tile_shape((height, width))
     return np.zeros((-(-channels // LAYER_CHANNELS), rows * columns, TILE_AREA, 4), np.float32)
 
 
 def fill_layers(texture: NDArray[np.float32], layers: NDArray[np.float32]) -> None:
-    """Lay out a plain texture.
-
-    Args:
-        texture: (H, W, C).
-        layers: Of `empty_layers`, written.
-    """
+    """Lay out a plain texture (H, W, C) in `empty_layers`."""
     channels = texture.shape[2]
     tiled = cut_tiles(texture, channels)
     for k in range(channels):
@@ -132,14 +110,7 @@ def fill_layers(texture: NDArray[np.float32], layers: NDArray[np.float32]) -> No
 
 
 def read_layers(layers: NDArray[np.float32], height: int, width: int, channels: int) -> NDArray[np.float32]:
-    """The texture (H, W, C) in layers.
-
-    Args:
-        layers: (L, tiles, TILE_AREA, 4).
-        height: H.
-        width: W.
-        channels: C.
-    """
+    """The texture (H, W, C) in layers, (L, tiles, TILE_AREA, 4)."""
     rows, columns = tile_shape((height, width))
     tiled = layers[..., :LAYER_CHANNELS].reshape(len(layers), rows, columns, TILE_TEXELS, TILE_TEXELS, LAYER_CHANNELS)
     whole = tiled.transpose(1, 3, 2, 4, 0, 5).reshape(rows * TILE_TEXELS, columns * TILE_TEXELS, -1)
@@ -151,7 +122,6 @@ def make_image(size: tuple[int, int], channels: int, texture: NDArray[np.float32
 
     Args:
         size: (rows, columns) of its texels.
-        channels: C.
         texture: (*size, C) to be laid out. Default: zeros.
     """
     rows, columns = tile_shape(size)
@@ -165,12 +135,7 @@ def make_image(size: tuple[int, int], channels: int, texture: NDArray[np.float32
 
 
 def repeat_edge(image: NDArray[np.float32], size: tuple[int, int]) -> None:
-    """Fill the border of an image.
-
-    Args:
-        image: Of `make_image`, changed.
-        size: (rows, columns) of its texels.
-    """
+    """Fill the border of an image of `make_image`."""
     first, (bottom, right) = IMAGE_BORDER_TEXELS, (IMAGE_BORDER_TEXELS + size[0], IMAGE_BORDER_TEXELS + size[1])
     image[:, :, :first] = image[:, :, first, None]
     image[:, :, right : right + first] = image[:, :, right - 1, None]
@@ -188,10 +153,8 @@ def compose(
     """Equation 8: the mean plus the weighted sum of the first components.
 
     Args:
-        plane: Mean and components.
         omega: (n,) weights of the first n components.
         tiles: (t,) the tiles to be summed, indices into `plane.places`.
-        opacity: As of `compose_tiles`.
         layers: (L, tiles of the atlas, TILE_AREA, 4), written.
     """
     numbers = _numbers(plane, omega)
@@ -214,7 +177,6 @@ def compose_without_mean(
     """Equation 8 without the mean.
 
     Args:
-        plane: Components.
         omega: (n,) weights of the first n components.
         tiles: (t,) the tiles to be summed, indices into `plane.places`.
         size: (rows, columns) of the image's texels.

@@ -14,7 +14,7 @@ from eigenfield.core.appearance import Basis
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
 from eigenfield.imaging.png import png_bytes
-from eigenfield.rendering.checks import check_textures
+from eigenfield.rendering.options import check_textures
 from eigenfield.rendering.render_jobs import refuse_attributes
 from eigenfield.rendering.software.kernels import TILE_TEXELS
 from eigenfield.rendering.software.resample import tap_matrix

@@ -21,7 +21,7 @@ from eigenfield.gltf.axes import capture_to_gltf
 from eigenfield.gltf.write_geometry import NODE_DIGITS, write_nodes
 from eigenfield.imaging.png import png_bytes
 from eigenfield.rendering import mean_texture
-from eigenfield.rendering.checks import check_textures
+from eigenfield.rendering.options import check_textures
 from eigenfield.rendering.weights import encoded_places
 from eigenfield.runtime.files import atomic_files, refuse_existing
 from eigenfield.runtime.parallel import parallel_stream

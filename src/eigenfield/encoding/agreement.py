@@ -10,9 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from eigenfield.encoding.projected.mean import Mean
-from eigenfield.encoding.projected.project import TextureMaps
-
 log = logging.getLogger("eigenfield.encode")
 
 # An outlier is farther from the mean texture than most, by all of these:
@@ -23,32 +20,6 @@ NORMAL_DEVIATION_RATIO = 1.4826  # standard deviation of a normal distribution o
 AGREEMENT_MIN_CONTRAST_RATIO = 0.5  # of the mean texture to the photographs; real captures: 0.95, three of noise: 0.33
 AGREEMENT_NEIGHBOURS = 24  # nearest observations: errors that they share, as vignetting, are no fault
 AGREEMENT_MIN_PIXELS = 50  # or texels, for an observation to be judged
-
-
-def disagreement_of(
-    maps: TextureMaps,
-    mean: Mean,
-    gram: NDArray[np.float64],
-    names: Sequence[str],
-    places: NDArray[np.float64],
-    aligned: bool = False,
-) -> NDArray[np.float64]:
-    """`warn_of_disagreement` of texture maps.
-
-    Args:
-        maps: Of No observations.
-        mean: Of the maps.
-        gram: (No, No) of `gram_matrix`; its diagonal holds the squared deviations from the mean.
-        names: Of each observation's camera.
-        places: (No, 2) of each observation's camera on the view plane.
-        aligned: Whether the maps were aligned, which may have failed for one.
-    """
-    seen = np.array([int(np.count_nonzero(row)) for row in maps.seen])
-    squares = np.diag(gram)
-    count, values = mean.count.astype(np.float64)[:, None], mean.values.astype(np.float64)
-    centre = (count * values).sum(axis=0) / max(float(count.sum()), 1.0)
-    total = float((count * (values - centre) ** 2).sum()) + float(squares.sum())
-    return warn_of_disagreement(squares, seen, maps.channels, total, names, places, aligned)
 
 
 def warn_of_disagreement(
@@ -66,9 +37,7 @@ def warn_of_disagreement(
     Args:
         squares: (No,) squared deviations from the mean, of values 0..1.
         seen: (No,) texels or pixels that these are over.
-        channels: Of each texel or pixel.
         total: Squared deviations of all observations from one colour.
-        names: Of each observation's camera.
         places: (No, 2) of each observation's camera on the view plane.
         aligned: Whether texture maps were aligned, which may have failed for one.
 

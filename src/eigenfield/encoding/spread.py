@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from eigenfield.encoding.projected.atlas import Atlas
+from eigenfield.encoding.atlas import Atlas
 from eigenfield.imaging.sampling import halve_picture
 
 GUTTER_TEXELS = 4.0  # round each chart that repeat the nearest chart texel: bicubic taps reach 2
@@ -44,12 +44,7 @@ class Spreader:
 
 
 def make_spreader(atlas: Atlas, seen: NDArray[np.bool_]) -> Spreader:
-    """The spreader of an atlas.
-
-    Args:
-        atlas: The atlas of n chart texels.
-        seen: (n,) bool, chart texels that at least one observation shows.
-    """
+    """The spreader of an atlas; seen: (n,) bool, chart texels that at least one observation shows."""
     shape = (atlas.height, atlas.width)
     chart = np.zeros(shape, bool)
     chart.reshape(-1)[atlas.texel] = True

@@ -5,19 +5,27 @@ A file that is to reach a size, a PSNR or an SSIM gets a second fit where anothe
 
 from __future__ import annotations
 
+import contextlib
 import logging
+import os
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.observations import CalibratedObservations
 from eigenfield.core.progress import Progress
+from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import Scene
-from eigenfield.encoding.between import has_scores
+from eigenfield.core.spread import spread_indices
 from eigenfield.encoding.fitted.encoder import FittedEncoder, open_encoder
 from eigenfield.encoding.fitted.observations import FitData
-from eigenfield.encoding.options import resolved_value
+from eigenfield.encoding.left_out import has_scores
+from eigenfield.encoding.options import EncodeOptions, resolved_value
 from eigenfield.encoding.plan import EncodePlan
+from eigenfield.encoding.prepare import plan_at_quality, plan_encoding
 from eigenfield.encoding.target import TARGET_FIRST_QUALITY, Attempt, Target, search_quality
 from eigenfield.gltf import encode_scene
 from eigenfield.imaging.metrics import psnr, ssim
@@ -40,9 +48,7 @@ def encode_fitted(plan: EncodePlan, work: Path | None = None, progress: Progress
     Its planes are coded already: `save` keeps their bytes.
 
     Args:
-        plan: Cameras, mesh and atlas, and the options.
         work: Folder for scratch files of up to 17 bytes a pixel.
-        progress: Reports each stage.
 
     Raises:
         CaptureError: A photograph cannot be read, or no camera sees the proxy (`nothing-seen`).
@@ -62,40 +68,37 @@ def reach_target(plan: EncodePlan, target: Target, work: Path | None, progress: 
 
     Args:
         plan: Made for the preset's quality.
-        target: A size, a PSNR or an SSIM.
-        work: Folder for scratch files.
-        progress: Reports each stage.
     """
     with open_encoder(plan, work, progress) as encoder:
-        found = _search(target, encoder)
-        scene = encoder.with_figures(found.result)
-        other = _other_plan(plan, found, work, progress)
+        attempt = _search(target, encoder)
+        scene = encoder.with_figures(attempt.result)
+        other = _other_plan(plan, attempt, work, progress)
         if other is not None:
-            found = _with_psnr(target, found, encoder.data)
+            attempt = _with_psnr(target, attempt, encoder.data)
     if other is not None:
         words = "fitted again for quality %d: mesh %d bytes instead of %d, atlas %dx%d instead of %dx%d"
-        log.info(words, found.quality, other.mesh_bytes, plan.mesh_bytes, *other.atlas, *plan.atlas)
+        log.info(words, attempt.quality, other.mesh_bytes, plan.mesh_bytes, *other.atlas, *plan.atlas)
         with open_encoder(other, work, progress, warn=False) as encoder:
-            second = _with_psnr(target, _search(target, encoder, found.quality), encoder.data)
-            sizes = second.size, second.measured, found.size, found.measured
-            if target.merit(second) > target.merit(found):
+            second = _with_psnr(target, _search(target, encoder, attempt.quality), encoder.data)
+            sizes = second.size, second.measured, attempt.size, attempt.measured
+            if target.merit(second) > target.merit(attempt):
                 log.info("kept: %d bytes, %.4f instead of %d, %.4f", *sizes)
-                found, scene = second, encoder.with_figures(second.result)
+                attempt, scene = second, encoder.with_figures(second.result)
             else:
                 log.info("not kept: %d bytes, %.4f, and the first has %d, %.4f", *sizes)
-    if not target.is_met(found):
-        _warn_of_miss(target, found)
+    if not target.is_met(attempt):
+        _warn_of_miss(target, attempt)
     return scene
 
 
 def _other_plan(
-    plan: EncodePlan, found: Attempt[Scene], work: Path | None, progress: Progress | None
+    plan: EncodePlan, attempt: Attempt[Scene], work: Path | None, progress: Progress | None
 ) -> EncodePlan | None:
     """The plan for the quality that was found, where its mesh or atlas differs enough for a second fit; else None."""
-    if abs(found.quality - resolved_value(plan.options.quality)) <= REFIT_MAX_NEAR_QUALITIES:
+    if abs(attempt.quality - resolved_value(plan.options.quality)) <= REFIT_MAX_NEAR_QUALITIES:
         return None
-    other = plan.at_quality(found.quality, work, progress)
-    mesh = abs(other.mesh_bytes - plan.mesh_bytes) >= REFIT_MIN_MESH_RATIO * found.size
+    other = plan_at_quality(plan, attempt.quality, work, progress)
+    mesh = abs(other.mesh_bytes - plan.mesh_bytes) >= REFIT_MIN_MESH_RATIO * attempt.size
     atlas = abs(other.atlas[0] / plan.atlas[0] - 1) >= REFIT_MIN_ATLAS_RATIO
     return other if mesh or atlas else None
 
@@ -113,15 +116,14 @@ def _search(target: Target, encoder: FittedEncoder, first: int = TARGET_FIRST_QU
     return search_quality(target, code, first)
 
 
-def _with_psnr(target: Target, found: Attempt[Scene], data: FitData) -> Attempt[Scene]:
+def _with_psnr(target: Target, attempt: Attempt[Scene], data: FitData) -> Attempt[Scene]:
     """What was found, measured too where the target is a size: for `Target.merit`."""
-    return found if target.size is None else replace(found, measured=_mean_measure(target, found.result, data))
+    return attempt if target.size is None else replace(attempt, measured=_mean_measure(target, attempt.result, data))
 
 
 def _mean_measure(target: Target, scene: Scene, data: FitData) -> float:
     """The mean PSNR or SSIM over covered pixels of some observations, drawn as they are."""
-    renderer, observations, count = Renderer(scene), data.observations, len(data)
-    cameras = scene.rig.encoded_cameras
+    renderer, observations, cameras = Renderer(scene), data.observations, scene.rig.encoded_cameras
 
     def of_observation(index: int) -> float | None:
         picture = renderer.draw(cameras[observations.camera_of(index)], ViewWeights.one(index))
@@ -131,8 +133,8 @@ def _mean_measure(target: Target, scene: Scene, data: FitData) -> float:
         measure = psnr if target.ssim is None else ssim
         return measure(picture.image, observations.codes_of(index), covered)
 
-    some = np.unique(np.linspace(0, count - 1, min(count, TARGET_MAX_OBSERVATIONS)).round().astype(int))
-    values = [value for value in parallel_stream(of_observation, some.tolist()) if value is not None]
+    some = spread_indices(len(data), TARGET_MAX_OBSERVATIONS)
+    values = [value for value in parallel_stream(of_observation, some) if value is not None]
     return float(np.mean(values)) if values else 0.0
 
 
@@ -144,3 +146,22 @@ def _warn_of_miss(target: Target, nearest: Attempt[Scene]) -> None:
     else:
         words = "%g cannot be reached: the finest file has %.4g; take more textures, or a higher density"
         log.warning(words, target.goal, nearest.measured)
+
+
+@contextlib.contextmanager
+def open_fitted(
+    capture: CalibratedObservations,
+    proxy: str | os.PathLike[str] | Mesh | Proxy,
+    options: EncodeOptions,
+    work: str | os.PathLike[str] | None = None,
+    progress: Progress | None = None,
+) -> Iterator[FittedEncoder]:
+    """Fit once, to code at many qualities.
+
+    Arguments and errors are those of `encode`, which makes the same of `fit="photographs"` at each quality. Mesh and
+    atlas are those of the options' quality.
+    """
+    folder = None if work is None else Path(work)
+    plan = plan_encoding(capture, proxy, replace(options, fit="photographs"), folder, progress)
+    with open_encoder(plan, folder, progress) as encoder:
+        yield encoder

@@ -24,8 +24,6 @@ class Atlas:
 
     Attributes:
         mesh: With UVs.
-        width: In texels.
-        height: In texels.
         texel: (n,) int64, row * width + column.
         face: (n,) int32.
         position: (n, 3) float32, world.
@@ -109,8 +107,6 @@ def atlas_side(mesh: Mesh, camera: Camera, density: float, pixels: int | None = 
     """Side of a square atlas whose density in `camera` is at least `density`, at most ATLAS_SIDE_CAP_TEXELS.
 
     Args:
-        mesh: With UVs.
-        camera: The reference camera.
         density: Atlas texels per photograph pixel along one axis.
         pixels: Of all photographs together. The atlas has at most ATLAS_MAX_TEXELS_PER_PIXEL times as many texels:
             where most of the surface is seen by one camera alone, as behind a ring of them, more would hold nothing.
