@@ -29,7 +29,6 @@ class MeasureJob:
     """What a worker needs to measure cameras.
 
     Attributes:
-        scene: Its file.
         capture: Photographs with cameras: their paths, no pixels.
         settings: Of `start_session`.
     """
@@ -46,13 +45,9 @@ def measure_on(
 
     Args:
         workers: Of `open_executor`. They see the folder of the scene, and the photographs.
-        job: What they need.
-        indices: Of the scene's cameras.
-        progress: Called for each group of cameras.
 
     Raises:
         OutputError: `folder-not-shared`; the scene's folder cannot be written.
-        CaptureError, OptionError, FormatError: As `evaluate`.
     """
     folder = job.scene.absolute().parent
     refuse_unshared(workers, folder)
@@ -69,12 +64,7 @@ def measure_on(
 
 
 def measure_group(job: Path, indices: Sequence[int]) -> dict[int, CameraScores]:
-    """The scores of a few cameras, on a worker.
-
-    Args:
-        job: File of a `MeasureJob`.
-        indices: Of the scene's cameras.
-    """
+    """The scores of a few cameras, on a worker, by the file of a `MeasureJob`."""
     session = _session(job)
     views = with_differences(session.scene, indices, session.measures_residual)
     return dict(parallel_stream(lambda view: (view[0], session.measure(*view)), views))
