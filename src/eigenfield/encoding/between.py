@@ -97,10 +97,10 @@ def measure_scene(
 
 
 def has_scores(plan: EncodePlan) -> bool:
-    """Whether a scene of a plan gets scores: a still one of five cameras or more, whose pictures are not tiny."""
-    cameras, still = plan.views.rig.encoded_cameras, len(plan.views.capture.times) == 1
+    """Whether a scene of a plan gets scores: one of five cameras or more, whose pictures are not tiny."""
+    cameras = plan.views.rig.encoded_cameras
     large = min(min(camera.width, camera.height) for camera in cameras) >= BETWEEN_MIN_SIDE_PIXELS
-    return still and large and len(cameras) >= BETWEEN_MIN_CAMERAS
+    return large and len(cameras) >= BETWEEN_MIN_CAMERAS
 
 
 def is_sparse(plan: EncodePlan) -> bool:
@@ -204,7 +204,7 @@ def _weights_of_others(scene: Scene, camera: int) -> ViewWeights:
     rig = scene.rig
     others = np.flatnonzero(rig.encoded != camera)
     row = interpolation(rig, others.tolist(), [int(np.searchsorted(rig.encoded, camera))])[0]
-    return ViewWeights(scene.rows(rig.encoded[others[row != 0]], 0), row[row != 0])
+    return ViewWeights(scene.rows(rig.encoded[others[row != 0]]), row[row != 0])
 
 
 def _drawn_by_others(
