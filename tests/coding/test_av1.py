@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from eigenfield.coding.pictures.av1_units import SEQUENCE_HEADER, units
 from eigenfield.coding.video.av1 import decode_video, encode_video
 from eigenfield.core.errors import FormatError
 from eigenfield.encoding.residual.colour import double_size, to_difference, to_planes
@@ -22,7 +23,7 @@ def flat(count, value=512, size=SMALL):
 def test_a_video_of_no_difference_is_none_and_costs_nothing():
     video = encode_video(flat(12), SMALL, 40, 2)
     assert len(video) < 500
-    frames = list(decode_video(video, SMALL, 12, "here"))
+    frames = list(decode_video(video, SMALL, 12, "here", "residual"))
     assert len(frames) == 12
     assert all((plane == 512).all() for planes in frames for plane in planes)
 
@@ -41,12 +42,29 @@ def test_a_video_has_the_same_bytes_each_time():
 def test_videos_that_are_not_what_was_said(size, count, cut):
     video = encode_video(flat(6, 700), SMALL, 40, 2)
     with pytest.raises(FormatError) as caught:
-        list(decode_video(video if cut is None else video[:cut], size, count, "here"))
+        list(decode_video(video if cut is None else video[:cut], size, count, "here", "residual"))
     assert caught.value.code == "residual-damaged" and caught.value.where == "here"
 
 
+def test_an_error_names_what_the_video_is_of():
+    video = encode_video(flat(2), SMALL, 40, 8)
+    with pytest.raises(FormatError, match="the film cannot be decoded: ends after 2 of 3") as caught:
+        list(decode_video(video, SMALL, 3, "here", "film"))
+    assert caught.value.code == "film-damaged"
+
+
+@pytest.mark.parametrize(("interval", "keys"), [(None, 1), (4, 3), (12, 1)])
+def test_key_frames_come_at_their_interval(interval, keys):
+    """Each begins with a sequence header, from which a decoder can begin."""
+    video = encode_video(flat(12), SMALL, 40, 8, interval)
+    headers = [start for kind, start, _, _ in units(video) if kind == SEQUENCE_HEADER]
+    assert len(headers) == keys
+    rest = list(decode_video(video[headers[-1] :], SMALL, 12 if keys == 1 else 4, "here", "residual"))
+    assert all((plane == 512).all() for planes in rest for plane in planes)
+
+
 def test_no_more_frames_are_decoded_than_were_said():
-    assert len(list(decode_video(encode_video(flat(6), SMALL, 40, 2), SMALL, 2, "here"))) == 2
+    assert len(list(decode_video(encode_video(flat(6), SMALL, 40, 2), SMALL, 2, "here", "residual"))) == 2
 
 
 def test_planes_and_back():

@@ -12,7 +12,7 @@ from eigenfield.coding import limits
 from eigenfield.coding.arrays import cameras, triangles, weights
 from eigenfield.coding.codecs import CODECS, PictureCodec
 from eigenfield.coding.mesh import coder
-from eigenfield.coding.pictures.stacking import PICTURES, SAVE_CODECS, codec_of
+from eigenfield.coding.stacking import PICTURES, SAVE_CODECS, codec_of
 from eigenfield.core.errors import FormatError
 from eigenfield.gltf.streams import FEATURES, LATEST, PLACES, minor
 from support.coded_meshes import ball
@@ -46,8 +46,7 @@ def test_the_schema_lists_the_codecs_of_each_kind():
     listed = {}
     for name, definition in SCHEMA["$defs"].items():
         if name.endswith("Codec"):
-            kind = {"video": "residual"}.get(name.removesuffix("Codec"), name.removesuffix("Codec"))
-            listed |= dict.fromkeys(definition["enum"], kind)
+            listed |= dict.fromkeys(definition["enum"], name.removesuffix("Codec"))
     assert listed == {name: codec.kind for name, codec in CODECS.items()}
 
 

@@ -40,10 +40,9 @@ def exposed(pictures):
     return [(picture - o) / g for picture, g, o in zip(pictures, GAINS, OFFSETS, strict=True)]
 
 
-def plan_of(photographs, harmonise=None, times=(0.0,)):
+def plan_of(photographs, harmonise=None):
     rig = make_rig([f"{index}" for index in range(9)], CAMERAS, np.zeros(9, bool), 4)
     views = SimpleNamespace(
-        capture=SimpleNamespace(times=times),
         rig=rig,
         observations=InMemory([p.astype(np.float32) for p in photographs]),
     )
@@ -71,7 +70,6 @@ def test_what_is_asked_for_is_done(pictures, exposed):
     assert fit_exposures(plan_of(exposed, "none")) is None
     np.testing.assert_allclose(fit_exposures(plan_of(pictures, "affine"))[:, 0], 1, atol=0.003)
     assert not fit_exposures(plan_of(exposed, "gain"))[:, 1].any()
-    assert fit_exposures(plan_of(exposed, "gain", times=(0.0, 1.0))) is None
 
 
 def test_a_fit_is_to_the_common_exposure(exposed):

@@ -43,7 +43,7 @@ def capture(scene):
     for index, camera in enumerate(scene.rig.cameras):
         drawn = Renderer(scene).draw(camera, camera_weights(scene, index))
         pictures.append((drawn.image / np.maximum(drawn.coverage, 0.25)[..., None]).clip(0, 1).astype(np.float32))
-    return CalibratedInMemory(InMemory(pictures), scene.rig.cameras, (0.0,))
+    return CalibratedInMemory(InMemory(pictures), scene.rig.cameras)
 
 
 def plain_model(side: int = SIDE) -> PlaneModel:

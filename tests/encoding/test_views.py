@@ -21,7 +21,7 @@ MIDDLE = 4  # of nine cameras
 def photographed(cameras):
     texture = np.clip(0.5 + 0.4 * smooth_pictures(1, 96, 96, 3, seed=3)[0], 0, 1).astype(np.float32)
     pictures = [draw_texture(bumpy_square(12), texture, camera, samples=2).image for camera in cameras]
-    return CalibratedInMemory(InMemory(pictures), cameras, (0.0,))
+    return CalibratedInMemory(InMemory(pictures), cameras)
 
 
 def chosen(cameras, vertices=None, **options):
@@ -72,6 +72,6 @@ def test_sheets_have_such_a_reference_too():
     cameras = list(scene.rig.cameras)
     cameras[MIDDLE] = replace(cameras[MIDDLE], K=TELE @ cameras[MIDDLE].K)
     pictures = [Renderer(scene).draw(camera, ViewWeights()).image for camera in cameras]
-    capture = CalibratedInMemory(InMemory(pictures), cameras, (0.0,))
+    capture = CalibratedInMemory(InMemory(pictures), cameras)
     made = ef.encode(capture, scene.proxy, textures=1, preset="small")
     assert made.proxy.sheets is not None and made.rig.reference != MIDDLE

@@ -16,7 +16,7 @@ from PIL import Image
 
 from eigenfield import gltf as scene_format
 from eigenfield.coding import limits
-from eigenfield.coding.pictures import stacking as pictures
+from eigenfield.coding import stacking as pictures
 from eigenfield.core.errors import FormatError
 from support import glb_surgery
 from support.glb_surgery import CODECS, outcome

@@ -19,11 +19,12 @@ from eigenfield.core.scene import Scene
 from eigenfield.encoding.geometry.coded import CAMERA_STEP_PX, DEPTH_ERROR_PX, MESH_STEP_PX, coded_cameras, coded_mesh
 from eigenfield.gltf import parts, save, validate
 from eigenfield.gltf.coarse import coarse_mesh
-from eigenfield.gltf.container import parse_glb, read_file
+from eigenfield.gltf.container import parse_glb
 from eigenfield.gltf.document import Document
 from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.layout import read_layout
 from eigenfield.gltf.packed import unpack
+from eigenfield.gltf.source import read_file
 from eigenfield.proxy.atlas.unwrap import unwrap_mesh
 from eigenfield.proxy.relief.find_lattice import _column_spacing, relief_lattice, relief_proxy
 from support.coded_scenes import coded

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eigenfield as ef
-from eigenfield.coding.pictures import stacking
+from eigenfield.coding import stacking
 from eigenfield.coding.pictures.pictures_10bit import (
     MAX_CODE,
     MIDDLE_CODE,
@@ -137,7 +137,8 @@ def test_a_file_of_planes_regions_and_stacks(tmp_path):
             assert (a.grid, a.corner) == (b.grid, b.corner)
             np.testing.assert_array_equal(a.textures, b.textures)
             np.testing.assert_allclose(a.values(), b.values(), atol=1e-7)
-    from eigenfield.gltf.container import parse_glb, read_file
+    from eigenfield.gltf.container import parse_glb
+    from eigenfield.gltf.source import read_file
 
     extension = parse_glb(read_file(path)).json["extensions"]["EIGENFIELD_eigen_textures"]
     assert extension["version"] == "1.8" and extension["needs"] == ["av1-10bit-2", "regions", "stacks", "toRGB"]
@@ -154,7 +155,8 @@ def test_stacks_of_eight_bits_are_read():
 
 
 def changed(path, change):
-    from eigenfield.gltf.container import parse_glb, read_file
+    from eigenfield.gltf.container import parse_glb
+    from eigenfield.gltf.source import read_file
 
     glb = parse_glb(read_file(path))
     change(glb.json["extensions"]["EIGENFIELD_eigen_textures"])

@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 
 from eigenfield import gltf as scene_format
 from eigenfield.coding import limits
+from eigenfield.coding import stacking as pictures
 from eigenfield.coding.pictures import quantise
-from eigenfield.coding.pictures import stacking as pictures
 from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.errors import FormatError, OptionError, OutputError
 from eigenfield.core.mesh import Mesh

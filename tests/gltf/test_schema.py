@@ -44,11 +44,6 @@ def files(good):
     made["sheets"] = encode_scene(soft_scene(), codec="webp")
     made |= {name: encode_scene(coded_scene(name)) for name, codec in CODECS.items() if codec.kind == "weights"}
     made["precise"] = encode_scene(precise_scene())
-    still = tiny_scene(3, 2, cameras=3)
-    plane = still.appearance.planes[0]
-    twice = replace(plane.bases[0], weights=np.concatenate([plane.bases[0].weights] * 2))
-    moving = replace(still.appearance, planes=(replace(plane, bases=(twice,)),))
-    made["times"] = encode_scene(replace(still, times=(0.0, 0.5), appearance=moving))
     made["residual"] = encode_scene(replace(coded, residual=video))
     return made
 

@@ -17,7 +17,7 @@ from PIL import Image
 
 from eigenfield.coding import limits
 from eigenfield.coding.pictures.pictures_8bit import PREVIEW_MAX_SIDE_TEXELS
-from eigenfield.coding.pictures.stacking import encode
+from eigenfield.coding.stacking import encode
 from eigenfield.core.errors import FormatError, OutputError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.proxy import Sheets

@@ -97,7 +97,7 @@ def test_noise_of_all_codes_and_dark_pictures():
 
 
 def test_bands_of_rows_leave_no_seam():
-    photograph, drawn = pair(2 * module.FLIP_TUNING.band_rows + 37, 33)
+    photograph, drawn = pair(2 * module.FLIP_BAND_ROWS + 37, 33)
     np.testing.assert_allclose(flip_map(drawn, photograph), authors_map(drawn, photograph), atol=CLOSE)
 
 

@@ -14,7 +14,7 @@ import eigenfield as ef
 from eigenfield.capture import open_capture
 from eigenfield.coding.codecs import encoder
 from eigenfield.coding.pictures.pictures_10bit import svt_coder
-from eigenfield.coding.pictures.stacking import encode
+from eigenfield.coding.stacking import encode
 from eigenfield.core.payloads import Affine, Payload, Payloads, PicturePayload, mean_key
 from eigenfield.core.scene import Scene
 from eigenfield.encoding.fitted.code_planes import code_basis, code_opacity, coded_plane, with_weights

@@ -11,7 +11,7 @@ import numpy as np
 from PIL import Image
 
 from eigenfield.coding.pictures.quantise import mean_codes, mean_values
-from eigenfield.coding.pictures.stacking import encode, stacked_picture
+from eigenfield.coding.stacking import encode, stacked_picture
 from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh

@@ -13,7 +13,7 @@ import numpy as np
 
 from eigenfield import gltf as scene_format
 from eigenfield.coding import limits
-from eigenfield.coding.pictures import stacking as pictures
+from eigenfield.coding import stacking as pictures
 from eigenfield.core.errors import FormatError
 from eigenfield.gltf.container import parse_glb
 from eigenfield.gltf.packed import unpack

@@ -49,12 +49,10 @@ class CalibratedInMemory:
     Attributes:
         observations: the photographs.
         cameras: of the rig.
-        times: seconds.
     """
 
     observations: InMemory
     cameras: Sequence[Camera]
-    times: Sequence[float]
 
     def __len__(self) -> int:
         return len(self.observations)

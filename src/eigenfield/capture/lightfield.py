@@ -125,11 +125,6 @@ class LightField(StillCapture):
         return [(camera.width, camera.height) for camera in self.cameras]
 
     @property
-    def times(self) -> tuple[float, ...]:
-        """The one instant of a still capture."""
-        return (0.0,)
-
-    @property
     def lenses(self) -> tuple[tuple[str, tuple[float, ...]] | None, ...]:
         """Model and coefficients of the lens that is removed from each photograph; None where there is none."""
         lenses = (view.lens for view in self.views)

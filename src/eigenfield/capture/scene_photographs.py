@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
@@ -40,18 +39,18 @@ def with_scene_cameras(scene: Scene, photographs: Capture) -> LightField:
         CaptureError: `no-photographs`: no name fits.
         OptionError: `settings-unknown`.
     """
-    exposure = _recorded_exposure(scene)
-    if exposure is not None:
-        photographs = photographs.with_exposure(exposure)
+    record = scene.provenance
+    if record.exposure is not None:
+        photographs = photographs.with_exposure(record.exposure)
     if photographs.light_field is not None:
         return photographs.light_field
     index = {photograph: camera for camera, photograph in _same_names(scene, photographs.names).items()}
     chosen, numbers = photographs.subset(sorted(index)), [index[photograph] for photograph in sorted(index)]
     if not len(chosen):
         raise _no_photographs(scene, photographs.root, photographs.names)
-    lenses, stored = _recorded_lenses(scene), scene.settings.get("asStored")
+    lenses = _recorded_lenses(scene)
     cameras = [scene.rig.cameras[number] for number in numbers]
-    marked = [isinstance(stored, list) and number in stored for number in numbers]  # a file may hold anything here
+    marked = [number in record.as_stored for number in numbers]
     shots = tuple(_orient(*known) for known in zip(chosen.shots, cameras, marked, strict=True))
     return replace(chosen, shots=shots).with_cameras(cameras, [lenses[number] for number in numbers])
 
@@ -64,30 +63,17 @@ def _orient(shot: Shot, camera: Camera, stored: bool) -> Shot:
     return shot
 
 
-def _recorded_exposure(scene: Scene) -> float | None:
-    tone = scene.settings.get("tone")
-    found = tone.get("exposure") if isinstance(tone, dict) else None
-    return float(found) if isinstance(found, int | float) and 0 < found < math.inf else None
-
-
 def _recorded_lenses(scene: Scene) -> list[Lens | None]:
-    recorded = scene.settings.get("lenses")
-    if recorded is None:
+    recorded = scene.provenance.lenses
+    if recorded == ():
         return [None] * len(scene.rig.names)
-    try:
-        lenses = [
-            None if lens is None else Lens(lens[0], tuple(float(value) for value in lens[1])) for lens in recorded
-        ]
-        known = all(lens is None or lens.model in SCENE_LENS_MODELS for lens in lenses)
-    except (TypeError, ValueError, IndexError, KeyError) as error:  # a file may hold anything here
-        raise OptionError(
-            "settings-unknown", "the scene's record of its lenses cannot be read", remedy="name the --calibration"
-        ) from error
-    if len(lenses) != len(scene.rig.names) or not known:
-        raise OptionError(
-            "settings-unknown", "the scene records lenses that do not fit its cameras", remedy="name the --calibration"
-        )
-    return lenses
+    remedy = "name the --calibration"
+    if recorded is None:
+        raise OptionError("settings-unknown", "the scene's record of its lenses cannot be read", remedy=remedy)
+    known = all(lens is None or lens[0] in SCENE_LENS_MODELS for lens in recorded)
+    if len(recorded) != len(scene.rig.names) or not known:
+        raise OptionError("settings-unknown", "the scene records lenses that do not fit its cameras", remedy=remedy)
+    return [None if lens is None else Lens(*lens) for lens in recorded]
 
 
 def _no_photographs(scene: Scene, root: Path, names: Sequence[str]) -> CaptureError:

@@ -13,9 +13,11 @@ docs/coding.md describes its bytes. What a codec's functions take and return is 
     weights    (weights, step, grid)                    (data, where) -> weights (Ne, N)
                -> bytes, the weights that are decoded
     picture    (codes, quality or crf) -> bytes          (data, colour, where) -> codes (H, W) or (H, W, 3)
-    residual   (frames, size, crf, preset) -> bytes      (data, size, count, where) -> frames
+    video      (frames, size, crf, preset,               (data, size, count, where, name)
+               key_interval) -> bytes                    -> frames, one after the other
 
-`where` is the place that a FormatError names. `codes` are those of a whole picture (`pictures.stacking`).
+`where` is the place that a FormatError names, and `name` what it says is damaged. `codes` are those of a whole picture
+(`stacking`).
 """
 
 from __future__ import annotations
@@ -41,7 +43,6 @@ class Codec:
     """How streams of one kind are coded.
 
     Attributes:
-        kind: What it codes.
         encode: From values to bytes; None: it is read only.
         decode: From bytes to values. Raises FormatError.
         needs: The feature that a file with such a stream names in `needs`; None: readers that do not know it can go
@@ -65,8 +66,6 @@ class PictureCodec(Codec):
     Attributes:
         size: (data, where) -> width, height, from the header alone.
         mime: The `mimeType` of its files.
-        bits: Of a code.
-        lossless: Whether every code comes back.
     """
 
     size: Callable[[memoryview, str], tuple[int, int]]
@@ -135,5 +134,5 @@ CODECS: dict[str, Codec] = {
         "picture", ten.encode_10bit, ten.decode_10bit, "av1-10bit-2", "1.8", PICTURE_LIMITS,
         frame_size, AV1, ten.PICTURE_BITS,
     ),
-    "video-1": Codec("residual", encode_video, decode_video, None, "1.3", ("MAX_TEXELS", "MAX_VIDEO")),
+    "video-1": Codec("video", encode_video, decode_video, None, "1.3", ("MAX_TEXELS", "MAX_VIDEO")),
 }  # fmt: skip

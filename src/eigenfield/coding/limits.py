@@ -22,7 +22,6 @@ MAX_COMPONENTS = 4_096  # eigen textures, of all planes together
 MAX_DECODED = 8 * 2**30  # bytes of all means (float32) and textures (uint8, of 10 bits uint16)
 
 MAX_CAMERAS = 100_000
-MAX_TIMES = 100_000
 MAX_CAMERA_SIDE = 65_535  # pixels
 MAX_CAMERA_PIXELS = 2**29
 MAX_NAME = 1_024  # characters of a camera's name

@@ -112,12 +112,7 @@ def _name_arguments(error: EigenfieldError, signature: inspect.Signature) -> Non
 
 
 def matches(value: Any, hint: Any) -> bool:
-    """Whether a value is of an annotation's type; what is none of the types that options have is taken.
-
-    Args:
-        value: Any value.
-        hint: An evaluated annotation.
-    """
+    """Whether a value is of an evaluated annotation's type; what is none of the types that options have is taken."""
     origin, inner = get_origin(hint) or hint, get_args(hint)
     if origin in (Union, types.UnionType):
         return any(matches(value, each) for each in inner)
@@ -135,11 +130,7 @@ def matches(value: Any, hint: Any) -> bool:
 
 
 def in_words(hint: Any) -> str:
-    """What an annotation takes, for a message.
-
-    Args:
-        hint: An evaluated annotation.
-    """
+    """What an evaluated annotation takes, for a message."""
     origin, inner = get_origin(hint) or hint, get_args(hint)
     if origin in (Union, types.UnionType):
         is_path = any(get_origin(each) is os.PathLike for each in inner)
@@ -158,11 +149,7 @@ def _shown(value: object) -> str:
 
 
 def kind_in_words(value: object) -> str:
-    """The name of a value's type with its article, for a message.
-
-    Args:
-        value: Any value.
-    """
+    """The name of a value's type with its article, for a message."""
     return _with_article(type(value).__name__)
 
 

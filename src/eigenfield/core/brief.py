@@ -45,10 +45,6 @@ _brief = _Brief()
 
 
 def brief_repr(value: Any) -> str:
-    """A dataclass in one line, as its `__repr__`.
-
-    Args:
-        value: Its fields may hold arrays and sequences of any length.
-    """
+    """A dataclass in one line, as its `__repr__`."""
     shown = [f"{one.name}={_brief.repr(getattr(value, one.name))}" for one in fields(value) if one.repr]
     return f"{type(value).__name__}({', '.join(shown)})"

@@ -111,11 +111,7 @@ class Camera:
 
 
 def axis_angles(cameras: Sequence[Camera]) -> NDArray[np.float64]:
-    """(V,) degrees between each camera's optical axis and the mean of all; 180 where they have no mean.
-
-    Args:
-        cameras: V of them.
-    """
+    """(V,) degrees between each camera's optical axis and the mean of all; 180 where they have no mean."""
     axes = np.array([camera.R[2] for camera in cameras])
     mean = axes.mean(axis=0)
     length = float(np.linalg.norm(mean))

@@ -25,7 +25,6 @@ def named_camera(name: str, names: Sequence[str], option: str) -> int:
 
     Args:
         name: A photograph's name, with or without its ending.
-        names: Of all cameras.
         option: The error's `code`.
 
     Raises:

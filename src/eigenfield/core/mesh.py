@@ -28,11 +28,7 @@ class Mesh:
     __repr__ = brief_repr
 
     def part(self, faces: NDArray[np.bool_] | slice) -> Mesh:
-        """Some of its faces, with the vertices that they have.
-
-        Args:
-            faces: Which, as NumPy picks them.
-        """
+        """Some of its faces, as NumPy picks them, with the vertices that they have."""
         used, corners = np.unique(self.faces[faces], return_inverse=True)
         uv = None if self.uv is None else self.uv[used]
         return Mesh(self.vertices[used], corners.reshape(-1, 3).astype(np.int32), uv)

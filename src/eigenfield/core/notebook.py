@@ -20,13 +20,7 @@ def is_notebook() -> bool:
 
 
 def notebook_progress(stage: str, done: int, total: int) -> None:
-    """The `Progress` of work that was given none: one bar a stage in a notebook, nothing anywhere else.
-
-    Args:
-        stage: Name of the work.
-        done: Finished steps.
-        total: All steps.
-    """
+    """The `Progress` of work that was given none: one bar a stage in a notebook, nothing anywhere else."""
     if not is_notebook():
         return
     display = importlib.import_module("IPython.display")

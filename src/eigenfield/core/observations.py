@@ -54,7 +54,7 @@ class Observations(Protocol):
 
 
 class CalibratedObservations(Observations, Protocol):
-    """Observations whose cameras are known: a `LightField`, or photographs of a rig at several instants."""
+    """Observations whose cameras are known: a `LightField`, or photographs of a rig at one instant."""
 
     @property
     def names(self) -> Sequence[str]:
@@ -63,10 +63,6 @@ class CalibratedObservations(Observations, Protocol):
     @property
     def cameras(self) -> Sequence[Camera]:
         """(Nc,) the pinhole cameras of the photographs as they are decoded."""
-
-    @property
-    def times(self) -> Sequence[float]:
-        """(Nt,) the instants, in seconds."""
 
     @property
     def lenses(self) -> Sequence[tuple[str, Sequence[float]] | None]:
@@ -98,8 +94,6 @@ class _Selection:
     """Some of the observations of `whole`, whose cameras are renumbered.
 
     Attributes:
-        whole: All observations.
-        indices: Those selected.
         camera: From camera numbers of `whole` to those here.
     """
 
@@ -124,7 +118,6 @@ def select_cameras(observations: Observations, cameras: Sequence[int]) -> Observ
     """The observations of some cameras, which are counted in the order given.
 
     Args:
-        observations: Those to choose from.
         cameras: Numbers of cameras, each once.
 
     Returns:

@@ -109,12 +109,7 @@ class Payloads(Mapping[Key, tuple[Payload, ...]]):
 
 @dataclass(frozen=True, eq=False)
 class Coded(Generic[T]):
-    """A decoded value with its payloads.
-
-    Attributes:
-        value: The decoded value.
-        payloads: Under the keys of its parts.
-    """
+    """A decoded value with its payloads, under the keys of its parts."""
 
     value: T
     payloads: Payloads
@@ -156,13 +151,8 @@ def weights_key(weights: NDArray[np.float32]) -> Key:
 
 
 def preview_key(sources: Sequence[Key], to_rgb: NDArray[np.float32] | None, harmonised: bool) -> Key:
-    """The key of the picture for other viewers, which is made of the means and the opacity of sheets.
-
-    Args:
-        sources: Their keys.
-        to_rgb: The scene's.
-        harmonised: Whether the scene has `colours`.
-    """
+    """The key of the picture for other viewers: from those of the means and the opacity of sheets, the scene's
+    `to_rgb`, and whether it has `colours`."""
     digests = np.frombuffer(b"".join(digest for _, digest in sources), np.uint8)
     return _key("preview", digests, np.array([harmonised]), *(() if to_rgb is None else (to_rgb,)))
 
@@ -171,7 +161,6 @@ def payloads_of(basis: Basis, pictures: Sequence[PicturePayload], weights: Paylo
     """The payloads of a basis.
 
     Args:
-        basis: As it is decoded.
         pictures: Of its textures, by rank; none where it has no textures.
         weights: Its coded weights; None where they are not coded.
     """

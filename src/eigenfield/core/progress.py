@@ -23,7 +23,6 @@ def begin_step(progress: Progress | None, step: str) -> None:
 
     Args:
         progress: Told if it has a method `begin`, which a plain function has not.
-        step: Name of the step, one of `encoding.cost.STEPS`.
     """
     begin = getattr(progress, "begin", None)
     if begin is not None:
@@ -46,9 +45,6 @@ def track(items: Iterable[T], stage: str, total: int, progress: Progress | None)
     """Yield `items`, and report each one once the consumer is done with it.
 
     Args:
-        items: Those to yield.
-        stage: Name of the work.
-        total: Number of items.
         progress: Called before the first item and after each; None: not called.
     """
     if progress is not None:

@@ -24,11 +24,7 @@ _ADDRESS = re.compile(r"([a-z][a-z0-9+.-]+):[/\\]{1,2}(.*)", re.IGNORECASE | re.
 
 
 def recognise(head: bytes) -> str | None:
-    """What a file is that is often given by mistake, with its article; None for every other file.
-
-    Args:
-        head: Its first `HEAD_BYTES`.
-    """
+    """What a file is that is often given by mistake, by its first `HEAD_BYTES`, with an article; None for any other."""
     if head.startswith(b"ply"):
         text = head.replace(b"\r\n", b"\n")
         return SPLAT if all(name in text for name in _SPLAT_PROPERTIES) else None
@@ -57,14 +53,7 @@ def split_address(path: str | os.PathLike[str]) -> tuple[str, str] | None:
 
 
 def refuse_address(path: str | os.PathLike[str]) -> None:
-    """Refuse a web address where a file is wanted.
-
-    Args:
-        path: What was given, and does not exist.
-
-    Raises:
-        OptionError: `web-address`.
-    """
+    """Refuse a web address where a file is wanted and none exists. OptionError `web-address`."""
     found = split_address(path)
     if found is not None:
         where = "://".join(found)

@@ -17,12 +17,10 @@ class Rig:
     """All Nc cameras of a capture, encoded or held out.
 
     Attributes:
-        names: One for each camera.
         cameras: In the capture's order.
         held_out: (Nc,) bool; held-out photographs were not used for textures, mean and weights.
         reference: Index of the camera nearest the centre, or of the one chosen by the user; an encoded one.
-        view_plane: The plane through the cameras.
-        triangles: (T, 3) int32 Delaunay triangles on it over the *encoded* cameras, counted among themselves.
+        triangles: (T, 3) int32 Delaunay triangles of the view plane over the *encoded* cameras, by their order.
     """
 
     names: tuple[str, ...]

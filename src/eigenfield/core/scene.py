@@ -18,6 +18,7 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.forks import renew_in_child
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Payloads
+from eigenfield.core.provenance import Provenance
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
 
@@ -65,9 +66,9 @@ class Residual:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Everything needed to draw any viewpoint on the view plane.
+    """Everything needed to draw any viewpoint on the view plane at one instant.
 
-    An observation is a photograph by an encoded camera at one instant. Weights have a row for each.
+    Weights have a row for each encoded camera, whose photograph is an observation.
 
     Attributes:
         proxy: The surface.
@@ -77,7 +78,6 @@ class Scene:
         scores: JSON object: measures by `encode` or `evaluate --store`.
         generator: Name and version of the program that made it.
         residual: Difference of captured views to their renderings, or None. It improves no other view.
-        times: The instants of its observations, in seconds; one for a still scene.
         payloads: What mesh, opacity, cameras, means, eigen textures, weights and the picture for other viewers were
             coded to, each under the key of its content. `save` writes them byte for byte for parts that are unchanged,
             and codes the others. Parts that are not coded, or that a file holds as plain numbers, have none.
@@ -90,7 +90,6 @@ class Scene:
     scores: Mapping[str, Any] = field(default_factory=dict)
     generator: str = ""
     residual: Residual | None = None
-    times: tuple[float, ...] = (0.0,)
     payloads: Payloads = field(default_factory=Payloads)
     _derived: dict[str, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -109,35 +108,35 @@ class Scene:
         """(Nc,) the names of the cameras: those of their photographs."""
         return self.rig.names
 
-    def rows(self, cameras: ArrayLike | None = None, time: int = 0) -> NDArray[np.int64]:
-        """The rows of the weights for the observations of some cameras at one instant.
+    def rows(self, cameras: ArrayLike | None = None) -> NDArray[np.int64]:
+        """The rows of the weights for the observations of some cameras.
 
-        Rows are in the order of instants, and at each in that of the encoded cameras. Only this function relies on it.
+        Rows are in the order of the encoded cameras. Only this function relies on it.
 
         Args:
             cameras: (n,) or () indices into `rig.cameras`; None: all encoded ones.
-            time: Index into `times`.
 
         Returns:
             The rows, in the shape of `cameras`; -1 for held-out cameras, which have none.
         """
         encoded = ~self.rig.held_out
         among = np.where(encoded, np.cumsum(encoded) - 1, -1)
-        found = among[self.rig.encoded if cameras is None else np.asarray(cameras, np.int64)]
-        return np.where(found < 0, -1, found + time * int(encoded.sum()))
+        return among[self.rig.encoded if cameras is None else np.asarray(cameras, np.int64)]
+
+    @property
+    def provenance(self) -> Provenance:
+        """What the settings say of how the scene was made."""
+        return self.derive("provenance", lambda: Provenance.of(self.settings))
 
     @property
     def origin(self) -> NDArray[np.float64]:
         """(3,) the origin of the scene's world in that of the capture's files; zero unless that is far from its own."""
-        found = self.settings.get("origin")
-        is_place = isinstance(found, list) and len(found) == 3 and all(type(v) in (int, float) for v in found)
-        place = np.array(found if is_place else (0, 0, 0), np.float64)  # settings of a file may hold anything
-        return place if np.isfinite(place).all() else np.zeros(3)
+        return self.provenance.origin
 
     @property
     def observations(self) -> int:
         """Number of rows of the weights."""
-        return len(self.times) * int((~self.rig.held_out).sum())
+        return int((~self.rig.held_out).sum())
 
     def derive(self, name: str, make: Callable[[], T]) -> T:
         """The result of `make`, cached under a name as long as this object exists.

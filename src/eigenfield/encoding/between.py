@@ -108,7 +108,7 @@ def _weights_of_others(scene: Scene, camera: int) -> ViewWeights:
     rig = scene.rig
     others = np.flatnonzero(rig.encoded != camera)
     row = interpolation(rig, others.tolist(), [int(np.searchsorted(rig.encoded, camera))])[0]
-    return ViewWeights(scene.rows(rig.encoded[others[row != 0]], 0), row[row != 0])
+    return ViewWeights(scene.rows(rig.encoded[others[row != 0]]), row[row != 0])
 
 
 def _drawn_by_others(

@@ -31,10 +31,10 @@ BETWEEN_LEFT_OUT_RATIO, BETWEEN_MAX_LEFT_OUT = 1 / 4, 12  # of the cameras, at m
 
 
 def has_scores(plan: EncodePlan) -> bool:
-    """Whether a scene of a plan gets scores: a still one of five cameras or more, whose pictures are not tiny."""
-    cameras, still = plan.views.rig.encoded_cameras, len(plan.views.capture.times) == 1
+    """Whether a scene of a plan gets scores: one of five cameras or more, whose pictures are not tiny."""
+    cameras = plan.views.rig.encoded_cameras
     large = min(min(camera.width, camera.height) for camera in cameras) >= BETWEEN_MIN_SIDE_PIXELS
-    return still and large and len(cameras) >= BETWEEN_MIN_CAMERAS
+    return large and len(cameras) >= BETWEEN_MIN_CAMERAS
 
 
 def is_sparse(plan: EncodePlan) -> bool:

@@ -231,7 +231,7 @@ class EncodeOptions(Options):
                 raise OptionError("option-type", f"{name} is {kind_in_words(value)}", remedy=f"give {in_words(kind)}")
 
     def _check_file(self) -> None:
-        from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, check_codec
+        from eigenfield.coding.stacking import DEFAULT_CODEC, check_codec
 
         check_codec(self.codec or DEFAULT_CODEC, self.quality)
         if self.residual is not None and self.target is not None:

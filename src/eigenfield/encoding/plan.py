@@ -124,7 +124,6 @@ class EncodePlan:
             settings=settings,
             generator=f"eigenfield {__version__}",
             payloads=self.payloads | (payloads or {}),
-            times=tuple(views.capture.times),
         )
         return made if self.options.fallback is None else with_fallback(made, self.options.fallback)
 

@@ -46,13 +46,9 @@ class CaptureViews:
 
     @property
     def grid(self) -> NDArray[np.int64] | None:
-        """(rows, columns) of the observations, one instant below the other, where the encoded cameras stand on a grid;
-        else None. -1 where the grid has no camera."""
-        still = grid_of(self.coordinates[self.rig.encoded])
-        if still is None:
-            return None
-        firsts = range(0, len(self.observations), len(self.rig.encoded))
-        return np.concatenate([np.where(still < 0, -1, still + first) for first in firsts])
+        """(rows, columns) of the observations, where the encoded cameras stand on a grid; else None. -1 where the grid
+        has no camera."""
+        return grid_of(self.coordinates[self.rig.encoded])
 
     @cached_property
     def scattered(self) -> bool:

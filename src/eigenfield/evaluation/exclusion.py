@@ -17,25 +17,14 @@ from eigenfield.gltf import strict_json
 
 @dataclass(frozen=True)
 class ExcludedCircle:
-    """A circle in pixels; the centre of the top-left pixel is (0.5, 0.5).
-
-    Attributes:
-        cx: Centre.
-        cy: Centre.
-        r: Radius.
-    """
+    """A circle of centre and radius in pixels; the centre of the top-left pixel is (0.5, 0.5)."""
 
     cx: float
     cy: float
     r: float
 
     def outside(self, width: int, height: int) -> NDArray[np.bool_]:
-        """(H, W) bool: pixels whose centre is not within the circle.
-
-        Args:
-            width: Of the picture.
-            height: Of the picture.
-        """
+        """(H, W) bool: pixels whose centre is not within the circle."""
         x, y = np.arange(width) + (0.5 - self.cx), np.arange(height) + (0.5 - self.cy)
         return np.asarray(y[:, None] ** 2 + x**2 > self.r**2)
 
@@ -45,10 +34,6 @@ def read_circles(path: str | os.PathLike[str], names: Sequence[str]) -> dict[str
 
     A photograph is matched by its name, or else by its file name alone if that is unique. Cameras without a circle are
     absent from the result.
-
-    Args:
-        path: The file.
-        names: Of the cameras.
 
     Raises:
         OptionError: `circles-unreadable`, `circles-malformed` or `circles-unmatched`.

@@ -26,10 +26,8 @@ def measure_picture(
 
     Args:
         drawn: (H, W, 3), 0..1 or uint8.
-        surface: (H, W) pixels that the proxy covers.
         photograph: (H, W, 3), 0..1 or uint8.
         mask: (H, W) valid pixels of the photograph. The full scores are of the whole frame anyway.
-        with_flip: Include `flip`.
     """
     a, b = to_codes(drawn), to_codes(photograph)
     covered = covered_pixels(surface, mask)
@@ -58,11 +56,8 @@ def measure_outside(
 
     Args:
         drawn: (H, W, 3), 0..1 or uint8.
-        surface: (H, W) pixels that the proxy covers.
         photograph: (H, W, 3), 0..1 or uint8.
-        mask: (H, W) valid pixels of the photograph.
         circle: Of the camera; None: all covered pixels count.
-        with_flip: Include `flip`.
     """
     a, b = to_codes(drawn), to_codes(photograph)
     counted = covered_pixels(surface, mask)
@@ -73,12 +68,7 @@ def measure_outside(
 
 
 def covered_pixels(surface: NDArray[np.bool_], mask: NDArray[np.float32] | None) -> NDArray[np.bool_]:
-    """(H, W) bool: the surface, within the mask if there is one.
-
-    Args:
-        surface: (H, W) pixels that the proxy covers.
-        mask: (H, W) valid pixels of the photograph.
-    """
+    """(H, W) bool: the pixels of the surface, within the mask of valid ones if there is one."""
     return surface if mask is None else surface & (mask > 0.5)
 
 
@@ -86,12 +76,7 @@ def summarise_scores(scores: Sequence[Mapping[str, float | None]], names: Sequen
     """The mean of each key over the cameras that have it, and under "worst" the worst value and its camera.
 
     The worst is the lowest, for HIGHER_IS_WORSE the highest; the first of equals. A key that no camera has is None in
-    both.
-
-    Args:
-        scores: Of each camera.
-        names: Of the cameras.
-    """
+    both."""
     means: dict[str, object] = {}
     worst: dict[str, object] = {}
     for key in scores[0]:

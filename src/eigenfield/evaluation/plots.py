@@ -44,15 +44,8 @@ PLOT_ERROR_GAIN = 5  # of the errors in the contact sheet
 
 
 def refuse_existing_plots(folder: Path, overwrite: bool) -> None:
-    """Check before any work that no plot would be replaced.
-
-    Args:
-        folder: Of the plots.
-        overwrite: Allow it.
-
-    Raises:
-        OutputError: `output-exists`, `not-a-folder` or `output-address`.
-    """
+    """Check before any work that no plot would be replaced. OutputError `output-exists`, `not-a-folder` or
+    `output-address`."""
     refuse_objects(folder)
     if folder.exists() and not folder.is_dir():
         raise OutputError("not-a-folder", "is a file", path=folder, remedy="name a folder for --plots")
@@ -71,21 +64,8 @@ def write_plots(
     *,
     overwrite: bool = False,
 ) -> list[Path]:
-    """Write the plots of `evaluate`'s scores.
-
-    Args:
-        scores: Of `evaluate`.
-        scene: The scene.
-        capture: Its photographs.
-        folder: Created if need be.
-        overwrite: Replace existing plots.
-
-    Returns:
-        Their paths.
-
-    Raises:
-        OutputError: `output-exists`, or the folder cannot be written.
-    """
+    """Write the plots of `evaluate`'s scores into a folder, which is created if need be; their paths. OutputError
+    `output-exists`, or the folder cannot be written."""
     folder = Path(folder)
     session = start_session(
         scene, capture, textures=scores["textures"], filter=scores["filter"], weights=scores["weights"]
@@ -106,11 +86,7 @@ def write_plots(
 
 
 def curve_figure(scores: Mapping[str, Any]) -> Figure:
-    """SSIM and PSNR in UV space against the number of eigen textures (figure 5 of the paper).
-
-    Args:
-        scores: Of `evaluate`, with a curve.
-    """
+    """SSIM and PSNR in UV space against the number of eigen textures (figure 5 of the paper)."""
     points = scores["curve"]
     count = [point["textures"] for point in points]
     figure = _figure(9, 4.2)
@@ -129,12 +105,7 @@ def curve_figure(scores: Mapping[str, Any]) -> Figure:
 
 
 def cameras_figure(cameras: Sequence[Mapping[str, Any]], coordinates: NDArray[np.float64]) -> Figure:
-    """PSNR of each re-drawn photograph at its camera's position on the view plane.
-
-    Args:
-        cameras: Their scores.
-        coordinates: (n, 2) positions on the view plane.
-    """
+    """PSNR of each re-drawn photograph at its camera's position (n, 2) on the view plane."""
     measured = [camera for camera in cameras if camera["psnr"] is not None]
     places = coordinates[[camera["psnr"] is not None for camera in cameras]]
     values = np.array([camera["psnr"] for camera in measured])
@@ -184,12 +155,7 @@ def cameras_figure(cameras: Sequence[Mapping[str, Any]], coordinates: NDArray[np
 
 
 def bytes_figure(sizes: Mapping[str, int], ratio: Mapping[str, float | None] | None) -> Figure:
-    """The file's bytes by part.
-
-    Args:
-        sizes: Of `evaluate`.
-        ratio: Of `evaluate`.
-    """
+    """The file's bytes by part."""
     figure = _figure(8.2, 3.6)
     axes = figure.add_subplot()
     keys, labels, colours = zip(*PLOT_PARTS, strict=True)
@@ -212,11 +178,7 @@ def bytes_figure(sizes: Mapping[str, int], ratio: Mapping[str, float | None] | N
 
 
 def contact_sheet_figure(rows: Sequence[ContactSheetRow]) -> Figure:
-    """Photograph, drawn picture and error side by side; a title for each row.
-
-    Args:
-        rows: The rows.
-    """
+    """Photograph, drawn picture and error side by side; a title for each row."""
     height, width = rows[0][1].shape[:2] if rows else (1, 1)
     inches = 3.6
     figure = _figure(3 * inches + 0.3, len(rows) * (inches * height / width + 0.45) + 0.2)

@@ -124,11 +124,7 @@ def stored_scores(scores: Mapping[str, Any]) -> dict[str, Any]:
     """The scores that are stored in a file, small and reproducible.
 
     They exclude seconds, single cameras, and bytes, which the file itself shows. Ratios are those of the file as
-    measured, before it stored the scores.
-
-    Args:
-        scores: Of `evaluate`.
-    """
+    measured, before it stored the scores."""
     left_out = {"seconds", "cameras", "bytes", "missing"}
     return {key: value for key, value in scores.items() if key not in left_out}
 
@@ -190,6 +186,4 @@ def _photograph_bytes(session: Session) -> int | None:
     encoded = [int(index) for index in session.scene.rig.encoded]
     if all(index in session.photographs for index in encoded):
         return sum(session.capture.bytes(session.photographs[index]) for index in encoded)
-    recorded = session.scene.settings.get("photographs")
-    size = recorded.get("bytes") if isinstance(recorded, Mapping) else None
-    return size if isinstance(size, int) else None
+    return session.scene.provenance.photographs_bytes

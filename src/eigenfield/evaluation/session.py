@@ -37,7 +37,6 @@ class CameraScores:
     """The scores of one camera.
 
     Attributes:
-        drawn: Of the drawn picture.
         texture: Of the texture map; None if it is not measured, or the camera is held out.
         residual: Of the picture with its residual; None without one.
     """
@@ -52,20 +51,14 @@ class Session:
     """A scene beside its photographs, ready to be measured; shared by all threads.
 
     Attributes:
-        scene: The scene.
-        capture: Its photographs.
         photographs: From the index of a scene's camera to the index of its view in the capture.
-        renderer: Of the scene.
         counts: Numbers of eigen textures for the UV scores, increasing; pictures are drawn with the last.
         curved: Indices of the cameras that are measured with all of `counts`; others are with the last only.
-        filter: "bicubic" or "bilinear", for drawing.
-        weights: Kind of view weights of held-out cameras.
         atlas: Of the texture maps; None if none are measured.
         max_angle: Of the texture maps, degrees (`EncodeOptions`).
         reference: The texture map and visibility that maps are aligned to; None: they are not aligned.
         circles: Excluded circles by camera, if any.
         packed: Indices of cameras whose filled maps are packed as PNG.
-        flip: Whether FLIP is measured.
     """
 
     scene: Scene
@@ -85,9 +78,6 @@ class Session:
 
     def photograph(self, index: int) -> Photograph:
         """A camera's photograph.
-
-        Args:
-            index: Of the camera.
 
         Raises:
             CaptureError: `photograph-size`: it does not have the camera's size.
@@ -110,7 +100,6 @@ class Session:
         A harmonised scene gives an encoded camera its own exposure, and a held-out one what those around it have.
 
         Args:
-            index: Of the camera.
             samples: Samples a pixel. Default: the renderer's.
         """
         return self.renderer.draw(
@@ -123,12 +112,7 @@ class Session:
         )
 
     def texture(self, index: int, photograph: Photograph) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
-        """A camera's texture map as `encode` made it: (n, 3) values and (n,) visibility.
-
-        Args:
-            index: Of the camera.
-            photograph: Its photograph.
-        """
+        """A camera's texture map as `encode` made it: (n, 3) values and (n,) visibility."""
         assert self.atlas is not None
         values, seen = texture_map(
             self.atlas, self.scene.rig.cameras[index], photograph.pixels, photograph.mask, self.max_angle
@@ -153,7 +137,6 @@ class Session:
         """All scores of one camera.
 
         Args:
-            index: Of the camera.
             difference: (H, W, 3) its residual, if any.
         """
         photograph = self.photograph(index)
@@ -196,21 +179,7 @@ def start_session(
 ) -> Session:
     """Check that scene and photographs belong together, and prepare what all cameras share.
 
-    Args:
-        scene: See `evaluate`.
-        capture: See `evaluate`.
-        curve: See `evaluate`.
-        textures: See `evaluate`.
-        filter: See `evaluate`.
-        weights: See `evaluate`.
-        circles: See `evaluate`.
-        png_maps: See `evaluate`.
-        flip: See `evaluate`.
-
-    Raises:
-        CaptureError: As `evaluate`.
-        OptionError: As `evaluate`.
-    """
+    Arguments and errors are those of `evaluate`."""
     if png_maps not in PNG_MAP_CHOICES:
         raise OptionError(
             "png-maps", f"no way to count maps is called {png_maps}", remedy=f"use {', '.join(PNG_MAP_CHOICES)}"
@@ -228,7 +197,7 @@ def start_session(
     photographs = match_photographs(scene, capture)
     align, max_angle = _map_settings(scene)
     one_plane = len(scene.appearance.planes) == 1 and scene.appearance.to_rgb is None
-    maps = one_plane and "fitted" not in scene.settings  # a fit makes none
+    maps = one_plane and not scene.provenance.is_fitted  # a fit makes none
     if curve != "none" and not maps:
         raise OptionError(
             "curve",
@@ -274,24 +243,20 @@ def start_session(
 
 def _map_settings(scene: Scene) -> tuple[bool, int]:
     """Whether the texture maps were aligned, and their `max_angle`, by the scene's settings."""
-    resampling, align = scene.settings.get("resampling", RESAMPLING), scene.settings.get("align")
-    max_angle = scene.settings.get("maxAngle", DEFAULT_MAX_ANGLE)
-    known = resampling == RESAMPLING and align in [None, "dis"] and max_angle in list(range(1, 91))
-    if not known:  # a file may hold anything here
+    made = scene.provenance
+    resampling = RESAMPLING if made.resampling is None else made.resampling
+    max_angle = DEFAULT_MAX_ANGLE if made.max_angle is None else made.max_angle
+    known = resampling == RESAMPLING and made.align in [None, "dis"]
+    if not (known and isinstance(max_angle, int) and 1 <= max_angle <= 90):
         raise OptionError(
             "settings-unknown",
-            f"the scene was made with resampling {resampling!r}, alignment {align!r} and angles up to {max_angle!r}, "
-            "which this version has not",
+            f"the scene was made with resampling {resampling!r}, alignment {made.align!r} and angles up to "
+            f"{max_angle!r}, which this version has not",
             remedy="evaluate with the version that encoded it",
         )
-    return align is not None, max_angle
+    return made.align is not None, max_angle
 
 
 def sample_evenly(indices: Sequence[int], count: int) -> list[int]:
-    """Some of the indices, evenly spread.
-
-    Args:
-        indices: All indices.
-        count: How many at most.
-    """
+    """At most `count` of the indices, evenly spread."""
     return [indices[i] for i in spread_indices(len(indices), count)]

@@ -27,7 +27,6 @@ class MeasureJob:
     """What a worker needs to measure cameras.
 
     Attributes:
-        scene: Its file.
         capture: Photographs with cameras: their paths, no pixels.
         settings: Of `start_session`.
     """
@@ -49,13 +48,9 @@ def measure_on(
 
     Args:
         workers: Of `open_executor`. They see the folder of the scene, and the photographs.
-        job: What they need.
-        indices: Of the scene's cameras.
-        progress: Called for each group of cameras.
 
     Raises:
         OutputError: `folder-not-shared`; the scene's folder cannot be written.
-        CaptureError, OptionError, FormatError: As `evaluate`.
     """
     folder = job.scene.absolute().parent
     refuse_unshared(workers, folder)

@@ -38,8 +38,6 @@ def reconstruct_maps(plane: Plane, row: int, counts: Sequence[int]) -> Iterator[
     Each picture is the one before with more textures added, in the same memory.
 
     Args:
-        plane: Of the scene.
-        row: Of the camera's weights.
         counts: Numbers of textures, increasing.
 
     Returns:
@@ -79,13 +77,9 @@ def measure_map(
     Texels that it does not see come from the file's mean (equation 2), in both pictures.
 
     Args:
-        plane: Of the scene.
-        row: Of the camera's weights.
-        atlas: The chart texels.
         values: (n, C) the camera's texture map at the chart texels.
         seen: (n,) its visibility.
         counts: Numbers of textures, increasing.
-        png: Pack the filled map as PNG.
     """
     filled, scores = measure_pictures(reconstruct_maps(plane, row, counts), plane.mean, atlas, values, seen)
     structure, error = zip(*scores, strict=True)
@@ -93,15 +87,10 @@ def measure_map(
 
 
 def png_size(atlas: Atlas, filled: NDArray[np.uint8]) -> int:
-    """Bytes of a filled map as PNG.
+    """Bytes of a filled map (H, W, C) as PNG.
 
     It uses libpng's default compression (6, filtered), and black outside the charts, which PNG packs best. Channels
-    beyond three are counted as separate pictures.
-
-    Args:
-        atlas: The chart texels.
-        filled: (H, W, C) uint8.
-    """
+    beyond three are counted as separate pictures."""
     charts = np.zeros_like(filled)
     flat, source = charts.reshape(-1, filled.shape[2]), filled.reshape(-1, filled.shape[2])
     flat[atlas.texel] = source[atlas.texel]

@@ -25,7 +25,6 @@ class ViewBytes(NamedTuple):
     """The bytes of a buffer view.
 
     Attributes:
-        data: All of them.
         stride: In bytes; 0: packed.
         offset: Of the first byte in the buffer.
     """
@@ -53,9 +52,7 @@ def read_accessor(entry: Value, view: ViewReader, most: int, *, aligned: bool = 
     Normalised integers c of b bits become float64, c / (2^b - 1), or max(c / (2^(b - 1) - 1), -1) with a sign.
 
     Args:
-        entry: The accessor.
         view: Gives the bytes of the buffer view whose index a value holds.
-        most: Elements allowed.
         aligned: Refuse numbers that lie at no multiple of their size.
 
     Raises:

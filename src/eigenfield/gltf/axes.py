@@ -52,7 +52,6 @@ def opening_view(camera: Camera, mesh: Mesh) -> tuple[dict[str, Any], NDArray[np
     seen from there.
 
     Args:
-        camera: The reference camera.
         mesh: By whose nearest vertex the near plane is placed.
     """
     inverse = np.linalg.inv(camera.K)

@@ -17,10 +17,6 @@ class Buffer:
     """The binary chunk while it grows, and the JSON entries that point into it.
 
     Attributes:
-        parts: The bytes so far.
-        length: Of these.
-        views: The JSON's buffer views.
-        accessors: The JSON's accessors.
         once: Buffer views of bytes that `shared_stream` has written.
         codecs: Places (`streams.PLACES`) and codecs of its streams.
         packed: The streams of a packed extension, which lie behind all buffer views; None where it is plain.
@@ -60,18 +56,7 @@ class Buffer:
         return self.once[payload.data]
 
     def accessor(self, array: NDArray[Any], component: int, kind: str, target: int | None = None, **more: Any) -> int:
-        """Append an array as an accessor of its own buffer view.
-
-        Args:
-            array: (n,) or (n, k).
-            component: glTF's component type.
-            kind: glTF's type, as "VEC3".
-            target: glTF's target of the buffer view.
-            more: Other members of the accessor.
-
-        Returns:
-            Its index.
-        """
+        """Append an array (n,) or (n, k) as an accessor of its own buffer view; its index."""
         view = self.view(np.ascontiguousarray(array, DTYPES[component]).tobytes(), target)
         entry = {"bufferView": view, "componentType": component, "count": len(array), "type": kind}
         self.accessors.append(entry | more)

@@ -26,11 +26,10 @@ from eigenfield.runtime.parallel import parallel_map
 
 @dataclass(frozen=True, eq=False)
 class CachedPayloads:
-    """Payloads by part, named by its place in a scene: `mesh`, `cameras`, `opacity`,
+    """Payloads of the parts that have not changed, named by its place in a scene: `mesh`, `cameras`, `opacity`,
     `planes[0].mean`, `planes[0].bases[1].weights`. One more is `preview`, the picture for other viewers.
 
     Attributes:
-        payloads: Of each part that has not changed.
         lost: Bytes of the payload of each part that has changed.
     """
 

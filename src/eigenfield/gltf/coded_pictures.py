@@ -16,7 +16,7 @@ from eigenfield.coding.pictures.pictures_8bit import (
     encode_masked_preview,
     encode_preview,
 )
-from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, encode, stacked_picture
+from eigenfield.coding.stacking import DEFAULT_CODEC, encode, stacked_picture
 from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.payloads import Affine, Payload, PicturePayload, size_of
 from eigenfield.core.progress import Progress
@@ -30,12 +30,7 @@ MEAN_QUALITY_RATIO = 0.3  # of the mean's distance to quality 100 to the texture
 
 @dataclass(frozen=True, eq=False)
 class PlanePictures:
-    """The pictures of a plane.
-
-    Attributes:
-        mean: Of its mean.
-        bases: Of each basis's textures, by rank.
-    """
+    """The pictures of a plane: of its mean, and of each basis's textures by rank."""
 
     mean: PicturePayload
     bases: Sequence[Sequence[PicturePayload]]
@@ -47,8 +42,6 @@ class ScenePictures:
 
     Attributes:
         preview: For `images[0]`, of a mesh that is not coded; None where the first plane's mean itself is shown.
-        planes: Those of each plane.
-        opacity: Of sheets.
     """
 
     preview: Payload | None
@@ -82,11 +75,8 @@ def code_pictures(
     """Every picture of the scene; coding is shared among the threads.
 
     Args:
-        scene: To be written.
         cached: Its payloads, which are taken unless a codec is asked for.
         codec: For all pictures; None: the default for those without a payload.
-        quality: Of the textures.
-        progress: Reports each picture.
     """
     fine, to_rgb = round(100 - MEAN_QUALITY_RATIO * (100 - quality)), scene.appearance.to_rgb
     planned, sheets = [], scene.proxy.sheets
@@ -161,11 +151,7 @@ def _preview(scene: Scene) -> Payload:
 
 
 def shown_mean(scene: Scene) -> NDArray[np.uint8]:
-    """(H, W) or (H, W, 3) codes: R, G, B of the mean as they are; else its first one or three channels, stretched.
-
-    Args:
-        scene: Whose mean is shown.
-    """
+    """(H, W) or (H, W, 3) codes: R, G, B of the mean as they are; else its first one or three channels, stretched."""
     to_rgb = scene.appearance.to_rgb
     mean = scene.appearance.planes[0].mean if to_rgb is None else _rgb_mean(scene, to_rgb)
     if scene.appearance.colours is not None:

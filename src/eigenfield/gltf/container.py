@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import json
 import os
-import stat
 import struct
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path
+from itertools import chain
 from typing import Any
 
 from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError, OutputError
-from eigenfield.core.recognise import HEAD_BYTES, recognise, refuse_address
+from eigenfield.core.recognise import HEAD_BYTES, recognise
 from eigenfield.gltf import strict_json
-from eigenfield.runtime.objects import find_objects
+from eigenfield.gltf.source import ByteRange, ByteSource, HeldBytes, truncation_error
 
 MAGIC = b"glTF"
 JSON_CHUNK = b"JSON"
@@ -29,113 +29,95 @@ class Glb:
     """A container with checked chunks.
 
     Attributes:
-        json: The parsed JSON chunk.
-        binary: The first buffer's bytes, empty if there is no binary chunk.
-        size: Bytes of the file.
-        rest: Offset of the first byte behind the JSON chunk.
+        chunks: Where the data of each chunk lie, by its type; of several of one type the last.
         missing: Bytes of the binary chunk that lie behind the end of the file.
     """
 
     json: Any
-    binary: memoryview
-    size: int
-    rest: int
+    source: ByteSource
+    chunks: Mapping[bytes, ByteRange]
     missing: int = 0
+
+    @property
+    def binary(self) -> ByteRange:
+        """The first buffer's bytes; none if there is no binary chunk."""
+        return self.chunks.get(BINARY_CHUNK, ByteRange(self.source, self.source.size, self.source.size))
+
+    def behind(self, kind: bytes) -> ByteRange:
+        """All that follows the data of a chunk: whole chunks with their heads."""
+        return ByteRange(self.source, self.chunks[kind].last, self.source.size)
 
     def cut_off(self) -> FormatError:
         """The error to raise where the missing bytes are needed."""
-        return _truncation_error(self.size, self.size + self.missing)
+        return truncation_error(self.source.size, self.source.size + self.missing)
 
 
-def read_file(path: Path) -> bytes:
-    """The whole file.
+def parse_glb(data: bytes | ByteSource) -> Glb:
+    """Parse a container, of which only the JSON and the heads of chunks are read.
 
-    Raises:
-        FormatError: `file-missing`, `file-unreadable`, `not-a-file`, `file-size`.
-        OptionError: `web-address`; `object-missing`, `store`: an object store has no such file.
-    """
-    objects = find_objects(path)
-    if objects is not None:
-        return objects.read()
-    try:
-        status = path.stat()
-        if not stat.S_ISREG(status.st_mode):  # a pipe would wait, a device may never end
-            raise FormatError("not-a-file", "is no regular file", remedy="name a .glb")
-        if status.st_size > limits.MAX_FILE:
-            raise FormatError("file-size", f"{status.st_size} bytes, {limits.MAX_FILE} are allowed")
-        return path.read_bytes()
-    except FileNotFoundError as error:
-        refuse_address(path)
-        raise FormatError("file-missing", "does not exist", remedy="check the name") from error
-    except (OSError, ValueError) as error:  # ValueError: a name with a null byte
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise FormatError("file-unreadable", f"cannot be read: {reason}") from error
-
-
-def parse_glb(data: bytes) -> Glb:
-    """Parse a container. One that ends within its binary chunk is not refused here: see `Glb.missing`.
+    One that ends within its binary chunk is not refused here: see `Glb.missing`.
 
     Raises:
         FormatError: `not-glb`, `truncated`, `glb-version`, `glb-length`, `glb-chunk`, `json-*`.
     """
-    if data[:4] != MAGIC:
-        what = recognise(data[:HEAD_BYTES])
+    source = HeldBytes(data) if isinstance(data, bytes) else data
+    head, size = bytes(source.read(0, max(HEAD_BYTES, HEADER.size))), source.size
+    if head[:4] != MAGIC:
+        what = recognise(head[:HEAD_BYTES])
         message = "does not begin with 'glTF'" if what is None else f"is {what}, and no .glb"
         raise FormatError("not-glb", message, remedy="name a .glb")
-    if len(data) < HEADER.size:
-        raise FormatError("truncated", f"ends after {len(data)} bytes, within the header", where=f"byte {len(data)}")
-    _, version, length = HEADER.unpack_from(data)
+    if size < HEADER.size:
+        raise FormatError("truncated", f"ends after {size} bytes, within the header", where=f"byte {size}")
+    _, version, length = HEADER.unpack_from(head)
     if version != 2:
         raise FormatError("glb-version", f"glTF {version}, not 2", where="byte 4")
-    if length > len(data):
-        return _parse_truncated(data, length)
-    if length < len(data):
-        raise FormatError("glb-length", f"{len(data) - length} bytes follow the end", where="byte 8")
-    chunks = _chunks(data)
-    start, end = chunks[JSON_CHUNK]
-    first, last = chunks.get(BINARY_CHUNK, (end, end))
-    value = strict_json.parse(data[start:end], f"byte {start}")
-    return Glb(value, memoryview(data)[first:last], len(data), end)
+    if length > size:
+        return _parse_truncated(source, length)
+    if length < size:
+        raise FormatError("glb-length", f"{size - length} bytes follow the end", where="byte 8")
+    chunks = _chunks(source)
+    return Glb(_parse_json(chunks[JSON_CHUNK]), source, chunks)
 
 
-def _parse_truncated(data: bytes, length: int) -> Glb:
+def _parse_json(chunk: ByteRange) -> Any:
+    where = f"byte {chunk.first}"
+    strict_json.check_size(chunk.size, where)
+    return strict_json.parse(bytes(chunk.read(0, chunk.size)), where)
+
+
+def _parse_truncated(source: ByteSource, length: int) -> Glb:
     """A container of `length` bytes that ends within its binary chunk; FormatError `truncated` where it ends before."""
-    start = HEADER.size + CHUNK.size
-    if len(data) >= start:
-        size, kind = CHUNK.unpack_from(data, HEADER.size)
-        end, first = start + size, start + size + CHUNK.size
-        if kind == JSON_CHUNK and first <= len(data):
-            extent, kind = CHUNK.unpack_from(data, end)
-            if kind == BINARY_CHUNK and len(data) < first + extent <= length:
-                value = strict_json.parse(data[start:end], f"byte {start}")
-                return Glb(value, memoryview(data)[first:], len(data), end, first + extent - len(data))
-    raise _truncation_error(len(data), length)
+    start, end = HEADER.size + CHUNK.size, source.size
+    if end >= start:
+        size, kind = CHUNK.unpack(source.read(HEADER.size, start))
+        json, first = ByteRange(source, start, start + size), start + size + CHUNK.size
+        if kind == JSON_CHUNK and first <= end:
+            extent, kind = CHUNK.unpack(source.read(json.last, first))
+            if kind == BINARY_CHUNK and end < first + extent <= length:
+                chunks = {JSON_CHUNK: json, BINARY_CHUNK: ByteRange(source, first, end)}
+                return Glb(_parse_json(json), source, chunks, first + extent - end)
+    raise truncation_error(end, length)
 
 
-def _truncation_error(size: int, length: int) -> FormatError:
-    message, remedy = f"ends after {size} of {length} bytes", "copy or download it again"
-    return FormatError("truncated", message, where=f"byte {size}", remedy=remedy)
-
-
-def _chunks(data: bytes) -> dict[bytes, tuple[int, int]]:
+def _chunks(source: ByteSource) -> dict[bytes, ByteRange]:
     """Where each chunk's data lie, by type; unknown types are skipped, as glTF asks."""
-    found: dict[bytes, tuple[int, int]] = {}
+    found: dict[bytes, ByteRange] = {}
     offset, count = HEADER.size, 0
-    while offset < len(data):
+    while offset < source.size:
         where = f"byte {offset}"
-        if offset + CHUNK.size > len(data):
+        if offset + CHUNK.size > source.size:
             raise FormatError("glb-chunk", "a chunk's header is cut off by the end", where=where)
-        length, kind = CHUNK.unpack_from(data, offset)
         start = offset + CHUNK.size
+        length, kind = CHUNK.unpack(source.read(offset, start))
         if length % 4:
             raise FormatError("glb-chunk", f"a chunk of {length} bytes, not a multiple of 4", where=where)
-        if start + length > len(data):
+        if start + length > source.size:
             raise FormatError("glb-chunk", f"a chunk of {length} bytes reaches past the end", where=where)
         if (count == 0) != (kind == JSON_CHUNK):
             raise FormatError("glb-chunk", "the first chunk must be JSON, and no other", where=where)
         if kind == BINARY_CHUNK and count != 1:
             raise FormatError("glb-chunk", "a binary chunk that is not the second", where=where)
-        found[kind] = (start, start + length)
+        found[kind] = ByteRange(source, start, start + length)
         offset, count = start + length, count + 1
         if count > limits.MAX_CHUNKS:
             raise FormatError("glb-chunk", f"more than {limits.MAX_CHUNKS} chunks", where=where)
@@ -165,14 +147,29 @@ def _without_fractions(value: Any) -> Any:
 
 
 def file_head(text: bytes, rest: int, path: str | os.PathLike[str] | None) -> bytes:
-    """Header and JSON chunk of a file in which `rest` bytes follow.
-
-    Raises:
-        OutputError: `file-too-large`, over 4 GiB.
-    """
+    """Header and JSON chunk of a file in which `rest` bytes follow. OutputError `file-too-large`, over 4 GiB."""
     size = HEADER.size + CHUNK.size + len(text) + rest
     if size > limits.MAX_FILE:
         message = f"would be {size} bytes, a .glb holds at most {limits.MAX_FILE}"
         remedy = "use fewer textures, a smaller atlas, or --codec avif"
         raise OutputError("file-too-large", message, path=path, remedy=remedy)
     return HEADER.pack(MAGIC, 2, size) + CHUNK.pack(len(text), JSON_CHUNK) + text
+
+
+def glb_blocks(
+    text: bytes, binary: bytes, path: str | os.PathLike[str] | None = None, behind: ByteRange | None = None
+) -> Iterator[bytes | memoryview]:
+    """The bytes of a file, to be written one block after the other.
+
+    Args:
+        text: The JSON chunk (`json_bytes`).
+        behind: Whole chunks that follow, read a piece at a time; None: nothing does.
+
+    Raises:
+        OutputError: `file-too-large`, over 4 GiB: before the first block.
+    """
+    padding = bytes(-len(binary) % 4)
+    length = len(binary) + len(padding)
+    head = file_head(text, CHUNK.size + length + (0 if behind is None else behind.size), path)
+    blocks = [head, CHUNK.pack(length, BINARY_CHUNK), binary, padding]
+    return chain(blocks, () if behind is None else behind.pieces())

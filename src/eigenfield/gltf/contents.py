@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
 from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError
-from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, file_head, json_bytes, parse_glb, read_file
+from eigenfield.gltf.container import BINARY_CHUNK, JSON_CHUNK, Glb, file_head, glb_blocks, json_bytes, parse_glb
 from eigenfield.gltf.document import Document
 from eigenfield.gltf.layout import FileLayout, find_extension, unpacked_document
 from eigenfield.gltf.packed import is_packed, repack
 from eigenfield.gltf.read import layout_of, name_file_in_errors, read_scene
+from eigenfield.gltf.source import open_source
 from eigenfield.gltf.streams import streams
 from eigenfield.gltf.strict_json import Value
 from eigenfield.gltf.write import encode_scene
@@ -24,13 +27,9 @@ PARTS = ("mean", "textures", "weights", "mesh", "opacity", "residual")  # that `
 
 
 def describe(path: str | os.PathLike[str]) -> tuple[FileLayout, dict[str, int]]:
-    """The checked layout of a file and its bytes by part (see `parts`).
-
-    Raises:
-        FormatError: As `load`.
-    """
-    with name_file_in_errors(path):
-        document, layout = layout_of(read_file(Path(path)))
+    """The checked layout of a file and its bytes by part (see `parts`). FormatError as `load`."""
+    with name_file_in_errors(path), open_source(Path(path)) as source:
+        document, layout = layout_of(source)
         return layout, _parts(document)
 
 
@@ -41,11 +40,7 @@ def parts(path: str | os.PathLike[str]) -> dict[str, int]:
     mesh: positions, texture coordinates, indices; a coded one, and the coarse one for other viewers.
     opacity: of sheets; 0 where there is none.
     residual: of captured views; 0 where there is none.
-    other: JSON, calibration, triangles, headers and padding.
-
-    Raises:
-        FormatError: As `load`.
-    """
+    other: JSON, calibration, triangles, headers and padding."""
     return describe(path)[1]
 
 
@@ -65,7 +60,7 @@ def _parts(document: Document) -> dict[str, int]:
         if place.part in found and not document.cut_off(reference):
             found[place.part].append(reference)
     counted: set[int] = set()
-    made = {"total": document.glb.size}
+    made = {"total": document.glb.source.size}
     for name, references in found.items():
         views = {view.index: view.length for view in map(document.view, references) if view.index not in counted}
         counted |= views.keys()
@@ -91,7 +86,8 @@ def without_residual(data: bytes) -> bytes:
     if is_packed(glb):
         kept = dict(document.glb.json["extensions"][limits.EXTENSION])
         last = {"bufferView": len(document.glb.json["bufferViews"]) - 1}
-        return repack(glb, kept, residual=False) if last.items() <= kept.pop("residual", {}).items() else data
+        is_last = last.items() <= kept.pop("residual", {}).items()
+        return b"".join(repack(glb, kept, residual=False)) if is_last else data
     views, accessors = list(glb.json["bufferViews"]), list(glb.json.get("accessors", []))
     extension = dict(glb.json["extensions"][limits.EXTENSION])
     residual = extension.pop("residual", None)
@@ -106,36 +102,37 @@ def without_residual(data: bytes) -> bytes:
         del views[-1], accessors[-1]
     made = {**glb.json, "bufferViews": views, "accessors": accessors, "buffers": [{"byteLength": end}]}
     made["extensions"] = {**made["extensions"], limits.EXTENSION: extension}
-    binary = bytes(glb.binary[:end]) + bytes(-end % 4)
-    return file_head(json_bytes(made), CHUNK.size + len(binary), None) + CHUNK.pack(len(binary), BINARY_CHUNK) + binary
+    return b"".join(glb_blocks(json_bytes(made), bytes(glb.binary.data[:end]), behind=glb.behind(BINARY_CHUNK)))
 
 
 def store_scores(path: str | os.PathLike[str], scores: Mapping[str, Any]) -> None:
     """Replace a file's `scores` by a JSON object; everything else, unknown keys too, stays as it is.
 
-    Only the JSON chunk is written anew: textures keep their bytes. Atomic.
+    Only the JSON chunk is written anew: textures keep their bytes, and so do chunks behind the binary one. Atomic.
 
     Raises:
-        FormatError: As `load`.
         OutputError: The file cannot be written.
     """
     target = Path(os.path.realpath(path))  # a link stays a link
-    with name_file_in_errors(path):
-        data = read_file(target)
-        glb = parse_glb(data)
+    with name_file_in_errors(path), contextlib.ExitStack() as opened:
+        source = opened.enter_context(open_source(target))
+        glb = parse_glb(source)
         if glb.missing:
             raise glb.cut_off()
-        document = unpacked_document(glb)
-        extension = find_extension(document).mapping()
-    if is_packed(glb):
+        extension = find_extension(unpacked_document(glb)).mapping()
+        blocks = _with_scores(glb, {**extension, "scores": dict(scores)}, path)
         with atomic_writer(target, overwrite=True) as file:
-            file.write(repack(glb, {**extension, "scores": dict(scores)}))
-        return
-    glb.json["extensions"][limits.EXTENSION]["scores"] = dict(scores)
-    text = json_bytes(glb.json)
+            for block in blocks:
+                file.write(block)
+            opened.close()  # Windows replaces no file that is open
+
+
+def _with_scores(glb: Glb, extension: Mapping[str, Any], path: str | os.PathLike[str]) -> Iterable[bytes | memoryview]:
+    """The blocks of the file with another extension, which is that of the unpacked container."""
+    if is_packed(glb):
+        return repack(glb, extension)
+    glb.json["extensions"][limits.EXTENSION]["scores"] = extension["scores"]
+    text, rest = json_bytes(glb.json), glb.behind(JSON_CHUNK)
     if len(text) > limits.MAX_JSON:
         raise FormatError("json-size", f"the scores make {len(text)} bytes of JSON", where="/extensions", path=path)
-    head = file_head(text, len(data) - glb.rest, path)
-    with atomic_writer(target, overwrite=True) as file:
-        file.write(head)
-        file.write(memoryview(data)[glb.rest :])
+    return chain([file_head(text, rest.size, path)], rest.pieces())

@@ -21,9 +21,7 @@ class BufferView:
     """A buffer view.
 
     Attributes:
-        index: In the JSON.
         offset: Its first byte in the binary chunk.
-        length: In bytes.
         stride: In bytes; 0: packed.
     """
 
@@ -40,11 +38,7 @@ class BufferView:
 
 @dataclass(frozen=True, eq=False)
 class Document:
-    """A container and its JSON, to be read through checks only.
-
-    Attributes:
-        glb: The container.
-    """
+    """A container and its JSON, to be read through checks only."""
 
     glb: Glb
 
@@ -87,11 +81,11 @@ class Document:
 
     def cut_off(self, reference: Value) -> bool:
         """Whether the file ends before the buffer view whose index `reference` holds does. FormatError as `view`."""
-        return self.view_at(self._index(reference)).end > len(self.glb.binary)
+        return self.view_at(self._index(reference)).end > self.glb.binary.size
 
     @property
     def _length(self) -> int:
-        return len(self.glb.binary) + self.glb.missing
+        return self.glb.binary.size + self.glb.missing
 
     def check_overlap(self) -> None:
         """No byte belongs to two buffer views: `view-overlap`."""
@@ -105,7 +99,7 @@ class Document:
     def view(self, reference: Value) -> BufferView:
         """The buffer view whose index `reference` holds. FormatError `view-range`, `view-missing`, `truncated`."""
         view = self.view_at(self._index(reference))
-        if view.end > len(self.glb.binary):
+        if view.end > self.glb.binary.size:
             raise self.glb.cut_off()
         return view
 
@@ -131,20 +125,11 @@ class Document:
     def data(self, reference: Value) -> memoryview:
         """The bytes of the buffer view whose index `reference` holds. FormatError as `view`."""
         view = self.view(reference)
-        return self.glb.binary[view.offset : view.end]
+        return self.glb.binary.data[view.offset : view.end]
 
     def array(self, reference: Value, kind: str, components: tuple[int, ...], most: int) -> NDArray[Any]:
-        """A copy of an accessor: (n,) for SCALAR, (n, 2) or (n, 3) for VEC2, VEC3.
-
-        Args:
-            reference: Holds its index.
-            kind: Its type.
-            components: The component types allowed.
-            most: Entries allowed.
-
-        Raises:
-            FormatError: `accessor-missing`, `accessor-type`, `accessor-range`, `accessor-alignment`.
-        """
+        """A copy of an accessor of this kind: (n,) for SCALAR, (n, 2) or (n, 3) for VEC2, VEC3. FormatError
+        `accessor-missing`, `accessor-type`, `accessor-range`, `accessor-alignment`."""
         self.root["accessors"].items(limits.MAX_VIEWS)
         entry = find_accessor(self.root, reference)
         found = entry["type"].text()
@@ -158,7 +143,7 @@ class Document:
 
     def _view_bytes(self, reference: Value) -> ViewBytes:
         view = self.view(reference)
-        return ViewBytes(self.glb.binary[view.offset : view.end], view.stride, view.offset)
+        return ViewBytes(self.glb.binary.data[view.offset : view.end], view.stride, view.offset)
 
 
 def all_finite(array: NDArray[Any]) -> bool:

@@ -42,7 +42,6 @@ class Size:
     Attributes:
         points: Of the relief.
         side: Of the picture, in texels.
-        quality: Of the picture, as a JPEG.
     """
 
     points: int
@@ -99,15 +98,7 @@ DEFAULT = "small"
 
 
 def with_fallback(scene: SceneT, fallback: str) -> SceneT:
-    """The scene, to be written with this for other viewers.
-
-    Args:
-        scene: The scene.
-        fallback: A key of BUDGETS.
-
-    Raises:
-        OptionError: `fallback`.
-    """
+    """The scene, to be written with this, a key of BUDGETS, for other viewers. OptionError `fallback`."""
     if fallback not in BUDGETS:
         raise OptionError("fallback", f"no fallback is called {fallback}", remedy=f"use one of {', '.join(BUDGETS)}")
     kept = {key: value for key, value in scene.settings.items() if key != SETTING}
@@ -118,11 +109,10 @@ def make_fallback(scene: Scene, atlas: NDArray[np.uint8], coded: int) -> tuple[M
     """A mesh and its picture within the budget that the scene's settings name; None where they want none.
 
     Args:
-        scene: To be written.
         atlas: (H, W) or (H, W, 3) codes of its mean.
         coded: Bytes of the coded parts.
     """
-    budget = BUDGETS.get(scene.settings.get(SETTING, DEFAULT), SMALL)
+    budget = BUDGETS.get(scene.provenance.fallback or DEFAULT, SMALL)
     if budget is None:
         return None
     one_way = axis_angles(scene.rig.cameras).max() <= MAX_AXIS_ANGLE_DEGREES
@@ -149,7 +139,6 @@ class _Drawn:
     """The middle view.
 
     Attributes:
-        camera: Whose view it is.
         picture: (h, w) or (h, w, 3) codes; beside what is covered those of the nearest covered pixel.
         inverse_depth: (h, w), likewise.
         covered: (h, w) where there is a surface.

@@ -37,7 +37,6 @@ class Findings:
     Attributes:
         strict: Whether the first error leaves `part` as an exception (`load`). Otherwise it is noted, the rest of that
             part is skipped and the next part is checked (`validate`).
-        found: The findings so far.
     """
 
     strict: bool

@@ -6,7 +6,6 @@ code, through `Findings.part`.
 
 from __future__ import annotations
 
-import itertools
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -29,13 +28,18 @@ from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.layout_planes import PlaneLayout, check_colours, read_matrix, read_planes
 from eigenfield.gltf.layout_residual import read_residual
 from eigenfield.gltf.layout_sheets import SheetsLayout, check_sheets, read_sheets
+from eigenfield.gltf.source import ByteSource
 from eigenfield.gltf.streams import FEATURES, LATEST, minor
 from eigenfield.gltf.strict_json import Value, quote
 
 _KEYS = {
-    "version", "needs", "mesh", "sheets", "planes", "toRGB", "cameras", "viewPlane", "times", "reference",
+    "version", "needs", "mesh", "sheets", "planes", "toRGB", "cameras", "viewPlane", "reference",
     "residual", "settings", "scores", "generator",
 }  # fmt: skip
+_SEVERAL_INSTANTS = {  # keys and features of files that are no scene of one instant: what they are, and the remedy
+    "timeline": ("is a clip (`timeline`), and a scene is of one instant", "use a later eigenfield"),
+    "times": ("has weights for several instants (`times`), which no version reads", "encode each instant on its own"),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,21 +47,10 @@ class FileLayout:
     """A whole file; a part that could not be read is None (only while validating).
 
     Attributes:
-        version: Of the format.
-        mesh: The proxy.
         mesh_payload: Its stream; None where it is plain.
         sheets: Of the proxy; None: it is one opaque surface.
-        planes: Means and bases.
-        cameras: All of them.
-        view_plane: Through the cameras.
-        triangles: (T, 3) of encoded cameras on it.
-        reference: Index of the reference camera.
+        triangles: (T, 3) of encoded cameras.
         to_rgb: (3, K) from the channels of all planes; None: they are R, G, B.
-        residual: Of captured views.
-        settings: A JSON object.
-        scores: A JSON object.
-        generator: The program that wrote it.
-        times: In seconds.
     """
 
     version: str
@@ -74,7 +67,6 @@ class FileLayout:
     settings: Mapping[str, Any]
     scores: Mapping[str, Any]
     generator: str
-    times: tuple[float, ...]
 
     @property
     def lost(self) -> int:
@@ -82,12 +74,8 @@ class FileLayout:
         return sum(plane.lost for plane in self.planes or ())
 
 
-def open_document(data: bytes) -> Document:
-    """The container and the unpacked JSON of a file of these bytes.
-
-    Raises:
-        FormatError: As `parse_glb`, `find_extension` and `unpack`.
-    """
+def open_document(data: bytes | ByteSource) -> Document:
+    """The container and the unpacked JSON of a file of these bytes."""
     return unpacked_document(parse_glb(data))
 
 
@@ -131,8 +119,7 @@ def read_layout(document: Document, findings: Findings) -> FileLayout | None:
             mesh, mesh_payload = geometry.read_coded_mesh(document, extension["mesh"])
     attempt(lambda: check_sheets(extension["sheets"], sheets, mesh) if extension.has("sheets") else None)
     cameras = attempt(lambda: geometry.read_cameras(document, extension["cameras"]))
-    times = attempt(lambda: read_times(extension)) or (0.0,)
-    planes = attempt(lambda: read_planes(document, extension["planes"], cameras, len(times), findings))
+    planes = attempt(lambda: read_planes(document, extension["planes"], cameras, findings))
     to_rgb = attempt(lambda: read_matrix(extension, planes))
     attempt(lambda: check_colours(extension["cameras"], cameras, planes, to_rgb))
     view_plane = attempt(lambda: geometry.read_view_plane(extension["viewPlane"]))
@@ -149,31 +136,13 @@ def read_layout(document: Document, findings: Findings) -> FileLayout | None:
     attempt(document.check_addresses)
     return FileLayout(
         version, mesh, mesh_payload, sheets, planes, cameras, view_plane, triangles, reference, to_rgb, residual,
-        settings, scores, generator, times,
+        settings, scores, generator,
     )  # fmt: skip
 
 
-def read_times(extension: Value) -> tuple[float, ...]:
-    """The instants of the observations, in seconds; by default one.
-
-    Raises:
-        FormatError: `times`, `json-*`.
-    """
-    if not extension.has("times"):
-        return (0.0,)
-    entry = extension["times"]
-    times = tuple(item.number() for item in entry.items(limits.MAX_TIMES, 1))
-    if any(after <= before for before, after in itertools.pairwise(times)):
-        entry.fail("times", "instants do not follow one another")
-    return times
-
-
 def find_extension(document: Document) -> Value:
-    """Our root extension, of a version and with needs that this reader knows.
-
-    Raises:
-        FormatError: `gltf-version`, `not-a-scene`, `version`, `needs`.
-    """
+    """Our root extension, of a version and with needs that this reader knows. FormatError `gltf-version`,
+    `not-a-scene`, `version`, `needs`, `timeline`, `times`."""
     root = document.root
     asset = root["asset"]["version"]
     if not re.fullmatch(r"2\.\d+", asset.text()):
@@ -187,10 +156,13 @@ def find_extension(document: Document) -> Value:
     if not re.fullmatch(r"1\.\d{1,9}", version.text()):
         message = f"version {quote(version.value)} of {limits.EXTENSION}, 1.x is read here"
         version.fail("version", message, "use a later eigenfield")
-    if extension.has("needs"):
-        for need in extension["needs"].items(limits.MAX_VIEWS):
-            if need.text() not in FEATURES:
-                need.fail("needs", f"needs the unknown feature {quote(need.value)}", "use a later eigenfield")
+    needs = list(extension["needs"].items(limits.MAX_VIEWS)) if extension.has("needs") else []
+    for name, (message, remedy) in _SEVERAL_INSTANTS.items():
+        if extension.has(name) or name in [need.value for need in needs]:
+            extension.fail(name, message, remedy)
+    for need in needs:
+        if need.text() not in FEATURES:
+            need.fail("needs", f"needs the unknown feature {quote(need.value)}", "use a later eigenfield")
     return extension
 
 

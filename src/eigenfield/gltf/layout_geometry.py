@@ -28,11 +28,8 @@ class CameraList:
     """Every camera of a file.
 
     Attributes:
-        names: Of the Nc cameras.
-        cameras: Nc of them.
         held_out: (Nc,) bool.
         colours: (Nc, 2, 3) float32 gains and offsets; None where the file has none.
-        mixed_colours: As of `Appearance`.
         payload: The stream of intrinsics and poses; None where they are plain.
     """
 
@@ -49,11 +46,7 @@ class CameraList:
 
 
 def read_mesh(document: Document) -> Mesh:
-    """The proxy: meshes[0].primitives[0].
-
-    Raises:
-        FormatError: `mesh-*`, `accessor-*`.
-    """
+    """The proxy: meshes[0].primitives[0]. FormatError `mesh-*`, `accessor-*`."""
     primitive = document.root["meshes"].at(0)["primitives"].at(0)
     if primitive.has("mode") and primitive["mode"].integer(0, 6) != 4:
         primitive.fail("mesh-mode", "the primitive does not consist of triangles")
@@ -75,11 +68,8 @@ def read_mesh(document: Document) -> Mesh:
 
 
 def read_coded_mesh(document: Document, entry: Value) -> tuple[Mesh, Payload]:
-    """The proxy itself, where meshes[0] is a coarse one for other viewers, and its stream.
-
-    Raises:
-        FormatError: `coded-*`, `codec-unknown`, `view-*`.
-    """
+    """The proxy itself, where meshes[0] is a coarse one for other viewers, and its stream. FormatError `coded-*`,
+    `codec-unknown`, `view-*`."""
     stream = read_stream(document, entry, "mesh")
     mesh: Mesh = CODECS[stream.codec].decode(stream.data, entry.where)
     if not len(mesh.faces):
@@ -88,11 +78,7 @@ def read_coded_mesh(document: Document, entry: Value) -> tuple[Mesh, Payload]:
 
 
 def read_cameras(document: Document, entry: Value) -> CameraList:
-    """All cameras.
-
-    Raises:
-        FormatError: `camera-*`, `accessor-*`, `coded-*`, `codec-unknown`.
-    """
+    """All cameras. FormatError `camera-*`, `accessor-*`, `coded-*`, `codec-unknown`."""
     names = _read_names(document, entry)
     count = len(names)
     held_out = np.zeros(count, bool)
@@ -213,11 +199,7 @@ def _check_calibration(
 
 
 def read_view_plane(entry: Value) -> ViewPlane:
-    """The plane through the cameras.
-
-    Raises:
-        FormatError: `view-plane`.
-    """
+    """The plane through the cameras. FormatError `view-plane`."""
     origin, right, up = (
         np.array([n.number(limits.MAX_NUMBER) for n in entry[key].items(3, 3)]) for key in ("origin", "right", "up")
     )
@@ -231,11 +213,7 @@ def read_view_plane(entry: Value) -> ViewPlane:
 
 
 def read_triangles(document: Document, entry: Value, cameras: CameraList | None) -> NDArray[np.int32]:
-    """(T, 3) indices of encoded cameras.
-
-    Raises:
-        FormatError: `view-plane-triangles`, `accessor-*`.
-    """
+    """(T, 3) indices of encoded cameras. FormatError `view-plane-triangles`, `accessor-*`."""
     most = limits.MAX_CAMERAS if cameras is None else cameras.encoded
     found: NDArray[Any]
     if entry.has("codedTriangles"):

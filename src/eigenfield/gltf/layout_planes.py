@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.coding import limits
+from eigenfield.coding import limits, stacking
 from eigenfield.coding.codecs import CODECS
-from eigenfield.coding.pictures import stacking
-from eigenfield.coding.pictures.stacking import PICTURES, codec_of
+from eigenfield.coding.stacking import PICTURES, codec_of
 from eigenfield.core.errors import FormatError
 from eigenfield.core.payloads import Affine, Payload, PicturePayload
 from eigenfield.gltf.accessors import FLOAT
@@ -29,13 +28,7 @@ class PictureLayout:
     """A picture in the file.
 
     Attributes:
-        data: The picture file.
-        codec: Its name in `CODECS`.
-        width: Of the array that it decodes to.
-        height: Likewise.
-        channels: Likewise.
         affine: From codes to numbers, per channel (of every texture in it); None: the largest code is 1.
-        where: Its place in the JSON.
         count: Textures in it, one below the other.
         precision: Of a mean, the picture of its precision place by place; None: all alike.
     """
@@ -79,11 +72,9 @@ class BasisLayout:
 
     Attributes:
         size: (width, height) of the textures.
-        textures: Their pictures, by rank.
+        textures: By rank.
         weights: (Ne, N) float32.
-        grid: (rows, columns) of which they are a part; None: all of it.
-        corner: Row and column in it.
-        payload: The coded weights; None where they are plain.
+        grid: (rows, columns) of which they are a part, which begins at `corner`, a row and a column; None: all of it.
         lost: Textures behind the end of a file that is cut off.
     """
 
@@ -105,7 +96,6 @@ class PlaneLayout:
     """A plane in the file.
 
     Attributes:
-        mean: Its picture.
         bases: Those of which something is left.
         lost: Textures of all bases behind the end of the file.
     """
@@ -116,21 +106,17 @@ class PlaneLayout:
 
 
 def read_planes(
-    document: Document, entry: Value, cameras: CameraList | None, times: int, findings: Findings
+    document: Document, entry: Value, cameras: CameraList | None, findings: Findings
 ) -> tuple[PlaneLayout, ...]:
     """All planes.
 
     Args:
-        document: The file.
-        entry: The JSON array.
         cameras: None only while validating a file whose cameras are damaged.
-        times: Number of instants.
-        findings: Notes what is lost.
 
     Raises:
         FormatError: `plane-*`, `decoded-size`, `weights-*`, `picture-*`, `codec-unknown`, `view-*`.
     """
-    rows = 0 if cameras is None else cameras.encoded * times
+    rows = 0 if cameras is None else cameras.encoded
     entries = enumerate(entry.items(limits.MAX_PLANES, 1))
     planes = tuple(_read_plane(document, plane, index, rows, findings) for index, plane in entries)
     count = sum(basis.count for plane in planes for basis in plane.bases)
@@ -253,12 +239,8 @@ def read_picture(
     """A picture that stands at a place of `streams.PLACES`.
 
     Args:
-        document: The file.
-        entry: Its JSON.
         place: Of an opacity there is no `scale` and `zero`.
-        size: Width and height as announced.
-        channels: Likewise.
-        count: Of textures in it.
+        size: Width and height as announced, as are channels and the count of textures in it.
 
     Raises:
         FormatError: `picture-*`, `codec-unknown`, `view-*`, `json-*`.
@@ -309,11 +291,7 @@ def _affine(entry: Value, channels: int, count: int) -> NDArray[np.float64]:
 
 
 def read_matrix(entry: Value, planes: tuple[PlaneLayout, ...] | None) -> NDArray[np.float32] | None:
-    """(3, K) float32: R, G, B from the channels of all planes.
-
-    Raises:
-        FormatError: `plane-matrix`.
-    """
+    """(3, K) float32: R, G, B from the channels of all planes. FormatError `plane-matrix`."""
     if not entry.has("toRGB"):
         return None
     channels = 0 if planes is None else sum(plane.mean.channels for plane in planes)
@@ -327,11 +305,7 @@ def read_matrix(entry: Value, planes: tuple[PlaneLayout, ...] | None) -> NDArray
 def check_colours(
     entry: Value, cameras: CameraList | None, planes: tuple[PlaneLayout, ...] | None, to_rgb: NDArray[np.float32] | None
 ) -> None:
-    """Check that colours of cameras are those of R, G and B.
-
-    Raises:
-        FormatError: `camera-colour`.
-    """
+    """Check that colours of cameras are those of R, G and B. FormatError `camera-colour`."""
     if cameras is None or cameras.colours is None or not planes or to_rgb is not None:
         return
     if planes[0].mean.channels != 3:

@@ -22,11 +22,8 @@ from eigenfield.gltf.strict_json import Value
 def read_residual(
     document: Document, extension: Value, cameras: CameraList | None, findings: Findings
 ) -> Residual | None:
-    """The residual, its video not decoded; None where there is none, or where the file is cut off in it.
-
-    Raises:
-        FormatError: `residual-*`, `codec-unknown`, `view-*`, `accessor-*`, `json-*`.
-    """
+    """The residual, its video not decoded; None where there is none, or where the file is cut off in it. FormatError
+    `residual-*`, `codec-unknown`, `view-*`, `accessor-*`, `json-*`."""
     if not extension.has("residual"):
         return None
     entry = extension["residual"]
@@ -58,10 +55,6 @@ def read_residual(
 
 
 def residual_frames(residual: Residual) -> Iterator[Planes]:
-    """The frames of a residual, in its order.
-
-    Raises:
-        FormatError: `residual-damaged`.
-    """
+    """The frames of a residual, in its order. FormatError `residual-damaged`."""
     where = f"/extensions/{limits.EXTENSION}/residual"
-    return CODECS[residual.codec].decode(residual.video, residual.frame, len(residual.order), where)
+    return CODECS[residual.codec].decode(residual.video, residual.frame, len(residual.order), where, "residual")

@@ -21,7 +21,6 @@ class SheetsLayout:
 
     Attributes:
         faces: Number of faces of each, back to front.
-        opacity: Its picture.
     """
 
     faces: tuple[int, ...]
@@ -33,22 +32,15 @@ class SheetsLayout:
 
 
 def read_sheets(document: Document, entry: Value) -> SheetsLayout:
-    """The sheets, not compared with the mesh yet.
-
-    Raises:
-        FormatError: `picture-*`, `codec-unknown`, `view-*`, `json-*`.
-    """
+    """The sheets, not compared with the mesh yet. FormatError `picture-*`, `codec-unknown`, `view-*`, `json-*`."""
     faces = tuple(item.integer(1, limits.MAX_TRIANGLES) for item in entry["faces"].items(limits.MAX_SHEETS, 1))
     opacity = entry["opacity"]
     return SheetsLayout(faces, read_picture(document, opacity, "opacity", read_size(opacity["size"], 1), 1, 1))
 
 
 def check_sheets(entry: Value, sheets: SheetsLayout | None, mesh: Mesh | None) -> None:
-    """Check that the sheets divide the mesh. None: only while validating a damaged file.
-
-    Raises:
-        FormatError: `sheets-faces`, `sheets-vertex`.
-    """
+    """Check that the sheets divide the mesh. None: only while validating a damaged file. FormatError `sheets-faces`,
+    `sheets-vertex`."""
     if sheets is None or mesh is None:
         return
     if sum(sheets.faces) != len(mesh.faces):

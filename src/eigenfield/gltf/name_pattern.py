@@ -42,11 +42,7 @@ def _columns(names: Sequence[str], number: re.Pattern[str]) -> list[list[str]] |
 
 
 def read_pattern(entry: Value) -> list[str]:
-    """The names of a pattern.
-
-    Raises:
-        FormatError: `json-*`.
-    """
+    """The names of a pattern. FormatError `json-*`."""
     rows, columns = (item.integer(1, limits.MAX_CAMERAS) for item in entry["counts"].items(2, 2))
     if rows * columns > limits.MAX_CAMERAS:
         entry["counts"].fail("json-value", f"{rows * columns} names, {limits.MAX_CAMERAS} are allowed")

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -16,7 +16,7 @@ from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError, OutputError
 from eigenfield.gltf import strict_json
 from eigenfield.gltf.buffer import Buffer
-from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, Glb, file_head, json_bytes
+from eigenfield.gltf.container import BINARY_CHUNK, Glb, glb_blocks, json_bytes
 from eigenfield.gltf.document import BufferView, Document
 from eigenfield.gltf.strict_json import Value
 
@@ -50,15 +50,8 @@ DICTIONARY = (
 
 
 def pack(extension: Mapping[str, Any], streams: Sequence[bytes]) -> bytes:
-    """The bytes of the buffer view that `packed` names.
-
-    Args:
-        extension: What is packed of the root extension.
-        streams: Its streams.
-
-    Raises:
-        OutputError: `scene-limit`, more JSON than is read.
-    """
+    """The bytes of the buffer view that `packed` names: this part of the root extension, and its streams. OutputError
+    `scene-limit`, more JSON than is read."""
     text = json_bytes({**extension, "lengths": list(map(len, streams))}).rstrip(b" ")
     if len(text) > limits.MAX_JSON:
         message = f"{len(text)} bytes of JSON, {limits.MAX_JSON} are allowed"
@@ -78,10 +71,7 @@ def write(extension: Mapping[str, Any], buffer: Buffer) -> int:
 
 def unpack(glb: Glb) -> Glb:
     """The container with the JSON that a plain file would have, over the same binary chunk; itself if it is plain.
-
-    Raises:
-        FormatError: `json-*`, `view-*`, `truncated`, `coded-size`, `coded-damaged`.
-    """
+    FormatError `json-*`, `view-*`, `truncated`, `coded-size`, `coded-damaged`."""
     if not is_packed(glb):
         return glb
     index = _index(glb)
@@ -95,11 +85,10 @@ def unpack(glb: Glb) -> Glb:
     return replace(glb, json={**glb.json, "bufferViews": views, "extensions": extensions})
 
 
-def repack(glb: Glb, extension: Mapping[str, Any], residual: bool = True) -> bytes:
-    """The file of a packed container with another extension.
+def repack(glb: Glb, extension: Mapping[str, Any], residual: bool = True) -> Iterator[bytes | memoryview]:
+    """The blocks of a packed container's file with another extension. Chunks behind the binary one are copied.
 
     Args:
-        glb: As it was read.
         extension: That of the unpacked container, changed.
         residual: Whether the last stream stays.
     """
@@ -107,14 +96,12 @@ def repack(glb: Glb, extension: Mapping[str, Any], residual: bool = True) -> byt
     streams = _read(glb, index)[1]
     plain = glb.json["extensions"][limits.EXTENSION]
     inner = {key: value for key, value in extension.items() if key != "version"}
-    kept = [bytes(glb.binary[one.offset : one.end]) for one in (streams if residual else streams[:-1])]
+    kept = [bytes(glb.binary.data[one.offset : one.end]) for one in (streams if residual else streams[:-1])]
     start, data = Document(glb).view_at(index).offset, pack(inner, kept)
-    length = start + len(data)
     views = [*glb.json["bufferViews"][:-1], {**glb.json["bufferViews"][-1], "byteLength": len(data)}]
-    made = {**glb.json, "bufferViews": views, "buffers": [{"byteLength": length}]}
+    made = {**glb.json, "bufferViews": views, "buffers": [{"byteLength": start + len(data)}]}
     made["extensions"] = {**made["extensions"], limits.EXTENSION: plain}
-    binary = bytes(glb.binary[:start]) + data + bytes(-length % 4)
-    return file_head(json_bytes(made), CHUNK.size + len(binary), None) + CHUNK.pack(len(binary), BINARY_CHUNK) + binary
+    return glb_blocks(json_bytes(made), bytes(glb.binary.data[:start]) + data, behind=glb.behind(BINARY_CHUNK))
 
 
 _WHERE = f"/extensions/{limits.EXTENSION}/{FEATURE}"
@@ -137,18 +124,18 @@ def _index(glb: Glb) -> int:
 
 def _read(glb: Glb, index: int) -> tuple[dict[str, Any], list[BufferView]]:
     """The packed part of the extension, and where its streams lie."""
-    view, available = Document(glb).view_at(index), len(glb.binary)
+    view, available = Document(glb).view_at(index), glb.binary.size
     start = view.offset + HEAD.size
     if start > view.end:
         raise FormatError("coded-size", f"{view.length} bytes have no length", where=_WHERE)
     if start > available:
         raise glb.cut_off()
-    end = start + HEAD.unpack_from(glb.binary, view.offset)[0]
+    end = start + HEAD.unpack(glb.binary.data[view.offset : start])[0]
     if end > view.end:
         raise FormatError("coded-size", f"the JSON ends at byte {end} of {view.end}", where=_WHERE)
     if end > available:
         raise glb.cut_off()
-    inner = Value(strict_json.parse(_inflated(glb.binary[start:end]), _WHERE), _WHERE)
+    inner = Value(strict_json.parse(_inflated(glb.binary.data[start:end]), _WHERE), _WHERE)
     streams: list[BufferView] = []
     at = end
     for item in inner["lengths"].items(limits.MAX_VIEWS):

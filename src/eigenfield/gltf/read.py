@@ -30,13 +30,13 @@ from eigenfield.core.payloads import (
 from eigenfield.core.proxy import Proxy, Sheets
 from eigenfield.core.rig import Rig
 from eigenfield.core.scene import Scene
-from eigenfield.gltf.container import read_file
 from eigenfield.gltf.document import Document
 from eigenfield.gltf.findings import Finding, Findings
 from eigenfield.gltf.layout import FileLayout, open_document, read_layout
 from eigenfield.gltf.layout_geometry import read_mesh
 from eigenfield.gltf.layout_planes import BasisLayout, PlaneLayout, read_image
 from eigenfield.gltf.layout_residual import residual_frames
+from eigenfield.gltf.source import ByteSource, open_source, read_file
 from eigenfield.gltf.streams import streams
 from eigenfield.runtime.parallel import parallel_map
 
@@ -56,12 +56,8 @@ def name_file_in_errors(path: str | os.PathLike[str]) -> Iterator[None]:
         raise FormatError("memory", message, path=path, remedy=remedy) from error
 
 
-def layout_of(data: bytes) -> tuple[Document, FileLayout]:
-    """Container and checked layout of a file of these bytes, pictures not decoded.
-
-    Raises:
-        FormatError: As `load`.
-    """
+def layout_of(data: bytes | ByteSource) -> tuple[Document, FileLayout]:
+    """Container and checked layout of a file of these bytes, pictures not decoded."""
     document = open_document(data)
     layout = read_layout(document, Findings(strict=True))
     assert layout is not None
@@ -78,41 +74,29 @@ def load(path: str | os.PathLike[str]) -> Scene:
         FormatError: With a stable `code`, and `where`, for anything that is not as docs/format.md specifies; the
             content of a file never raises another exception.
     """
-    with name_file_in_errors(path):
-        return read_scene(read_file(Path(path)))
+    with name_file_in_errors(path), open_source(Path(path)) as source:
+        return read_scene(source)
 
 
 def as_scene(scene: Scene | str | os.PathLike[str]) -> Scene:
-    """The scene itself, or what `load` reads from its file.
-
-    Raises:
-        FormatError: As `load`.
-    """
+    """The scene itself, or what `load` reads from its file, with its errors."""
     return scene if isinstance(scene, Scene) else load(scene)
 
 
-def read_scene(data: bytes) -> Scene:
-    """The scene in a file of these bytes.
-
-    Raises:
-        FormatError: As `load`.
-    """
+def read_scene(data: bytes | ByteSource) -> Scene:
+    """The scene in a file of these bytes, with the errors of `load`."""
     return _scene_of(data, pictures=True)
 
 
 def outline(path: str | os.PathLike[str]) -> tuple[Scene, bytes]:
     """A scene without its planes and sheets, and the bytes of its file: checked as `load` does, but no picture is
-    decoded.
-
-    Raises:
-        FormatError: As `load`.
-    """
+    decoded."""
     with name_file_in_errors(path):
         data = read_file(Path(path))
         return _scene_of(data, pictures=False), data
 
 
-def _scene_of(data: bytes, pictures: bool) -> Scene:
+def _scene_of(data: bytes | ByteSource, pictures: bool) -> Scene:
     document, layout = layout_of(data)
     bases = [basis for plane in layout.planes or () for basis in plane.bases]
     if layout.lost:
@@ -162,7 +146,6 @@ def _scene(
         scores=layout.scores,
         generator=layout.generator,
         residual=layout.residual,
-        times=layout.times,
         payloads=payloads,
     )
 
@@ -213,8 +196,8 @@ def validate(path: str | os.PathLike[str]) -> list[Finding]:
     picture and the nodes for other viewers, buffer views without use. The content of a file never raises.
     """
     findings = Findings(strict=False)
-    with findings.part(), name_file_in_errors(path):
-        document = open_document(read_file(Path(path)))
+    with findings.part(), name_file_in_errors(path), open_source(Path(path)) as source:
+        document = open_document(source)
         layout = read_layout(document, findings)
         if layout is not None:
             _check_pictures(layout, findings)

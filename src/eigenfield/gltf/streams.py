@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from eigenfield.coding import limits
 from eigenfield.coding.codecs import CODECS
-from eigenfield.coding.pictures.stacking import PICTURES, codec_of
+from eigenfield.coding.stacking import PICTURES, codec_of
 from eigenfield.core.errors import FormatError
 from eigenfield.core.payloads import Payload
 from eigenfield.gltf.document import Document
@@ -21,7 +21,6 @@ class Place:
 
     Attributes:
         path: From the extension, `*` for every entry of an array.
-        kind: Of its codecs.
         codec: Unless the object has a `codec`; None: by the `mimeType` and the `bits` of a picture.
         part: The part of the file that its bytes count to (`contents.parts`).
         bare: Whether the index of the buffer view may stand there alone.
@@ -45,11 +44,11 @@ PLACES = {
     "precision": Place("planes/*/mean/precision", "picture", "png", "mean"),
     "textures": Place("planes/*/bases/*/textures/*", "picture", None, "textures"),
     "weights": Place("planes/*/bases/*/codedWeights", "weights", "weights-1", "weights", bare=True),
-    "residual": Place("residual", "residual", "video-1", "residual"),
+    "residual": Place("residual", "video", "video-1", "residual"),
 }
 OTHER_FEATURES = {  # what `needs` may name beside the needs of codecs, and the version that brought it
     "namePattern": "1.2", "noFallback": "1.10", "packed": "1.8", "precision": "1.4", "regions": "1.2",
-    "sharedPicture": "1.2", "sheets": "1.9", "stacks": "1.2", "times": "1.7", "toRGB": "1.2",
+    "sharedPicture": "1.2", "sheets": "1.9", "stacks": "1.2", "toRGB": "1.2",
 }  # fmt: skip
 FEATURES = OTHER_FEATURES | {codec.needs: codec.since for codec in CODECS.values() if codec.needs is not None}
 
@@ -75,11 +74,8 @@ def _reference(entry: Value, place: Place) -> Value:
 
 
 def codec_named(entry: Value, place: str) -> str | None:
-    """The codec that a stream names, else its place's.
-
-    Raises:
-        FormatError: `codec-unknown`, it is not known, or not for such streams.
-    """
+    """The codec that a stream names, else its place's. FormatError `codec-unknown`, it is not known, or not for such
+    streams."""
     if not isinstance(entry.value, dict) or not entry.has("codec"):
         return PLACES[place].codec
     name, kind = entry["codec"].text(), PLACES[place].kind
@@ -90,11 +86,7 @@ def codec_named(entry: Value, place: str) -> str | None:
 
 
 def read_stream(document: Document, entry: Value, place: str) -> Payload:
-    """The stream of an entry, not decoded.
-
-    Raises:
-        FormatError: `codec-unknown`, `view-*`, `truncated`.
-    """
+    """The stream of an entry, not decoded. FormatError `codec-unknown`, `view-*`, `truncated`."""
     codec = codec_named(entry, place)
     assert codec is not None
     return Payload(codec, bytes(document.data(_reference(entry, PLACES[place]))))

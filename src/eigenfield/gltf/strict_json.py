@@ -27,8 +27,7 @@ def parse(data: bytes, where: str | None = None, *, finite: bool = True) -> Any:
     Raises:
         FormatError: `json-size`, `json-invalid`, `json-depth`.
     """
-    if len(data) > limits.MAX_JSON:
-        raise FormatError("json-size", f"{len(data)} bytes of JSON, {limits.MAX_JSON} are allowed", where=where)
+    check_size(len(data), where)
 
     def refuse(text: str) -> NoReturn:
         raise FormatError("json-invalid", f"{text} is not JSON", where=where)
@@ -60,6 +59,12 @@ def parse(data: bytes, where: str | None = None, *, finite: bool = True) -> Any:
         raise FormatError("json-depth", f"nested more than {limits.MAX_DEPTH} deep", where=where) from error
     _check_depth_and_text(value, where)
     return value
+
+
+def check_size(size: int, where: str | None) -> None:
+    """Refuse more bytes of JSON than are read: `json-size`."""
+    if size > limits.MAX_JSON:
+        raise FormatError("json-size", f"{size} bytes of JSON, {limits.MAX_JSON} are allowed", where=where)
 
 
 def _check_depth_and_text(value: Any, where: str | None) -> None:
@@ -95,7 +100,6 @@ class Value:
     """A value of the JSON. Every getter raises FormatError `json-type` or `json-value`.
 
     Attributes:
-        value: As parsed.
         where: Its JSON pointer.
     """
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from eigenfield.coding import limits
-from eigenfield.coding.pictures.stacking import picture_size
+from eigenfield.coding.stacking import picture_size
 from eigenfield.core.errors import FormatError, OutputError
 from eigenfield.core.scene import Scene
 from eigenfield.gltf.strict_json import is_printable

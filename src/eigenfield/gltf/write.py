@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from eigenfield.coding import limits
 from eigenfield.coding.codecs import CODECS
-from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, PICTURES, check_codec, dimensions
+from eigenfield.coding.stacking import DEFAULT_CODEC, PICTURES, check_codec, dimensions
 from eigenfield.core.appearance import Plane
 from eigenfield.core.arguments import checked
 from eigenfield.core.errors import OptionError, OutputError
@@ -30,11 +30,12 @@ from eigenfield.gltf.accessors import FLOAT, UINT16, UINT32
 from eigenfield.gltf.buffer import Buffer
 from eigenfield.gltf.cached import CachedPayloads, cached_payloads
 from eigenfield.gltf.coded_pictures import PlanePictures, ScenePictures, code_pictures, shortest_decimals, shown_mean
-from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, Glb, file_head, json_bytes
+from eigenfield.gltf.container import BINARY_CHUNK, Glb, glb_blocks, json_bytes
 from eigenfield.gltf.fallback import make_fallback, with_fallback
 from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.layout import read_layout, unpacked_document
 from eigenfield.gltf.read import as_scene
+from eigenfield.gltf.source import ByteRange, HeldBytes
 from eigenfield.gltf.streams import FEATURES, codec_entry, minor
 from eigenfield.gltf.writable import check_writable
 from eigenfield.gltf.write_geometry import (
@@ -105,10 +106,6 @@ def save(
 def refuse_output(path: Path, overwrite: bool) -> None:
     """Before any work: check that a scene may be written.
 
-    Args:
-        path: Of the .glb.
-        overwrite: Whether an existing file may be replaced.
-
     Raises:
         OptionError: `output-kind`: its name does not end in .glb.
         OutputError: It may not or cannot be written.
@@ -128,7 +125,7 @@ def encode_scene(
 
 def _blocks(
     scene: Scene, codec: str | None, quality: int | None, progress: Progress | None, path: Path | None
-) -> tuple[list[bytes], dict[str, tuple[int, int]]]:
+) -> tuple[Iterable[bytes | memoryview], dict[str, tuple[int, int]]]:
     """The pieces of the file; and of each part that was coded anew since it has changed, its bytes now and before."""
     if codec is None and quality is not None:
         codec = DEFAULT_CODEC
@@ -142,12 +139,12 @@ def _blocks(
     if len(text) > limits.MAX_JSON:
         message = f"{len(text)} bytes of JSON, {limits.MAX_JSON} are allowed"
         raise OutputError("scene-limit", message, path=path, remedy="store less in it")
-    head = file_head(text, CHUNK.size + buffer.length, path)
     binary = b"".join(buffer.parts)
+    blocks = glb_blocks(text, binary, path)
     check_readable(text, binary)
     sizes = _plain_sizes(scene) | (coded.sizes if codec is None else {})
     anew = {part: (sizes[part], before) for part, before in cached.lost.items() if part in sizes}
-    return [head, CHUNK.pack(buffer.length, BINARY_CHUNK), binary], anew
+    return blocks, anew
 
 
 def _packs(scene: Scene, cached: CachedPayloads) -> bool:
@@ -163,7 +160,8 @@ def check_readable(text: bytes, binary: bytes) -> None:
     Raises:
         FormatError: That of `load`.
     """
-    written = Glb(strict_json.parse(text, "byte 20"), memoryview(binary), len(text) + len(binary), len(text))
+    source = HeldBytes(binary)
+    written = Glb(strict_json.parse(text, "byte 20"), source, {BINARY_CHUNK: ByteRange(source, 0, len(binary))})
     read_layout(unpacked_document(written), Findings(strict=True))
 
 
@@ -216,7 +214,6 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayl
         **({} if scene.appearance.to_rgb is None else {"toRGB": shortest_decimals(scene.appearance.to_rgb.ravel())}),
         "cameras": cameras,
         "viewPlane": view_plane,
-        **({} if scene.times == (0.0,) else {"times": list(scene.times)}),
         "reference": int(scene.rig.reference),
         **({"settings": dict(scene.settings)} if scene.settings else {}),
         **({"scores": dict(scene.scores)} if scene.scores else {}),
@@ -412,7 +409,6 @@ def _needs(
         "sharedPicture": any("picture" in basis for plane in planes for basis in plane["bases"]),
         "sheets": scene.proxy.sheets is not None,
         "stacks": any(picture.count != 1 for picture in pictures),
-        "times": len(scene.times) != 1,
         "toRGB": scene.appearance.to_rgb is not None,
     }
     own = {CODECS[codec].needs for codec in codecs}

@@ -31,8 +31,6 @@ def write_primitive(mesh: Mesh, buffer: Buffer, small: bool) -> dict[str, Any]:
     """A mesh with texture coordinates.
 
     Args:
-        mesh: To be written.
-        buffer: Takes its arrays.
         small: Whether indices may have 8 bits, which other viewers read but need not be quick at.
     """
     assert mesh.uv is not None
@@ -52,23 +50,13 @@ def bounds_of(vertices: NDArray[np.float32]) -> dict[str, list[float]]:
 
 
 def index_type(mesh: Mesh, small: bool) -> int:
-    """The smallest type of indices. The largest index of a type restarts a primitive and may not be used.
-
-    Args:
-        mesh: Whose indices they are.
-        small: As of `write_primitive`.
-    """
+    """The smallest type of indices, with `small` of 8 bits too. The largest index of a type restarts a primitive and
+    may not be used."""
     return UINT8 if small and len(mesh.vertices) < 256 else UINT16 if len(mesh.vertices) < 65_536 else UINT32
 
 
 def write_stream(payload: Payload, place: str, buffer: Buffer) -> Any:
-    """The entry of a stream: its buffer view, and its codec unless it is the default.
-
-    Args:
-        payload: The stream.
-        place: What it codes, see `PLACES`.
-        buffer: Takes it.
-    """
+    """The entry of a stream at a place of `PLACES`: its buffer view, and its codec unless it is the default."""
     index, named = buffer.stream(payload, place), codec_entry(payload.codec, place)
     return index if PLACES[place].bare and not named else {"bufferView": index, **named}
 
@@ -77,8 +65,6 @@ def write_cameras(scene: Scene, buffer: Buffer, stream: Payload | None) -> dict[
     """Names, sizes, matrices and colours of all cameras.
 
     Args:
-        scene: Whose cameras they are.
-        buffer: Takes their arrays.
         stream: The coded matrices; None: they are plain.
     """
     sizes = np.array([[c.width, c.height] for c in scene.rig.cameras])
@@ -136,8 +122,6 @@ def write_view_plane(scene: Scene, buffer: Buffer, short: bool) -> dict[str, Any
     """The view plane and the triangles of the encoded cameras on it.
 
     Args:
-        scene: Whose view plane it is.
-        buffer: Takes the triangles.
         short: Whether the triangles may be coded, which readers of 1.1 do not know.
     """
     plane = scene.rig.view_plane
@@ -167,12 +151,8 @@ def _rounded(numbers: NDArray[np.float64], unit: float, digits: int = NODE_DIGIT
 
 
 def write_nodes(scene: Scene, digits: int) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    """The perspective of the reference camera for other viewers; the nodes of the mesh and of that camera.
-
-    Args:
-        scene: To be written.
-        digits: Of their numbers.
-    """
+    """The perspective of the reference camera for other viewers; the nodes of the mesh and of that camera, in numbers
+    of so many digits."""
     camera = scene.rig.cameras[scene.rig.reference]
     turn = capture_to_gltf(scene.rig.view_plane)
     perspective, axes = opening_view(camera, scene.proxy.mesh)

@@ -12,7 +12,6 @@ meanwhile, so that cameras would be measured one after another. It has no wheels
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -22,41 +21,17 @@ from eigenfield.imaging.colour import linear_of_srgb
 from eigenfield.imaging.metrics import PictureArray, bounding_slices, code_pair
 from eigenfield.runtime.parallel import pieces
 
-
-@dataclass(frozen=True)
-class FlipTuning:
-    """Constants of FLIP, with the symbols of the paper.
-
-    A contrast filter is a sum of terms a √(π/b) exp(-π² x² / b), x in degrees.
-
-    Attributes:
-        pixels_per_degree: The authors' default, rounded: 3840 pixels on 0.7 m, seen from 0.7 m.
-        band_rows: Rows processed at a time: the temporary pictures stay in the cache.
-        luminance: (a, b) of each term of the contrast filter.
-        red_green: Likewise.
-        blue_yellow: Likewise.
-        min_gaussian_ratio: Height of a Gaussian, to its peak, at which its kernel ends, unless it ends before at the
-            authors' radius.
-        colour_power: q_c.
-        knee_difference_fraction: p_c, of the greatest colour difference.
-        knee_error_fraction: p_t, the error at p_c, of the greatest error.
-        detector_degrees: w, the width of edge and point detectors.
-    """
-
-    pixels_per_degree: float = 67.0
-    band_rows: int = 128
-    luminance: tuple[tuple[float, float], ...] = ((1.0, 0.0047),)
-    red_green: tuple[tuple[float, float], ...] = ((1.0, 0.0053),)
-    blue_yellow: tuple[tuple[float, float], ...] = ((34.1, 0.04), (13.5, 0.025))
-    min_gaussian_ratio: float = 1e-7
-    colour_power: float = 0.7
-    knee_difference_fraction: float = 0.4
-    knee_error_fraction: float = 0.95
-    detector_degrees: float = 0.082
-
-
-FLIP_TUNING = FlipTuning()
-
+# With the symbols of the paper. A contrast filter is a sum of terms a √(π/b) exp(-π² x² / b), x in degrees: here (a, b)
+FLIP_PIXELS_PER_DEGREE = 67.0  # the authors' default, rounded: 3840 pixels on 0.7 m, seen from 0.7 m
+FLIP_BAND_ROWS = 128  # processed at a time: the temporary pictures stay in the cache
+FLIP_LUMINANCE = ((1.0, 0.0047),)
+FLIP_RED_GREEN = ((1.0, 0.0053),)
+FLIP_BLUE_YELLOW = ((34.1, 0.04), (13.5, 0.025))
+FLIP_MIN_GAUSSIAN_RATIO = 1e-7  # of its peak, at which a Gaussian's kernel ends, unless at the authors' radius before
+FLIP_COLOUR_POWER = 0.7  # q_c
+FLIP_KNEE_DIFFERENCE_FRACTION = 0.4  # p_c, of the greatest colour difference
+FLIP_KNEE_ERROR_FRACTION = 0.95  # p_t, the error at p_c, of the greatest error
+FLIP_DETECTOR_DEGREES = 0.082  # w, the width of edge and point detectors
 FLIP_RGB_TO_XYZ = np.array(
     [
         [10135552 / 24577794, 8788810 / 24577794, 4435075 / 24577794],
@@ -106,7 +81,7 @@ def _map_region(a: NDArray[np.uint8], b: NDArray[np.uint8], rows: slice, columns
     height, width = a.shape[:2]
     made = np.empty((rows.stop - rows.start, columns.stop - columns.start), np.float32)
     left, right = max(columns.start - FLIP_MARGIN_PIXELS, 0), min(columns.stop + FLIP_MARGIN_PIXELS, width)
-    for start, stop in pieces(len(made), FLIP_TUNING.band_rows):
+    for start, stop in pieces(len(made), FLIP_BAND_ROWS):
         first, last = rows.start + start, rows.start + stop
         top, bottom = max(first - FLIP_MARGIN_PIXELS, 0), min(last + FLIP_MARGIN_PIXELS, height)
         part = _difference(a[top:bottom, left:right], b[top:bottom, left:right])
@@ -155,8 +130,8 @@ def _colour_difference(a: list[Channel], b: list[Channel]) -> Channel:
     """HyAB, a city-block step in lightness and a straight one in colour, to the power q_c and scaled to 0..1: most of
     the scale is for small differences."""
     difference = _hyab(a, b)
-    difference = np.asarray(cv2.pow(difference, FLIP_TUNING.colour_power), np.float32)
-    knee, error = FLIP_TUNING.knee_difference_fraction * FLIP_MAX_COLOUR_DIFFERENCE, FLIP_TUNING.knee_error_fraction
+    difference = np.asarray(cv2.pow(difference, FLIP_COLOUR_POWER), np.float32)
+    knee, error = FLIP_KNEE_DIFFERENCE_FRACTION * FLIP_MAX_COLOUR_DIFFERENCE, FLIP_KNEE_ERROR_FRACTION
     above = difference * np.float32((1 - error) / (FLIP_MAX_COLOUR_DIFFERENCE - knee))
     above += np.float32(error - knee * (1 - error) / (FLIP_MAX_COLOUR_DIFFERENCE - knee))
     difference *= np.float32(error / knee)
@@ -201,10 +176,10 @@ def _make_gaussians(terms: tuple[tuple[float, float], ...], radius: int) -> list
     """Each Gaussian of a contrast filter as a kernel of sum 1 and its share of the whole, on pixels up to `radius`."""
     made = []
     for a, b in terms:
-        degrees = np.arange(-radius, radius + 1) / FLIP_TUNING.pixels_per_degree
+        degrees = np.arange(-radius, radius + 1) / FLIP_PIXELS_PER_DEGREE
         shape = np.exp(-((np.pi * degrees) ** 2) / b)
         volume = a * math.sqrt(math.pi / b) * shape.sum() ** 2
-        kept = shape[shape > FLIP_TUNING.min_gaussian_ratio]
+        kept = shape[shape > FLIP_MIN_GAUSSIAN_RATIO]
         made.append((volume, (kept / kept.sum()).astype(np.float32)))
     whole = sum(volume for volume, _ in made)
     return [(volume / whole, kernel) for volume, kernel in made]
@@ -212,7 +187,7 @@ def _make_gaussians(terms: tuple[tuple[float, float], ...], radius: int) -> list
 
 def _make_detectors() -> tuple[FilterKernel, FilterKernel, FilterKernel]:
     """A Gaussian of sum 1, and its first and second derivative, positive and negative values of sum 1 each."""
-    sigma = 0.5 * FLIP_TUNING.detector_degrees * FLIP_TUNING.pixels_per_degree
+    sigma = 0.5 * FLIP_DETECTOR_DEGREES * FLIP_PIXELS_PER_DEGREE
     radius = math.ceil(3 * sigma)
     x = np.arange(-radius, radius + 1)
     shape = np.exp(-(x**2) / (2 * sigma**2))
@@ -227,15 +202,12 @@ def _make_detectors() -> tuple[FilterKernel, FilterKernel, FilterKernel]:
 def _max_colour_difference() -> float:
     """The greatest colour difference there is, of pure green and pure blue, to the power q_c."""
     green, blue = (_hunt_lab((FLIP_RGB_TO_WHITE @ axis)[None, None].astype(np.float32)) for axis in np.eye(3)[1:])
-    return float(_hyab(green, blue).item() ** FLIP_TUNING.colour_power)
+    return float(_hyab(green, blue).item() ** FLIP_COLOUR_POWER)
 
 
-FLIP_RADIUS_PIXELS = math.ceil(
-    3 * FLIP_TUNING.pixels_per_degree * math.sqrt(FLIP_TUNING.blue_yellow[0][1] / (2 * math.pi**2))
-)
+FLIP_RADIUS_PIXELS = math.ceil(3 * FLIP_PIXELS_PER_DEGREE * math.sqrt(FLIP_BLUE_YELLOW[0][1] / (2 * math.pi**2)))
 FLIP_LUMINANCE_FILTER, FLIP_RED_GREEN_FILTER, FLIP_BLUE_YELLOW_FILTER = (
-    _make_gaussians(terms, FLIP_RADIUS_PIXELS)
-    for terms in (FLIP_TUNING.luminance, FLIP_TUNING.red_green, FLIP_TUNING.blue_yellow)
+    _make_gaussians(terms, FLIP_RADIUS_PIXELS) for terms in (FLIP_LUMINANCE, FLIP_RED_GREEN, FLIP_BLUE_YELLOW)
 )
 FLIP_DETECTOR_SMOOTH, FLIP_EDGE_DETECTOR, FLIP_POINT_DETECTOR = _make_detectors()
 FLIP_MARGIN_PIXELS = max(FLIP_RADIUS_PIXELS, len(FLIP_DETECTOR_SMOOTH) // 2)

@@ -13,12 +13,7 @@ Indices = NDArray[np.signedinteger[Any]]
 
 
 def components(count: int, one: Indices, other: Indices) -> NDArray[np.int32]:
-    """The connected components of an undirected graph.
-
-    Args:
-        count: Number of nodes.
-        one: (n,) first node of each link.
-        other: (n,) its second node.
+    """The connected components of an undirected graph, by the first and second node of each link.
 
     Returns:
         (count,) the component of each node, numbered from 0 in the order of their first nodes.

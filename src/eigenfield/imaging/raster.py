@@ -46,12 +46,7 @@ class Raster:
     edges: NDArray[np.float64]
 
     def corner_shares(self, row: NDArray[np.intp], column: NDArray[np.intp]) -> NDArray[np.float64]:
-        """(n, 3) barycentric coordinates of pixel centres in the triangles that are there.
-
-        Args:
-            row: (n,) of pixels with a triangle.
-            column: (n,) likewise.
-        """
+        """(n, 3) barycentric coordinates of pixel centres in the triangles that are there: each has one."""
         at = np.stack([column + 0.5, row + 0.5, np.ones(len(row))], axis=1)
         over_depth = np.einsum("nkx,nx->nk", self.edges[self.face[row, column]], at)
         return np.asarray(over_depth / over_depth.sum(axis=1, keepdims=True))
@@ -67,8 +62,6 @@ def edge_functions(corners, faces, first, last, edges):
     Args:
         corners: (n, 3) homogeneous pixels (x w, y w, w).
         faces: (m, 3) indices of corners.
-        first: First triangle.
-        last: End of the triangles.
         edges: (m, 3, 3) result.
     """
     for f in range(first, last):
@@ -128,12 +121,7 @@ def bound_faces(corners, pixels, faces, edges, width, height, slack, first, last
         corners: (n, 3) homogeneous pixels.
         pixels: (n, 2) of `project_corners`, so that no corner is divided for each of its triangles.
         faces: (m, 3) indices of corners.
-        edges: (m, 3, 3) edge functions.
-        width: Of the picture, pixels.
-        height: Likewise.
         slack: Pixels by which bounds are widened.
-        first: First triangle.
-        last: End of the triangles.
         bounds: (m, 4) int32 result.
     """
     columns, rows, more = float(width), float(height), 0.5 + slack
@@ -160,7 +148,6 @@ def sort_into_bands(bounds, band, starts):
 
     Args:
         bounds: (m, 4) of `bound_faces`.
-        band: Rows of a band.
         starts: (bands + 1,) int64 result.
 
     Returns:
@@ -228,11 +215,8 @@ def draw_band(edges, bounds, listing, first, last, slack, face, inverse_depth):
     a row: each bounds the span from one side.
 
     Args:
-        edges: (m, 3, 3) edge functions.
         bounds: (m, 4) of `bound_faces`.
         listing: Triangles of this band.
-        first: First row.
-        last: End of the rows.
         slack: Fraction of q.
         face: (H, W) result.
         inverse_depth: (H, W) result.
@@ -257,9 +241,6 @@ def rasterise(corners: NDArray[np.float64], faces: NDArray[np.int32], width: int
 
     Args:
         corners: (n, 3) homogeneous pixels.
-        faces: (m, 3) indices of corners.
-        width: Of the picture, pixels.
-        height: Likewise.
     """
     edges, pixels = np.empty((len(faces), 3, 3)), np.empty((len(corners), 2))
     bounds = np.empty((len(faces), 4), np.int32)
@@ -288,14 +269,10 @@ def set_up_bands(
 
     Args:
         corners: (n, 3) homogeneous pixels.
-        faces: (m, 3) indices of corners.
-        width: Of the picture, pixels.
-        height: Likewise.
         edges: (m, 3, 3), written.
         pixels: (n, 2) of `project_corners`, written.
         bounds: (m, 4) of `bound_faces`, written.
         slack: Pixels by which bounds are widened, for samples beside the middles of pixels.
-        band: Rows of a band.
 
     Returns:
         For each band its triangles in rising order.
@@ -332,9 +309,6 @@ def unproject(
     """(n, 3) the points in the middles of pixels.
 
     Args:
-        camera: The camera.
-        row: (n,) of the pixels.
-        column: (n,) likewise.
         inverse_depth: (n,) of `Raster`, above 0.
     """
     rays = np.linalg.solve(camera.K, np.stack([column + 0.5, row + 0.5, np.ones(len(row))]))

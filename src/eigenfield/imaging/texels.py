@@ -44,17 +44,14 @@ def _square_of_texels(context, builder, kinds, arguments):
 
 @intrinsic
 def gather_bilinear(typing_context, texels, first, line, right, below, out, at):
-    """out[at: at + 4] = the bilinear value of four channels. Nothing is checked.
+    """out[at: at + 4] = the bilinear value of four channels of flat float32 arrays. Nothing is checked.
 
     Terms are added in one order on every machine, since the results go into files.
 
     Args:
-        texels: Flat float32 array.
         first: Address of the texel left above.
         line: Distance of rows.
         right, below: Float32, how far the place lies right of and below that texel, 0 to 1.
-        out: Flat float32 array.
-        at: Address in it.
     """
 
     def generate(context, builder, signature, arguments):
@@ -69,13 +66,7 @@ def gather_bilinear(typing_context, texels, first, line, right, below, out, at):
 
 @intrinsic
 def scatter_bilinear(typing_context, texels, first, line, right, below, values, at):
-    """The transpose of `gather_bilinear`: adds values[at: at + 4] to four texels.
-
-    Args:
-        texels, first, line, right, below: As of `gather_bilinear`.
-        values: Flat float32 array.
-        at: Address in it.
-    """
+    """The transpose of `gather_bilinear`: adds values[at: at + 4] to four texels."""
 
     def generate(context, builder, signature, arguments):
         pointers, weights = _square_of_texels(context, builder, signature.args, arguments)
@@ -90,13 +81,7 @@ def scatter_bilinear(typing_context, texels, first, line, right, below, values, 
 
 @intrinsic
 def bilinear_slopes(typing_context, texels, first, line, right, below, values, at):
-    """The scalar products of values[at: at + 4] with the slopes of a bilinear read, across and down, as two float32.
-
-    Args:
-        texels, first, line, right, below: As of `gather_bilinear`.
-        values: Flat float32 array.
-        at: Address in it.
-    """
+    """The scalar products of values[at: at + 4] with the slopes of a bilinear read, across and down, as two float32."""
     result = types.UniTuple(types.float32, 2)
 
     def generate(context, builder, signature, arguments):
@@ -121,15 +106,7 @@ def bilinear_slopes(typing_context, texels, first, line, right, below, values, a
 
 @intrinsic
 def add_scaled_texel(typing_context, out, at, part, values, place):
-    """out[at: at + 4] += part * values[place: place + 4].
-
-    Args:
-        out: Flat float32 array.
-        at: Address in it.
-        part: Float32.
-        values: Flat float32 array.
-        place: Address in it.
-    """
+    """out[at: at + 4] += part * values[place: place + 4], of flat float32 arrays."""
 
     def generate(context, builder, signature, arguments):
         vector = ir.VectorType(ir.FloatType(), TEXEL_LANES)

@@ -86,7 +86,7 @@ def colour_changes(scene: Scene) -> NDArray[np.float64] | None:
     if colours is None or not scene.appearance.mixed_colours:
         return None
     gain, offset = np.moveaxis(colours[scene.rig.encoded].astype(np.float64), 1, 0)
-    return np.tile(np.concatenate([1 / gain - 1, -offset / gain], axis=1), (len(scene.times), 1))
+    return np.concatenate([1 / gain - 1, -offset / gain], axis=1)
 
 
 def mixed_colour(changes: NDArray[np.float64] | None, weights: ViewWeights) -> NDArray[np.float32] | None:

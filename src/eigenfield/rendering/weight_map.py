@@ -12,7 +12,7 @@ WEIGHT_MAP_NODES = 129  # along an axis: 2^n + 1 puts the cameras of a 17 x 17, 
 
 
 def weight_map(scene: Scene, mode: str = "delaunay", nodes: int = WEIGHT_MAP_NODES) -> NDArray[np.float32]:
-    """(nodes, nodes, N) float32: ω(j) of equation 7 at Y, X of -1..1 and the first instant, with nodes on the edges.
+    """(nodes, nodes, N) float32: ω(j) of equation 7 at Y, X of -1..1, with nodes on the edges.
 
     N counts the components of all bases of all planes.
 

@@ -60,15 +60,14 @@ class ViewWeights:
         return (self.values[:, None] * matrix[self.rows]).sum(axis=0)
 
 
-def view_weights(scene: Scene, at: tuple[float, float], mode: str = "delaunay", time: int = 0) -> ViewWeights:
-    """The weights of a place at one instant: those of `place_weights`, for the observations of its cameras.
+def view_weights(scene: Scene, at: tuple[float, float], mode: str = "delaunay") -> ViewWeights:
+    """The weights of a place: those of `place_weights`, for the observations of its cameras.
 
     Args:
         mode: One of `WEIGHT_MODES`.
-        time: Index of the instant.
     """
     cameras, values = place_weights(scene, at, mode)
-    return ViewWeights(scene.rows(cameras, time), values)
+    return ViewWeights(scene.rows(cameras), values)
 
 
 def place_weights(
@@ -119,19 +118,18 @@ def _check_mode(mode: str) -> None:
         raise OptionError("weights-mode", f"no view weights are called {mode!r}", remedy=remedy)
 
 
-def camera_weights(scene: Scene, index: int, mode: str = "delaunay", time: int = 0) -> ViewWeights:
+def camera_weights(scene: Scene, index: int, mode: str = "delaunay") -> ViewWeights:
     """The weights of a capture camera: its own observation for an encoded one, else those of where it stands.
 
     Args:
         mode: One of `WEIGHT_MODES`.
-        time: Index of the instant.
     """
     _check_mode(mode)
-    row = int(scene.rows(index, time))
+    row = int(scene.rows(index))
     if row >= 0:
         return ViewWeights.one(row)
     x, y = scene.rig.view_plane.coordinates(scene.rig.cameras[index].centre)[0]
-    return view_weights(scene, (float(x), float(y)), mode, time)
+    return view_weights(scene, (float(x), float(y)), mode)
 
 
 def delaunay_triangles(coordinates: ArrayLike) -> NDArray[np.int32]:

@@ -24,9 +24,7 @@ class Content:
     """What a path is answered with.
 
     Attributes:
-        type: The media type.
-        data: The bytes.
-        tag: Their strong ETag, quotes included.
+        tag: The strong ETag, quotes included.
     """
 
     type: str
@@ -35,12 +33,7 @@ class Content:
 
     @staticmethod
     def of(type: str, data: bytes) -> Content:
-        """Bytes with their ETag.
-
-        Args:
-            type: The media type.
-            data: The bytes.
-        """
+        """Bytes with their ETag."""
         return Content(type, data, f'"{hashlib.sha256(data).hexdigest()[:32]}"')
 
 
@@ -59,9 +52,6 @@ def make_manifest(
     All but photographs is held in memory, so that files replaced on disk never mix with those that were checked.
 
     Args:
-        glb: The scene's file.
-        title: Of the page.
-        photographs: Of the scene's cameras.
         metres_per_unit: Metres in one unit of the capture, for headsets.
         seconds_left: The scene is a draft: about when the whole scene takes its place, None where that is not known.
             The page asks for it, and opens anew where there is no such answer any longer.

@@ -20,11 +20,7 @@ def scene_html(scene: Scene) -> str:
     """The scene as an <iframe>, for Jupyter and its like; one line of text where it cannot be shown.
 
     What has no payload is coded once; the residual is left out. The frame is an origin of its own (`sandbox` without
-    `allow-same-origin`): it can neither read the notebook nor act in it.
-
-    Args:
-        scene: The scene.
-    """
+    `allow-same-origin`): it can neither read the notebook nor act in it."""
     try:
         glb = scene.derive("glb", lambda: encode_scene(replace(scene, residual=None)))
         if len(glb) > NOTEBOOK_MAX_BYTES:

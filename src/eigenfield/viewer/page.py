@@ -33,9 +33,6 @@ HEAD_ELEMENT = re.compile(r"<head>\s*(?:<meta charset=[^>]*>)?", re.IGNORECASE)
 def static_file(name: str) -> bytes:
     """A file of the built page.
 
-    Args:
-        name: Of the file.
-
     Raises:
         OutputError: `viewer-build`: it is missing.
     """
@@ -89,8 +86,6 @@ def single_file(
     The page's own policy allows its one script and style, named by their hashes, and no connection to anywhere.
 
     Args:
-        glb: The scene's file.
-        title: Of the page.
         metres_per_unit: Metres in one unit of the capture, for headsets.
         start: The first view, on the view plane. Default: the reference camera's.
         guests: Of a page for guests. Default: a page with panel and tools.
@@ -142,12 +137,9 @@ def write_page(
     The residual, which the viewer does not show, is left out. Payloads are not coded anew.
 
     Args:
-        scene: The scene.
-        output: The .html.
         title: Of the page. Default: `page_title`.
         metres_per_unit: Metres in one unit of the capture, for headsets.
         at: The first view, on the view plane. Default: the reference camera's.
-        overwrite: Whether an existing file is replaced.
 
     Raises:
         OptionError: `viewpoint`: `at` is outside the array.
@@ -163,11 +155,7 @@ def write_page(
 
 
 def page_title(output: Path) -> str:
-    """What a page is called where nobody says: its file's name, or that of its folder for scene.html and index.html.
-
-    Args:
-        output: The page.
-    """
+    """What a page is called where nobody says: its file's name, or that of its folder for scene.html and index.html."""
     name = output.stem
     if name.lower() in NAMES_FOR_ANYTHING:
         name = output.absolute().parent.name or name
@@ -190,11 +178,7 @@ def _configure(page: str, config: Mapping[str, Any], more: str = "", first: str 
 
 
 def json_for_html(value: Any) -> str:
-    """JSON in ASCII that ends no script element and begins no comment, whatever its strings hold.
-
-    Args:
-        value: JSON object.
-    """
+    """JSON in ASCII that ends no script element and begins no comment, whatever its strings hold."""
     text = json.dumps(value, allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 

@@ -27,8 +27,6 @@ class Photographs:
         """Check the photographs' sizes.
 
         Args:
-            scene: The scene.
-            capture: The photographs.
             views: Index of a scene's camera to the index of its view in the capture, of `match_photographs`.
 
         Raises:
@@ -52,9 +50,6 @@ class Photographs:
 
     def png(self, index: int) -> bytes:
         """A camera's photograph as 8-bit RGB PNG.
-
-        Args:
-            index: Of the camera.
 
         Raises:
             CaptureError: It cannot be decoded.

@@ -42,9 +42,7 @@ class RefusedError(Exception):
     """A request that is answered with an error.
 
     Attributes:
-        status: Of HTTP.
         reason: One line for a person.
-        headers: Of the answer.
     """
 
     status: int
@@ -58,7 +56,6 @@ class StrictHandler(BaseHTTPRequestHandler, ABC):
     A connection ends with the answer to a malformed request, as the beginning of the next request cannot be known.
 
     Attributes:
-        always: headers of every answer.
         target: path of the request as the client sent it, without its query; never decoded.
         host: authority that the client believes to talk to, in small letters; None only in HTTP/1.0.
         has_body: whether bytes follow the head. The connection then ends with the answer.
@@ -105,11 +102,7 @@ class StrictHandler(BaseHTTPRequestHandler, ABC):
         raise RefusedError(code, HTTPStatus(code).phrase)  # found by parse_request
 
     def refuse(self, error: RefusedError) -> None:
-        """Answer with an error: one line of text.
-
-        Args:
-            error: The error.
-        """
+        """Answer with an error: one line of text."""
         headers = {"Content-Type": "text/plain; charset=utf-8", **error.headers}
         self.reply(error.status, headers, f"{error.reason}\n".encode())
 
@@ -117,7 +110,6 @@ class StrictHandler(BaseHTTPRequestHandler, ABC):
         """Send an answer, to HEAD without the content.
 
         Args:
-            status: Of HTTP.
             headers: Beside those of every answer.
             content: None: the answer has none (304).
         """
@@ -229,8 +221,7 @@ def wanted_range(headers: Mapping[str, str], size: int, tag: str) -> tuple[int, 
     names another content.
 
     Args:
-        headers: Of the request, by names in lower case.
-        size: Of the content, in bytes.
+        headers: By names in lower case.
         tag: Strong ETag of the content, quotes included.
 
     Raises:
@@ -257,7 +248,7 @@ def is_known(headers: Mapping[str, str], tag: str) -> bool:
     """Whether If-None-Match says that the client has this content already: status 304.
 
     Args:
-        headers: Of the request, by names in lower case.
+        headers: By names in lower case.
         tag: Strong ETag of the content, quotes included.
     """
     tags = [entry.strip().removeprefix("W/") for entry in headers.get("if-none-match", "").split(",")]

@@ -60,13 +60,7 @@ ANSWER_HEADERS = {
 
 
 class Server(ThreadingHTTPServer):
-    """Answers from a manifest, in threads of its own, from `with` or `start` until the block ends or `close`.
-
-    Attributes:
-        manifest: What is answered.
-        host: Name or address that it listens on.
-        port: That it listens on.
-    """
+    """Answers from a manifest, in threads of its own, from `with` or `start` until the block ends or `close`."""
 
     daemon_threads = True  # threads that are decoding a photograph end with the process
 
@@ -74,8 +68,6 @@ class Server(ThreadingHTTPServer):
         """Listen, without answering yet.
 
         Args:
-            manifest: What is answered.
-            host: Name or address to listen on.
             port: To listen on; 0: one that is free.
 
         Raises:

@@ -21,8 +21,6 @@ export interface SceneJson {
   cameras: CamerasJson;
   /** The least-squares plane through the camera centres. */
   viewPlane: ViewPlaneJson;
-  /** Instants of the observations, in seconds, ascending; absent: one. */
-  times?: number[];
   /** Index of the reference camera. */
   reference: number;
   /** Photographs of the encoded cameras minus what is drawn of them. */
@@ -63,7 +61,6 @@ export type Feature =
   | "sharedPicture"
   | "sheets"
   | "stacks"
-  | "times"
   | "toRGB";
 
 /** Codecs of a mesh. */

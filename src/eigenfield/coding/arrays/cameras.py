@@ -124,11 +124,8 @@ def decode_deflated(data: bytes, where: str = "cameras") -> tuple[NDArray[np.flo
 
 
 def decode_cameras(data: bytes, where: str = "cameras") -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Intrinsics (Nc, 5): fx, fy, skew, cx, cy; poses (Nc, 3, 4): [R t], world to camera; both float32.
-
-    Raises:
-        FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`.
-    """
+    """Intrinsics (Nc, 5): fx, fy, skew, cx, cy; poses (Nc, 3, 4): [R t], world to camera; both float32. FormatError
+    `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`."""
     range_coder.check_header(data, HEADER.size, VERSION, where)
     _, kind, rows, columns, count, *rest = HEADER.unpack_from(data)
     steps, first, base = np.array(rest[:3]), np.array(rest[3:7]), np.array(rest[7:])

@@ -27,11 +27,7 @@ def checked_grid(grid: ArrayLike, cameras: int) -> NDArray[np.int64]:
 
 
 def read_grid(coder: Any, rows: int, columns: int, cameras: int, where: str) -> NDArray[np.int64]:
-    """The grid of `cameras` cameras that `code_cells` coded.
-
-    Raises:
-        FormatError: `coded-damaged`, no such grid.
-    """
+    """The grid of `cameras` cameras that `code_cells` coded. FormatError `coded-damaged`, no such grid."""
     cells = np.full(rows * columns, -1, np.int64)
     code_cells(coder, cells)
     if not np.array_equal(np.sort(cells[cells >= 0]), np.arange(cameras)):

@@ -26,11 +26,7 @@ def code_names(names: Sequence[str]) -> bytes | None:
 
 
 def decode_names(data: bytes, count: int, where: str = "names") -> list[str]:
-    """`count` names.
-
-    Raises:
-        FormatError: `coded-truncated`, `coded-size`, `coded-damaged`.
-    """
+    """`count` names. FormatError `coded-truncated`, `coded-size`, `coded-damaged`."""
     most = min(limits.MAX_NAMES, NAME_MAX_BYTES * count)
     inflater = zlib.decompressobj()
     try:

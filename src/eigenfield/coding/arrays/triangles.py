@@ -33,11 +33,7 @@ def code_triangles(triangles: NDArray[np.int32]) -> bytes:
 
 
 def decode_triangles(data: bytes, where: str = "triangles") -> NDArray[np.int32]:
-    """(T, 3) indices of cameras.
-
-    Raises:
-        FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`.
-    """
+    """(T, 3) indices of cameras. FormatError `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`."""
     range_coder.check_header(data, HEADER.size, VERSION, where)
     _, count = HEADER.unpack_from(data)
     range_coder.check_numbers(data, 3 * count, 6 * limits.MAX_CAMERAS, where)

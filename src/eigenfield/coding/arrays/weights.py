@@ -69,11 +69,7 @@ def code_weights(
 
 
 def decode_weights(data: bytes, where: str = "weights") -> NDArray[np.float32]:
-    """(Ne, N) float32.
-
-    Raises:
-        FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`.
-    """
+    """(Ne, N) float32. FormatError `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`."""
     range_coder.check_header(data, HEADER.size, VERSION, where)
     _, kind, rows, columns, count, components = HEADER.unpack_from(data)
     if kind > 1 or count == 0:

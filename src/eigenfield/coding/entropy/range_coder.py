@@ -25,9 +25,6 @@ def coded_bytes(run: Callable[[Any], None], contexts: int, mixtures: int, *, roo
     """The bytes that `run(coder)` writes.
 
     Args:
-        run: Writes to a coder.
-        contexts: Of integers.
-        mixtures: Of contexts.
         room: Bytes to expect; where they do not suffice, it runs twice.
     """
     while True:

@@ -52,9 +52,7 @@ class _Welded:
         place: (v,) of each vertex.
         faces: (m, 3) of vertices, no two corners at one place.
         sheet: (m,) of each face.
-        label: See `_chart_kinds`.
-        kinds: See `_chart_kinds`.
-        maps: See `_chart_kinds`.
+        label: Of each vertex its chart, whose `kinds` and `maps` are of `_chart_kinds`.
         codes: (v, 2) int64 texture coordinates.
     """
 
@@ -83,7 +81,6 @@ def encode_mesh(
 
     Args:
         mesh: With texture coordinates.
-        lattice: Its positions are rounded to.
         uv_bits: Binary digits of texture coordinates, 1 to 18.
         fine: On a flat lattice, the number of the last binary digits of x and y that are 0 at most vertices, 0 to 8.
             Where vertices inside a relief are at pixels and those of its contours between them, a step of 2^-fine
@@ -133,8 +130,6 @@ def decode_mesh(data: bytes, where: str = "mesh", version: int = VERSION) -> Mes
     """The mesh of `encode_mesh`.
 
     Args:
-        data: The stream.
-        where: Its place, for errors.
         version: Of the codec: VERSION or OLD_VERSION.
 
     Raises:

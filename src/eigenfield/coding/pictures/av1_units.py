@@ -39,11 +39,8 @@ def picture_units(data: bytes) -> bytes:
 
 
 def frame_size(data: memoryview, where: str) -> tuple[int, int]:
-    """Width and height of a picture from its sequence header, which comes first (AV1, section 5.5.1).
-
-    Raises:
-        FormatError: `picture-damaged`, it does not begin with one of a single operating point, without timing.
-    """
+    """Width and height of a picture from its sequence header, which comes first (AV1, section 5.5.1). FormatError
+    `picture-damaged`, it does not begin with one of a single operating point, without timing."""
     kind, _, at, end = next(units(bytes(data[:64])), (0, 0, 0, 0))
     bits = _Bits(bytes(data[at:end]))
     bits.take(4)  # profile, still picture

@@ -87,9 +87,7 @@ def decode_10bit(data: bytes | memoryview, colour: bool, where: str) -> NDArray[
     """(H, W) codes 0..MAX_CODE of the first channel of a bare AV1 picture.
 
     Args:
-        data: The picture.
         colour: Not used: all are grey.
-        where: Its place, for errors.
 
     Raises:
         FormatError: `picture-damaged`; `picture-channels`, the picture has 8 bits.

@@ -42,11 +42,7 @@ def encode_png(picture: Codes, quality: int) -> bytes:
 
 
 def encode_webp(picture: Codes, quality: int) -> bytes:
-    """As `encode_png`.
-
-    Raises:
-        OptionError: `codec-side`, a side is longer than WebP's.
-    """
+    """As `encode_png`. OptionError `codec-side`, a side is longer than WebP's."""
     image = Image.fromarray(picture)
     if max(image.size) > _WEBP_MAX_SIDE_TEXELS:
         message = f"webp holds {_WEBP_MAX_SIDE_TEXELS} texels a side, {max(image.size)} needed"
@@ -91,7 +87,6 @@ def encode_masked_preview(picture: Codes, opacity: Codes, side: int, colours: in
     Args:
         picture: (H, W) or (H, W, 3) codes.
         opacity: (h, w) codes.
-        side: In texels.
         colours: In its palette, that of transparent texels among them.
     """
     alpha = Image.fromarray(opacity).resize(picture.shape[1::-1], Image.Resampling.BILINEAR)
@@ -123,11 +118,8 @@ def _image_bytes(image: Image.Image, format: str, **options: Any) -> bytes:
 
 
 def header_size(data: memoryview, where: str, *, mime: str) -> tuple[int, int]:
-    """Width and height from a picture's header alone; nothing is decoded or allocated.
-
-    Raises:
-        FormatError: `codec-missing`, `picture-damaged`.
-    """
+    """Width and height from a picture's header alone; nothing is decoded or allocated. FormatError `codec-missing`,
+    `picture-damaged`."""
     return _webp_size(bytes(data[:30]), where) if mime == "image/webp" else _open(data, mime, where).size
 
 
@@ -148,11 +140,7 @@ def decode_picture(data: memoryview, colour: bool, where: str, *, mime: str) -> 
 
 
 def check_preview(data: memoryview, mime: str, where: str) -> None:
-    """Decode a picture for other viewers, which may be grey and have a palette and alpha.
-
-    Raises:
-        FormatError: As `decode_picture`.
-    """
+    """Decode a picture for other viewers, which may be grey and have a palette and alpha."""
     image = _open(data, mime, where)
     if image.mode not in ("L", "LA", "P", "RGB", "RGBA"):
         raise FormatError("picture-channels", f"a picture of mode {image.mode}, RGB expected", where=where)

@@ -86,7 +86,6 @@ def basis_scale(basis: Basis, one_unit: bool) -> tuple[NDArray[np.float32], NDAr
     A texture's largest value always has a code: nothing is ever clipped.
 
     Args:
-        basis: Of N textures.
         one_unit: Whether the channels share a unit (R, G, B), and so a step.
     """
     if basis.textures.dtype == np.uint8:

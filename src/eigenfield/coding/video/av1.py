@@ -1,4 +1,4 @@
-"""Videos of 10-bit Y'CbCr, 4:2:0: AV1 as a bare stream of its own units, one key frame.
+"""Videos of 10-bit Y'CbCr, 4:2:0: AV1 as a bare stream of its own units.
 
 SVT-AV1 codes them, tuned for squared error; dav1d decodes them, a frame at a time.
 """
@@ -25,17 +25,20 @@ Planes = tuple[NDArray[np.uint16], NDArray[np.uint16], NDArray[np.uint16]]
 CONTAINER = "obu"
 FRAME_RATE_HZ = 25  # without meaning here, but a video has one
 SVT_PARALLELISM = 2  # SVT-AV1's level, fixed: its memory grows with it, and the bytes are the same
-KEY_FRAME_INTERVAL = 99999  # frames
+ENDLESS_INTERVAL = 99999  # frames: no key frame follows the first
 
 
-def encode_video(frames: Iterable[Planes], size: tuple[int, int], crf: int, preset: int) -> bytes:
-    """A video, the same bytes each time.
+def encode_video(
+    frames: Iterable[Planes], size: tuple[int, int], crf: int, preset: int, key_interval: int | None = None
+) -> bytes:
+    """A video, the same bytes each time. One frame after the other is taken of the iterator.
 
     Args:
         frames: Luma (rows, columns) and both chroma planes of half that, each way; codes 0..1023.
         size: Rows and columns, even and at least `MIN_SIDE_TEXELS`.
         crf: 1..63, the coarser the higher.
         preset: SVT-AV1's, 0 the slowest.
+        key_interval: Frames from one key frame to the next; None: the first is the only one.
     """
     os.environ.setdefault("SVT_LOG", "1")  # errors alone: its settings go to stderr otherwise
     import av
@@ -46,10 +49,11 @@ def encode_video(frames: Iterable[Planes], size: tuple[int, int], crf: int, pres
         stream.height, stream.width = size
         stream.pix_fmt = PIXEL_FORMAT
         context = stream.codec_context
-        context.gop_size = KEY_FRAME_INTERVAL
+        context.gop_size = key_interval or ENDLESS_INTERVAL
         context.color_range, context.colorspace = 2, 1  # full, BT.709
         stream.options = {
-            "crf": str(crf), "preset": str(preset), "svtav1-params": f"keyint=-1:scd=0:tune=1:lp={SVT_PARALLELISM}",
+            "crf": str(crf), "preset": str(preset),
+            "svtav1-params": f"keyint={key_interval or -1}:scd=0:tune=1:lp={SVT_PARALLELISM}",
         }  # fmt: skip
         with ordinary_scheduling():
             context.open()
@@ -61,22 +65,21 @@ def encode_video(frames: Iterable[Planes], size: tuple[int, int], crf: int, pres
     return buffer.getvalue()
 
 
-def decode_video(data: bytes, size: tuple[int, int], count: int, where: str) -> Iterator[Planes]:
+def decode_video(data: bytes, size: tuple[int, int], count: int, where: str, name: str) -> Iterator[Planes]:
     """The frames of a video one after the other, as they were given to `encode_video`.
 
     Args:
-        data: The video.
         size: (rows, columns); no larger frame takes memory.
         count: Frames; none beyond these is decoded.
-        where: The place of the video, for errors.
+        name: What the video is of, for errors.
 
     Raises:
-        FormatError: `residual-damaged`, the video is damaged, ends early, or has frames of another size or kind.
+        FormatError: `NAME-damaged`, the video is damaged, ends early, or has frames of another size or kind.
     """
     import av
 
     def damage_error(what: str) -> FormatError:
-        return FormatError("residual-damaged", f"the residual cannot be decoded: {what}", where=where)
+        return FormatError(f"{name}-damaged", f"the {name} cannot be decoded: {what}", where=where)
 
     context: Any = av.CodecContext.create("libdav1d", "r")
     context.options = {"max_pixels": str(size[0] * size[1])}
@@ -84,7 +87,7 @@ def decode_video(data: bytes, size: tuple[int, int], count: int, where: str) -> 
     number = 0
     # a unit shows one frame at most, so that a decoder that is given one at a time never has more to hand out
     for unit in chain((data[start:end] for _, start, _, end in units(data)), [None]):
-        with decoder_errors("residual", where):
+        with decoder_errors(name, where):
             frames = context.decode(None if unit is None else av.Packet(unit))
         for frame in frames:
             if (frame.height, frame.width) != size or frame.format.name != PIXEL_FORMAT:

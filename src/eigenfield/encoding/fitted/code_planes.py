@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from eigenfield.coding.pictures.pictures_10bit import MAX_CODE, Coder, crf_of, decode_10bit
 from eigenfield.coding.pictures.quantise import opacity_values, precision_codes, spread_precision
-from eigenfield.coding.pictures.stacking import encode
+from eigenfield.coding.stacking import encode
 from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.payloads import (
     Affine,

@@ -47,9 +47,6 @@ def fit_exposures(
     asked, views = plan.options.harmonise, plan.views
     if asked == "none" or (asked is None and not is_sparse(plan)):
         return None
-    if len(views.capture.times) > 1:
-        log.warning("exposures are brought together in captures of one instant only: they stay as they are")
-        return None
     atlas = make_atlas(opaque_mesh(plan.proxy), EXPOSURE_ATLAS_SIDE_TEXELS, EXPOSURE_ATLAS_SIDE_TEXELS)
     with texture_maps(atlas, views.rig.encoded_cameras, views.observations, work=work, progress=progress) as maps:
         cells = average_cells(maps)

@@ -177,7 +177,6 @@ def render(
     background: Sequence[float] = BLACK,
     textures: int | None = None,
     samples: int | None = None,
-    time: int = 0,
 ) -> Picture:
     """Draw a view; the reference camera's if neither `at` nor `camera` is given.
 
@@ -195,15 +194,14 @@ def render(
         textures: Number of eigen textures of each basis. Default: all.
         samples: k of k x k samples a pixel, 1 to 16. Default: one, but four at edges, or more in a picture smaller than
             the photographs.
-        time: Index of the instant.
 
     Raises:
-        OptionError: `unknown-camera`, `viewpoint`, `time`, `weights-mode`, `no-grid`, `resolution`, `filter`,
+        OptionError: `unknown-camera`, `viewpoint`, `weights-mode`, `no-grid`, `resolution`, `filter`,
             `background`, `textures`, `samples`.
         FormatError: The file is no scene.
     """
     found = as_scene(scene)
-    view, mix = viewpoint(found, at=at, camera=camera, weights=weights, time=time)
+    view, mix = viewpoint(found, at=at, camera=camera, weights=weights)
     if resolution is not None:
         view = at_resolution(view, resolution)
     colour = viewpoint_colour(found, at=at, camera=camera)
@@ -218,15 +216,16 @@ def viewpoint(
     at: tuple[float, float] | None = None,
     camera: str | None = None,
     weights: str = "delaunay",
-    time: int = 0,
 ) -> tuple[Camera, ViewWeights]:
     """The camera and the view weights of a place, of a capture camera, or of the reference camera.
 
     Args:
-        time: As of `render`.
+        at: View-plane coordinates.
+        camera: Name or index of a capture camera.
+        weights: One of `WEIGHT_MODES`.
 
     Raises:
-        OptionError: `unknown-camera`, `viewpoint`, `time`, `weights-mode`, `no-grid`.
+        OptionError: `unknown-camera`, `viewpoint`, `weights-mode`, `no-grid`.
     """
     if at is not None and camera is not None:
         raise OptionError("viewpoint", "a place and a camera were both given", remedy="give one of them")
@@ -234,12 +233,10 @@ def viewpoint(
         x, y = (min(max(v, -1e9), 1e9) for v in at)  # integers may be beyond what floats hold
         message = f"the viewpoint {x:g},{y:g} lies outside the array"
         raise OptionError("viewpoint", message, remedy="give two numbers from -1 to 1; 0,0 is its middle")
-    if not 0 <= time < len(scene.times):
-        raise OptionError("time", f"there is no instant {time}", remedy=f"give 0 to {len(scene.times) - 1}")
     if at is not None:
-        return novel_camera(scene, at), view_weights(scene, at, weights, time)
+        return novel_camera(scene, at), view_weights(scene, at, weights)
     index = scene.rig.reference if camera is None else camera_index(scene, camera)
-    return scene.rig.cameras[index], camera_weights(scene, index, weights, time)
+    return scene.rig.cameras[index], camera_weights(scene, index, weights)
 
 
 def viewpoint_colour(

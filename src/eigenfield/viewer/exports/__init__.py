@@ -10,10 +10,10 @@ from eigenfield.viewer.exports.colmap import write_colmap
 from eigenfield.viewer.exports.export import OPTIONS, export
 from eigenfield.viewer.exports.folder import refuse_folder
 from eigenfield.viewer.exports.glb import write_glb
-from eigenfield.viewer.exports.guests import refuse_guests, write_guests_page
+from eigenfield.viewer.exports.guests import write_guests_page
 from eigenfield.viewer.exports.maps import write_maps
 from eigenfield.viewer.exports.names import file_names
-from eigenfield.viewer.exports.obj import refuse_obj, write_obj, write_obj_folder
+from eigenfield.viewer.exports.obj import write_obj, write_obj_folder
 from eigenfield.viewer.exports.quilt import quilt_of, write_quilt
 from eigenfield.viewer.page import write_page
 
@@ -23,8 +23,6 @@ __all__ = [
     "file_names",
     "quilt_of",
     "refuse_folder",
-    "refuse_guests",
-    "refuse_obj",
     "write_app",
     "write_colmap",
     "write_glb",

@@ -39,8 +39,6 @@ class Sample:
     """A scene that the page offers.
 
     Attributes:
-        name: For people.
-        glb: Its file.
         picture: A JPEG of what it shows; None where it makes no picture.
     """
 
@@ -50,11 +48,7 @@ class Sample:
 
 
 def draw_thumbnail(scene: Scene) -> bytes | None:
-    """What a sample shows, as a small JPEG; None for channels that make no picture.
-
-    Args:
-        scene: The scene.
-    """
+    """What a sample shows, as a small JPEG; None for channels that make no picture."""
     if scene.appearance.channels not in PICTURE_CHANNELS:
         return None
     return draw_poster(scene, THUMBNAIL_WIDTH_PX)[0]
@@ -71,11 +65,7 @@ def write_app(
     """Write index.html and what belongs to it, and each sample as samples/NAME.glb with its picture, NAME.jpg.
 
     Args:
-        samples: The scenes that the page offers.
-        folder: To write.
         title: Of the page. Default: "eigenfield".
-        overwrite: Whether an existing export is replaced.
-        progress: Reports each sample.
 
     Raises:
         OutputError: `viewer-build`; the folder cannot be written.

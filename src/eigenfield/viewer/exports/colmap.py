@@ -46,9 +46,7 @@ class RedrawnView:
     """A picture to draw.
 
     Attributes:
-        name: Of the camera.
         camera: Without skew.
-        weights: What is blended.
         colour: The camera's own exposure, of `Renderer.draw`; None: the common one.
     """
 
@@ -74,12 +72,8 @@ def write_colmap(
     the capture's. Skew, which COLMAP cannot express, is left out of the pictures too.
 
     Args:
-        job: The scene and how it is drawn.
-        folder: To write.
         points: (n, 2) viewpoints to draw in place of the captured cameras, as path_0000.png and so on.
         residual: Whether the pictures of encoded cameras get their residual; the listing says which did.
-        overwrite: Whether an existing export is replaced.
-        progress: Reports each picture.
 
     Raises:
         OptionError: `residual`: the scene has none, or its cameras skew; `no-points`; as `Renderer.draw`.

@@ -25,9 +25,9 @@ from eigenfield.viewer.exports.app import Sample, draw_thumbnail, write_app
 from eigenfield.viewer.exports.colmap import write_colmap
 from eigenfield.viewer.exports.folder import refuse_folder
 from eigenfield.viewer.exports.glb import check_image, write_glb
-from eigenfield.viewer.exports.guests import guests_files, refuse_guests, write_guests_page
+from eigenfield.viewer.exports.guests import guests_files, write_guests_page
 from eigenfield.viewer.exports.maps import write_maps
-from eigenfield.viewer.exports.obj import refuse_obj, write_obj, write_obj_folder
+from eigenfield.viewer.exports.obj import obj_files, write_obj, write_obj_folder
 from eigenfield.viewer.exports.quilt import quilt_of, write_quilt
 from eigenfield.viewer.page import write_page
 
@@ -93,9 +93,8 @@ def export(
     points = None
     if chosen in ("mp4", "png") or "path" in options:
         points = path_points(options.get("path", FLIGHT_DEFAULT_PATH), options.get("frames", FLIGHT_FRAMES))
-    if chosen == "html" and not options.get("laboratory"):
-        refuse_guests(output, overwrite)
-    _refuse(chosen, output, points, overwrite)
+    files = guests_files(output) if chosen == "html" and not options.get("laboratory") else [output]
+    _refuse(chosen, obj_files(output) if _is_obj(output) else files, points, overwrite)
     if chosen == "glb" and not isinstance(scene, Scene) and output.exists() and output.samefile(scene):
         raise OptionError("output-kind", f"{output} is the scene itself", remedy="name another file")
     job = RenderJob(as_scene(scene), **{name: value for name, value in options.items() if name in PICTURE_OPTIONS})
@@ -119,16 +118,16 @@ def _write_app(
     return output, f"a page that opens files{offered}; put it on a web server"
 
 
-def _refuse(kind: str, output: Path, points: NDArray[np.float64] | None, overwrite: bool) -> None:
+def _refuse(kind: str, files: Sequence[Path], points: NDArray[np.float64] | None, overwrite: bool) -> None:
     """Refuse existing outputs, before any work; a quilt's name is known only with its scene."""
-    if _is_obj(output):
-        refuse_obj(output, overwrite)
-    elif kind not in ENDINGS:
+    output = files[-1]
+    if kind not in ENDINGS and not _is_obj(output):
         refuse_folder(output, overwrite)
     elif points is not None:
         refuse_flight(output, len(points), overwrite)
     elif kind != "quilt":
-        refuse_existing(output, overwrite)
+        for file in files:
+            refuse_existing(file, overwrite)
 
 
 def _write(

@@ -24,10 +24,6 @@ LISTING_MAX_BYTES = 16 * 2**20  # larger ones are not read back
 def refuse_folder(folder: Path, overwrite: bool) -> None:
     """Before any work: check that an export may be written.
 
-    Args:
-        folder: To write.
-        overwrite: Whether an existing export may be replaced.
-
     Raises:
         OutputError: `output-is-file`, `no-folder`, `not-writable`, `output-exists`, `not-an-export`,
             `output-address`.
@@ -63,10 +59,6 @@ def atomic_folder(folder: Path, overwrite: bool) -> Iterator[Path]:
 
     Where `folder` exists, what it holds is replaced entry by entry, and restored if that fails.
 
-    Args:
-        folder: To write.
-        overwrite: Whether an existing export is replaced.
-
     Raises:
         OutputError: As `refuse_folder`; the folder cannot be written.
     """
@@ -89,24 +81,13 @@ def atomic_folder(folder: Path, overwrite: bool) -> Iterator[Path]:
 def write_file(path: Path, data: bytes) -> None:
     """Write a file, and create the folders that it lies in.
 
-    Not for threads: one that is late would create a removed folder again.
-
-    Args:
-        path: Of the file.
-        data: Its bytes.
-    """
+    Not for threads: one that is late would create a removed folder again."""
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(data)
 
 
 def write_listing(folder: Path, kind: str, more: Mapping[str, Any]) -> None:
-    """Write `eigenfield.json`: the kind of export, and every file that it wrote.
-
-    Args:
-        folder: Of the export.
-        kind: Of the export.
-        more: Further entries.
-    """
+    """Write `eigenfield.json`: the kind of export, every file that it wrote, and further entries."""
     files = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
     document = {"kind": kind, "generator": f"eigenfield {__version__}", **more, "files": [*files, LISTING_FILE]}
     text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)

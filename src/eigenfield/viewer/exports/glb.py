@@ -23,7 +23,7 @@ from eigenfield.core.scene import Scene
 from eigenfield.core.version import __version__
 from eigenfield.gltf.accessors import FLOAT
 from eigenfield.gltf.buffer import Buffer
-from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, file_head, json_bytes
+from eigenfield.gltf.container import glb_blocks, json_bytes
 from eigenfield.gltf.write_geometry import NODE_DIGITS, bounds_of, index_type, write_nodes, write_primitive
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.imaging.png import png_bytes
@@ -53,13 +53,10 @@ def write_glb(
     """Write the proxy with its mean, or with the texture of a viewpoint.
 
     Args:
-        scene: The scene.
-        output: The .glb.
         at: View-plane coordinates of the viewpoint; None: the mean.
         image: How the texture is kept: "png", "jpeg", or "webp", which a viewer must know (EXT_texture_webp).
         draco: Whether the mesh is compressed, which a viewer must know (KHR_draco_mesh_compression).
         metres_per_unit: Metres in one unit of the capture; None: as the scene says, or else one.
-        overwrite: Whether an existing file is replaced.
 
     Raises:
         OptionError: `image`, `draco-missing`, `viewpoint`, `not-a-picture`.
@@ -73,8 +70,8 @@ def write_glb(
     write = _write_draco if draco else _write_plain
     primitives = [write(part, buffer) for part in _parts(scene.proxy)]
     view = buffer.view(picture)
-    scale = scene.settings.get("metresPerUnit", 1.0) if metres_per_unit is None else metres_per_unit
-    gltf = _gltf(scene, float(scale), image, view) | {
+    scale = (scene.provenance.metres_per_unit or 1.0) if metres_per_unit is None else float(metres_per_unit)
+    gltf = _gltf(scene, scale, image, view) | {
         "meshes": [{"name": "proxy", "primitives": primitives}],
         "accessors": buffer.accessors,
         "bufferViews": buffer.views,
@@ -84,21 +81,12 @@ def write_glb(
     gltf["extensionsUsed"] = ["KHR_materials_unlit", *required]
     if required:
         gltf["extensionsRequired"] = required
-    head = file_head(json_bytes(gltf), CHUNK.size + buffer.length, output)
-    chunk = CHUNK.pack(buffer.length, BINARY_CHUNK)
-    write_bytes(output, b"".join([head, chunk, *buffer.parts]), overwrite=overwrite)
+    blocks = glb_blocks(json_bytes(gltf), b"".join(buffer.parts), output)
+    write_bytes(output, b"".join(blocks), overwrite=overwrite)
 
 
 def check_image(image: str, draco: bool) -> None:
-    """Before any work: check that texture and mesh can be coded.
-
-    Args:
-        image: As of `write_glb`.
-        draco: Likewise.
-
-    Raises:
-        OptionError: `image`, `draco-missing`.
-    """
+    """Before any work: check that texture and mesh can be coded. OptionError `image`, `draco-missing`."""
     if image == "ktx2":
         remedy = "write png, and convert it by `gltf-transform uastc plain.glb small.glb`, which needs Khronos' ktx"
         raise OptionError("image", "eigenfield has no encoder of KTX2", remedy=remedy)

@@ -14,7 +14,7 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.scene import Scene
 from eigenfield.gltf import encode_scene
 from eigenfield.rendering import RenderJob, at_resolution, viewpoint
-from eigenfield.runtime.files import atomic_files, refuse_existing
+from eigenfield.runtime.files import atomic_files
 from eigenfield.viewer.page import SAID_MAX_CHARACTERS, Guests, page_title, single_file
 
 POSTER_MAX_WIDTH_PX = 1200  # what those who show links recommend
@@ -28,7 +28,6 @@ def draw_poster(scene: Scene, max_width: int, at: tuple[float, float] | None = N
     """A view of a scene as a JPEG, and its width and height.
 
     Args:
-        scene: The scene.
         max_width: In pixels; no wider than the reference camera's photograph.
         at: On the view plane. Default: the reference camera's.
 
@@ -45,26 +44,8 @@ def draw_poster(scene: Scene, max_width: int, at: tuple[float, float] | None = N
 
 
 def guests_files(output: Path) -> list[Path]:
-    """Poster and page.
-
-    Args:
-        output: The .html.
-    """
+    """Poster and page."""
     return [output.with_suffix(".jpg"), output]
-
-
-def refuse_guests(output: Path, overwrite: bool) -> None:
-    """Before any work: check that page and poster may be written.
-
-    Args:
-        output: The .html.
-        overwrite: Whether existing files may be replaced.
-
-    Raises:
-        OutputError: One of them may not or cannot be written.
-    """
-    for path in guests_files(output):
-        refuse_existing(path, overwrite)
 
 
 def write_guests_page(
@@ -82,13 +63,10 @@ def write_guests_page(
     The page holds its poster too. The file is for crawlers, which follow addresses only and run no scripts.
 
     Args:
-        scene: The scene.
-        output: The .html.
         title: Of the page. Default: `page_title`.
         metres_per_unit: Metres in one unit of the capture, for headsets.
         at: The first view, on the view plane. Default: the reference camera's.
         url: Where the page will be, for links to it. Default: its name, which most crawlers do not follow.
-        overwrite: Whether existing files are replaced.
 
     Returns:
         The HTML that shows the page within another one.

@@ -41,11 +41,7 @@ def write_maps(
     scene's maps have the common exposure. The maps of sheets have their opacity as alpha.
 
     Args:
-        scene: The scene.
-        folder: To write.
         textures: Number of eigen textures of each basis. Default: all.
-        overwrite: Whether an existing export is replaced.
-        progress: Reports each map.
 
     Raises:
         OptionError: `textures`, `not-a-picture`.
@@ -67,9 +63,6 @@ def write_maps(
 def alpha_added(scene: Scene) -> Callable[[NDArray[np.float32]], NDArray[np.float32]]:
     """A function of a map (H, W, C): R, G, B and opacity (H, W, 4) of sheets, else the map.
 
-    Args:
-        scene: The scene.
-
     Raises:
         OptionError: `not-a-picture`: it has other than one or three channels.
     """
@@ -90,7 +83,6 @@ def eigen_maps(scene: Scene, count: int) -> Iterator[tuple[Callable[[], NDArray[
     That is (C, H, W) of the whole atlas, and (1, H, W) where it is the same in R, G and B.
 
     Args:
-        scene: The scene.
         count: Number of eigen textures of each basis.
     """
     appearance = scene.appearance

@@ -34,7 +34,6 @@ def file_name(name: str, otherwise: str) -> str:
     """One part of a path that every system allows.
 
     Args:
-        name: Wanted.
         otherwise: Where nothing of `name` is left.
     """
     text = "".join(

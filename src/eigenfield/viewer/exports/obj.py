@@ -23,7 +23,7 @@ from eigenfield.imaging.png import png_bytes
 from eigenfield.rendering import mean_texture
 from eigenfield.rendering.options import check_textures
 from eigenfield.rendering.weights import encoded_places
-from eigenfield.runtime.files import atomic_files, refuse_existing
+from eigenfield.runtime.files import atomic_files
 from eigenfield.runtime.parallel import parallel_stream
 from eigenfield.viewer.exports.folder import atomic_folder, write_listing
 from eigenfield.viewer.exports.maps import alpha_added, eigen_maps
@@ -37,11 +37,6 @@ def write_obj(scene: Scene, output: Path, *, overwrite: bool = False) -> None:
     """Write NAME.obj with NAME.mtl and NAME.png, the mean clipped to 0..1, beside it; all three or none. The picture of
     sheets has their opacity as alpha.
 
-    Args:
-        scene: The scene.
-        output: The .obj.
-        overwrite: Whether existing files are replaced.
-
     Raises:
         OptionError: `not-a-picture`.
         OutputError: A file cannot be written.
@@ -54,26 +49,8 @@ def write_obj(scene: Scene, output: Path, *, overwrite: bool = False) -> None:
         mesh.write_bytes(_mesh(scene, material.name))
 
 
-def refuse_obj(output: Path, overwrite: bool) -> None:
-    """Before any work: check that the three files may be written.
-
-    Args:
-        output: The .obj.
-        overwrite: Whether existing files may be replaced.
-
-    Raises:
-        OutputError: One of them may not or cannot be written.
-    """
-    for path in obj_files(output):
-        refuse_existing(path, overwrite)
-
-
 def obj_files(output: Path) -> list[Path]:
-    """Picture, material and mesh of an OBJ. The names of the first two have no spaces, which readers of OBJ split at.
-
-    Args:
-        output: The .obj.
-    """
+    """Picture, material and mesh of an OBJ. The names of the first two have no spaces, where readers split names."""
     stem = "".join(c if c.isalnum() or c in "._" else "_" for c in file_name(output.stem, "mesh"))
     return [output.with_name(f"{stem}.png"), output.with_name(f"{stem}.mtl"), output]
 
@@ -94,11 +71,7 @@ def write_obj_folder(
     size.
 
     Args:
-        scene: The scene.
-        folder: To write.
         textures: Number of eigen textures of each basis. Default: all.
-        overwrite: Whether an existing export is replaced.
-        progress: Reports each eigen texture.
 
     Raises:
         OptionError: `not-a-picture`, `textures`.

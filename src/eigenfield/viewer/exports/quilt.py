@@ -36,10 +36,7 @@ class Quilt:
     """The shape of a quilt.
 
     Attributes:
-        columns: Tiles in a row.
-        rows: Tiles in a column.
         width: Of a view, in pixels.
-        height: Of a view, in pixels.
         spread: Part of the array's width that the views cover, 0..1.
     """
 
@@ -61,7 +58,6 @@ def quilt_of(
     """The shape of a scene's quilt.
 
     Args:
-        scene: The scene.
         grid: (columns, rows). Default: 8 x 6.
         resolution: (width, height) of a view. Default: the reference camera's shape, no larger than it is, so that the
             quilt has at most 4096 pixels a side.
@@ -92,10 +88,6 @@ def quilt_of(
 def quilt_file(output: Path, quilt: Quilt) -> Path:
     """A file's path with the quilt's suffix.
 
-    Args:
-        output: The .png.
-        quilt: Its shape.
-
     Raises:
         OptionError: `quilt-name`: the name has a suffix of another shape.
     """
@@ -116,13 +108,6 @@ def write_quilt(
     job: RenderJob, quilt: Quilt, output: Path, *, overwrite: bool = False, progress: Progress | None = None
 ) -> Path:
     """Draw and write a quilt; returns the file's path, which has the suffix.
-
-    Args:
-        job: The scene and how it is drawn.
-        quilt: Its shape.
-        output: The .png.
-        overwrite: Whether an existing file is replaced.
-        progress: Reports each view.
 
     Raises:
         OptionError: `quilt-array`, `quilt-name`; as `Renderer.draw`.
@@ -150,10 +135,6 @@ def quilt_views(job: RenderJob, quilt: Quilt) -> list[tuple[Camera, ViewWeights]
     All look the same way, with their x axis along the array's X. Principal points are shifted so that the point in the
     middle of the picture, at the median depth of what the array's middle sees, stays in the middle: it is shown in the
     plane of the display.
-
-    Args:
-        job: The scene and how it is drawn.
-        quilt: Its shape.
 
     Raises:
         OptionError: `quilt-array`: the cameras do not stand side by side, or see nothing.

@@ -22,11 +22,7 @@ DEFAULT_CODEC = "avif"
 
 
 def check_codec(codec: str, quality: int | None) -> None:
-    """Check the codec and quality of `save`.
-
-    Raises:
-        OptionError: `codec`, `codec-missing`, `quality`.
-    """
+    """Check the codec and quality of `save`. OptionError `codec`, `codec-missing`, `quality`."""
     if codec not in SAVE_CODECS:
         raise OptionError("codec", f"there is no codec {codec!r}", remedy=f"use {', '.join(SAVE_CODECS)}")
     if codec in ("avif", "webp") and not features.check(codec):
@@ -68,11 +64,8 @@ def encode(codes: NDArray[np.uint8], codec: str, quality: int) -> bytes:
 
 
 def dimensions(data: memoryview, codec: str, where: str) -> tuple[int, int]:
-    """Width and height from a picture's header alone; nothing is decoded or allocated.
-
-    Raises:
-        FormatError: `codec-missing`, `picture-damaged`, `picture-limit`.
-    """
+    """Width and height from a picture's header alone; nothing is decoded or allocated. FormatError `codec-missing`,
+    `picture-damaged`, `picture-limit`."""
     width, height = PICTURES[codec].size(data, where)
     if width > limits.MAX_SIDE or height > limits.MAX_STACKED or width * height > limits.MAX_TEXELS:
         raise FormatError("picture-limit", f"{width}x{height}, {limits.MAX_TEXELS} texels are allowed", where=where)
