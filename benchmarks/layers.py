@@ -28,7 +28,7 @@ from eigenfield.capture import open_any
 from eigenfield.core.camera import Camera
 from eigenfield.imaging.metrics import psnr
 from eigenfield.reconstruction import layered, layers
-from eigenfield.reconstruction.layers import LAYERS_TUNING, Range
+from eigenfield.reconstruction.layers import LAYERS_TRIAL_SIDE_PIXELS, LAYERS_TRIAL_STEP, Range
 from eigenfield.stereo import ReferenceView, view_matrices
 from eigenfield.stereo.multiplane import MULTIPLANE_TUNING, SoftSheets
 from eigenfield.stereo.multiplane.fit import SHEET_TUNING, fit_sheets
@@ -83,7 +83,7 @@ def given_of(name: str, out: Path) -> tuple[NDArray[np.uint8], Sequence[Camera],
             ef.reconstruct(photographs, surface="layers", layers=COUNT)
         except _GivenError as found:
             pictures, cameras, bounds = found.args
-            small, of_small = layers.halved(pictures, cameras, LAYERS_TUNING.trial_side_pixels)
+            small, of_small = layers.halved(pictures, cameras, LAYERS_TRIAL_SIDE_PIXELS)
             return small, of_small, bounds
     raise SystemExit(f"{name} has no soft sheets")
 
@@ -99,7 +99,7 @@ def without(part: Part) -> Iterator[None]:
 def of_parts(pictures: NDArray[np.uint8], cameras: Sequence[Camera], bounds: Range) -> dict[str, Any]:
     """PSNR of views left out and of the others, and seconds, for each of PARTS."""
     left_out = np.zeros(len(cameras), np.bool_)
-    left_out[LAYERS_TUNING.trial_step // 2 :: LAYERS_TUNING.trial_step] = True
+    left_out[LAYERS_TRIAL_STEP // 2 :: LAYERS_TRIAL_STEP] = True
     known = [camera for camera, out in zip(cameras, left_out, strict=True) if not out]
     found = {}
     for key, part in PARTS.items():

@@ -7,9 +7,7 @@ from __future__ import annotations
 
 import logging
 import os
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -20,8 +18,9 @@ from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import Scene
 from eigenfield.encoding.options import EncodeOptions
 from eigenfield.proxy.surface.neighbours import spread_views
-from eigenfield.reconstruction import reconstruct
+from eigenfield.reconstruction import SurfaceOptions
 from eigenfield.reconstruction.unseen import held_out_names, without
+from eigenfield.reconstruction.whole import reconstruct
 
 log = logging.getLogger("eigenfield.encode")
 
@@ -59,7 +58,7 @@ def make_draft(
     capture: Capture,
     proxy: str | os.PathLike[str] | Mesh | Proxy | None,
     options: EncodeOptions,
-    settings: Mapping[str, Any],
+    surface: SurfaceOptions | None,
     progress: Progress | None = None,
 ) -> Scene:
     """A scene without a fit from some of the photographs, made smaller, without scores.
@@ -70,7 +69,7 @@ def make_draft(
         capture: Photographs, with cameras if there is a proxy.
         proxy: As of `encode`; None: it is made.
         options: Of the whole scene, of which the draft takes what is not about quality and size.
-        settings: Arguments of `reconstruct` for the whole scene.
+        surface: Of the whole scene; None where the proxy is given.
         progress: Called within stages.
 
     Raises:
@@ -81,16 +80,17 @@ def make_draft(
     chosen = _some_views(capture, options)
     if proxy is None:
         factor = _factor(chosen, DRAFT_TUNING.surface_pixels)
-        own = {
-            **settings,
-            "surface": "auto" if settings["surface"] == "layers" else settings["surface"],
-            "layers": 1,
-            "fit_spheres": (),  # whose regions are in pixels of the whole photographs
-            "triangles": min(DRAFT_TUNING.triangles, settings["triangles"]),
-            "blind": None,  # who is held out takes no part at all
-            "hold_out": None,
-        }
-        made = reconstruct(chosen.reduced(factor), progress=_within(progress), **own)
+        whole = surface or SurfaceOptions()
+        opaque = replace(
+            whole,
+            surface="auto" if whole.surface == "layers" else whole.surface,
+            layers=1,
+            fit_spheres=(),  # whose regions are in pixels of the whole photographs
+            triangles=min(DRAFT_TUNING.triangles, whole.triangles),
+            blind=None,  # who is held out takes no part at all
+            hold_out=None,
+        )
+        made = reconstruct(chosen.reduced(factor), opaque, progress=_within(progress))
         proxy, chosen = made.proxy, _as_photographed(made.light_field, chosen, factor)
     assert isinstance(chosen, LightField)
     factor = _factor(chosen, DRAFT_TUNING.texture_pixels)
