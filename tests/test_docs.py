@@ -201,7 +201,8 @@ def options_of_usage() -> set[str]:
 
 def options_of_encode() -> set[str]:
     common = {"--help", "--output", "--overwrite", "--quiet", "--threads", "--traceback", "--verbose"}
-    known = {word for option in encode_command.params for word in (*option.opts, *option.secondary_opts)}
+    shown = [option for option in encode_command.params if not getattr(option, "hidden", False)]
+    known = {word for option in shown for word in (*option.opts, *option.secondary_opts)}
     return {word for word in known if word.startswith("--")} - common
 
 

@@ -17,6 +17,7 @@ import pytest
 from PIL import Image
 
 import eigenfield as ef
+from eigenfield.capture import PhotoSet
 from eigenfield.core import notebook
 from eigenfield.core.arguments import checked
 from eigenfield.core.scene import Residual
@@ -26,6 +27,8 @@ from support.motion import photographed
 from support.program import call
 from support.scenes import tiny_scene
 from support.soft_scenes import coded_soft_scene
+
+NO_PHOTOGRAPHS = PhotoSet(Path(), (), None, (), "folder")
 
 
 def error(function, *arguments, **named) -> str:
@@ -280,7 +283,10 @@ def test_a_notebook_shows_progress_unless_told_otherwise(nine, monkeypatch):
         ("calibrate", ["a"], {"board": "9x6"}, "board describes a chart"),
         ("calibrate", ["a"], {"chart": "paper"}, "no chart is called paper; use checkerboard or charuco"),
         ("calibrate", ["a"], {"chart": "charuco", "masks": "b"}, "masks means nothing to charts"),
-        ("calibrate", ["a"], {"griid": (3, 3)}, "unexpected keyword argument 'griid'"),
+        ("calibrate", ["a"], {"griid": (3, 3)}, "OpenOptions has no option griid; did you mean grid?"),
+        ("open", ["a"], {"wurk": "b"}, "OpenOptions has no option wurk; did you mean work?"),
+        ("reconstruct", [NO_PHOTOGRAPHS], {"layer": 3}, "SurfaceOptions has no option layer; did you mean layers?"),
+        ("encode", ["a"], {"layer": 3}, "encode has no option layer; did you mean layers?"),
         ("view", [3], {}, "scene of view is 3"),
         ("view", [tiny_scene()], {"grid": (3, 3)}, "grid is for a capture"),
         ("export", [3, "a.html"], {}, "scene of export is 3"),

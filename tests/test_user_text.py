@@ -13,14 +13,14 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from eigenfield.calibration.charts.board import charuco, checkerboard, parse_length, read_board
-from eigenfield.calibration.charts.board import parse_size as parse_board_size
+from eigenfield.calibration.charts.board import charuco, checkerboard, parse_board_size, parse_length, read_board
 from eigenfield.capture.holdout import held_out_cameras
 from eigenfield.capture.readers.grid_names import compile_pattern
 from eigenfield.capture.readers.video import parse_frame
 from eigenfield.capture.readers.xml_tree import load_xml
 from eigenfield.cli import drawing
-from eigenfield.cli.common import _parse_grid, _parse_layers, pair_of_numbers
+from eigenfield.cli.capture_options import _parse_grid, _parse_layers
+from eigenfield.cli.common import pair_of_numbers
 from eigenfield.core.camera_names import named_camera
 from eigenfield.core.errors import EigenfieldError
 from eigenfield.encoding.target import Target, parse_size

@@ -24,7 +24,7 @@ from eigenfield.evaluation import ExcludedCircle, read_circles
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.imaging.png import png_bytes
 from eigenfield.proxy import prepare_proxy, read_mesh, write_mesh
-from eigenfield.reconstruction import reconstruct
+from eigenfield.reconstruction.whole import reconstruct
 from eigenfield.rendering import Renderer, camera_weights
 from eigenfield.runtime.files import write_bytes
 from eigenfield.runtime.parallel import parallel_map

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from eigenfield.core.errors import ProxyError as ProxyError
     from eigenfield.core.errors import WorkerError as WorkerError
     from eigenfield.core.mesh import Mesh as Mesh
+    from eigenfield.core.open_options import OpenOptions as OpenOptions
     from eigenfield.core.progress import Progress as Progress
     from eigenfield.core.scene import Scene as Scene
     from eigenfield.encoding import EncodeOptions as EncodeOptions
@@ -42,8 +43,9 @@ if TYPE_CHECKING:
     from eigenfield.evaluation import evaluate as evaluate
     from eigenfield.gltf import save as save
     from eigenfield.gltf import validate as validate
-    from eigenfield.reconstruction import Reconstruction as Reconstruction
-    from eigenfield.reconstruction import reconstruct as reconstruct
+    from eigenfield.reconstruction import SurfaceOptions as SurfaceOptions
+    from eigenfield.reconstruction.whole import Reconstruction as Reconstruction
+    from eigenfield.reconstruction.whole import reconstruct as reconstruct
     from eigenfield.rendering import render as render
     from eigenfield.rendering import render_many as render_many
     from eigenfield.runtime.parallel import set_threads as set_threads
@@ -62,13 +64,15 @@ _HOME = {  # a room, or a name in a room where that is another
     "FormatError": "core.errors",
     "LightField": "capture",
     "Mesh": "core.mesh",
+    "OpenOptions": "core.open_options",
     "OptionError": "core.errors",
     "OutputError": "core.errors",
     "PhotoSet": "capture",
     "Progress": "core.progress",
     "ProxyError": "core.errors",
-    "Reconstruction": "reconstruction",
+    "Reconstruction": "reconstruction.whole",
     "Scene": "core.scene",
+    "SurfaceOptions": "reconstruction",
     "Target": "encoding",
     "WorkerError": "core.errors",
     "batch": "batches",
@@ -78,7 +82,7 @@ _HOME = {  # a room, or a name in a room where that is another
     "export": "viewer.exports",
     "load": "api",
     "open": "capture:open_any",
-    "reconstruct": "reconstruction",
+    "reconstruct": "reconstruction.whole",
     "render": "rendering",
     "render_many": "rendering",
     "save": "gltf",

@@ -24,6 +24,7 @@ from eigenfield.batches.jobs import ALL_KEYS, captures_in, read_jobs
 from eigenfield.batches.sheet import sheet_html
 from eigenfield.batches.table import as_csv, as_markdown
 from eigenfield.core.errors import one_line
+from eigenfield.core.open_options import OpenOptions
 from eigenfield.demo import draw_demo_capture
 from eigenfield.runtime import executor
 from support import tasks
@@ -145,6 +146,7 @@ def test_instants_without_cameras_have_them_found_once(tmp_path):
     [
         ('[[capture]]\npath = "a"\n[[capture]]\npath = "b/A"\n', "two captures are called A"),
         ('[[capture]]\npath = "a"\npreste = "small"\n', "a: no option is called preste; did you mean preset?"),
+        ('[[capture]]\npath = "a"\nframes = 60\n', "a: frames is now called walk_frames; say walk_frames"),
         ('[options]\npreset = "huge"\n[[capture]]\npath = "a"\n', "no preset is called huge"),
         ('[[capture]]\nname = "a"\n', "a [[capture]] has no path"),
         ("captures = 3\n", "has captures where only [options] and [[capture]] are known"),
@@ -261,7 +263,7 @@ def test_a_folder_of_captures(tmp_path):
     assert [path.name for path in captures_in(tmp_path)] == ["b9", "b10", "walk.mp4", "²"]
     jobs = read_jobs(tmp_path, {"preset": "small", "grid": (3, 3)})
     assert [job.name for job in jobs] == ["b9", "b10", "walk", "²"]
-    assert jobs[0].options.preset == "small" and jobs[0].place == {"grid": (3, 3)}
+    assert jobs[0].options.preset == "small" and jobs[0].place == OpenOptions(grid=(3, 3))
     assert {"hold_out", "surface", "calibration", "target_size"} <= set(ALL_KEYS)
 
 

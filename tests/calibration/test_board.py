@@ -52,7 +52,9 @@ def test_turns_of_a_checkerboard_are_rotations_and_colours_decide_between_them(c
 
 
 def test_sizes_and_lengths_are_read_as_people_write_them():
-    assert boards.parse_size("9x6") == boards.parse_size(" 9 X 6") == boards.parse_size("9,6") == (9, 6)
+    assert (
+        boards.parse_board_size("9x6") == boards.parse_board_size(" 9 X 6") == boards.parse_board_size("9,6") == (9, 6)
+    )
     assert boards.parse_length("25mm") == (25.0, "mm")
     assert boards.parse_length("2.5 cm") == (2.5, "cm") and boards.parse_length("1in") == (1.0, "in")
     assert boards.parse_length("54") == (54.0, "")
@@ -60,7 +62,7 @@ def test_sizes_and_lengths_are_read_as_people_write_them():
     assert boards.convert_length(2.5, "", "mm") == 2.5
     for text in ("9", "9x", "9x6x3", "-9x6"):
         with pytest.raises(OptionError, match="COLUMNSxROWS"):
-            boards.parse_size(text)
+            boards.parse_board_size(text)
     for text in ("", "mm", "25 furlongs", "-3", "nan"):
         with pytest.raises(OptionError, match="is no length"):
             boards.parse_length(text)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import shutil
 from pathlib import Path
 
@@ -24,8 +25,13 @@ from eigenfield.capture import (
     open_photographs,
     read_header,
 )
-from eigenfield.capture.format_table import FORMAT_NOTES, sections_of_formats
 from eigenfield.capture.photographs.exif import read_focal_length
+from eigenfield.capture.photographs.kinds import VIDEO_EXTENSIONS
+from eigenfield.capture.readers import colmap, transforms
+from eigenfield.capture.readers.bundler import BUNDLER_LISTS
+from eigenfield.capture.readers.grid_names import GRID_MAX_NODE_NUMBER, GRID_WORDS
+from eigenfield.capture.readers.metashape import METASHAPE_LENS_MODELS, METASHAPE_PARAMETERS
+from eigenfield.capture.readers.walk import WALK_MAX_FRAMES
 from eigenfield.core.errors import CaptureError, EigenfieldError
 from eigenfield.core.observations import select_cameras
 from support import inspected
@@ -33,6 +39,19 @@ from support.captures import frame_of
 from support.named import CFG, hci, refused, write, write_video
 from support.scenes import row_grid
 
+BULLETS = ["Written by", "Cameras", "Read", "Refused or left out, by name", "Traps"]
+READ_IN_FULL = {  # what readers know by name, all of which docs/capture-formats.md lists
+    "transforms": (
+        *transforms.TRANSFORMS_PERSPECTIVE_MODELS, *transforms.TRANSFORMS_FISHEYE_MODELS,
+        *transforms.TRANSFORMS_LENS_KEYS,
+    ),
+    "colmap": (*colmap.COLMAP_MODELS, *colmap.COLMAP_UNREAD_MODELS),
+    "bundler": BUNDLER_LISTS,
+    "metashape": (*METASHAPE_LENS_MODELS, *METASHAPE_PARAMETERS),
+    "grid": (GRID_MAX_NODE_NUMBER, *(f"`{row}` `{column}`" for row, column in GRID_WORDS)),
+    "video": VIDEO_EXTENSIONS,
+    "walk": (WALK_MAX_FRAMES,),
+}  # fmt: skip
 GRID = [f"v_{r}_{c}.png" for r in range(3) for c in range(3)]
 
 
@@ -57,12 +76,14 @@ def test_every_row_is_documented_and_offered(run):
     assert len({row.name for row in FORMATS}) == len(FORMATS)
     page = Path(eigenfield.__file__).parents[2] / "docs" / "capture-formats.md"
     if page.exists():  # not in an installed package
-        text = page.read_text(encoding="utf-8")
-        sections = sections_of_formats()
-        assert text.split("\n## Formats\n\n")[1].split("\n\n## ")[0] == sections, (
-            f"docs/capture-formats.md needs:\n{sections}"
-        )
-    assert list(FORMAT_NOTES) == [row.name for row in FORMATS]
+        table, *sections = page.read_text("utf-8").split("\n## Formats\n\n")[1].split("\n\n## ")[0].split("\n### ")
+        names = [row.name for row in FORMATS]
+        assert re.findall(r"^\| \[`(\w+)`\]\(#\1\) \| .", table, re.MULTILINE) == names
+        assert [section.split("\n")[0] for section in sections] == names
+        for name, section in zip(names, sections, strict=True):
+            assert re.findall(r"^- \*\*(.*?):\*\* .", section, re.MULTILINE) == BULLETS, name
+            row = next(line for line in table.split("\n") if line.startswith(f"| [`{name}`]"))
+            assert [word for word in READ_IN_FULL.get(name, ()) if str(word) not in section + row] == [], name
     words = " ".join(run("inspect", "--help").out.split())
     names = [row.name for row in FORMATS]
     assert f": {', '.join(names[:-1])} or {names[-1]}." in words

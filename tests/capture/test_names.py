@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from eigenfield.capture import LightField, PhotoSet, open_any, open_photographs
-from eigenfield.capture.arrangement import OpenOptions
 from eigenfield.capture.readers.grid_names import find_grid_names, read_grid_names
 from eigenfield.core.errors import OptionError
+from eigenfield.core.open_options import OpenOptions
 from support.named import CUBE, nodes, places, refused, write
 
 # Stanford

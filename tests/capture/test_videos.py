@@ -205,6 +205,6 @@ def test_frames_that_the_decoder_made_up_are_named(tmp_path):
             assert caught.value.code == "video-unreadable" and "--frame" in caught.value.remedy
         else:
             assert np.array_equal(read_frame(path, number), sound[number])
-    opened = open_any(path, frames=15)  # a walk does without them
+    opened = open_any(path, walk_frames=15)  # a walk does without them
     assert opened.problems[1] == "5 damaged frames of the video are left out"
     assert not {f"frame_{number:05d}.png" for number in range(5, 10)} & set(opened.names)

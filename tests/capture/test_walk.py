@@ -43,7 +43,7 @@ def numbers(opened) -> list[int]:
 def test_sharp_frames_evenly_spread(tmp_path):
     path = tmp_path / "walk.mp4"
     places = write_walk(path)
-    opened = open_any(path, frames=6, work=tmp_path / "work")
+    opened = open_any(path, walk_frames=6, work=tmp_path / "work")
     assert opened.format == "walk" and opened.layout is None and opened.root == path
     assert opened.problems == ("6 frames of the video are used",)
     chosen = numbers(opened)
@@ -51,7 +51,7 @@ def test_sharp_frames_evenly_spread(tmp_path):
     steps = np.diff(places[chosen])
     assert steps.min() >= 12 and steps.max() <= 48, steps  # 180 pixels in 6 steps
     before = opened.shots[0].path.stat().st_mtime_ns
-    again = open_photographs(path, frames=6, work=tmp_path / "work")
+    again = open_photographs(path, walk_frames=6, work=tmp_path / "work")
     assert again.shots[0].path == opened.shots[0].path and again.shots[0].path.stat().st_mtime_ns == before
     frame = video.read_frame(path, chosen[4])
     assert np.array_equal(np.rint(opened.photograph(4).pixels * 255), frame)
@@ -61,7 +61,7 @@ def test_a_folder_of_one_video_and_the_default_number(tmp_path):
     write_walk(tmp_path / "IMG_0001.MOV")
     opened = open_any(tmp_path)
     low, high = walk.WALK_DEFAULT_RANGE
-    assert opened.format == "walk" and 20 <= len(opened) <= low < high and "--frames" in opened.problems[0]
+    assert opened.format == "walk" and 20 <= len(opened) <= low < high and "--walk-frames" in opened.problems[0]
     write(tmp_path, ["a.png", "b.png", "c.png"])
     opened = open_any(tmp_path)
     assert opened.format == "folder" and ".mov (a video: name it alone" in opened.problems[0]
@@ -86,14 +86,18 @@ def test_what_is_no_walk(tmp_path, monkeypatch):
         path.write_bytes(data[:part])
         refused("video-unreadable", path)
     for count in (2, 1001, -5):
-        refused("frames-unknown", path, frames=count)
-    refused("frames-unused", write(tmp_path / "p", ["a.png", "b.png", "c.png"]), frames=12)
+        refused("walk-frames-unknown", path, walk_frames=count)
+    refused("walk-frames-unused", write(tmp_path / "p", ["a.png", "b.png", "c.png"]), walk_frames=12)
     refused("names-unknown", tmp_path / "p", format="walk")
 
 
 def test_inspect_and_calibrate(tmp_path, run):
     write_walk(tmp_path / "a.mp4")
-    code, out, _ = run("inspect", tmp_path / "a.mp4", "--frames", "12")
-    assert code == 0 and "12 photographs without cameras from walk" in out and "--frames 12" in out
+    code, out, _ = run("inspect", tmp_path / "a.mp4", "--walk-frames", "12")
+    assert code == 0 and "12 photographs without cameras from walk" in out and "--walk-frames 12" in out
+    for verb in (["inspect"], ["encode"], ["calibrate"], ["view", "scene.glb"]):
+        code, _, err = run(*verb, tmp_path / "a.mp4", "--frames", "12")
+        assert code == 2 and err.endswith("--frames is now called --walk-frames; say --walk-frames 12\n")
+    refused("option-renamed", tmp_path / "a.mp4", frames=12)
     code, _, err = run("calibrate", tmp_path / "a.mp4", "-o", tmp_path / "cal")
     assert code == 2 and "--work" in err and err.count("\n") == 1

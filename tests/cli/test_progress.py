@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 import threading
+from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -22,9 +23,8 @@ from eigenfield.cli.time_left import TimeLeft
 from eigenfield.core.progress import tell_remaining
 from eigenfield.encoding import EncodeOptions
 from eigenfield.encoding.cost import STEPS, expected_cost
-from eigenfield.encoding.estimated import reconstruction_settings
-
-OWN = {"surface": "auto", "layers": None, "refine": None, "background": None, "primitives": (), "fit_spheres": ()}
+from eigenfield.encoding.estimated import surface_to_make
+from eigenfield.reconstruction import SurfaceOptions
 
 
 class Clock:
@@ -238,21 +238,21 @@ def test_nothing_is_shown_if_quiet() -> None:
 
 def test_a_capture_with_cameras_has_the_steps_that_its_encode_takes(fitted: tuple[Path, Path]) -> None:
     opened, options = open_any(fitted[0]), EncodeOptions()
-    settings = reconstruction_settings(options, OWN, blind=False)
-    cost = expected_cost(opened, options, settings, threads=1)
+    surface = surface_to_make(options, SurfaceOptions(), blind=False, has_proxy=False)
+    cost = expected_cost(opened, options, surface, threads=1)
     assert list(cost.steps) == ["array", "relief", "trial", "layers", "mesh", "fit", "code"]
     assert cost.seconds == pytest.approx(sum(cost.steps.values()))
     assert cost.seconds < cost.layered_seconds
-    assert expected_cost(opened, options, settings, threads=4).seconds < cost.seconds / 2
+    assert expected_cost(opened, options, surface, threads=4).seconds < cost.seconds / 2
     assert list(expected_cost(opened, options, None, 1).steps) == ["mesh", "fit", "code"]
-    held = expected_cost(opened, EncodeOptions(hold_out="odd"), settings, threads=1)
+    held = expected_cost(opened, EncodeOptions(hold_out="odd"), surface, threads=1)
     assert held.steps["fit"] < cost.steps["fit"] and held.steps["array"] == cost.steps["array"]
-    forced = expected_cost(opened, options, settings | {"surface": "layers", "layers": 4}, threads=1)
+    forced = expected_cost(opened, options, replace(surface, surface="layers", layers=4), threads=1)
     assert list(forced.steps) == ["array", "layers", "mesh", "fit", "code"]
     assert forced.steps["layers"] > 0 and not forced.layered
     paper = EncodeOptions(fit="none")
-    settings = reconstruction_settings(paper, OWN, blind=False)
-    assert list(expected_cost(opened, paper, settings, 1).steps) == ["array", "relief", "mesh", "maps", "code"]
+    surface = surface_to_make(paper, SurfaceOptions(), blind=False, has_proxy=False)
+    assert list(expected_cost(opened, paper, surface, 1).steps) == ["array", "relief", "mesh", "maps", "code"]
     assert set(cost.steps) <= set(STEPS)
 
 

@@ -16,15 +16,11 @@ from eigenfield.core.errors import ProxyError
 from eigenfield.encoding import draft as drafts
 from eigenfield.encoding.draft import make_draft
 from eigenfield.gltf import load
+from eigenfield.reconstruction import SurfaceOptions
 from support.captures import write_array, write_capture
 from support.http_client import Client
 from support.program import call
 from support.scenes import row_grid
-
-ESTIMATED = {
-    "surface": "auto", "layers": None, "refine": None, "background": None, "primitives": (), "fit_spheres": (),
-    "triangles": 30000, "blind": None, "hold_out": None,
-}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -56,7 +52,7 @@ def encode(folder, *options):
 def test_it_draws_the_photographs_from_smaller_ones(row, monkeypatch):
     small(monkeypatch, texture_pixels=9 * 192 * 168 // 4)
     capture = open_capture(row)
-    scene = make_draft(capture, row / "proxy.ply", ef.EncodeOptions(), {})
+    scene = make_draft(capture, row / "proxy.ply", ef.EncodeOptions(), None)
     assert scene.settings["draft"] == 2 and not scene.scores
     assert [(camera.width, camera.height) for camera in scene.rig.cameras] == capture.sizes
     assert scene.settings["photographs"]["pixels"] == 9 * 192 * 168
@@ -67,7 +63,7 @@ def test_it_draws_the_photographs_from_smaller_ones(row, monkeypatch):
 def test_held_out_photographs_are_left_out_and_views_are_spread(row, monkeypatch):
     small(monkeypatch, max_views=4)
     options = ef.EncodeOptions(hold_out="every:2", reference="view_03.png")
-    scene = make_draft(open_capture(row), row / "proxy.ply", options, {})
+    scene = make_draft(open_capture(row), row / "proxy.ply", options, None)
     held = held_out_cameras("every:2", open_capture(row).names, np.zeros((9, 2)))
     shown = {name for name, out in zip(open_capture(row).names, held, strict=True) if not out}
     assert set(scene.rig.names) < shown and len(scene.rig.names) == 4
@@ -76,7 +72,7 @@ def test_held_out_photographs_are_left_out_and_views_are_spread(row, monkeypatch
 def test_a_grid_keeps_whole_rows_and_columns(array, monkeypatch):
     small(monkeypatch, max_views=4, surface_pixels=16 * 96 * 96 // 4)
     capture = open_any(array)
-    scene = make_draft(capture, None, ef.EncodeOptions(), ESTIMATED)
+    scene = make_draft(capture, None, ef.EncodeOptions(), SurfaceOptions())
     place = [capture.names.index(name) for name in scene.rig.names]
     assert len(place) == 4
     assert len(set(capture.layout.rows[place])) == len(set(capture.layout.columns[place])) == 2
@@ -85,23 +81,17 @@ def test_a_grid_keeps_whole_rows_and_columns(array, monkeypatch):
 
 def test_what_is_named_in_pixels_or_by_photographs_stays_with_the_scene(array, monkeypatch):
     """Regions of spheres are in pixels of the whole photographs, and held-out ones are gone already."""
-    asked = {}
+    asked = []
 
-    def note_and_stop(capture, **settings):
-        asked.update(settings)
+    def note_and_stop(capture, surface, progress):
+        asked.append(surface)
         raise ProxyError("surface-empty", "stopped", remedy="")
 
     monkeypatch.setattr(drafts, "reconstruct", note_and_stop)
-    given = ESTIMATED | {
-        "surface": "layers",
-        "fit_spheres": ("a.png:1,2,3,4",),
-        "hold_out": "every:4",
-        "blind": "every:4",
-    }
+    given = SurfaceOptions(surface="layers", fit_spheres=("a.png:1,2,3,4",), hold_out="every:4", blind="every:4")
     with pytest.raises(ProxyError):
         make_draft(open_any(array), None, ef.EncodeOptions(hold_out="every:4"), given)
-    del asked["progress"]
-    assert asked == ESTIMATED | {"layers": 1, "triangles": drafts.DRAFT_TRIANGLES}
+    assert asked == [SurfaceOptions(layers=1, triangles=drafts.DRAFT_TRIANGLES)]
 
 
 def test_the_command_writes_a_draft_and_says_what_it_is(row, tmp_path, worth_it, monkeypatch, capsys):
@@ -160,7 +150,7 @@ def test_the_scene_takes_the_draft_s_place_at_the_same_address(row, tmp_path, mo
     progress = Told()
     progress.plan({"fit": 90.0}, {})
     progress.begin("fit")
-    draft = make_draft(open_capture(row), row / "proxy.ply", ef.EncodeOptions(), {})
+    draft = make_draft(open_capture(row), row / "proxy.ply", ef.EncodeOptions(), None)
     output = tmp_path / "scene.glb"
     ef.save(ef.encode(open_capture(row), row / "proxy.ply", fit="none", textures=2), output)
     with command.Window("scene.glb", quiet=True) as window:

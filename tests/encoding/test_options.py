@@ -14,10 +14,12 @@ from eigenfield.capture import open_capture
 from eigenfield.cli.encode import command
 from eigenfield.cli.field_options import from_fields
 from eigenfield.core.errors import OptionError
+from eigenfield.core.fields import options_of
+from eigenfield.core.open_options import OpenOptions
 from eigenfield.encoding import EncodeOptions, Target
-from eigenfield.encoding.fields import options_of
 from eigenfield.encoding.options import PRESETS, UNKNOWN_CHOICE_TEXTS, density_for_quality
 from eigenfield.gltf import encode_scene, save
+from eigenfield.reconstruction import SurfaceOptions
 from support.captures import write_capture
 
 FOR_MAPS = [{"align": True}, {"uv_ssim": 0.9}, {"keep_maps": "maps"},
@@ -127,8 +129,12 @@ def test_what_cannot_be_is_refused_at_once(asked, code):
 
 def test_every_option_has_help_and_is_one_of_the_command_line(run):
     assert [name for name, _ in options_of(EncodeOptions)] == [field.name for field in fields(EncodeOptions)]
+    others = {name: one for kind in (OpenOptions, SurfaceOptions) for name, one in options_of(kind) if one.offered}
     offered = {parameter.name: parameter for parameter in command.params}
     said = " ".join(run("encode", "--help").out.split())
+    del others["triangles"]  # `EncodeOptions` has its own
+    for name, one in others.items():
+        assert offered[name].help == one.help and f"--{one.name or name.replace('_', '-')}" in said
     for name, one in options_of(EncodeOptions):
         assert one.help.endswith((".", "]")) and f"{name}: {' '.join(one.help.split())}" in EncodeOptions.__doc__
         parts = {name: one} if one.parts is None else {f"{name}_{part}": own for part, own in options_of(one.parts)}

@@ -12,10 +12,10 @@ from PIL import Image
 import eigenfield as ef
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import FormatError, OptionError
+from eigenfield.core.fields import options_of
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.proxy import Proxy
 from eigenfield.encoding import EncodeOptions
-from eigenfield.encoding.fields import options_of
 from eigenfield.gltf import encode_scene, parts, save, store_scores, validate
 from eigenfield.gltf.coded_pictures import shown_mean
 from eigenfield.gltf.container import parse_glb

@@ -20,7 +20,7 @@ from eigenfield.calibration.motion import sfm
 from eigenfield.calibration.motion.result import ViewReport
 from eigenfield.capture import PhotoSet, Shot, open_any, open_capture
 from eigenfield.core.errors import CaptureError, EigenfieldError
-from eigenfield.reconstruction import reconstruct
+from eigenfield.reconstruction.whole import reconstruct
 from support.captures import write_array, write_capture
 
 

@@ -16,8 +16,8 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.imaging.metrics import psnr
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy import atlas_fault
-from eigenfield.reconstruction import reconstruct
 from eigenfield.reconstruction.layers import compare_held_out, draw_means, fit_views, layers_fault
+from eigenfield.reconstruction.whole import reconstruct
 from eigenfield.stereo import view_matrices
 from support.captures import write_array
 

@@ -18,7 +18,8 @@ from eigenfield.capture import open_any, open_capture
 from eigenfield.core.errors import CaptureError, OptionError, ProxyError
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy import atlas_fault, read_mesh
-from eigenfield.reconstruction import looks_one_way, reconstruct
+from eigenfield.reconstruction.array import looks_one_way
+from eigenfield.reconstruction.whole import reconstruct
 from support.captures import write_array
 
 

@@ -6,8 +6,9 @@ import pytest
 
 from eigenfield.capture import PhotoSet, Shot, open_capture
 from eigenfield.core.errors import OptionError
-from eigenfield.reconstruction import ReconstructionSettings, check_settings, reconstruct, whole
+from eigenfield.reconstruction import SurfaceOptions, whole
 from eigenfield.reconstruction.unseen import held_out_names, rule_for, without
+from eigenfield.reconstruction.whole import check_settings, reconstruct
 from support.captures import write_capture
 from support.scenes import row_grid
 
@@ -54,6 +55,6 @@ def test_rows_and_columns_are_not_known_of_bare_photographs(tmp_path):
     shots = tuple(Shot(f"{k}.png", tmp_path / f"{k}.png", 64, 48) for k in range(9))
     photos = PhotoSet(tmp_path, shots, None, (), "folder")
     with pytest.raises(OptionError) as caught:
-        check_settings(photos, ReconstructionSettings(blind="odd"))
+        check_settings(photos, SurfaceOptions(blind="odd"))
     assert caught.value.code == "hold-out" and "--blind" in caught.value.remedy
     assert held_out_names("every:4", photos) == {"2.png", "6.png"}

@@ -16,6 +16,7 @@ from typing import Any
 
 from eigenfield.batches.jobs import CaptureJob
 from eigenfield.capture import Capture, open_any
+from eigenfield.capture.identity import capture_identity
 from eigenfield.capture.writers.save import save_calibration
 from eigenfield.encoding import encode
 from eigenfield.encoding.cost import expected_cost
@@ -23,8 +24,7 @@ from eigenfield.encoding.views import check_selection
 from eigenfield.evaluation import evaluate, stored_scores
 from eigenfield.gltf import load, save, store_scores
 from eigenfield.proxy import refuse_no_mesh
-from eigenfield.reconstruction import reconstruct
-from eigenfield.reconstruction.whole import capture_identity
+from eigenfield.reconstruction.whole import reconstruct
 from eigenfield.runtime.objects import DONE, find_objects, own_copies
 from eigenfield.runtime.parallel import threads
 from eigenfield.runtime.stages import Stages, stage_key
@@ -39,10 +39,6 @@ CALIBRATION_FILE = "transforms.json"
 @own_copies()
 def look_at(job: CaptureJob, output: Path) -> dict[str, Any]:
     """What a capture is expected to take, and its record if it is finished.
-
-    Args:
-        job: The capture.
-        output: Folder of the batch.
 
     Returns:
         `key`, `seconds` expected with this worker's threads, `memory` in bytes, and `record` or None.
@@ -59,7 +55,7 @@ def look_at(job: CaptureJob, output: Path) -> dict[str, Any]:
     check_selection(capture, job.options)
     if job.proxy is not None:
         refuse_no_mesh(Path(job.proxy))
-    cost = expected_cost(capture, job.options, job.reconstruction, threads())
+    cost = expected_cost(capture, job.options, job.surface, threads())
     return {"key": key, "seconds": cost.seconds, "memory": cost.memory, "record": None}
 
 
@@ -79,11 +75,6 @@ def _finished(place: Path) -> dict[str, Any] | None:
 @own_copies()
 def encode_capture(job: CaptureJob, output: Path, key: str) -> dict[str, Any]:
     """Encode and measure a capture, unless it is finished.
-
-    Args:
-        job: The capture.
-        output: Folder of the batch.
-        key: Of `look_at`.
 
     Returns:
         The record: name, files relative to `output`, bytes, scores, seconds, warnings.
@@ -107,24 +98,18 @@ def encode_capture(job: CaptureJob, output: Path, key: str) -> dict[str, Any]:
 def find_cameras(job: CaptureJob, output: Path) -> Path:
     """The cameras of a capture, found or as they are given, as a calibration that others use too.
 
-    Args:
-        job: The capture.
-        output: Folder of the batch.
-
     Raises:
         EigenfieldError: Of any step.
     """
     capture = _opened(job, output)
-    settings = job.reconstruction
+    surface = job.surface
     key = stage_key(["cameras", _inputs(job, capture), installed()])
 
     def build(folder: Path) -> None:
         light_field = capture.light_field
-        if settings is not None:
-            layers = settings["layers"] if settings["surface"] == "layers" else 1  # trials tell nothing about cameras
-            made = reconstruct(
-                capture, work=output / WORK_FOLDER / job.name, progress=None, **{**settings, "layers": layers}
-            )
+        if surface is not None:
+            layers = surface.layers if surface.surface == "layers" else 1  # trials tell nothing about cameras
+            made = reconstruct(capture, surface, layers=layers, work=output / WORK_FOLDER / job.name, progress=None)
             light_field = made.light_field
         assert light_field is not None
         save_calibration(light_field, folder / "calibration")
@@ -134,7 +119,7 @@ def find_cameras(job: CaptureJob, output: Path) -> Path:
 
 def _opened(job: CaptureJob, output: Path) -> Capture:
     frames = None if find_objects(output) else output / WORK_FOLDER / job.name / "frames"
-    return open_any(job.path, work=frames, **job.place)
+    return open_any(job.path, job.place, work=frames)
 
 
 def _in_store(job: CaptureJob) -> bool:
@@ -156,9 +141,9 @@ def _inputs(job: CaptureJob, capture: Capture | None) -> list[Any]:
         return [of_file(one) for one in (sorted(place.rglob("*")) if place.is_dir() else [place])]
 
     proxy = None if job.proxy is None else of_place(job.proxy)
-    options = asdict(job.options) | {"blind": job.blind, "surface": dict(job.surface)}
+    options = asdict(job.options) | {"surface": None if job.surface is None else asdict(job.surface)}
     if capture is None:
-        return [job.name, options, proxy, dict(job.place), [of_place(path) for path in job.sources]]
+        return [job.name, options, proxy, asdict(job.place), [of_place(path) for path in job.sources]]
     return [job.name, options, proxy, capture_identity(capture, of_file)]
 
 
@@ -172,8 +157,8 @@ def _make(job: CaptureJob, output: Path, work: Path, folder: Path) -> dict[str, 
         if not find_objects(work):
             work.mkdir(parents=True, exist_ok=True)
         made = encode(
-            capture, job.proxy, job.options, work=work, progress=None,
-            **(dict(job.surface) | {"blind": job.blind} if job.proxy is None else {}),
+            capture, job.proxy, job.options, surface_options=job.surface, work=work, progress=None,
+            blind=job.surface is not None and job.surface.blind is not None,
         )  # fmt: skip
         save(made, scene_file, **job.options.for_save)
         encoded = time.monotonic()

@@ -6,35 +6,29 @@ import difflib
 import os
 import re
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Any, get_type_hints
+from typing import Any
 
-from eigenfield.capture import open_any
 from eigenfield.capture.readers.text import excerpt
 from eigenfield.core.arguments import in_words, kind_in_words, matches
 from eigenfield.core.errors import EigenfieldError, OptionError
-from eigenfield.encoding import EncodeOptions, Target
-from eigenfield.encoding.estimated import reconstruction_settings, refuse_unused
+from eigenfield.core.open_options import OpenOptions
+from eigenfield.encoding import SURFACE_NAMES, EncodeOptions, Target
+from eigenfield.encoding.estimated import surface_to_make
 from eigenfield.encoding.target import parse_size
-from eigenfield.reconstruction import reconstruct
+from eigenfield.reconstruction import SurfaceOptions
 from eigenfield.runtime.objects import absolute_place, address_of, find_objects, local_copy
 from eigenfield.runtime.temporary import is_temporary
 from eigenfield.viewer.exports.names import file_name
 
-PLACE_KEYS = ("calibration", "masks", "format", "grid", "pattern", "frame", "frames", "also")  # arguments of `open_any`
-PATH_KEYS = ("calibration", "masks", "proxy")
-SURFACE_DEFAULTS: dict[str, Any] = {  # arguments of `encode` about cameras and mesh
-    "surface": "auto", "layers": None, "refine": None, "background": None, "primitives": (), "fit_spheres": (),
-}  # fmt: skip
+PLACE_KEYS = tuple(one.name for one in fields(OpenOptions) if one.name not in ("strict", "work"))
+PATH_KEYS = ("calibration", "masks")  # of PLACE_KEYS
 TARGET_KEYS = tuple(f"target_{one.name}" for one in fields(Target))
 OPTION_KEYS = tuple(one.name for one in fields(EncodeOptions) if one.name not in ("target", "keep_maps"))
-ALL_KEYS = (*PLACE_KEYS, "proxy", *SURFACE_DEFAULTS, "blind", *TARGET_KEYS, *OPTION_KEYS)
-TYPES = {  # of what `EncodeOptions` and `Target` do not check
-    **get_type_hints(reconstruct), **get_type_hints(open_any),
-    "name": str, "proxy": str | os.PathLike[str], "blind": bool,
-}  # fmt: skip
+ALL_KEYS = (*PLACE_KEYS, "proxy", *SURFACE_NAMES, "blind", *TARGET_KEYS, *OPTION_KEYS)
+TYPES = {"name": str, "proxy": str | os.PathLike[str], "blind": bool}  # of what no value of options checks
 WHOLE_NUMBER_LIMIT = 2**63  # of TOML
 ERROR_MAX_CHARACTERS = 160
 VIDEO_AND_ZIP = (".zip", ".mp4", ".mov", ".mkv", ".avi")
@@ -45,41 +39,28 @@ class CaptureJob:
     """One capture of a batch, in plain values that travel to a worker.
 
     Attributes:
-        name: Of its scene, and of its files.
         path: Absolute, or an address of an object store.
-        place: Arguments of `open_any`.
         proxy: Likewise of a mesh, if it is given.
-        surface: Arguments of `encode` about cameras and mesh.
-        options: Of the scene.
-        blind: Whether held-out photographs take no part in cameras and mesh.
+        surface: Of the proxy that is made; None: the proxy is given.
     """
 
     name: str
     path: str
-    place: Mapping[str, Any] = field(default_factory=dict)
-    proxy: str | None = None
-    surface: Mapping[str, Any] = field(default_factory=lambda: dict(SURFACE_DEFAULTS))
-    options: EncodeOptions = field(default_factory=EncodeOptions)
-    blind: bool = False
+    place: OpenOptions
+    proxy: str | None
+    options: EncodeOptions
+    surface: SurfaceOptions | None
 
     @property
     def sources(self) -> list[str]:
         """All that is read, but the mesh."""
-        named = [self.place[key] for key in PATH_KEYS if key in self.place]
-        return [self.path, *named, *self.place.get("also", ())]
-
-    @property
-    def reconstruction(self) -> dict[str, Any] | None:
-        """The arguments of `reconstruct`; None where the proxy is given. Raises OptionError."""
-        if self.proxy is not None:
-            refuse_unused(self.surface, self.blind)
-            return None
-        return reconstruction_settings(self.options, self.surface, self.blind)
+        named = [self.place.calibration, self.place.masks, *(self.place.also or ())]
+        return [self.path, *(os.fspath(path) for path in named if path is not None)]
 
     def with_cameras(self, calibration: Path) -> CaptureJob:
         """The same with cameras from a calibration, which stay as they are."""
-        place = {**self.place, "calibration": str(calibration)}
-        surface = self.surface if self.proxy is not None else {**self.surface, "refine": False}
+        place = replace(self.place, calibration=str(calibration))
+        surface = None if self.surface is None else replace(self.surface, refine=False)
         return replace(self, place=place, surface=surface)
 
 
@@ -198,37 +179,38 @@ def _checked(given: dict[str, Any], base: Path) -> CaptureJob:
     """A job without a name that has these options."""
     for key in given:
         if key not in ALL_KEYS:
+            if key in OpenOptions.renamed:
+                OpenOptions(**{key: given[key]})  # says the new name
             near = difflib.get_close_matches(key, ALL_KEYS, n=1)
             remedy = (
                 f"did you mean {near[0]}?" if near else "options are named as those of encode: hold_out, preset, ..."
             )
             raise OptionError("batch-option", f"no option is called {excerpt(key)}", remedy=remedy)
         _check_type(key, given[key])
-    for key in PATH_KEYS:
-        if given.get(key) is not None:
-            given[key] = address_of(absolute_place(given[key], base))
-    if given.get("also") is not None:
-        given["also"] = [address_of(absolute_place(one, base)) for one in given["also"]]
+    place = OpenOptions(**_some(given, PLACE_KEYS))
+    paths: dict[str, Any] = {
+        key: address_of(absolute_place(value, base)) for key, value in _some(vars(place), PATH_KEYS).items()
+    }
+    if place.also is not None:
+        paths["also"] = [address_of(absolute_place(one, base)) for one in place.also]
+    proxy = given.get("proxy")
     if isinstance(given.get("target_size"), str):
         given["target_size"] = parse_size(given["target_size"])
-    if isinstance(given.get("grid"), list):
-        given["grid"] = tuple(given["grid"])
-    target = Target(**{key.removeprefix("target_"): given[key] for key in TARGET_KEYS if given.get(key) is not None})
-    options = {key: given[key] for key in OPTION_KEYS if given.get(key) is not None}
-    if isinstance(options.get("atlas"), list):
-        options["atlas"] = tuple(options["atlas"])
-    surface = {key: given.get(key, default) for key, default in SURFACE_DEFAULTS.items()}
-    job = CaptureJob(
-        "",
-        "",
-        {key: given[key] for key in PLACE_KEYS if given.get(key) is not None},
-        given.get("proxy"),
-        surface,
-        EncodeOptions(**options, target=None if target == Target() else target),
-        bool(given.get("blind", False)),
+    target = Target(**{key.removeprefix("target_"): value for key, value in _some(given, TARGET_KEYS).items()})
+    named = _some(given, OPTION_KEYS)
+    if isinstance(named.get("atlas"), list):
+        named["atlas"] = tuple(named["atlas"])
+    options = EncodeOptions(**named, target=None if target == Target() else target)
+    surface = surface_to_make(
+        options, SurfaceOptions(**_some(given, SURFACE_NAMES)), bool(given.get("blind", False)), proxy is not None
     )
-    job.reconstruction  # noqa: B018  what it refuses is said before the work
-    return job
+    proxy = None if proxy is None else address_of(absolute_place(proxy, base))
+    return CaptureJob("", "", replace(place, **paths), proxy, options, surface)
+
+
+def _some(given: Mapping[str, Any], keys: Collection[str]) -> dict[str, Any]:
+    """What is given of some options, by name."""
+    return {key: given[key] for key in keys if given.get(key) is not None}
 
 
 def _check_type(key: str, value: Any) -> None:

@@ -20,9 +20,6 @@ def sheet_html(title: str, records: Sequence[Mapping[str, Any]], instants: bool,
     """The page.
 
     Args:
-        title: Of the page.
-        records: Of the captures, in order.
-        instants: Whether it steps through them.
         missing: How many captures are neither finished nor have failed.
     """
     finished = [record for record in records if "error" not in record]

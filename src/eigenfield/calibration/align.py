@@ -68,10 +68,6 @@ class CalibrationError:
 def calibration_error(estimated: LightField, truth: LightField) -> CalibrationError:
     """Compare cameras by name; cameras in only one light field are left out.
 
-    Args:
-        estimated: The calibration under test.
-        truth: Ground truth.
-
     Raises:
         CaptureError: `align`: fewer than three common cameras, or all in one place.
     """
@@ -108,8 +104,6 @@ def transform_camera(camera: Camera, scale: float, R: F64, t: F64) -> Camera:
     """The camera in the world x' = scale R x + t: it sees the transformed points where it saw the old ones.
 
     Args:
-        camera: In the old world.
-        scale: Of the similarity.
         R: (3, 3) rotation of the similarity.
         t: (3,) shift of the similarity.
     """

@@ -17,7 +17,12 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 from threadpoolctl import threadpool_limits
 
-from eigenfield.calibration.neighbours import NEIGHBOUR_TUNING, epipolar_matches, fit_similarity
+from eigenfield.calibration.neighbours import (
+    NEIGHBOUR_EPIPOLAR_PIXELS,
+    NEIGHBOUR_GAMMA,
+    epipolar_matches,
+    fit_similarity,
+)
 from eigenfield.calibration.planar.tracks import find_features, mutual_matches
 from eigenfield.capture import Capture
 from eigenfield.capture.survey import decode_all
@@ -29,56 +34,31 @@ from eigenfield.runtime.parallel import tracked_map
 log = logging.getLogger("eigenfield.calibration")
 
 
-@dataclass(frozen=True)
-class HarmTuning:
-    """Constants of `find_harmful`. Chosen on the cube and Fern; in brackets the most that any sound photograph
-    of these, Fox, Fountain, Temple and the sparse Tarot has.
-
-    Attributes:
-        side_pixels: Longer side at which features are searched.
-        finest_side_pixels: Longer side of the largest size at which detail is looked at: beyond, it is mostly noise.
-        coarsest_side_pixels: Longer side of the smallest, at least.
-        min_matches: Points that two photographs share, from which they are compared.
-        usual_matches: Points that a photograph of the capture shares with some other, in the median: with fewer,
-            nothing is said to be of another place.
-        partners: Neighbours of a photograph.
-        many: Photographs of a capture from which half as many neighbours do.
-        blurred_octaves: By which detail of some size and direction is less than that of neighbours (0.54).
-        lost_octaves: The same of a photograph that shares too few points with any, against all others.
-        exposure_stops: By which the brightness differs from that of neighbours (0.45).
-        exposure_max_part: Part of the photographs up to which those of another exposure are exceptions.
-        quantisation: Grey levels added to detail, so that none is nothing.
-        cover_side: Cells along the longer side, in which something near the lens is searched.
-        cover_block: Cells of a block that is found again in a neighbour, each way.
-        cover_reach: Cells by which a block may be elsewhere than a similarity says.
-        cover_levels: Root mean square of grey levels by which a block differs from all that a neighbour shows there.
-        cover_octaves: By which a block has less detail than the neighbour has there.
-        cover_thickness: Cells that what covers measures at least, each way.
-        cover_light: Grey levels of what is overexposed, and covers nothing.
-    """
-
-    side_pixels: int = 400
-    finest_side_pixels: int = 2000
-    coarsest_side_pixels: int = 160
-    min_matches: int = 20
-    usual_matches: int = 60
-    partners: int = 4
-    many: int = 100
-    blurred_octaves: float = 1.0
-    lost_octaves: float = 2.0
-    exposure_stops: float = 1.5
-    exposure_max_part: float = 0.25
-    quantisation: float = 0.25
-    cover_side: int = 64
-    cover_block: int = 6
-    cover_reach: int = 6
-    cover_levels: float = 18.0
-    cover_octaves: float = 1.25
-    cover_thickness: int = 5
-    cover_light: float = 235.0
-
-
-HARM_TUNING = HarmTuning()
+# Constants of `find_harmful`. Chosen on the cube and Fern; in brackets the most that any sound photograph of these,
+# Fox, Fountain, Temple and the sparse Tarot has.
+HARM_SIDE_PIXELS = 400  # longer side at which features are searched
+# longer side of the largest size at which detail is looked at: beyond, it is mostly noise
+HARM_FINEST_SIDE_PIXELS = 2000
+HARM_COARSEST_SIDE_PIXELS = 160  # longer side of the smallest, at least
+HARM_MIN_MATCHES = 20  # points that two photographs share, from which they are compared
+# points that a photograph of the capture shares with some other, in the median: with fewer, nothing is said to be of
+# another place
+HARM_USUAL_MATCHES = 60
+HARM_PARTNERS = 4  # neighbours of a photograph
+HARM_MANY = 100  # photographs of a capture from which half as many neighbours do
+HARM_BLURRED_OCTAVES = 1.0  # by which detail of some size and direction is less than that of neighbours (0.54)
+HARM_LOST_OCTAVES = 2.0  # the same of a photograph that shares too few points with any, against all others
+HARM_EXPOSURE_STOPS = 1.5  # by which the brightness differs from that of neighbours (0.45)
+HARM_EXPOSURE_MAX_PART = 0.25  # part of the photographs up to which those of another exposure are exceptions
+HARM_QUANTISATION = 0.25  # grey levels added to detail, so that none is nothing
+HARM_COVER_SIDE = 64  # cells along the longer side, in which something near the lens is searched
+HARM_COVER_BLOCK = 6  # cells of a block that is found again in a neighbour, each way
+HARM_COVER_REACH = 6  # cells by which a block may be elsewhere than a similarity says
+# root mean square of grey levels by which a block differs from all that a neighbour shows there
+HARM_COVER_LEVELS = 18.0
+HARM_COVER_OCTAVES = 1.25  # by which a block has less detail than the neighbour has there
+HARM_COVER_THICKNESS = 5  # cells that what covers measures at least, each way
+HARM_COVER_LIGHT = 235.0  # grey levels of what is overexposed, and covers nothing
 HarmKind = Literal["blurred", "exposure", "covered", "apart"]
 
 
@@ -87,8 +67,6 @@ class Harm:
     """A photograph that harms.
 
     Attributes:
-        index: In the capture.
-        kind: What is wrong with it.
         reason: The measure, which follows the photograph's name in a sentence.
     """
 
@@ -125,19 +103,18 @@ class PhotographLook:
 
 def look_at(photograph: Photograph) -> PhotographLook:
     """What `find_harmful` needs of a photograph."""
-    tuning = HARM_TUNING
     codes = to_codes(photograph.pixels)
     height, width = codes.shape[:2]
     longer = max(height, width)
-    grid = _scaled((width, height), tuning.cover_side / longer)
+    grid = _scaled((width, height), HARM_COVER_SIDE / longer)
     grey: NDArray[Any] = cv2.cvtColor(codes, cv2.COLOR_RGB2GRAY).astype(np.float32)
-    while max(grey.shape) > tuning.finest_side_pixels:
+    while max(grey.shape) > HARM_FINEST_SIDE_PIXELS:
         grey = cv2.pyrDown(grey)
     bands = [_detail(grey, grid)]
-    while max(grey.shape) >= 2 * tuning.coarsest_side_pixels:
+    while max(grey.shape) >= 2 * HARM_COARSEST_SIDE_PIXELS:
         grey = cv2.pyrDown(grey)
         bands.append(_detail(grey, grid))
-    size = _scaled((width, height), min(1.0, tuning.side_pixels / longer))
+    size = _scaled((width, height), min(1.0, HARM_SIDE_PIXELS / longer))
     small = cv2.resize(codes, size, interpolation=cv2.INTER_AREA)
     light = max(float(np.percentile(small, 99)), 8.0)
     stretched = np.minimum(small * np.float32(255 / light), 255).astype(np.uint8)
@@ -164,16 +141,14 @@ def _detail(grey: NDArray[Any], grid: tuple[int, int]) -> NDArray[np.float32]:
         kernel[1 - down, 1 - right] = kernel[1 + down, 1 + right] = 1
         kernel[1, 1] = -2
     means = [cv2.resize(np.abs(cv2.filter2D(grey, -1, one)), grid, interpolation=cv2.INTER_AREA) for one in kernels]
-    return np.stack(means) + np.float32(HARM_TUNING.quantisation)
+    return np.stack(means) + np.float32(HARM_QUANTISATION)
 
 
 def find_harmful(capture: Capture, looks: Mapping[int, PhotographLook], progress: Progress | None = None) -> list[Harm]:
     """The photographs that harm, in order.
 
     Args:
-        capture: The photographs.
         looks: Of those that can be decoded, by index.
-        progress: Reports them.
     """
     indices = sorted(looks)
     if len(indices) < 3:
@@ -182,7 +157,7 @@ def find_harmful(capture: Capture, looks: Mapping[int, PhotographLook], progress
     best = np.array([max((len(match.here) for match in partners[index]), default=0) for index in indices])
     levels = min(len(looks[index].overall) for index in indices)
     overall = np.array([looks[index].overall[-levels:] for index in indices])
-    is_joined = bool(np.median(best) >= HARM_TUNING.usual_matches)
+    is_joined = bool(np.median(best) >= HARM_USUAL_MATCHES)
 
     def judge(place: int) -> Harm | None:
         index = indices[place]
@@ -191,7 +166,7 @@ def find_harmful(capture: Capture, looks: Mapping[int, PhotographLook], progress
         octaves = float((overall[place] - np.median(overall, axis=0)).min())
         if not is_joined:
             return None
-        if octaves < -HARM_TUNING.lost_octaves:
+        if octaves < -HARM_LOST_OCTAVES:
             return Harm(index, "blurred", _blurred(octaves, "the other photographs"))
         if partners[index]:
             return None
@@ -200,10 +175,10 @@ def find_harmful(capture: Capture, looks: Mapping[int, PhotographLook], progress
     harms = tracked_map(judge, range(len(indices)), "photographs that harm", progress)
     found = [harm for harm in harms if harm is not None]
     exposed = sum(harm.kind == "exposure" for harm in found)
-    if exposed <= HARM_TUNING.exposure_max_part * len(indices):
+    if exposed <= HARM_EXPOSURE_MAX_PART * len(indices):
         return found
     words = "%d of %d photographs differ from their neighbours by more than %.1f stops: fix the exposure, or "
-    log.warning(words + "encode with --harmonise affine", exposed, len(indices), HARM_TUNING.exposure_stops)
+    log.warning(words + "encode with --harmonise affine", exposed, len(indices), HARM_EXPOSURE_STOPS)
     return [harm for harm in found if harm.kind != "exposure"]  # none of these is the exception
 
 
@@ -261,7 +236,7 @@ def _find_partners(
 
 def _near_pairs(capture: Capture, indices: Sequence[int]) -> list[tuple[int, int]]:
     """Each photograph with its nearest, by cameras or the places of a grid; without either with the next by name."""
-    count = HARM_TUNING.partners if len(indices) < HARM_TUNING.many else HARM_TUNING.partners // 2
+    count = HARM_PARTNERS if len(indices) < HARM_MANY else HARM_PARTNERS // 2
     if capture.light_field is not None:
         places = np.array([capture.light_field.cameras[index].centre for index in indices])
     elif capture.layout is not None:
@@ -274,12 +249,12 @@ def _near_pairs(capture: Capture, indices: Sequence[int]) -> list[tuple[int, int
 
 
 def _match(a: PhotographLook, b: PhotographLook) -> tuple[NDArray[np.int64], NDArray[np.int64]] | None:
-    least = HARM_TUNING.min_matches
+    least = HARM_MIN_MATCHES
     if min(len(a.points), len(b.points)) < least:
         return None
     here, there = mutual_matches(a.descriptors, b.descriptors)
     if len(here) >= least:
-        kept = epipolar_matches(a.points[here], b.points[there], NEIGHBOUR_TUNING.epipolar_pixels)
+        kept = epipolar_matches(a.points[here], b.points[there], NEIGHBOUR_EPIPOLAR_PIXELS)
         here, there = here[kept], there[kept]
     return (here, there) if len(here) >= least else None
 
@@ -297,11 +272,11 @@ def _compare(index: int, looks: Mapping[int, PhotographLook], partners: Sequence
         gained = a.detail[-levels:, :, match.here] - b.detail[-levels:, :, match.there]
         octaves.append(float(np.median(gained, axis=2).min()))
         ratio = np.maximum(a.luma[match.here], 1) / np.maximum(b.luma[match.there], 1)
-        stops.append(float(np.median(np.log2(ratio))) * NEIGHBOUR_TUNING.gamma)
+        stops.append(float(np.median(np.log2(ratio))) * NEIGHBOUR_GAMMA)
     lost, exposed = _least(octaves), _least(stops)
-    if lost < -HARM_TUNING.blurred_octaves:
+    if lost < -HARM_BLURRED_OCTAVES:
         return Harm(index, "blurred", _blurred(lost, "its neighbours"))
-    if abs(exposed) > HARM_TUNING.exposure_stops:
+    if abs(exposed) > HARM_EXPOSURE_STOPS:
         word = "brighter" if exposed > 0 else "darker"
         return Harm(index, "exposure", f"is {abs(exposed):.1f} stops {word} than its neighbours")
     return _covered(index, looks, partners)
@@ -319,16 +294,15 @@ def _least(values: Sequence[float]) -> float:
 def _covered(index: int, looks: Mapping[int, PhotographLook], partners: Sequence[_Match]) -> Harm | None:
     """Something near the lens: at the border, smooth, and unlike all that neighbours show there, but for one, which
     may have it too."""
-    tuning = HARM_TUNING
     a = looks[index]
     rows, columns = a.cell_detail.shape
     found = [each for match in partners if (each := _beside(a, looks[match.other], match)) is not None]
     if len(found) < 2:
         return None
     differs, lacks = (np.sort(np.stack(maps), axis=0)[1] for maps in zip(*found, strict=True))
-    mask = (differs > tuning.cover_levels) & (lacks > tuning.cover_octaves)
-    mask &= a.cells.max(axis=2) < tuning.cover_light
-    square = np.ones((tuning.cover_thickness,) * 2, np.uint8)
+    mask = (differs > HARM_COVER_LEVELS) & (lacks > HARM_COVER_OCTAVES)
+    mask &= a.cells.max(axis=2) < HARM_COVER_LIGHT
+    square = np.ones((HARM_COVER_THICKNESS,) * 2, np.uint8)
     thin = cv2.erode(mask.astype(np.uint8), square, borderType=cv2.BORDER_CONSTANT, borderValue=0)
     thick = cv2.dilate(thin, square, borderType=cv2.BORDER_CONSTANT, borderValue=0)
     _, labels, stats, middles = cv2.connectedComponentsWithStats(thick, connectivity=4)
@@ -352,9 +326,8 @@ def _beside(
     """(rows, columns) how far each cell's block is from any block of a neighbour near where it should be, in grey
     levels, and how much more detail the neighbour has around there, in octaves; 0 and minus infinity where it does not
     reach."""
-    tuning = HARM_TUNING
     rows, columns = a.cell_detail.shape
-    reach, block = tuning.cover_reach, (tuning.cover_block,) * 2
+    reach, block = HARM_COVER_REACH, (HARM_COVER_BLOCK,) * 2
     to_a, to_b = columns / a.size[0], b.cell_detail.shape[1] / b.size[0]
     similarity = fit_similarity(b.points[match.there] * to_b, a.points[match.here] * to_a)
     if similarity is None:

@@ -8,7 +8,6 @@ from pathlib import Path, PurePosixPath
 import numpy as np
 
 from eigenfield.calibration.lenses import KnownLens
-from eigenfield.capture.arrangement import OpenOptions
 from eigenfield.capture.calibration import Intrinsics
 from eigenfield.capture.formats import FORMATS, claim_of_file, detect_format
 from eigenfield.capture.pairing import is_same_picture, scale_camera
@@ -19,6 +18,7 @@ from eigenfield.capture.readers.opencv import read_opencv_intrinsics
 from eigenfield.core.camera import Camera
 from eigenfield.core.camera_names import name_key
 from eigenfield.core.errors import CaptureError, one_line
+from eigenfield.core.open_options import OpenOptions
 
 LensEntry = tuple[Intrinsics, Lens | None]
 KNOWN_MAX_MATRIX_BYTES = 4096  # of a text with nothing but a camera matrix
@@ -33,7 +33,6 @@ def read_known_lenses(path: Path, photos: PhotoSet) -> list[KnownLens]:
     Args:
         path: A calibration of any format with cameras (its poses are ignored), an OpenCV file of intrinsics, or a text
             with the nine numbers of K.
-        photos: The photographs.
 
     Raises:
         CaptureError: As the readers do. `calibration-missing`: there is no such file. `intrinsics-missing`: a
@@ -82,7 +81,7 @@ def _read_entries(path: Path, photos: PhotoSet) -> Mapping[str, LensEntry]:
     if path.is_file() and is_storage(path):
         return {name_key(name): entry for name, entry in read_opencv_intrinsics(path).items()}
     formats = tuple(row for row in FORMATS if row.read_cameras is not None)
-    claim = claim_of_file(path, formats) if path.is_file() else detect_format(path, formats, OpenOptions(None, None))
+    claim = claim_of_file(path, formats) if path.is_file() else detect_format(path, formats, OpenOptions())
     if claim is None or claim.format.read_cameras is None:
         raise CaptureError(
             "calibration-missing",

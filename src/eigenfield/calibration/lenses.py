@@ -38,7 +38,6 @@ def undistort_pixels(points: F64, known: KnownLens) -> F64:
 
     Args:
         points: (n, 2) pixels of the photograph.
-        known: The lens.
 
     Returns:
         (n, 2) pixels; NaN where no direction leads to the pixel.
@@ -76,7 +75,6 @@ def distort_to_pixels(normalised: F64, known: KnownLens) -> F64:
 
     Args:
         normalised: (n, 2) directions x / z, y / z.
-        known: The lens.
     """
     seen = normalised if known.lens is None or len(normalised) == 0 else _apply_distortion(normalised, known.lens)
     return seen * known.K[[0, 1], [0, 1]] + known.K[:2, 2]

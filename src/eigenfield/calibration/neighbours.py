@@ -26,30 +26,14 @@ from eigenfield.runtime.parallel import parallel_map, tracked_map
 NEIGHBOUR_MAX_PARALLAX_RATIO = 0.03  # of the longer side, up to which views between were drawn well: docs/captures.md
 
 
-@dataclass(frozen=True)
-class NeighbourTuning:
-    """Constants of `measure_neighbours`.
-
-    Attributes:
-        max_pairs: Pairs that are looked at, evenly spread.
-        max_side_pixels: Longer side of the photographs there.
-        min_matches: Points that both photographs must show.
-        epipolar_pixels: From its epipolar line, at that size, up to which a match counts.
-        outer_percentile: Of the points' shifts, left out at either end.
-        overlap_samples: Along each side of the frame.
-        gamma: Of the photographs' values, for brightness.
-    """
-
-    max_pairs: int = 6
-    max_side_pixels: int = 640
-    min_matches: int = 30
-    epipolar_pixels: float = 1.5
-    outer_percentile: float = 5.0
-    overlap_samples: int = 24
-    gamma: float = 2.2
-
-
-NEIGHBOUR_TUNING = NeighbourTuning()
+# Constants of `measure_neighbours`.
+NEIGHBOUR_MAX_PAIRS = 6  # pairs that are looked at, evenly spread
+NEIGHBOUR_MAX_SIDE_PIXELS = 640  # longer side of the photographs there
+NEIGHBOUR_MIN_MATCHES = 30  # points that both photographs must show
+NEIGHBOUR_EPIPOLAR_PIXELS = 1.5  # from its epipolar line, at that size, up to which a match counts
+NEIGHBOUR_OUTER_PERCENTILE = 5.0  # of the points' shifts, left out at either end
+NEIGHBOUR_OVERLAP_SAMPLES = 24  # along each side of the frame
+NEIGHBOUR_GAMMA = 2.2  # of the photographs' values, for brightness
 
 
 @dataclass(frozen=True)
@@ -57,8 +41,6 @@ class NeighbourPair:
     """Two neighbouring photographs.
 
     Attributes:
-        first: Index of one.
-        second: Index of the other.
         parallax: Pixels of the first by which near and far things that both show shift against each other, beside the
             similarity that fits all shifts best.
         overlap: Part of the first that the second shows, too.
@@ -87,9 +69,7 @@ def measure_neighbours(capture: Capture, sound: Sequence[int], progress: Progres
     Neighbours are the nearest cameras or places of a grid; without either, those that follow by name.
 
     Args:
-        capture: The photographs.
         sound: Indices of those that can be decoded.
-        progress: Reports the photographs that are looked at.
     """
     chosen = spread_pairs(neighbours_of(capture, sound))
     wanted = sorted({index for pair in chosen for index in pair})
@@ -109,7 +89,6 @@ def neighbours_of(capture: Capture, sound: Sequence[int]) -> list[tuple[int, int
     """Each photograph with its nearest, by cameras or the places of a grid; without either with the next by name.
 
     Args:
-        capture: The photographs.
         sound: Indices of those that take part.
     """
     if len(sound) < 2:
@@ -136,17 +115,17 @@ def nearest_pairs(places: NDArray[np.float64]) -> list[tuple[int, int]]:
 
 
 def spread_pairs(pairs: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
-    """`NEIGHBOUR_TUNING.max_pairs` of them at most, evenly spread.
+    """`NEIGHBOUR_MAX_PAIRS` of them at most, evenly spread.
 
     Args:
         pairs: In order.
     """
-    return [pairs[place] for place in spread_indices(len(pairs), NEIGHBOUR_TUNING.max_pairs)]
+    return [pairs[place] for place in spread_indices(len(pairs), NEIGHBOUR_MAX_PAIRS)]
 
 
 def _look(capture: Capture, index: int) -> _Look:
     codes = to_codes(capture.photograph(index).pixels)
-    scale = min(1.0, NEIGHBOUR_TUNING.max_side_pixels / max(codes.shape[:2]))
+    scale = min(1.0, NEIGHBOUR_MAX_SIDE_PIXELS / max(codes.shape[:2]))
     points, descriptors = find_features(codes, scale)
     luma = cv2.boxFilter(cv2.transform(codes, np.array([LUMA_BT709])), -1, (9, 9)).astype(np.float32)
     column, row = np.minimum(points, np.array(luma.shape[::-1]) - 1).astype(int).T
@@ -157,22 +136,21 @@ def _measure(
     pair: tuple[int, int], a: _Look, b: _Look, size: tuple[int, int], other: tuple[int, int]
 ) -> NeighbourPair | None:
     """As `measure_neighbours`, of one pair with (width, height) each."""
-    tuning = NEIGHBOUR_TUNING
-    if min(len(a.points), len(b.points)) < tuning.min_matches:
+    if min(len(a.points), len(b.points)) < NEIGHBOUR_MIN_MATCHES:
         return None
     here, there = mutual_matches(a.descriptors, b.descriptors)
-    if len(here) < tuning.min_matches:
+    if len(here) < NEIGHBOUR_MIN_MATCHES:
         return None
-    reach = tuning.epipolar_pixels * max(1.0, max(size) / tuning.max_side_pixels)
+    reach = NEIGHBOUR_EPIPOLAR_PIXELS * max(1.0, max(size) / NEIGHBOUR_MAX_SIDE_PIXELS)
     kept = epipolar_matches(a.points[here], b.points[there], reach)
     here, there = here[kept], there[kept]
-    if len(here) < tuning.min_matches:
+    if len(here) < NEIGHBOUR_MIN_MATCHES:
         return None
     source, target = a.points[here], b.points[there]
     similarity = fit_similarity(source, target)
     if similarity is None:
         return None
-    ratio = (np.maximum(b.luma[there], 1) / np.maximum(a.luma[here], 1)) ** tuning.gamma
+    ratio = (np.maximum(b.luma[there], 1) / np.maximum(a.luma[here], 1)) ** NEIGHBOUR_GAMMA
     return NeighbourPair(
         *pair,
         parallax_beside(similarity, source, target),
@@ -222,13 +200,13 @@ def parallax_beside(similarity: NDArray[np.float64], source: NDArray[np.float64]
     shifts = target - _moved(source, similarity)
     away = shifts - np.median(shifts, axis=0)
     axis = np.linalg.svd(away, full_matrices=False)[2][0]
-    outer = NEIGHBOUR_TUNING.outer_percentile
+    outer = NEIGHBOUR_OUTER_PERCENTILE
     low, high = np.percentile(away @ axis, [outer, 100 - outer])
     return float(high - low)
 
 
 def _overlap(similarity: NDArray[np.float64], size: tuple[int, int], other: tuple[int, int]) -> float:
-    steps = (np.arange(NEIGHBOUR_TUNING.overlap_samples) + 0.5) / NEIGHBOUR_TUNING.overlap_samples
+    steps = (np.arange(NEIGHBOUR_OVERLAP_SAMPLES) + 0.5) / NEIGHBOUR_OVERLAP_SAMPLES
     grid = np.stack(np.meshgrid(steps * size[0], steps * size[1]), axis=-1).reshape(-1, 2)
     seen = _moved(grid, similarity)
     return float(((seen > 0) & (seen < other)).all(axis=1).mean())

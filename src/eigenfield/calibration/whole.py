@@ -86,7 +86,7 @@ def calibrate(
         seed: Of all random choices.
         overwrite: Whether an earlier calibration in `output` is replaced.
         progress: Called in every stage; by default bars in a notebook.
-        names: Arguments of `open_photographs` for a folder: masks, format, grid, pattern, frame, frames.
+        names: Arguments of `open_photographs` for a folder: masks, format, grid, pattern, frame, walk_frames.
 
     Returns:
         Of photographs: cameras, points, and what became of each photograph. Of a chart: the rig, and how well each of
@@ -159,9 +159,7 @@ def refuse_passing(photos: PhotoSet, source: Path, work: Path | None) -> None:
     """Refuse a calibration that would name files which last as long as the process.
 
     Args:
-        photos: The photographs.
         source: The file or folder that they were opened from.
-        work: Folder that keeps frames and what a zip holds.
 
     Raises:
         OptionError: `video-work`.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import lzma
+import os
 import re
 import shutil
 import stat
@@ -35,11 +36,10 @@ def is_zip(path: Path) -> bool:
     return path.suffix.lower() == ZIP_EXTENSION and path.is_file()
 
 
-def unpack(path: Path, work: Path | None) -> Path:
+def unpack(path: Path, work: str | os.PathLike[str] | None) -> Path:
     """The folder with what a zip holds; folders around all of it are passed over.
 
     Args:
-        path: The zip.
         work: A folder that keeps what is unpacked (reused if it is there); None for a temporary one.
 
     Raises:

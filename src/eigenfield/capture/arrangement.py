@@ -17,28 +17,10 @@ from eigenfield.capture.locate import IMAGES_FOLDER, photographs_in
 from eigenfield.capture.messages import describe, natural_key
 from eigenfield.capture.unread import describe_inner, describe_unread
 from eigenfield.core.errors import CaptureError, one_line
+from eigenfield.core.open_options import OpenOptions
 
 NAMES_MIN_PHOTOGRAPHS = 3  # photographs that must bear a format's names
 NAMES_MIN_FRACTION = 0.5  # of a folder's photographs, likewise
-
-
-@dataclass(frozen=True)
-class OpenOptions:
-    """Options with which photographs without a calibration are opened.
-
-    Attributes:
-        grid: (rows, columns) of photographs in row-major order.
-        frame: Frame of each video: an index from 0, or seconds ("2.5s").
-        work: Folder that keeps the frames taken from videos; None for a temporary one.
-        pattern: How names state row and column: `view_{row}_{col}.png`.
-        frames: How many frames of the video of a walk are taken.
-    """
-
-    grid: tuple[int, int] | None = None
-    frame: int | str | None = None
-    work: Path | None = None
-    pattern: str | None = None
-    frames: int | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,10 +28,7 @@ class Arrangement:
     """Photographs of one scene as their names place them.
 
     Attributes:
-        format: The reader's name.
-        files: The photographs.
         layout: Their nodes, in the order of `files`; None if the names state none.
-        problems: Lines for people.
         others: Photographs beside them that have other names.
         calibration: Whole cameras, where the names or a file beside them state them.
     """
@@ -119,11 +98,8 @@ def make_grid_layout(
     """The layout of photographs on nodes: X is the column, Y minus the row.
 
     Args:
-        files: The photographs.
         rows: Of each photograph's node.
         columns: Of each photograph's node.
-        options: The caller's.
-        folder: Named in errors.
 
     Returns:
         The layout, and a line that names missing nodes.

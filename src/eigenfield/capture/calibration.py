@@ -53,7 +53,6 @@ class Intrinsics:
 
     Attributes:
         width: Of the photograph they are for, pixels; None where the calibration does not state it.
-        height: Likewise.
         focal: (fx, fy) pixels, or None where `angle` gives it.
         angle: (horizontal, vertical or None) full field of view, radians; beside a focal length a second statement.
         principal: (cx, cy) pixels, each None for the middle.
@@ -98,8 +97,6 @@ class Entry:
 
     Attributes:
         file: The photograph's path as the calibration writes it, with forward slashes.
-        label: Names the entry in messages.
-        intrinsics: As the calibration states them.
         R: (3, 3) world-to-camera rotation, OpenCV axes; possibly with a scale or few digits, as `split_scale` takes it.
         centre: (3,) the camera's centre in the world.
         lens: The photograph's distortion; None if there is none.
@@ -145,11 +142,8 @@ class Calibration:
     """All entries of one calibration.
 
     Attributes:
-        path: The file or folder it was read from.
-        format: The reader's name.
         entries: One for each camera that can be used.
         errors: One for each entry that cannot be used.
-        problems: Lines for people.
     """
 
     path: Path

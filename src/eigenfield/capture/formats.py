@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from eigenfield.capture.arrangement import Arrangement, OpenOptions
+from eigenfield.capture.arrangement import Arrangement
 from eigenfield.capture.calibration import Calibration
 from eigenfield.capture.locate import is_photograph_file
 from eigenfield.capture.messages import list_names
@@ -33,6 +33,7 @@ from eigenfield.capture.readers.video import find_videos, read_videos
 from eigenfield.capture.readers.walk import find_walk, read_walk
 from eigenfield.coding.limits import EXTENSION
 from eigenfield.core.errors import CaptureError, OptionError, one_line
+from eigenfield.core.open_options import OpenOptions
 from eigenfield.core.recognise import SPLAT, read_head, recognise
 from eigenfield.core.shell import shell_word
 
@@ -52,7 +53,7 @@ class Format:
         read_cameras: From what `find` returned and the folder of the photographs to the calibration.
         read_names: From what `find` returned and the caller's options to the arrangement.
         endings: Of file names that may be named directly as a calibration of this format.
-        uses: Those of "grid", "frame", "frames" and "pattern" that the reader uses.
+        uses: Those of "grid", "frame", "walk_frames" and "pattern" that the reader uses.
         cameras: Whether it may yield cameras at all.
     """
 
@@ -119,7 +120,7 @@ FORMATS = (
     _name_format("numbered", "numbered frames with --grid", lambda folder: None, read_numbered, "grid",
                  rank=RANK_ON_REQUEST),  # it must be asked for
     _name_format("video", "one video a camera", find_videos, read_videos, "frame", rank=RANK_ANY),
-    _name_format("walk", "one video of a walk", find_walk, read_walk, "frames", rank=RANK_ANY),
+    _name_format("walk", "one video of a walk", find_walk, read_walk, "walk_frames", rank=RANK_ANY),
     _name_format("folder", "plain folder of photographs", find_photographs, read_photographs, rank=RANK_ANY),
 )  # fmt: skip
 # files that a folder does not hold by chance: if no reader claims one of these, it is damaged or incomplete
@@ -133,13 +134,7 @@ FORMATS_BY_NAME = {row.name: row for row in FORMATS}
 
 @dataclass(frozen=True)
 class Claim:
-    """A format that a folder has.
-
-    Attributes:
-        format: The row.
-        found: The file or folder to read.
-        problems: Lines for people about what else was there.
-    """
+    """A format that a folder has."""
 
     format: Format
     found: Path

@@ -21,7 +21,6 @@ def held_out_cameras(rule: str | None, names: Sequence[str], coordinates: NDArra
         rule: `odd`: the views with an odd row or an odd column of a grid. `every:K`: every K-th in the capture's
             order, from number K // 2 on, so that the first is not among them. Otherwise names, with or without
             their endings, separated by commas.
-        names: Of all cameras.
         coordinates: (Nc, 2) on the view plane.
 
     Raises:

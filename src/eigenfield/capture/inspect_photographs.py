@@ -33,10 +33,7 @@ def make_photo_set(arrangement: Arrangement, root: Path, *, masks: Path | None, 
     """The set of photographs of an arrangement; headers are read, nothing is decoded.
 
     Args:
-        arrangement: The photographs by their names.
-        root: Their folder.
         masks: A folder of masks; None for none.
-        strict: As for `open_photographs`.
 
     Raises:
         CaptureError: As `open_photographs` does.

@@ -59,16 +59,9 @@ class View:
     """One photograph and its camera.
 
     Attributes:
-        name: As of `PhotographSource`.
-        path: Likewise.
         camera: The pinhole camera of the photograph after lens removal, at the photograph's own size.
-        lens: As of `PhotographSource`.
-        mask: Likewise.
-        upright: Likewise.
         bounds: Nearest and farthest depth of the scene along z in world units, a hint, where the calibration states
             them.
-        exposure: As of `PhotographSource`.
-        reduction: Likewise.
     """
 
     name: str

@@ -80,7 +80,6 @@ class PhotographFinder:
         """Nothing is read yet.
 
         Args:
-            root: Folder of the photographs.
             base: Folder that paths in the calibration are relative to, tried beside `root`.
             apart: The calibration was named apart from the photographs: `base` counts only for files below `root`.
         """
@@ -249,7 +248,6 @@ def with_masks(views: Sequence[T], folder: Path | None, root: Path, strict: bool
     """Views or shots with the masks of a folder, and a line that names those without one.
 
     Args:
-        views: Views or shots.
         folder: Folder of the masks; None for none.
         root: Folder of the photographs, whose subfolders the masks' folder may have too.
         strict: Refuse masks that hide everything.

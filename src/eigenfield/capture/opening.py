@@ -6,10 +6,10 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from eigenfield.capture.archive import is_zip, unpack
-from eigenfield.capture.arrangement import Arrangement, OpenOptions
+from eigenfield.capture.arrangement import Arrangement
 from eigenfield.capture.calibration import Calibration, Entry
 from eigenfield.capture.formats import FORMATS, Claim, Format, claim_of_file, detect_format, format_by_name
 from eigenfield.capture.inspect_photographs import common_focal_length, make_photo_set
@@ -28,6 +28,8 @@ from eigenfield.capture.unread import describe_inner, describe_unread
 from eigenfield.core.arguments import checked
 from eigenfield.core.camera_names import name_key
 from eigenfield.core.errors import CaptureError, OptionError
+from eigenfield.core.fields import takes_options
+from eigenfield.core.open_options import OpenOptions
 from eigenfield.core.recognise import refuse_address
 from eigenfield.core.shell import shell_word
 from eigenfield.runtime.objects import local_copy
@@ -38,35 +40,42 @@ PATTERN_FORMAT = "grid"  # which --pattern means
 NAME_FORMATS = tuple(row for row in FORMATS if row.read_names is not None)
 
 
-def open_capture(
-    path: StrPath,
-    *,
-    calibration: StrPath | None = None,
-    masks: StrPath | None = None,
-    strict: bool = True,
-    format: str | None = None,
-    grid: tuple[int, int] | None = None,
-    frame: int | str | None = None,
-    pattern: str | None = None,
-    frames: int | None = None,
-    also: Sequence[StrPath] | None = None,
-) -> LightField:
+@checked
+@takes_options(OpenOptions)
+def open_any(path: StrPath, options: OpenOptions | None = None, **changes: Any) -> Capture:
+    """Open a capture: a `LightField` where a calibration or the names state the cameras, otherwise a `PhotoSet`.
+
+    Args:
+        path: A folder of photographs (in itself or in its `images/`), or of one video a camera; one video of a walk; a
+            zip of any of these; an address of an object store. A calibration beside the photographs is found.
+        options: How it is opened; None for the defaults.
+        changes: In place of those of `options`.
+
+    Raises:
+        CaptureError: There are no photographs (`photographs-missing`), or fewer than three (`too-few`); one is
+            unreadable, or has another size than its camera or grid (`image-size`); a calibration is damaged; more than
+            one format fits (`format-ambiguous`); and others of `open_capture` and `open_photographs`.
+        OptionError: An option is impossible or would have no effect.
+    """
+    options = replace(options or OpenOptions(), **changes)
+    if options.also:
+        return _open_folders([path, *options.also], options)
+    source = _find_source(path, options, FORMATS)
+    if source is None:
+        raise _no_photographs(Path(path))
+    return _finish(_open_source(source))
+
+
+@takes_options(OpenOptions)
+def open_capture(path: StrPath, options: OpenOptions | None = None, **changes: Any) -> LightField:
     """Open a capture with cameras; photographs are decoded on demand, only their headers are read now.
 
     Calibration entries without a photograph, and the reverse, are no error: they are named in `problems`.
 
     Args:
         path: A folder with a calibration of any format of `formats.FORMATS`, a zip of one, or the calibration itself.
-        calibration: A calibration that lies elsewhere than the photographs in `path`; its entries find them by relative
-            path or by file name.
-        masks: A folder of masks, named as the photographs, white where they count; preferred to the calibration's own.
-        strict: Raise the first error. If False, leave out what is wrong and name it in `problems`.
-        format: The name of a format, where more than one fits.
-        grid: As for `open_photographs`.
-        frame: As for `open_photographs`.
-        pattern: As for `open_photographs`.
-        frames: As for `open_photographs`.
-        also: None; several folders have no calibration.
+        options: How it is opened; None for the defaults.
+        changes: In place of those of `options`.
 
     Raises:
         CaptureError: There is no calibration (`calibration-missing`), or it is damaged; a camera is impossible; a
@@ -75,50 +84,31 @@ def open_capture(
             fits (`format-ambiguous`).
         OptionError: An option is impossible or would have no effect.
     """
-    if also:
-        refuse_photograph_files([Path(one) for one in (path, *also)])
+    options = replace(options or OpenOptions(), **changes)
+    if options.also:
+        refuse_photograph_files([Path(one) for one in (path, *options.also)])
         raise OptionError(
             "folders-cameras", "several folders have no calibration", remedy="name one folder that holds them all"
         )
-    options = OpenOptions(_check_grid(grid), frame, None, pattern, frames)
-    source = _find_source(path, calibration, format, options, FORMATS)
+    source = _find_source(path, options, FORMATS)
     if source is None or not source.claim.format.cameras:
         raise _no_cameras(Path(path))
-    opened = _open_source(source, masks, strict)
+    opened = _open_source(source)
     if opened.light_field is None:
         raise _no_cameras(Path(path), opened.problems)
     return _finish(opened.light_field)
 
 
 @checked
-def open_photographs(
-    path: StrPath,
-    *,
-    masks: StrPath | None = None,
-    strict: bool = True,
-    format: str | None = None,
-    grid: tuple[int, int] | None = None,
-    frame: int | str | None = None,
-    pattern: str | None = None,
-    frames: int | None = None,
-    also: Sequence[StrPath] | None = None,
-    work: StrPath | None = None,
-) -> PhotoSet:
+@takes_options(OpenOptions, without=("calibration",))
+def open_photographs(path: StrPath, options: OpenOptions | None = None, **changes: Any) -> PhotoSet:
     """Open photographs without cameras, with the grid that their names state; a calibration beside them is not read.
 
     Args:
         path: A folder of photographs (in itself or in its `images/`), or of one video a camera; one video of a walk; a
             zip of any of these.
-        masks: As for `open_capture`.
-        strict: As for `open_capture`.
-        format: The name of a format of names.
-        grid: (rows, columns) of numbered photographs, in row-major order.
-        frame: Frame of each video: an index from 0, or seconds ("2.5s"); 0 by default.
-        pattern: How names state row and column of a grid: `view_{row}_{col}.png`; `*` stands for any text.
-        frames: How many frames of the video of a walk are taken.
-        also: Further folders with photographs of the same capture.
-        work: A folder that keeps the frames of videos as PNG, and what a zip holds, so that they are unpacked once; by
-            default they last as long as the process.
+        options: How they are opened; None for the defaults.
+        changes: In place of those of `options`.
 
     Raises:
         CaptureError: `photographs-missing`, `photographs-twice`, `format-ambiguous`, `names-unknown`, `node-twice`,
@@ -127,70 +117,24 @@ def open_photographs(
             those of `archive.unpack`.
         OptionError: An option is impossible or would have no effect.
     """
-    options = OpenOptions(_check_grid(grid), frame, None if work is None else Path(work), pattern, frames)
-    if also:
-        return _open_folders([path, *also], options, format, masks, strict)
-    source = _find_source(path, None, format, options, NAME_FORMATS)
+    options = replace(options or OpenOptions(), **changes)
+    if options.calibration is not None:
+        raise OptionError(
+            "calibration-unused", "--calibration means nothing to photographs without cameras", remedy="leave it out"
+        )
+    if options.also:
+        return _open_folders([path, *options.also], options)
+    source = _find_source(path, options, NAME_FORMATS)
     if source is None:
         raise _no_photographs(Path(path))
-    arrangement = _read_arrangement(source)
-    made = make_photo_set(arrangement, source.root, masks=None if masks is None else local_copy(masks), strict=strict)
+    made = make_photo_set(_read_arrangement(source), source.root, masks=_masks(options), strict=options.strict)
     return _finish(made)
 
 
-@checked
-def open_any(
-    path: StrPath,
-    *,
-    calibration: StrPath | None = None,
-    masks: StrPath | None = None,
-    strict: bool = True,
-    format: str | None = None,
-    grid: tuple[int, int] | None = None,
-    frame: int | str | None = None,
-    pattern: str | None = None,
-    frames: int | None = None,
-    also: Sequence[StrPath] | None = None,
-    work: StrPath | None = None,
-) -> Capture:
-    """Open a capture: a `LightField` where a calibration or the names state the cameras, otherwise a `PhotoSet`.
-
-    Args:
-        path: A folder of photographs (in itself or in its `images/`), or of one video a camera; one video of a walk; a
-            zip of any of these; an address of an object store. A calibration beside the photographs is found.
-        calibration: A calibration that lies elsewhere: its file, or its folder.
-        masks: A folder of masks named as the photographs, white where they count. None: the calibration's own, if any.
-        strict: Raise the first error. If False, leave out what is wrong and name it in `problems`.
-        format: The name of a format, where a capture may be read in several ways (docs/capture-formats.md).
-        grid: (rows, columns) of numbered photographs, in row-major order.
-        frame: Frame of each video: an index from 0, or seconds ("2.5s"). None: the first.
-        pattern: How names state row and column of a grid: `view_{row}_{col}.png`; `*` stands for any text.
-        frames: How many frames of the video of a walk are taken. None: by how far the camera goes.
-        also: Further folders with photographs of the same capture.
-        work: A folder that keeps the frames of videos as PNG, and what a zip holds, so that they are unpacked once.
-            None: they last as long as the process.
-
-    Raises:
-        CaptureError: There are no photographs (`photographs-missing`), or fewer than three (`too-few`); one is
-            unreadable, or has another size than its camera or grid (`image-size`); a calibration is damaged; more than
-            one format fits (`format-ambiguous`); and others of `open_capture` and `open_photographs`.
-        OptionError: An option is impossible or would have no effect.
-    """
-    options = OpenOptions(_check_grid(grid), frame, None if work is None else Path(work), pattern, frames)
-    if also:
-        return _open_folders([path, *also], options, format or calibration, masks, strict)
-    source = _find_source(path, calibration, format, options, FORMATS)
-    if source is None:
-        raise _no_photographs(Path(path))
-    return _finish(_open_source(source, masks, strict))
-
-
-def _open_folders(
-    paths: Sequence[StrPath], options: OpenOptions, other: StrPath | None, masks: StrPath | None, strict: bool
-) -> PhotoSet:
+def _open_folders(paths: Sequence[StrPath], options: OpenOptions) -> PhotoSet:
     """The photographs of several folders, without any option that is for one."""
     refuse_photograph_files([Path(path) for path in paths])
-    if other is not None or replace(options, work=None) != OpenOptions():
+    if replace(options, work=None, also=None, masks=None, strict=True) != OpenOptions():
         raise OptionError(
             "folders-options",
             "several folders are photographs alone: calibrations, formats and grids are of one",
@@ -204,7 +148,7 @@ def _open_folders(
             "folders-drives", "the folders are on several drives", remedy="copy them to one drive"
         ) from error
     arrangement = read_folders(folders)
-    return _finish(make_photo_set(arrangement, root, masks=None if masks is None else local_copy(masks), strict=strict))
+    return _finish(make_photo_set(arrangement, root, masks=_masks(options), strict=options.strict))
 
 
 def _finish(opened: C) -> C:
@@ -232,23 +176,17 @@ class _Source:
     """What is to be read.
 
     Attributes:
-        claim: The format, and the file or folder.
-        root: Folder of the photographs.
-        apart: The calibration was named apart from the photographs.
-        options: The caller's.
         videos: The cameras are of videos, one a camera.
     """
 
     claim: Claim
     root: Path
-    apart: bool
     options: OpenOptions
     videos: bool
 
 
-def _find_source(
-    path: StrPath, calibration: StrPath | None, name: str | None, options: OpenOptions, formats: tuple[Format, ...]
-) -> _Source | None:
+def _find_source(path: StrPath, options: OpenOptions, formats: tuple[Format, ...]) -> _Source | None:
+    name, calibration = options.format, options.calibration
     root = local_copy(path)
     root = unpack(root, options.work) if is_zip(root) else root
     if options.pattern is not None:
@@ -282,7 +220,7 @@ def _find_source(
             root = photograph_root(root, claim.found)
     videos = claim.format.read_cameras is not None and is_video_rig(root)
     _refuse_unused(claim, replace(options, frame=None) if videos else options)
-    return _Source(claim, root, calibration is not None, options, videos)
+    return _Source(claim, root, options, videos)
 
 
 def _restrict_formats(row: Format, formats: tuple[Format, ...]) -> tuple[Format, ...]:
@@ -308,20 +246,14 @@ def _find_claim(path: Path, formats: tuple[Format, ...], options: OpenOptions) -
 
 def _refuse_unused(claim: Claim, options: OpenOptions) -> None:
     """Options that would change nothing are an error: who gives one expects something of it."""
-    asked = {"grid": options.grid, "frame": options.frame, "frames": options.frames, "pattern": options.pattern}
-    for option, value in asked.items():
-        if value is not None and option not in claim.format.uses:
+    for name in ("grid", "frame", "walk_frames", "pattern"):
+        if getattr(options, name) is not None and name not in claim.format.uses:
+            option = name.replace("_", "-")
             raise OptionError(
                 f"{option}-unused",
                 f"--{option} means nothing to a capture of the format {claim.format.name} ({claim.format.title})",
                 remedy="leave it out, or name another --format",
             )
-
-
-def _check_grid(grid: tuple[int, int] | None) -> tuple[int, int] | None:
-    if grid is not None and (len(grid) != 2 or min(grid) < 1):
-        raise OptionError("grid-unknown", f"{grid} is no grid", remedy="say rows and columns, both at least 1")
-    return None if grid is None else (int(grid[0]), int(grid[1]))
 
 
 def _read_arrangement(source: _Source) -> Arrangement:
@@ -330,24 +262,28 @@ def _read_arrangement(source: _Source) -> Arrangement:
     return replace(arrangement, problems=(*source.claim.problems, *arrangement.problems))
 
 
-def _open_source(source: _Source, masks: StrPath | None, strict: bool) -> Capture:
-    folder = None if masks is None else local_copy(masks)
-    row = source.claim.format
+def _masks(options: OpenOptions) -> Path | None:
+    return None if options.masks is None else local_copy(options.masks)
+
+
+def _open_source(source: _Source) -> Capture:
+    row, options = source.claim.format, source.options
     if row.read_cameras is not None:
         root, lines = source.root, source.claim.problems
         if source.videos:
-            frames = read_videos(root, source.options)
+            frames = read_videos(root, options)
             root, lines = frames.files[0].parent, (*lines, *frames.problems)
         read = row.read_cameras(source.claim.found, root)
         read = replace(read, problems=(*lines, *read.problems))
         if source.videos:
             read = _of_frames(read, {name_key(file.stem) for file in frames.files})
-        return pair_photographs(read, root, apart=source.apart, masks=folder, strict=strict)
+        apart = options.calibration is not None
+        return pair_photographs(read, root, apart=apart, masks=_masks(options), strict=options.strict)
     arrangement = _read_arrangement(source)
     if arrangement.calibration is None:
-        return make_photo_set(arrangement, source.root, masks=folder, strict=strict)
+        return make_photo_set(arrangement, source.root, masks=_masks(options), strict=options.strict)
     read = replace(arrangement.calibration, problems=arrangement.problems)
-    light_field = pair_photographs(read, source.root, apart=False, masks=folder, strict=strict)
+    light_field = pair_photographs(read, source.root, apart=False, masks=_masks(options), strict=options.strict)
     assert arrangement.layout is not None
     index = {file.name: i for i, file in enumerate(arrangement.files)}
     layout = arrangement.layout.subset([index[view.path.name] for view in light_field.views])
@@ -359,7 +295,6 @@ def _of_frames(read: Calibration, stems: set[str]) -> Calibration:
     """A calibration whose entries name videos, as one of the frames that were taken out of them under their names.
 
     Args:
-        read: The calibration.
         stems: Of the frames' names, by `name_key`.
     """
 

@@ -34,11 +34,8 @@ def pair_photographs(read: Calibration, root: Path, *, apart: bool, masks: Path 
     """The light field of a calibration with the photographs below `root`.
 
     Args:
-        read: The calibration.
-        root: Folder of the photographs.
         apart: The calibration was named apart from the photographs (`PhotographFinder`).
         masks: A folder of masks; None for none.
-        strict: As for `open_capture`.
 
     Raises:
         CaptureError: As `open_capture` does.
@@ -167,7 +164,6 @@ class _Made(NamedTuple):
     """A view, and what people may want to know of it.
 
     Attributes:
-        view: The view.
         scaled: Its camera was scaled to the photograph's size.
         focals: As `Intrinsics.contradiction`.
         sized: The calibration states the size of the photograph.

@@ -21,15 +21,8 @@ class Shot:
     """One photograph without a camera.
 
     Attributes:
-        name: As of `PhotographSource`.
-        path: Likewise.
         width: Of the picture as it is decoded, pixels.
-        height: Likewise.
         focal: Focal length in pixels, where EXIF or the format states it; None otherwise.
-        mask: As of `PhotographSource`.
-        upright: Likewise.
-        exposure: Likewise.
-        reduction: Likewise.
     """
 
     name: str

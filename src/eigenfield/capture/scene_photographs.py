@@ -31,10 +31,6 @@ def with_scene_cameras(scene: Scene, photographs: Capture) -> LightField:
 
     Photographs are turned by their EXIF orientation if those that were encoded were.
 
-    Args:
-        scene: The scene.
-        photographs: With or without cameras.
-
     Raises:
         CaptureError: `no-photographs`: no name fits.
         OptionError: `settings-unknown`.
@@ -88,10 +84,6 @@ def _no_photographs(scene: Scene, root: Path, names: Sequence[str]) -> CaptureEr
 
 def match_photographs(scene: Scene, capture: LightField) -> dict[int, int]:
     """The view of the capture for each scene camera, by name; where no name has its ending, by the name without it.
-
-    Args:
-        scene: The scene.
-        capture: Its photographs.
 
     Raises:
         CaptureError: `no-photographs`: no name fits.

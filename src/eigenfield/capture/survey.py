@@ -121,11 +121,6 @@ def decode_all(
 ) -> tuple[list[CaptureError], dict[int, T]]:
     """Decode every photograph and mask once.
 
-    Args:
-        capture: The photographs.
-        look: What is kept of a photograph.
-        progress: Reports them.
-
     Returns:
         What cannot be decoded or is hidden altogether, in the capture's order; what is kept of the others, by index.
     """

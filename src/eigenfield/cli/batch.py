@@ -8,13 +8,12 @@ from typing import Any
 
 import click
 
-from eigenfield.cli.common import PATH, common_options, note, reconstruction_options
+from eigenfield.cli.capture_options import BY_HAND, surface_options
+from eigenfield.cli.common import PATH, common_options, note
 from eigenfield.cli.encode import parse_atlas, parse_target_size
 from eigenfield.cli.field_options import field_options
 from eigenfield.cli.progress import progress_bars
 from eigenfield.encoding import EncodeOptions
-
-NOT_SHARED = ("keep_maps",)  # options of one capture alone
 
 
 @click.command(
@@ -45,7 +44,7 @@ Examples:
     "--cameras", type=PATH, metavar="FILE", help="The rig's calibration, for --instants; it finds photographs by name."
 )
 @field_options(EncodeOptions, atlas=parse_atlas, target_size=parse_target_size)
-@reconstruction_options
+@surface_options("surface", "layers", *BY_HAND)
 @common_options
 def command(
     source: tuple[Path, ...], output: Path | None, workers: int | None, cluster: str | None, instants: bool,

@@ -10,12 +10,11 @@ from typing import Any
 import click
 
 from eigenfield.cli.calibrate_chart import chart_options, summary, table
+from eigenfield.cli.capture_options import place_options
 from eigenfield.cli.common import (
     PATH,
     common_options,
     echo_json,
-    grid_options,
-    masks_option,
     note,
     note_all,
 )
@@ -74,9 +73,9 @@ Examples:
 @click.option(
     "--work", type=PATH, metavar="DIR", help="Keep features and matches here, so that the next run goes on from them."
 )
-@masks_option
+@place_options("masks")
 @click.option("--format", metavar="NAME", help="What the names of the photographs mean, as `encode` takes it.")
-@grid_options
+@place_options("grid", "pattern", "frame", "walk_frames")
 @chart_options
 @click.option("--overwrite", is_flag=True, help="Replace an earlier calibration in DIR; other files there stay.")
 @click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import webbrowser
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from eigenfield.core.progress import Progress
     from eigenfield.core.scene import Scene
     from eigenfield.encoding import EncodeOptions
+    from eigenfield.reconstruction import SurfaceOptions
     from eigenfield.viewer.server import Server
 
 DRAFT_STEP = "draft"
@@ -29,25 +30,21 @@ def draft_of(
     capture: Capture,
     proxy: Path | None,
     options: EncodeOptions,
-    settings: Mapping[str, Any] | None,
+    surface: SurfaceOptions | None,
     progress: Progress | None,
     quiet: bool,
 ) -> Scene | None:
     """A draft; None, with a note, where it would save nothing or cannot be made.
 
     Args:
-        capture: The photographs that take part.
         proxy: A mesh; None: it is estimated.
-        options: Of the whole scene.
-        settings: The arguments of `reconstruct`; None: the proxy is given.
-        progress: Of `progress_bars`.
-        quiet: Whether nothing is noted.
+        surface: That is made; None: the proxy is given.
     """
     from eigenfield.encoding.cost import expected_cost
     from eigenfield.encoding.draft import DRAFT_WORTH_SECONDS, make_draft
     from eigenfield.runtime.parallel import threads
 
-    seconds = expected_cost(capture, options, settings, threads()).seconds
+    seconds = expected_cost(capture, options, surface, threads()).seconds
     if seconds <= DRAFT_WORTH_SECONDS:
         note(f"a draft saves nothing here: the scene itself takes {duration_range(seconds)}", quiet)
         return None
@@ -55,19 +52,14 @@ def draft_of(
         progress.plan({}, {DRAFT_STEP: "draft: fewer and smaller photographs, without a fit"})
     begin_step(progress, DRAFT_STEP)
     try:
-        return make_draft(capture, proxy, options, settings or {}, progress)
+        return make_draft(capture, proxy, options, surface, progress)
     except EigenfieldError as error:
         note(f"no draft: {error.message}; going on with the whole scene", quiet)
         return None
 
 
 def draft_lines(output: Path, scene: Scene) -> list[str]:
-    """What is said of the file of a draft, in place of `last_lines`.
-
-    Args:
-        output: The file.
-        scene: That it holds.
-    """
+    """What is said of the file of a draft, in place of `last_lines`."""
     from eigenfield.encoding.draft import DRAFT_KEY
     from eigenfield.gltf import parts
     from eigenfield.runtime.objects import address_of
@@ -85,12 +77,7 @@ class Window:
     """The viewer's page while a scene is encoded: a draft, and the scene in its place."""
 
     def __init__(self, title: str, quiet: bool) -> None:
-        """Nothing is opened yet.
-
-        Args:
-            title: Of the page.
-            quiet: Whether nothing is noted.
-        """
+        """Nothing is opened yet."""
         self._title, self._quiet = title, quiet
         self._server: Server | None = None
 
@@ -102,23 +89,14 @@ class Window:
             self._server.close()
 
     def show_draft(self, scene: Scene, progress: Progress | None) -> None:
-        """Open the page with a draft.
-
-        Args:
-            scene: The draft.
-            progress: Tells when the scene comes.
-        """
+        """Open the page with a draft."""
         from eigenfield.gltf import encode_scene
 
         known = progress.seconds_left if isinstance(progress, StepProgress) else lambda: None
         self._show(encode_scene(scene), known)
 
     def show(self, output: Path) -> None:
-        """Put a file into the page, or open one.
-
-        Args:
-            output: The scene's file.
-        """
+        """Put a file into the page, or open one."""
         from eigenfield.gltf import outline, without_residual
 
         self._show(without_residual(outline(output)[1]), None)

@@ -5,32 +5,29 @@ from __future__ import annotations
 import logging
 import re
 import time
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from eigenfield.cli.common import (
-    PATH,
+from eigenfield.cli.capture_options import (
+    BY_HAND,
     capture_argument,
     capture_options,
-    chosen_workers,
-    common_options,
-    note,
-    note_all,
     open_for_work,
     reconstruct_capture,
-    reconstruction_options,
-    worker_options,
+    surface_options,
 )
+from eigenfield.cli.common import PATH, chosen_workers, common_options, note, note_all, worker_options
 from eigenfield.cli.draft import Window, draft_lines, draft_of
 from eigenfield.cli.field_options import field_options, from_fields
 from eigenfield.cli.leave_out import leave_out, leave_out_option
 from eigenfield.cli.progress import StepProgress, duration_range, progress_bars
+from eigenfield.core.open_options import OpenOptions
 from eigenfield.core.shell import shell_word
 from eigenfield.encoding import EncodeOptions
 from eigenfield.encoding.target import parse_size
+from eigenfield.reconstruction import SurfaceOptions
 
 if TYPE_CHECKING:
     from eigenfield.capture import Capture, LightField
@@ -57,7 +54,7 @@ GROUPS = {  # of options in the help, those of every day first; the empty one ha
     "Common options": ("output", "draft", "look", "preset", "target_size", "proxy", "calibration", "grid", "without",
                        "overwrite"),
     "What the capture is": (
-        "format", "pattern", "frame", "frames", "masks", "reference", "metres_per_unit",
+        "format", "pattern", "frame", "walk_frames", "masks", "reference", "metres_per_unit",
     ),
     "Quality and size": (
         "quality", "target_psnr", "target_ssim", "hold_out", "blind", "density", "atlas", "harmonise", "residual",
@@ -96,7 +93,7 @@ Examples:
   eigenfield encode photos/ --draft
   eigenfield encode photos/ --view
   eigenfield encode photos/ --grid 5x4 -o scene.glb
-  eigenfield encode walk.mp4 --frames 60 -o scene.glb
+  eigenfield encode walk.mp4 --walk-frames 60 -o scene.glb
   eigenfield encode photos/ --calibration sparse/0 -o scene.glb
   eigenfield encode capture/ --proxy capture/proxy.ply -o scene.glb
   eigenfield encode photos/ --target-size 300kB -o small.glb
@@ -129,7 +126,7 @@ Examples:
     "[default: OUTPUT with the ending .work; with --proxy the folder of OUTPUT]",
 )
 @worker_options
-@reconstruction_options
+@surface_options("surface", "layers", *BY_HAND)
 @click.option(
     "--blind",
     is_flag=True,
@@ -153,7 +150,7 @@ def command(
     capture: Path,
     proxy: Path | None,
     output: Path | None,
-    place: dict[str, Any],
+    place: OpenOptions,
     without: str | None,
     work: Path | None,
     draft: bool,
@@ -172,11 +169,11 @@ def command(
     The last three lines say how small and how good the file is, and which command comes next; -v says more.
     """
     from eigenfield.encoding import encode
-    from eigenfield.encoding.estimated import reconstruction_settings, refuse_unused
+    from eigenfield.encoding.estimated import surface_to_make
     from eigenfield.encoding.views import check_selection
     from eigenfield.gltf import refuse_output, save
     from eigenfield.proxy import refuse_no_mesh
-    from eigenfield.reconstruction import ReconstructionSettings, check_settings
+    from eigenfield.reconstruction.whole import check_settings
     from eigenfield.runtime.objects import find_objects
 
     started = time.monotonic()
@@ -187,35 +184,36 @@ def command(
         refuse_no_mesh(proxy)
     options = from_fields(EncodeOptions, settings)
     projected = options.resolved().fit == "none"
-    if proxy is None:
-        made_by = reconstruction_settings(options, settings, blind)
-    else:
-        unused = {} if projected else {"workers": workers, "cluster": cluster}
-        refuse_unused({**settings, **unused}, blind)
-        made_by = None
+    surface = surface_to_make(
+        options,
+        from_fields(SurfaceOptions, settings),
+        blind,
+        has_proxy=proxy is not None,
+        others={"workers": workers, "cluster": cluster},
+    )
     with Window(output.name, quiet) as window:
         with chosen_workers(workers, cluster) as reached, progress_bars(quiet) as progress:
             kept = work or (None if find_objects(output) else output.absolute().parent)
             scratch = work or whole.with_suffix(".work")
-            if made_by is None:
+            if surface is None:
                 opened: Capture = leave_out(_open_capture(capture, place, kept, quiet), without, quiet)
             else:
                 opened = leave_out(open_for_work(capture, place, scratch, quiet), without, quiet)
                 check_selection(opened, options)
-                check_settings(opened, ReconstructionSettings.of_arguments(made_by))
-            first = draft_of(opened, proxy, options, made_by, progress, quiet) if draft or look else None
+                check_settings(opened, surface)
+            first = draft_of(opened, proxy, options, surface, progress, quiet) if draft or look else None
             if first is not None and draft:
                 scene, lines = first, draft_lines
             else:
                 refuse_output(output := whole, overwrite)
-                announce(opened, options, made_by, progress)
+                announce(opened, options, surface, progress)
                 if first is not None:
                     window.show_draft(first, progress)
                 for_maps = reached if projected else None
-                if made_by is None:
+                if surface is None:
                     scene = encode(opened, proxy, options, work=kept, workers=for_maps, progress=progress)
                 else:
-                    made = reconstruct_capture(opened, scratch, progress, quiet, workers=reached, **made_by)
+                    made = reconstruct_capture(opened, surface, scratch, progress, quiet, reached)
                     log.info("%s", "\n".join(made.report.lines(made.light_field.names)))
                     scene = encode(
                         made.light_field, made.proxy, options, triangles=None, hold_out=made.hold_out, work=scratch,
@@ -242,12 +240,7 @@ def default_output(capture: Path) -> Path:
 
 
 def last_lines(output: Path, scene: Scene) -> list[str]:
-    """How small and how good a file is, and the command that comes next; statistics are logged.
-
-    Args:
-        output: The file.
-        scene: That it holds.
-    """
+    """How small and how good a file is, and the command that comes next; statistics are logged."""
     from eigenfield.encoding.verdict import score_words, verdict_of_scores
     from eigenfield.gltf import parts
     from eigenfield.runtime.objects import address_of
@@ -272,14 +265,12 @@ def last_lines(output: Path, scene: Scene) -> list[str]:
 
 
 def announce(
-    capture: Capture, options: EncodeOptions, settings: Mapping[str, Any] | None, progress: Progress | None
+    capture: Capture, options: EncodeOptions, surface: SurfaceOptions | None, progress: Progress | None
 ) -> None:
     """Say what an encode is expected to take, and how it goes on if it is stopped; nothing without a progress.
 
     Args:
-        capture: Photographs, with or without cameras.
-        options: Of the scene.
-        settings: The arguments of `reconstruct`; None: the proxy is given.
+        surface: That is made; None: the proxy is given.
         progress: Of `progress_bars`, which then counts the steps.
     """
     from eigenfield.capture.messages import count_phrase
@@ -289,7 +280,7 @@ def announce(
     if not isinstance(progress, StepProgress):
         return
     count = threads()
-    cost = expected_cost(capture, options, settings, count)
+    cost = expected_cost(capture, options, surface, count)
     pixels = sum(width * height for width, height in capture.sizes)
     layered = f", or {duration_range(cost.layered_seconds)} if layers turn out to be better" if cost.layered else ""
     note(
@@ -297,19 +288,19 @@ def announce(
         f"with {count_phrase(range(count), 'thread', 'threads')}{layered}; {cost.memory / 1e9:.1f} GB of memory, "
         f"{cost.scratch / 1e6:.0f} MB of scratch files"
     )
-    if settings is not None:
+    if surface is not None:
         note("Ctrl-C stops it; the same command goes on after the last finished step")
     stages = {name: step.stages for name, step in STEPS.items()}
     progress.plan(cost.steps, {name: step.words for name, step in STEPS.items()}, cost.layered, stages)
 
 
-def _open_capture(capture: Path, place: Mapping[str, Any], scratch: Path | None, quiet: bool) -> LightField:
+def _open_capture(capture: Path, place: OpenOptions, scratch: Path | None, quiet: bool) -> LightField:
     """A calibrated capture, and a folder for scratch files."""
     from eigenfield.capture import open_capture
     from eigenfield.runtime.files import output_errors
     from eigenfield.runtime.objects import find_objects
 
-    light_field = open_capture(capture, **place)
+    light_field = open_capture(capture, place)
     if scratch is not None and not find_objects(scratch):
         with output_errors(scratch):
             scratch.mkdir(parents=True, exist_ok=True)

@@ -8,10 +8,9 @@ from typing import Any
 
 import click
 
+from eigenfield.cli.capture_options import capture_argument, capture_options
 from eigenfield.cli.common import (
     PATH,
-    capture_argument,
-    capture_options,
     chosen_workers,
     common_options,
     echo_json,
@@ -20,6 +19,7 @@ from eigenfield.cli.common import (
     worker_options,
 )
 from eigenfield.cli.progress import progress_bars
+from eigenfield.core.open_options import OpenOptions
 
 Column = tuple[str, str, str]  # key, heading, format
 
@@ -100,7 +100,7 @@ Examples:
 def command(
     scene: Path,
     capture: Path,
-    place: dict[str, Any],
+    place: OpenOptions,
     as_json: bool,
     plots: Path | None,
     overwrite: bool,
@@ -128,7 +128,7 @@ def command(
     loaded = load(scene)
     if store:
         refuse_existing(scene, overwrite=True)  # fails now, not after the work, where the folder cannot be written to
-    light_field = with_scene_cameras(loaded, open_any(capture, **place))
+    light_field = with_scene_cameras(loaded, open_any(capture, place))
     circles = None if exclude_circles is None else read_circles(exclude_circles, loaded.rig.names)
     with chosen_workers(workers, cluster) as reached, progress_bars(quiet) as progress:
         figures = evaluate(
@@ -152,8 +152,6 @@ def table(name: str, figures: Mapping[str, Any], fitted: bool = False) -> list[s
     """The figures as lines for a person.
 
     Args:
-        name: Of the scene's file.
-        figures: Of `evaluation.evaluate`.
         fitted: Whether the scene was fitted, and so has no texture maps.
     """
     lines = [f"{name}: {figures['textures']} eigen textures, drawn {figures['filter']}, {figures['seconds']:.0f} s", ""]

@@ -5,21 +5,22 @@ from __future__ import annotations
 import shlex
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from eigenfield.cli.capture_options import capture_argument, capture_options
 from eigenfield.cli.common import (
     PATH,
-    capture_argument,
-    capture_options,
     common_options,
     echo_json,
     note,
 )
 from eigenfield.cli.progress import progress_bars
 from eigenfield.core.errors import EigenfieldError, OptionError, one_line
+from eigenfield.core.open_options import OpenOptions
 from eigenfield.core.shell import shell_word
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ SCHEMA = "eigenfield.inspect/1"
 NEIGHBOUR_MAX_STOPS = 0.3  # of exposure
 SIZES_MAX_SPREAD = 0.02  # of the greatest, up to which sizes differ by what a program cut off
 MORE_PHOTOGRAPHS = "take photographs nearer to each other"
-MORE_VIEWS = {"walk": "ask for more --frames, or walk more slowly", "video": "put more cameras there"}
+MORE_VIEWS = {"walk": "ask for more --walk-frames, or walk more slowly", "video": "put more cameras there"}
 
 
 @click.command(
@@ -63,7 +64,7 @@ Examples:
 @common_options
 def command(
     capture: Path,
-    place: dict[str, Any],
+    place: OpenOptions,
     proxy: Path | None,
     overlay: Path | None,
     overwrite: bool,
@@ -89,7 +90,7 @@ def command(
     from eigenfield.capture import open_any
     from eigenfield.capture.survey import decode_all
 
-    opened = open_any(capture, strict=False, **place)
+    opened = open_any(capture, place, strict=False)
     if proxy is not None and opened.light_field is None:
         raise OptionError(
             "proxy-needs-cameras",
@@ -109,14 +110,14 @@ def command(
         harms = find_harmful(opened, looks, progress)
     refusal = _refusal(capture, place, opened, damaged, proxy)
     report = describe(opened, damaged)
-    if not place["also"] and capture.exists() and not _lies_in(opened.root, capture):  # unpacked into another folder
+    if not place.also and capture.exists() and not _lies_in(opened.root, capture):  # unpacked into another folder
         report["root"] = str(capture)
     report["refused"] = None if refusal is None else _error(refusal)
     report["harmful"] = [
         {"photograph": opened.names[harm.index], "kind": harm.kind, "reason": harm.reason} for harm in harms
     ]
     report["blurred"] = [opened.names[harm.index] for harm in harms if harm.kind == "blurred"]
-    report["next"] = _next_commands(report, capture, {**place, "proxy": proxy})
+    report["next"] = _next_commands(report, capture, place, proxy)
     if pairs:
         report["neighbours"] = _neighbours(opened, pairs)
         report["verdict"] = _verdict(opened, report["neighbours"])
@@ -137,7 +138,7 @@ def command(
 
 
 def _refusal(
-    capture: Path, place: Mapping[str, Any], opened: Capture, damaged: Sequence[CaptureError], proxy: Path | None
+    capture: Path, place: OpenOptions, opened: Capture, damaged: Sequence[CaptureError], proxy: Path | None
 ) -> CaptureError | None:
     """The error with which `encode` would end before any long work; None where it would run."""
     from eigenfield.capture import open_any
@@ -146,7 +147,7 @@ def _refusal(
 
     try:
         if opened.problems or len(opened) < 3:
-            open_any(capture, **place)
+            open_any(capture, place)
         if proxy is None:
             refuse_one_place(opened)
     except CaptureError as error:
@@ -280,22 +281,22 @@ def _photographs(photo_set: PhotoSet) -> list[dict[str, Any]]:
     ]
 
 
-def _next_commands(report: dict[str, Any], capture: Path, place: dict[str, Any]) -> list[str]:
+def _next_commands(report: dict[str, Any], capture: Path, place: OpenOptions, proxy: Path | None) -> list[str]:
     """Commands that make sense now, with the options that this one had, most useful first."""
     if report["refused"] is not None:
         return []
-    grid = None if place["grid"] is None else "x".join(map(str, place["grid"]))
-    given = {**place, "grid": grid, "also": None}.items()
+    grid = None if place.grid is None else "x".join(map(str, place.grid))
+    given: dict[str, Any] = {**vars(replace(place, also=None)), "grid": grid, "strict": None, "proxy": proxy}
     said = [
-        f"--{name} {shell_word(value) if isinstance(value, Path) else shlex.quote(str(value))}"
-        for name, value in given
+        f"--{name.replace('_', '-')} {shell_word(value) if isinstance(value, Path) else shlex.quote(str(value))}"
+        for name, value in given.items()
         if value is not None
     ]
-    folders = [capture, *(place["also"] or ())]
+    folders = [capture, *map(Path, place.also or ())]
     words = " ".join([*(shell_word(folder) for folder in folders), *said])
     advised = " --leave-out advised" if report["harmful"] else ""
     encode = f"eigenfield encode {words}{advised} -o scene.glb"
-    return [encode] if report["views"] or place["also"] else [encode, f"eigenfield calibrate {words}"]
+    return [encode] if report["views"] or place.also else [encode, f"eigenfield calibrate {words}"]
 
 
 def _array(array: CameraArray) -> dict[str, Any]:

@@ -31,9 +31,7 @@ def leave_out(capture: C, rule: str | None, quiet: bool) -> C:
     """The capture without some photographs; without a rule, a line says which ones may do harm.
 
     Args:
-        capture: The photographs.
         rule: Names, `advised`, or None.
-        quiet: Whether nothing is noted.
 
     Raises:
         OptionError: `leave-out`: no photograph has the name, or fewer than three are left.

@@ -63,9 +63,7 @@ class StepProgress:
 
         Args:
             seconds: Expected of each step, by its name, in order.
-            words: What the steps are called.
             layered: Of those that take others once the step "layers" begins.
-            stages: As of `TimeLeft`.
         """
         self._words, self._rest = dict(words), TimeLeft(seconds, layered or {}, stages or {})
 
@@ -148,11 +146,7 @@ def duration(seconds: float) -> str:
 
 
 def duration_range(seconds: float) -> str:
-    """Between which times one lies: about 3 to 6 min.
-
-    Args:
-        seconds: That are expected.
-    """
+    """Between which times one lies: about 3 to 6 min."""
     low, high = RANGE_LOW_RATIO * seconds, RANGE_HIGH_RATIO * seconds
     unit = _unit_of(high)
     few, many = _number(low, unit, math.floor), _number(high, unit, math.ceil)

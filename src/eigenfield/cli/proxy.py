@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import click
 
-from eigenfield.cli.common import (
-    PATH,
+from eigenfield.cli.capture_options import (
+    BY_HAND,
     capture_argument,
     capture_options,
-    common_options,
-    mesh_options,
-    note,
-    note_all,
     open_for_work,
     reconstruct_capture,
+    surface_options,
 )
+from eigenfield.cli.common import PATH, common_options, note, note_all
+from eigenfield.cli.field_options import from_fields
 from eigenfield.cli.leave_out import leave_out, leave_out_option
 from eigenfield.cli.progress import progress_bars
+from eigenfield.core.open_options import OpenOptions
+from eigenfield.reconstruction import SurfaceOptions
+from eigenfield.reconstruction.options import MESH_KINDS
 
 
 @click.command(
@@ -36,10 +39,9 @@ Examples:
 @click.option("--output", "-o", required=True, type=PATH, metavar="FILE", help="The .glb or .ply to write.")
 @capture_options
 @leave_out_option
-@mesh_options
-@click.option(
-    "--triangles", type=int, default=30_000, show_default=True, metavar="N", help="Triangles of the mesh, at most."
-)
+@click.option("--surface", type=click.Choice(["auto", "relief", "poisson"]), default="auto", show_default=True,
+              help=f"{MESH_KINDS}.")  # fmt: skip
+@surface_options(*BY_HAND, "triangles")
 @click.option(
     "--work",
     type=PATH,
@@ -51,7 +53,7 @@ Examples:
 def command(
     capture: Path,
     output: Path,
-    place: dict[str, Any],
+    place: OpenOptions,
     without: str | None,
     work: Path | None,
     overwrite: bool,
@@ -73,7 +75,8 @@ def command(
     work = work if work is not None else output.with_suffix(".work")
     with progress_bars(quiet) as progress:
         opened = leave_out(open_for_work(capture, place, work, quiet), without, quiet)
-        made = reconstruct_capture(opened, work, progress, quiet, layers=1, **settings)  # a file holds no layers
+        surface = replace(from_fields(SurfaceOptions, settings), layers=1)  # a file holds no layers
+        made = reconstruct_capture(opened, surface, work, progress, quiet)
     note_all(made.report.lines(made.light_field.names), quiet)
     if made.calibration is not None:
         cameras = output.with_suffix(".cameras")

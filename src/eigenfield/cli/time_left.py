@@ -39,7 +39,6 @@ class TimeLeft:
         side was foreseen.
 
         Args:
-            step: Its name.
             now: Seconds of work.
         """
         names = list(self.seconds)
@@ -61,9 +60,7 @@ class TimeLeft:
         """So much of a stage of the step is done.
 
         Args:
-            stage: Its name.
             done: Of `total` parts.
-            total: All parts.
             now: Seconds of work.
         """
         parts = self._stages.get(self.step or "", {})

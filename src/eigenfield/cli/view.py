@@ -5,11 +5,12 @@ from __future__ import annotations
 import threading
 import webbrowser
 from pathlib import Path
-from typing import Any
 
 import click
 
-from eigenfield.cli.common import PATH, capture_argument, capture_options, common_options, note
+from eigenfield.cli.capture_options import capture_argument, capture_options
+from eigenfield.cli.common import PATH, common_options, note
+from eigenfield.core.open_options import OpenOptions
 
 
 @click.command(
@@ -39,7 +40,7 @@ Examples:
 def command(
     scene: Path,
     capture: Path | None,
-    place: dict[str, Any],
+    place: OpenOptions,
     port: int,
     host: str,
     no_browser: bool,
@@ -53,7 +54,9 @@ def command(
     """
     from eigenfield.viewer import view
 
-    with view(scene, capture, host=host, port=port, browser=False, metres_per_unit=metres_per_unit, **place) as server:
+    with view(
+        scene, capture, host=host, port=port, browser=False, metres_per_unit=metres_per_unit, **place.changed()
+    ) as server:
         try:
             click.echo(server.address)
             if server.is_public:

@@ -45,8 +45,6 @@ def array_cameras(rows: int, columns: int, size: int) -> list[Camera]:
     The spacing is uneven by a few per cent, as on a real gantry.
 
     Args:
-        rows: Of the array.
-        columns: Of the array.
         size: Side of the pictures in pixels.
     """
     random = np.random.default_rng(DEMO_JITTER_SEED)

@@ -78,11 +78,7 @@ def draw_demo_capture(
     The folder appears by rename when it is complete. The same arguments give the same bytes, at any number of threads.
 
     Args:
-        folder: To be created.
-        rows: Of the array.
-        columns: Of the array.
         size: Side of the pictures in pixels.
-        progress: Called for each view.
 
     Raises:
         OutputError: `output-exists`, `no-folder`, `disk-full` or `not-writable`.
@@ -131,12 +127,7 @@ def _draw_into(folder: Path, rows: int, columns: int, size: int, progress: Progr
 
 
 def draw_view(camera: Camera, look: Look) -> NDArray[np.uint8]:
-    """(H, W, 3) uint8 sRGB: the scene as a camera sees it, averaged over several points a pixel in linear light.
-
-    Args:
-        camera: The camera.
-        look: Of `bake_look`.
-    """
+    """(H, W, 3) uint8 sRGB: the scene as a camera sees it, averaged over several points a pixel in linear light."""
     scene = build_geometry()
     mesh = scene.mesh
     assert mesh.uv is not None

@@ -98,7 +98,6 @@ def letter_mask(letter: str, u: Array, v: Array) -> Array:
     """(n,) ink of a letter in the middle of a square, 0..1.
 
     Args:
-        letter: The letter.
         u: (n,) coordinates to the right, 0..1.
         v: (n,) coordinates downwards, 0..1.
     """

@@ -51,7 +51,6 @@ def bake_surface(scene: DemoGeometry, side: int) -> NDArray[np.float32]:
     """(side, side, 8) float32: see `shade_view`; charts are extended into the gutters. Mirrors and glass are zero.
 
     Args:
-        scene: With its parts.
         side: Texels.
     """
     raster = rasterise_atlas(scene.mesh, side, side)

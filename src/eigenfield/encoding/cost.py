@@ -13,9 +13,10 @@ from typing import Any, NamedTuple
 from eigenfield.capture import Capture
 from eigenfield.encoding.options import SUBSAMPLE_MIN_OBSERVATIONS, EncodeOptions
 from eigenfield.encoding.views import encoded_ratio
+from eigenfield.reconstruction import SurfaceOptions
 from eigenfield.reconstruction.array import looks_one_way
 from eigenfield.reconstruction.layered import capture_fault
-from eigenfield.reconstruction.layers import LAYERS_TUNING
+from eigenfield.reconstruction.layers import LAYERS_DENSE_VIEWS
 
 
 class StepCost(NamedTuple):
@@ -92,17 +93,17 @@ class Cost:
         return sum((self.steps | self.layered).values())
 
 
-def expected_cost(capture: Capture, options: EncodeOptions, settings: Mapping[str, Any] | None, threads: int) -> Cost:
+def expected_cost(capture: Capture, options: EncodeOptions, surface: SurfaceOptions | None, threads: int) -> Cost:
     """The cost of a scene.
 
     Args:
         capture: Photographs, with or without cameras.
-        settings: The arguments of `reconstruct`; None: the proxy is given.
+        surface: That is made; None: the proxy is given.
     """
     sizes, share = capture.sizes, threads**-THREADS_POWER
     pixels = float(sum(width * height for width, height in sizes))
 
-    estimation, textures = [] if settings is None else _estimation(capture, settings), _textures(options)
+    estimation, textures = [] if surface is None else _estimation(capture, surface), _textures(options)
     encoded = encoded_ratio(capture, options)
     few = encoded * len(sizes) < SUBSAMPLE_MIN_OBSERVATIONS
     costs = STEPS | (TEXTURE_MAPS if "maps" in textures else FEW_VIEWS if few else {})
@@ -114,30 +115,30 @@ def expected_cost(capture: Capture, options: EncodeOptions, settings: Mapping[st
 
     steps = {name: seconds(name, costs[name]) for name in (*estimation, *textures)}
     layered = {name: seconds(name, step) for name, step in LAYERED.items()} if "layers" in steps else {}
-    if settings is not None and settings["surface"] == "layers":
+    if surface is not None and surface.surface == "layers":
         steps, layered = steps | layered, {}
     elif layered:
         steps["layers"] = 0.0
-        if len(sizes) >= LAYERS_TUNING.dense_views:
+        if len(sizes) >= LAYERS_DENSE_VIEWS:
             steps["trial"] = seconds("trial", DENSE_TRIAL)
             layered = {name: DENSE_LAYERS_RATIO * spent for name, spent in layered.items()}
     memory = MEMORY_FIXED_BYTES + MEMORY_BYTES_A_PIXEL * pixels
     return Cost(steps, layered, memory, SCRATCH_BYTES_A_PIXEL * pixels)
 
 
-def _estimation(capture: Any, settings: Mapping[str, Any]) -> list[str]:
+def _estimation(capture: Any, settings: SurfaceOptions) -> list[str]:
     """The names of the steps that make cameras and proxy."""
     light_field = capture.light_field
     unknown = light_field is None
     found = ["motion"] if unknown and capture.layout is None else []
     one_way = unknown or looks_one_way(light_field.cameras)
-    if settings["surface"] != "layers":
-        found += ["array", "relief"] if one_way and settings["surface"] != "poisson" else ["surface", "proxy"]
+    if settings.surface != "layers":
+        found += ["array", "relief"] if one_way and settings.surface != "poisson" else ["surface", "proxy"]
     elif one_way:
         found += ["array"]
-    may_have_layers = settings["layers"] != 1 and capture_fault(capture) is None
-    if settings["surface"] in ("auto", "layers") and may_have_layers:
-        found += ["trial"] if settings["layers"] is None else []
+    may_have_layers = settings.layers != 1 and capture_fault(capture) is None
+    if settings.surface in ("auto", "layers") and may_have_layers:
+        found += ["trial"] if settings.layers is None else []
         found += ["layers"]
     return found
 

@@ -7,9 +7,7 @@ from __future__ import annotations
 
 import logging
 import os
-from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -21,8 +19,9 @@ from eigenfield.core.scene import Scene
 from eigenfield.core.spread import spread_indices
 from eigenfield.encoding.options import EncodeOptions
 from eigenfield.proxy.surface.neighbours import spread_views
-from eigenfield.reconstruction import reconstruct
+from eigenfield.reconstruction import SurfaceOptions
 from eigenfield.reconstruction.unseen import held_out_names, without
+from eigenfield.reconstruction.whole import reconstruct
 
 log = logging.getLogger("eigenfield.encode")
 
@@ -42,7 +41,7 @@ def make_draft(
     capture: Capture,
     proxy: str | os.PathLike[str] | Mesh | Proxy | None,
     options: EncodeOptions,
-    settings: Mapping[str, Any],
+    surface: SurfaceOptions | None,
     progress: Progress | None = None,
 ) -> Scene:
     """A scene without a fit from some of the photographs, made smaller, without scores.
@@ -53,7 +52,7 @@ def make_draft(
         capture: Photographs, with cameras if there is a proxy.
         proxy: None: it is made.
         options: Of the whole scene, of which the draft takes what is not about quality and size.
-        settings: Arguments of `reconstruct` for the whole scene.
+        surface: Of the whole scene; None where the proxy is given.
 
     Raises:
         CaptureError, ProxyError, OptionError: As `encode`, of which some may not apply to the whole scene.
@@ -63,16 +62,17 @@ def make_draft(
     chosen = _some_views(capture, options)
     if proxy is None:
         factor = _factor(chosen, DRAFT_SURFACE_PIXELS)
-        own = {
-            **settings,
-            "surface": "auto" if settings["surface"] == "layers" else settings["surface"],
-            "layers": 1,
-            "fit_spheres": (),  # whose regions are in pixels of the whole photographs
-            "triangles": min(DRAFT_TRIANGLES, settings["triangles"]),
-            "blind": None,  # who is held out takes no part at all
-            "hold_out": None,
-        }
-        made = reconstruct(chosen.reduced(factor), progress=_within(progress), **own)
+        whole = surface or SurfaceOptions()
+        opaque = replace(
+            whole,
+            surface="auto" if whole.surface == "layers" else whole.surface,
+            layers=1,
+            fit_spheres=(),  # whose regions are in pixels of the whole photographs
+            triangles=min(DRAFT_TRIANGLES, whole.triangles),
+            blind=None,  # who is held out takes no part at all
+            hold_out=None,
+        )
+        made = reconstruct(chosen.reduced(factor), opaque, progress=_within(progress))
         proxy, chosen = made.proxy, _as_photographed(made.light_field, chosen, factor)
     assert isinstance(chosen, LightField)
     factor = _factor(chosen, DRAFT_TEXTURE_PIXELS)

@@ -4,21 +4,25 @@ from __future__ import annotations
 
 import logging
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from eigenfield.capture import Capture, LightField, PhotoSet, open_any, open_capture
 from eigenfield.core.arguments import kind_in_words
 from eigenfield.core.errors import OptionError
+from eigenfield.core.fields import options_of
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import CalibratedObservations
 from eigenfield.core.progress import Progress
 from eigenfield.core.proxy import Proxy
 from eigenfield.encoding.options import EncodeOptions
 from eigenfield.encoding.views import check_selection
-from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES, refuse_no_mesh
-from eigenfield.reconstruction import Reconstruction, ReconstructionSettings, reconstruct
+from eigenfield.proxy import refuse_no_mesh
+from eigenfield.reconstruction import SurfaceOptions
+from eigenfield.reconstruction.whole import Reconstruction, reconstruct
 from eigenfield.runtime.tasks import Workers
 
 log = logging.getLogger("eigenfield.encode")
@@ -26,56 +30,59 @@ log = logging.getLogger("eigenfield.encode")
 Given = str | os.PathLike[str] | Capture | CalibratedObservations
 
 
-def reconstruction_settings(options: EncodeOptions, own: Mapping[str, Any], blind: bool) -> dict[str, Any]:
-    """The arguments of `reconstruct` for a scene with these options.
+def surface_to_make(
+    options: EncodeOptions,
+    given: SurfaceOptions,
+    blind: bool,
+    has_proxy: bool,
+    others: Mapping[str, Any] = MappingProxyType({}),
+) -> SurfaceOptions | None:
+    """The options of `reconstruct` for a scene with these options; None where the proxy is given.
 
     Args:
         options: Of the scene.
-        own: Arguments of `reconstruct` that were given.
+        given: What is asked for of the surface; `triangles`, `blind` and `hold_out` come from the other arguments.
         blind: Whether held-out photographs take no part in cameras and proxy.
+        has_proxy: Whether the proxy is given, for which nothing may be asked of a surface.
+        others: Arguments by name that a fit on a given proxy has no use for, either.
 
     Raises:
-        OptionError: `blind`, `sheets`, and those of `ReconstructionSettings`.
+        OptionError: `proxy-given`, `blind`, `sheets`, and those of `SurfaceOptions`.
     """
+    projected = options.resolved().fit == "none"
+    if has_proxy:
+        unused = [] if projected else [name for name, value in others.items() if value is not None]
+        _refuse_with_proxy([*given.changed(), *unused, *(["blind"] if blind else [])])
+        return None
     if blind and options.hold_out is None:
         raise OptionError("blind", "--blind is about held-out photographs", remedy="say which with --hold-out")
-    settings = {
-        **own,
-        "triangles": PROXY_DEFAULT_TRIANGLES if options.triangles is None else options.triangles,
-        "blind": options.hold_out if blind else None,
-        "hold_out": options.hold_out,
-    }
-    ReconstructionSettings.of_arguments(settings)
-    if options.resolved().fit == "none":  # texture maps know one opaque surface
-        if own["surface"] == "layers" or (own["layers"] or 1) > 1:
-            message = "texture maps of several layers, which only a fit can make"
-            raise OptionError("sheets", message, remedy="leave out --fit none, or the layers")
-        settings["layers"] = 1
-    return settings
+    surface = replace(
+        given,
+        triangles=given.triangles if options.triangles is None else options.triangles,
+        blind=options.hold_out if blind else None,
+        hold_out=options.hold_out,
+    )
+    if not projected:
+        return surface
+    if surface.surface == "layers" or (surface.layers or 1) > 1:  # texture maps know one opaque surface
+        message = "texture maps of several layers, which only a fit can make"
+        raise OptionError("sheets", message, remedy="leave out --fit none, or the layers")
+    return replace(surface, layers=1)
 
 
-def refuse_unused(own: Mapping[str, Any], blind: bool) -> None:
-    """Refuse arguments of `reconstruct`, and `blind`, where the proxy is given.
-
-    Args:
-        own: Arguments of `reconstruct` that were given.
-        blind: Whether held-out photographs were to take no part in cameras and proxy.
-
-    Raises:
-        OptionError: `proxy-given`.
-    """
-    asked = [name for name, value in own.items() if value not in (None, "auto", ())] + ["blind"] * blind
-    if asked:
-        option = {"primitives": "primitive", "fit_spheres": "fit-sphere"}.get(asked[0], asked[0])
+def _refuse_with_proxy(names: Sequence[str]) -> None:
+    if names:
+        option = dict(options_of(SurfaceOptions)).get(names[0])
+        name = names[0] if option is None or option.name is None else option.name
         raise OptionError(
             "proxy-given",
-            f"--{option} is for making a proxy, but --proxy gives one",
+            f"--{name} is for making a proxy, but --proxy gives one",
             remedy="leave out one of the two",
         )
 
 
 def estimate(
-    given: Given, options: EncodeOptions, settings: Mapping[str, Any], work: str | os.PathLike[str] | None,
+    given: Given, options: EncodeOptions, surface: SurfaceOptions, work: str | os.PathLike[str] | None,
     workers: Workers | None, progress: Progress | None,
 ) -> Reconstruction:  # fmt: skip
     """Cameras and proxy of a capture.
@@ -83,7 +90,7 @@ def estimate(
     Args:
         given: The capture, or its path.
         options: Of the scene.
-        settings: Of `reconstruction_settings`.
+        surface: Of `surface_to_make`.
         work: Folder that keeps finished stages; None: nothing is kept.
         workers: Of `reconstruct`.
         progress: Reports each stage.
@@ -100,7 +107,7 @@ def estimate(
     else:
         raise OptionError("capture", f"{kind_in_words(given)} makes no proxy", remedy="give the proxy, or a folder")
     check_selection(opened, options)
-    made = reconstruct(opened, work=folder, workers=workers, progress=progress, **settings)
+    made = reconstruct(opened, surface, work=folder, workers=workers, progress=progress)
     _warn(made.light_field.problems[len(opened.problems) :])
     return made
 

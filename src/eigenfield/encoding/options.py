@@ -7,11 +7,10 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, replace
-from typing import TypedDict, TypeVar, get_type_hints
+from typing import TypedDict, TypeVar
 
-from eigenfield.core.arguments import in_words, kind_in_words, matches
 from eigenfield.core.errors import OptionError
-from eigenfield.encoding.fields import Options, document_options, option, options_of
+from eigenfield.core.fields import Options, document_options, option, options_of
 from eigenfield.encoding.target import Target
 
 T = TypeVar("T")
@@ -172,7 +171,7 @@ class EncodeOptions(Options):
     )
 
     def __post_init__(self) -> None:
-        self._check_types()
+        self.check_types()
         self._check_file()
         self._check_way()
         self._check_numbers()
@@ -222,13 +221,6 @@ class EncodeOptions(Options):
     @property
     def _chosen_fit(self) -> str:
         return self.fit or ("none" if self.map_options and not self._fit_options else "photographs")
-
-    def _check_types(self) -> None:
-        """Raise OptionError `option-type` for values of another type; whole numbers stand for any number."""
-        for name, kind in get_type_hints(type(self)).items():
-            value = getattr(self, name)
-            if not matches(value, kind):
-                raise OptionError("option-type", f"{name} is {kind_in_words(value)}", remedy=f"give {in_words(kind)}")
 
     def _check_file(self) -> None:
         from eigenfield.coding.stacking import DEFAULT_CODEC, check_codec

@@ -11,7 +11,7 @@ from numbers import Real
 from typing import Generic, TypeVar
 
 from eigenfield.core.errors import OptionError
-from eigenfield.encoding.fields import Options, document_options, option
+from eigenfield.core.fields import Options, document_options, option
 
 T = TypeVar("T")
 

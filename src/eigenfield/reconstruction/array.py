@@ -22,7 +22,8 @@ from eigenfield.core.viewplane import fit_view_plane
 from eigenfield.proxy import estimate_second_layer, read_mesh, relief_mesh, write_ply
 from eigenfield.proxy.surface.neighbours import project_inside
 from eigenfield.reconstruction.frame import common_frame, read_masks, read_pictures, resized_cameras
-from eigenfield.reconstruction.run import ReconstructionSettings, StageRunner
+from eigenfield.reconstruction.options import SurfaceOptions
+from eigenfield.reconstruction.run import StageRunner
 from eigenfield.reconstruction.stage_files import (
     STAGE_CAMERAS_FILE,
     STAGE_DEPTH_FILE,
@@ -40,57 +41,29 @@ from eigenfield.stereo.extend import remove_speckles
 log = logging.getLogger("eigenfield.reconstruction")
 
 
-@dataclass(frozen=True)
-class ArrayTuning:
-    """Constants of `relief_of_array`. Pixels are those of the outermost view.
-
-    Attributes:
-        speckle_fraction: Regions of fewer pixels of the reference view that stand apart in depth count as errors.
-        cut_rounds: Attempts to make fewer cuts.
-        cut_pixels: Displacement between two neighbours at which the relief is cut between them.
-        cut_range_fraction: The same as a fraction of the range of depths: a smaller step in a deep scene is more often
-            an error.
-        tolerance_pixels: Distance of the mesh from the depth map.
-        range_views: Views around the central one in which a range of depths is searched.
-        min_points: Points of structure from motion that determine a range of depths.
-        range_margin_fraction: Added to that range on both sides.
-        depth_percentiles: Of a depth map, that are its range.
-        min_inverse_ratio: Of the farthest inverse depth to the nearest.
-        outlier_ratio: A photograph whose error is this many times the typical one shows another scene.
-        outlier_min_levels: Grey levels by which its error is larger, at least.
-        dense_views: Number of given views from which cameras are refined by default.
-        max_thickness_fraction: Distance of cameras from their plane for a relief, relative to the array's extent.
-        max_axis_angle_degrees: Angle between a camera's axis and the mean axis for a relief.
-        max_plane_angle_degrees: Angle between the mean axis and the normal of the array's plane for a relief.
-    """
-
-    speckle_fraction: float = 0.0002
-    cut_rounds: int = 4
-    cut_pixels: float = 2.5
-    cut_range_fraction: float = 0.06
-    tolerance_pixels: float = 0.08
-    range_views: int = 25
-    min_points: int = 30
-    range_margin_fraction: float = 0.15
-    depth_percentiles: tuple[float, float] = (1.0, 99.0)
-    min_inverse_ratio: float = 0.02
-    outlier_ratio: float = 2.0
-    outlier_min_levels: float = 8.0
-    dense_views: int = 25
-    max_thickness_fraction: float = 0.15
-    max_axis_angle_degrees: float = 12.0
-    max_plane_angle_degrees: float = 25.0
-
-
-ARRAY_TUNING = ArrayTuning()
+# Constants of `relief_of_array`. Pixels are those of the outermost view.
+# regions of fewer pixels of the reference view that stand apart in depth count as errors
+ARRAY_SPECKLE_FRACTION = 0.0002
+ARRAY_CUT_ROUNDS = 4  # attempts to make fewer cuts
+ARRAY_CUT_PIXELS = 2.5  # displacement between two neighbours at which the relief is cut between them
+# the same as a fraction of the range of depths: a smaller step in a deep scene is more often an error
+ARRAY_CUT_RANGE_FRACTION = 0.06
+ARRAY_TOLERANCE_PIXELS = 0.08  # distance of the mesh from the depth map
+ARRAY_RANGE_VIEWS = 25  # views around the central one in which a range of depths is searched
+ARRAY_MIN_POINTS = 30  # points of structure from motion that determine a range of depths
+ARRAY_RANGE_MARGIN_FRACTION = 0.15  # added to that range on both sides
+ARRAY_DEPTH_PERCENTILES = (1.0, 99.0)  # of a depth map, that are its range
+ARRAY_MIN_INVERSE_RATIO = 0.02  # of the farthest inverse depth to the nearest
+ARRAY_OUTLIER_RATIO = 2.0  # a photograph whose error is this many times the typical one shows another scene
+ARRAY_OUTLIER_MIN_LEVELS = 8.0  # grey levels by which its error is larger, at least
+ARRAY_DENSE_VIEWS = 25  # number of given views from which cameras are refined by default
+ARRAY_MAX_THICKNESS_FRACTION = 0.15  # distance of cameras from their plane for a relief, relative to the array's extent
+ARRAY_MAX_AXIS_ANGLE_DEGREES = 12.0  # angle between a camera's axis and the mean axis for a relief
+ARRAY_MAX_PLANE_ANGLE_DEGREES = 25.0  # angle between the mean axis and the normal of the array's plane for a relief
 
 
 def looks_one_way(cameras: Sequence[Camera]) -> bool:
-    """Whether cameras stand on a plane and look across it in one direction: then a relief shows all that they see.
-
-    Args:
-        cameras: All cameras.
-    """
+    """Whether cameras stand on a plane and look across it in one direction: then a relief shows all that they see."""
     plane = fit_view_plane(cameras)
     axes = np.array([camera.R[2] for camera in cameras])
     mean = axes.mean(axis=0)
@@ -101,9 +74,9 @@ def looks_one_way(cameras: Sequence[Camera]) -> bool:
     along = np.degrees(np.arccos(min(1.0, abs(float(normal @ mean)) / float(np.linalg.norm(mean)))))
     thickness = float(np.abs(centres @ normal).max()) / float(np.linalg.norm(np.ptp(centres, axis=0)))
     return bool(
-        axis_angles(cameras).max() < ARRAY_TUNING.max_axis_angle_degrees
-        and thickness < ARRAY_TUNING.max_thickness_fraction
-        and (along < ARRAY_TUNING.max_plane_angle_degrees or plane.extent.min() == 0)
+        axis_angles(cameras).max() < ARRAY_MAX_AXIS_ANGLE_DEGREES
+        and thickness < ARRAY_MAX_THICKNESS_FRACTION
+        and (along < ARRAY_MAX_PLANE_ANGLE_DEGREES or plane.extent.min() == 0)
     )
 
 
@@ -115,7 +88,6 @@ class AlignedArray:
         light_field: Photographs and cameras, without outliers.
         shown: Indices in the capture of the photographs that take part.
         folder: Of the stage, with the depth map and the calibration.
-        inputs: What the stage depends on.
     """
 
     light_field: LightField
@@ -128,11 +100,7 @@ class AlignedArray:
         return read_planar(self.folder / STAGE_DEPTH_FILE)
 
     def taking_part(self, capture: Capture) -> LightField:
-        """The photographs that take part, with their cameras.
-
-        Args:
-            capture: That was aligned.
-        """
+        """The photographs that take part, with their cameras."""
         return self.light_field.subset([self.light_field.names.index(capture.names[i]) for i in self.shown])
 
 
@@ -142,7 +110,6 @@ def align_array(
     """Cameras and depth of an array.
 
     Args:
-        run: The stages.
         capture: Photographs with cameras or a layout.
         points: (n, 3) points of structure from motion, if any.
         blind: Names of photographs that take no part: each only registers its own camera.
@@ -174,13 +141,7 @@ def align_array(
 
 
 def relief_of_array(run: StageRunner, capture: Capture, array: AlignedArray) -> Mesh:
-    """The layered relief of an array, with an atlas.
-
-    Args:
-        run: The stages.
-        capture: The photographs.
-        array: Their cameras and depth.
-    """
+    """The layered relief of an array, with an atlas."""
 
     def build(folder: Path) -> None:
         pictures = read_pictures(capture)
@@ -199,16 +160,12 @@ def relief_of_array(run: StageRunner, capture: Capture, array: AlignedArray) -> 
 
 
 def array_depths(array: AlignedArray) -> tuple[float, float]:
-    """The range of inverse depths of an array, seen from its reference view, 1 / world unit.
-
-    Args:
-        array: Its cameras and depth.
-    """
+    """The range of inverse depths of an array, seen from its reference view, 1 / world unit."""
     depth = array.depth()
-    low, high = np.percentile(depth.d[depth.count > 0], ARRAY_TUNING.depth_percentiles)
-    room = ARRAY_TUNING.range_margin_fraction * (high - low)
+    low, high = np.percentile(depth.d[depth.count > 0], ARRAY_DEPTH_PERCENTILES)
+    room = ARRAY_RANGE_MARGIN_FRACTION * (high - low)
     far, near = (depth.reference.offset + depth.reference.scale * label for label in (low - room, high + room))
-    return max(far, ARRAY_TUNING.min_inverse_ratio * near), near
+    return max(far, ARRAY_MIN_INVERSE_RATIO * near), near
 
 
 def _layered_relief(
@@ -229,13 +186,13 @@ def _layered_relief(
         valid &= _inside_masks(masks, matrices, depth)
     reach = float(np.abs(matrices[:, :2, 2]).max())
     low, high = np.percentile(depth.d[depth.count > 0], [1, 99])
-    cut = max(ARRAY_TUNING.cut_pixels / reach, ARRAY_TUNING.cut_range_fraction * float(high - low))
-    speck = ARRAY_TUNING.speckle_fraction
-    for _ in range(ARRAY_TUNING.cut_rounds):
+    cut = max(ARRAY_CUT_PIXELS / reach, ARRAY_CUT_RANGE_FRACTION * float(high - low))
+    speck = ARRAY_SPECKLE_FRACTION
+    for _ in range(ARRAY_CUT_ROUNDS):
         d = remove_speckles(depth.d, find_discontinuities(depth.d, 1 / reach, cut), round(speck * depth.d.size))
         second = estimate_second_layer(pictures, matrices, d, valid, cut=cut, progress=run.progress)
         mesh = relief_mesh(
-            depth.reference, d, valid, second, cut=cut, tolerance=ARRAY_TUNING.tolerance_pixels / reach,
+            depth.reference, d, valid, second, cut=cut, tolerance=ARRAY_TOLERANCE_PIXELS / reach,
             triangles=triangles, cameras=cameras, progress=run.progress,
         )  # fmt: skip
         if len(mesh.faces) <= 1.1 * triangles:
@@ -256,12 +213,12 @@ def _inside_masks(masks: NDArray[np.uint8], matrices: NDArray[np.float64], depth
     return counts
 
 
-def _must_refine(capture: Capture, settings: ReconstructionSettings) -> bool:
+def _must_refine(capture: Capture, settings: SurfaceOptions) -> bool:
     if settings.refine is not None:
         return settings.refine
     if capture.layout is not None and capture.layout.exact:
         return False
-    return capture.light_field is None or len(capture) >= ARRAY_TUNING.dense_views
+    return capture.light_field is None or len(capture) >= ARRAY_DENSE_VIEWS
 
 
 def _start_array(capture: Capture, pictures: NDArray[np.uint8], points: NDArray[np.float64] | None) -> PlanarStart:
@@ -290,7 +247,7 @@ def _light_field(capture: Capture, planar: PlanarArray) -> LightField:
     cameras = planar.model.cameras(views, planar.parameters)
     error = planar.error
     typical = float(np.nanmedian(error))
-    is_outlier = ~(error <= max(ARRAY_TUNING.outlier_ratio * typical, typical + ARRAY_TUNING.outlier_min_levels))
+    is_outlier = ~(error <= max(ARRAY_OUTLIER_RATIO * typical, typical + ARRAY_OUTLIER_MIN_LEVELS))
     problems = [
         f"{capture.names[i]} is blurred, shows something else, or its camera was moved: it differs by {error[i]:.0f} "
         f"grey levels from the others (they by {typical:.0f}); left out"
@@ -311,24 +268,23 @@ def inverse_depths(
     """The range of inverse depths seen from the central camera, 1 / world unit.
 
     Args:
-        capture: The photographs.
         cameras: Their cameras, at the size of the pictures.
         pictures: (n, H, W, 3) the photographs.
         points: (n, 3) points of structure from motion, if any.
     """
     plane = fit_view_plane(cameras)
     middle = cameras[int(np.argmin(np.linalg.norm(plane.coordinates([c.centre for c in cameras]), axis=1)))]
-    if points is not None and len(points) >= ARRAY_TUNING.min_points:
+    if points is not None and len(points) >= ARRAY_MIN_POINTS:
         _, depth, inside = project_inside(middle, points)
-        if inside.sum() >= ARRAY_TUNING.min_points:
+        if inside.sum() >= ARRAY_MIN_POINTS:
             low, high = np.percentile(1 / depth[inside], [1, 99])
-            room = ARRAY_TUNING.range_margin_fraction * (high - low)
+            room = ARRAY_RANGE_MARGIN_FRACTION * (high - low)
             return max(float(low - room), 0.3 * float(low)), float(high + room)
     # disparities of one step, from infinity to a fifth of the picture
     provisional = start_given(cameras, 1e-3, 1.0)
     reference = provisional.model.reference_view(0)
     matrices = provisional.model.matrices(reference, np.arange(len(cameras)), provisional.parameters)
-    chosen = np.argsort(np.linalg.norm(provisional.places, axis=1), kind="stable")[: ARRAY_TUNING.range_views]
+    chosen = np.argsort(np.linalg.norm(provisional.places, axis=1), kind="stable")[:ARRAY_RANGE_VIEWS]
     label_range = depth_range(pictures[chosen], matrices[chosen], reference.shape, (0.0, reference.camera.width / 5))
     if label_range is None:
         raise CaptureError(
@@ -338,6 +294,6 @@ def inverse_depths(
             remedy="look at the calibration (`eigenfield inspect CAPTURE`), or let it be estimated: "
             "`eigenfield calibrate CAPTURE`",
         )
-    return max(label_range[0], ARRAY_TUNING.min_inverse_ratio * label_range[1]) * reference.scale, label_range[
+    return max(label_range[0], ARRAY_MIN_INVERSE_RATIO * label_range[1]) * reference.scale, label_range[
         1
     ] * reference.scale

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
-from eigenfield.calibration.harm import HARM_TUNING
+from eigenfield.calibration.harm import HARM_EXPOSURE_MAX_PART, HARM_EXPOSURE_STOPS
 from eigenfield.capture import Capture, LightField
 from eigenfield.capture.photographs.colour import encode_srgb
 from eigenfield.core.camera import Camera
@@ -23,11 +23,7 @@ FRAME_DARKEST_CODE = 4  # a darker median says nothing about exposure
 
 
 def common_frame(capture: Capture) -> tuple[tuple[int, int], tuple[int, int]]:
-    """(width, height) that holds every photograph, and the same reduced to keep all within FRAME_MAX_TOTAL_PIXELS.
-
-    Args:
-        capture: The photographs.
-    """
+    """(width, height) that holds every photograph, and the same reduced to keep all within FRAME_MAX_TOTAL_PIXELS."""
     sizes = capture.sizes
     width, height = (max(side) for side in zip(*sizes, strict=True))
     scale = min(1.0, (FRAME_MAX_TOTAL_PIXELS / (len(sizes) * width * height)) ** 0.5)
@@ -49,9 +45,6 @@ def read_pictures(capture: Capture) -> NDArray[np.uint8]:
     """(n, H, W, 3) uint8 photographs without lens distortion, in their common frame and about one exposure.
 
     The cameras look about one way and show about the same. So exposures follow from the photographs' medians.
-
-    Args:
-        capture: The photographs.
     """
     whole, small = common_frame(capture)
     result = np.empty((len(capture), small[1], small[0], 3), np.uint8)
@@ -72,8 +65,8 @@ def _level_exposures(pictures: NDArray[np.uint8]) -> None:
     green = np.array([np.median(picture[::2, ::2, 1]) for picture in pictures])
     stops = np.log2(linear_of_srgb(np.maximum(green, FRAME_DARKEST_CODE) / 255))
     lacking = np.quantile(stops, FRAME_EXPOSURE_QUANTILE) - stops
-    far = np.abs(lacking) > HARM_TUNING.exposure_stops
-    if far.mean() <= HARM_TUNING.exposure_max_part:
+    far = np.abs(lacking) > HARM_EXPOSURE_STOPS
+    if far.mean() <= HARM_EXPOSURE_MAX_PART:
         return
     linear = linear_of_srgb(np.arange(256) / 255)
     for index in np.flatnonzero(far):
@@ -82,11 +75,7 @@ def _level_exposures(pictures: NDArray[np.uint8]) -> None:
 
 
 def filled_pictures(capture: Capture) -> NDArray[np.uint8]:
-    """As `read_pictures`, with the nearest pixel in the border that the removal of a lens leaves empty.
-
-    Args:
-        capture: The photographs.
-    """
+    """As `read_pictures`, with the nearest pixel in the border that the removal of a lens leaves empty."""
     whole, small = common_frame(capture)
     result = read_pictures(capture)
 
@@ -105,9 +94,6 @@ def read_masks(capture: Capture) -> NDArray[np.uint8] | None:
     """(n, H, W, 3) uint8 masks of the photographs, 255 where they are valid; None if there are none.
 
     The border that the removal of a lens leaves empty is no mask: other views of the array see behind it.
-
-    Args:
-        capture: The photographs.
     """
     whole, small = common_frame(capture)
     result = np.full((len(capture), small[1], small[0], 3), 255, np.uint8)
@@ -126,11 +112,7 @@ def read_masks(capture: Capture) -> NDArray[np.uint8] | None:
 
 
 def resized_cameras(capture: LightField) -> list[Camera]:
-    """The cameras in the common frame of `read_pictures`.
-
-    Args:
-        capture: Photographs with cameras.
-    """
+    """The cameras in the common frame of `read_pictures`."""
     whole, small = common_frame(capture)
     scale = np.diag([small[0] / whole[0], small[1] / whole[1], 1.0])
     return [replace(camera, K=scale @ camera.K, width=small[0], height=small[1]) for camera in capture.cameras]

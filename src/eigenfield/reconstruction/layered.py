@@ -20,7 +20,10 @@ from eigenfield.core.proxy import Proxy
 from eigenfield.reconstruction.array import AlignedArray, array_depths, inverse_depths
 from eigenfield.reconstruction.frame import filled_pictures, resized_cameras
 from eigenfield.reconstruction.layers import (
-    LAYERS_TUNING,
+    LAYERS_COUNTS,
+    LAYERS_DENSE_MIN_GAIN_DB,
+    LAYERS_DENSE_VIEWS,
+    LAYERS_MIN_GAIN_DB,
     Range,
     best_count,
     compare_held_out,
@@ -35,11 +38,7 @@ log = logging.getLogger("eigenfield.reconstruction")
 
 
 def capture_fault(capture: Capture) -> str | None:
-    """Why photographs can have no sheets; None if they can, as far as their cameras are known.
-
-    Args:
-        capture: The photographs.
-    """
+    """Why photographs can have no sheets; None if they can, as far as their cameras are known."""
     if any(source.mask is not None for source in capture.sources):
         return "photographs with masks have no layers"
     return None if capture.light_field is None else layers_fault(capture.light_field.cameras)
@@ -47,9 +46,6 @@ def capture_fault(capture: Capture) -> str | None:
 
 def check_capture(capture: Capture) -> None:
     """Refuse photographs that can have no sheets, as far as their cameras are known.
-
-    Args:
-        capture: The photographs.
 
     Raises:
         OptionError: `surface`.
@@ -60,7 +56,7 @@ def check_capture(capture: Capture) -> None:
 
 
 @dataclass(frozen=True, eq=False)
-class SheetSource:
+class LayerSource:
     """What soft sheets are made from.
 
     Attributes:
@@ -89,11 +85,7 @@ class SheetSource:
         return [known, sorted(self.unseen)]
 
     def views(self, run: StageRunner) -> tuple[NDArray[np.uint8], list[Camera], Range]:
-        """The photographs that take part, their cameras at the same size, and the range of inverse depths.
-
-        Args:
-            run: The stages.
-        """
+        """The photographs that take part, their cameras at the same size, and the range of inverse depths."""
         shown = self.shown
         pictures, cameras = filled_pictures(shown), resized_cameras(shown)
         if self.array is not None:
@@ -104,13 +96,8 @@ class SheetSource:
         return pictures, cameras, inverse_depths(shown, cameras, pictures, points)
 
 
-def sheets_of_capture(run: StageRunner, source: SheetSource, count: int) -> Proxy:
+def layers_of_capture(run: StageRunner, source: LayerSource, count: int) -> Proxy:
     """The proxy of soft sheets.
-
-    Args:
-        run: The stages.
-        source: Photographs and cameras.
-        count: Number of sheets.
 
     Raises:
         OptionError: `surface`: the capture can have no sheets.
@@ -125,13 +112,9 @@ def sheets_of_capture(run: StageRunner, source: SheetSource, count: int) -> Prox
     return read_proxy(folder / STAGE_PROXY_FILE)
 
 
-def asked_count(run: StageRunner, source: SheetSource) -> int:
+def asked_count(run: StageRunner, source: LayerSource) -> int:
     """The number of sheets where they are asked for: that of the settings, or the least that draws views left out
     about as well as any.
-
-    Args:
-        run: The stages.
-        source: Photographs and cameras.
 
     Raises:
         OptionError: `surface`: the capture can have no sheets.
@@ -145,14 +128,8 @@ def asked_count(run: StageRunner, source: SheetSource) -> int:
     return counts[index]
 
 
-def better_count(run: StageRunner, source: SheetSource, mesh: Mesh) -> int | None:
-    """The number of soft sheets, if they draw photographs that are left out better than an opaque surface does.
-
-    Args:
-        run: The stages.
-        source: Photographs and cameras.
-        mesh: The opaque surface of all photographs.
-    """
+def better_count(run: StageRunner, source: LayerSource, mesh: Mesh) -> int | None:
+    """The number of soft sheets, if they draw photographs that are left out better than an opaque surface does."""
     settings = run.settings
     if settings.layers == 1 or settings.by_hand is not None:
         return None
@@ -160,8 +137,8 @@ def better_count(run: StageRunner, source: SheetSource, mesh: Mesh) -> int | Non
     if fault is not None:
         log.info("surface: opaque, since %s", fault)
         return None
-    dense = source.array is not None and len(source.array.shown) >= LAYERS_TUNING.dense_views
-    gain = LAYERS_TUNING.dense_min_gain_db if dense else LAYERS_TUNING.min_gain_db
+    dense = source.array is not None and len(source.array.shown) >= LAYERS_DENSE_VIEWS
+    gain = LAYERS_DENSE_MIN_GAIN_DB if dense else LAYERS_MIN_GAIN_DB
     counts, scores, opaque = _trial(run, source, mesh, gain)
     index = best_count(counts, scores)
     better = scores[index] > opaque + gain
@@ -173,12 +150,12 @@ def better_count(run: StageRunner, source: SheetSource, mesh: Mesh) -> int | Non
 
 
 def _trial(
-    run: StageRunner, source: SheetSource, mesh: Mesh | None, gain: float
+    run: StageRunner, source: LayerSource, mesh: Mesh | None, gain: float
 ) -> tuple[tuple[int, ...], list[float], float]:
     """Numbers of sheets, and as `compare_held_out`. Where no range of depths is found, the opaque surface wins, which
     needed none."""
     settings = run.settings
-    counts = LAYERS_TUNING.counts if settings.layers is None else (settings.layers,)
+    counts = LAYERS_COUNTS if settings.layers is None else (settings.layers,)
 
     def build(folder: Path) -> None:
         try:

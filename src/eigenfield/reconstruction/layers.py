@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -30,73 +30,41 @@ log = logging.getLogger("eigenfield.reconstruction")
 Range = tuple[float, float]  # of inverse depths along the axis of the central camera, 1 / world unit
 
 
-@dataclass(frozen=True)
-class LayersTuning:
-    """Constants of soft sheets. Pixels are those of the view that moves most.
-
-    Attributes:
-        min_views: Photographs of a capture that has sheets.
-        max_axis_angle_degrees: Angle between a camera's axis and the mean axis.
-        dense_views: Number of views of an array from which sheets must gain more.
-        counts: Numbers of sheets that are tried. 12 draw views left out by at most 0.11 dB better than 8.
-        max_plane_step_pixels: Displacement from plane to plane at the size that planes are fitted at.
-        min_planes: Number of planes, at least.
-        max_planes: Number of planes, at most.
-        planes_side_pixels: Longer side of the photographs to which they are halved for the planes, at most.
-        sheets_side_pixels: The same for the sheets.
-        trial_side_pixels: The same for the sheets of a trial.
-        trial_step: Every so many photographs, one is left out of a trial.
-        margin_part: Part of the range of inverse depths, from the farthest on, up to which the reference view holds
-            every camera's frame.
-        margin_fraction: Of the longer side, by which the reference view is widened for the descent, at most.
-        max_margin_fraction: The same after the descent.
-        tolerance_pixels: Distance of the mesh from a sheet.
-        depth_error_pixels: By which the lattice's depths move a point.
-        hidden_ratio: Of inverse depths, from which on a photograph does not see a point of the opaque surface.
-        min_gain_db: By which sheets must draw the views of a trial better than the opaque surface. With 4 dB they were
-            better (Fern), with 0.6 worse (the sparse Tarot).
-        dense_min_gain_db: The same of a dense array, on whose opaque surface the fit then gains more, in fewer bytes.
-            With 3.7 dB sheets were better (Boxes); with 3.5 (Amethyst), 2.0 (Shop) and 1.0 (Antinous) they were worse.
-        count_gain_db: By which more sheets must draw them better than fewer.
-        max_count_gain_db: By which more sheets draw them better than the fewest, at most: 0.9 were seen (Fern).
-    """
-
-    min_views: int = 3
-    max_axis_angle_degrees: float = 25.0
-    dense_views: int = 25
-    counts: tuple[int, ...] = (4, 8)
-    max_plane_step_pixels: float = 1.5
-    min_planes: int = 8
-    max_planes: int = 64
-    planes_side_pixels: int = 320
-    sheets_side_pixels: int = 800
-    trial_side_pixels: int = 300
-    trial_step: int = 4
-    margin_part: float = 0.1
-    margin_fraction: float = 0.15
-    max_margin_fraction: float = 0.5
-    tolerance_pixels: float = 0.1
-    depth_error_pixels: float = 0.04
-    hidden_ratio: float = 1.02
-    min_gain_db: float = 1.0
-    dense_min_gain_db: float = 3.6
-    count_gain_db: float = 0.15
-    max_count_gain_db: float = 1.3
-
-
-LAYERS_TUNING = LayersTuning()
+# Constants of soft sheets. Pixels are those of the view that moves most.
+LAYERS_MIN_VIEWS = 3  # photographs of a capture that has sheets
+LAYERS_MAX_AXIS_ANGLE_DEGREES = 25.0  # angle between a camera's axis and the mean axis
+LAYERS_DENSE_VIEWS = 25  # number of views of an array from which sheets must gain more
+LAYERS_COUNTS = (4, 8)  # Numbers of sheets that are tried. 12 draw views left out by at most 0.11 dB better than 8.
+LAYERS_MAX_PLANE_STEP_PIXELS = 1.5  # displacement from plane to plane at the size that planes are fitted at
+LAYERS_MIN_PLANES = 8  # number of planes, at least
+LAYERS_MAX_PLANES = 64  # number of planes, at most
+LAYERS_PLANES_SIDE_PIXELS = 320  # longer side of the photographs to which they are halved for the planes, at most
+LAYERS_SHEETS_SIDE_PIXELS = 800  # the same for the sheets
+LAYERS_TRIAL_SIDE_PIXELS = 300  # the same for the sheets of a trial
+LAYERS_TRIAL_STEP = 4  # every so many photographs, one is left out of a trial
+# part of the range of inverse depths, from the farthest on, up to which the reference view holds every camera's frame
+LAYERS_MARGIN_PART = 0.1
+LAYERS_MARGIN_FRACTION = 0.15  # of the longer side, by which the reference view is widened for the descent, at most
+LAYERS_MAX_MARGIN_FRACTION = 0.5  # the same after the descent
+LAYERS_TOLERANCE_PIXELS = 0.1  # distance of the mesh from a sheet
+LAYERS_DEPTH_ERROR_PIXELS = 0.04  # by which the lattice's depths move a point
+LAYERS_HIDDEN_RATIO = 1.02  # of inverse depths, from which on a photograph does not see a point of the opaque surface
+# By which sheets must draw the views of a trial better than the opaque surface. With 4 dB they were better (Fern),
+# with 0.6 worse (the sparse Tarot).
+LAYERS_MIN_GAIN_DB = 1.0
+# The same of a dense array, on whose opaque surface the fit then gains more, in fewer bytes. With 3.7 dB sheets were
+# better (Boxes); with 3.5 (Amethyst), 2.0 (Shop) and 1.0 (Antinous) they were worse.
+LAYERS_DENSE_MIN_GAIN_DB = 3.6
+LAYERS_COUNT_GAIN_DB = 0.15  # by which more sheets must draw them better than fewer
+LAYERS_MAX_COUNT_GAIN_DB = 1.3  # by which more sheets draw them better than the fewest, at most: 0.9 were seen (Fern)
 
 
 def layers_fault(cameras: Sequence[Camera]) -> str | None:
-    """Why cameras cannot have sheets; None if they can.
-
-    Args:
-        cameras: All cameras.
-    """
-    if len(cameras) < LAYERS_TUNING.min_views:
+    """Why cameras cannot have sheets; None if they can."""
+    if len(cameras) < LAYERS_MIN_VIEWS:
         return f"{len(cameras)} photographs are too few for layers"
     angle = axis_angles(cameras).max()
-    if angle > LAYERS_TUNING.max_axis_angle_degrees:
+    if angle > LAYERS_MAX_AXIS_ANGLE_DEGREES:
         return f"the cameras do not look one way: one looks {angle:.0f} degrees off the others"
     return None
 
@@ -111,16 +79,13 @@ def layers_proxy(
         pictures: (V, H, W, 3) uint8 the photographs.
         cameras: V of them, at the same size.
         bounds: Inverse depths of the farthest and the nearest plane.
-        count: Number of sheets.
-        triangles: Most triangles.
-        progress: Called within.
     """
-    pictures, cameras = halved(pictures, cameras, LAYERS_TUNING.sheets_side_pixels)
+    pictures, cameras = halved(pictures, cameras, LAYERS_SHEETS_SIDE_PIXELS)
     reference, (fitted,) = fit_views(pictures, cameras, bounds, [count], progress=progress)
     reference, sheets = _widened(reference, fitted, cameras, bounds)
-    tolerance = LAYERS_TUNING.tolerance_pixels / _reach(reference, cameras)
+    tolerance = LAYERS_TOLERANCE_PIXELS / _reach(reference, cameras)
     return soft_relief(
-        reference, sheets, cameras, tolerance=tolerance, depth_error=LAYERS_TUNING.depth_error_pixels,
+        reference, sheets, cameras, tolerance=tolerance, depth_error=LAYERS_DEPTH_ERROR_PIXELS,
         triangles=triangles, progress=progress,
     ).proxy  # fmt: skip
 
@@ -132,20 +97,16 @@ def fit_views(
     """The reference view of photographs, and their soft sheets for each of some numbers of sheets.
 
     Args:
-        pictures: As of `layers_proxy`.
-        cameras: As of `layers_proxy`.
-        bounds: As of `layers_proxy`.
         counts: The numbers, of which those above the number of planes are taken as that.
         enough: Called with the reference view and the sheets of each number; True leaves out those that follow.
-        progress: Called within.
     """
     longer = max(pictures.shape[1:3])
     central = _middle_camera(cameras)
-    margin = min(_margin(central, cameras, bounds), round(LAYERS_TUNING.margin_fraction * longer))
+    margin = min(_margin(central, cameras, bounds), round(LAYERS_MARGIN_FRACTION * longer))
     reference = ReferenceView.with_margin(central, margin, 0.0, 1.0)
-    halvings = max(1, math.ceil(math.log2(longer / LAYERS_TUNING.planes_side_pixels)))
-    steps = _reach(reference, cameras) * (bounds[1] - bounds[0]) / 2**halvings / LAYERS_TUNING.max_plane_step_pixels
-    planes = min(max(math.ceil(steps) + 1, LAYERS_TUNING.min_planes), LAYERS_TUNING.max_planes)
+    halvings = max(1, math.ceil(math.log2(longer / LAYERS_PLANES_SIDE_PIXELS)))
+    steps = _reach(reference, cameras) * (bounds[1] - bounds[0]) / 2**halvings / LAYERS_MAX_PLANE_STEP_PIXELS
+    planes = min(max(math.ceil(steps) + 1, LAYERS_MIN_PLANES), LAYERS_MAX_PLANES)
     sheets = fit_sheets(
         pictures, view_matrices(reference, cameras), reference.shape, np.linspace(*bounds, planes),
         [min(count, planes) for count in counts], halvings=halvings, progress=progress,
@@ -164,18 +125,13 @@ def compare_held_out(
     photographs that see its point.
 
     Args:
-        pictures: As of `layers_proxy`.
-        cameras: As of `layers_proxy`.
-        bounds: As of `layers_proxy`.
         mesh: The opaque surface; None: sheets are compared with each other.
-        counts: Numbers of sheets.
         min_gain: PSNR by which sheets are to be better than the mesh. Where the first number is so far from it that
             more sheets cannot reach it either, these are left out and have the same PSNR.
-        progress: Called within.
     """
-    pictures, cameras = halved(pictures, cameras, LAYERS_TUNING.trial_side_pixels)
+    pictures, cameras = halved(pictures, cameras, LAYERS_TRIAL_SIDE_PIXELS)
     left_out = np.zeros(len(cameras), np.bool_)
-    left_out[LAYERS_TUNING.trial_step // 2 :: LAYERS_TUNING.trial_step] = True
+    left_out[LAYERS_TRIAL_STEP // 2 :: LAYERS_TRIAL_STEP] = True
     others, shown = np.flatnonzero(~left_out).tolist(), np.flatnonzero(left_out).tolist()
     known, unknown = [cameras[i] for i in others], [cameras[i] for i in shown]
     whole = np.ones(pictures.shape[1:3], np.bool_)
@@ -193,7 +149,7 @@ def compare_held_out(
         codes = (np.rint(np.clip(one, 0, 1) * 255).astype(np.uint8) for one in drawn)
         figures = [psnr(one, pictures[i], seen) for one, (i, _, seen) in zip(codes, counted, strict=True)]
         scores.append(float(np.array(figures, np.float64).mean()))
-        return max(scores) + LAYERS_TUNING.max_count_gain_db < of_mesh + min_gain
+        return max(scores) + LAYERS_MAX_COUNT_GAIN_DB < of_mesh + min_gain
 
     fit_views(pictures[others], known, bounds, counts, hopeless, progress)
     return scores + scores[-1:] * (len(counts) - len(scores)), of_mesh
@@ -206,7 +162,7 @@ def best_count(counts: Sequence[int], scores: Sequence[float]) -> int:
         counts: Numbers of sheets, ascending.
         scores: PSNR of each.
     """
-    return next(k for k in range(len(counts)) if scores[k] + LAYERS_TUNING.count_gain_db >= max(scores))
+    return next(k for k in range(len(counts)) if scores[k] + LAYERS_COUNT_GAIN_DB >= max(scores))
 
 
 def draw_means(
@@ -215,8 +171,6 @@ def draw_means(
     """Each view of a mesh: (H, W, 3) at every pixel the mean of the photographs that see its point; (H, W) where any.
 
     Args:
-        mesh: The surface.
-        views: The views to draw.
         pictures: (V, H, W, 3) photographs.
         cameras: V of them.
     """
@@ -233,7 +187,7 @@ def draw_means(
             at = np.clip(np.nan_to_num(pixels), -2, (camera.width + 1, camera.height + 1)).astype(np.float32) - 0.5
             at, distance = at.reshape(*inverse.shape, 2), distance.reshape(inverse.shape)
             nearest = _read(depth, at, cv2.INTER_NEAREST)
-            seen = (inverse > 0) & (nearest > 0) & (distance > 0) & (distance * nearest < LAYERS_TUNING.hidden_ratio)
+            seen = (inverse > 0) & (nearest > 0) & (distance > 0) & (distance * nearest < LAYERS_HIDDEN_RATIO)
             total += seen[..., None] * _read(picture, at, cv2.INTER_LINEAR)
             count += seen
         return np.rint(total / np.maximum(count, 1)[..., None]).astype(np.uint8), count > 0
@@ -273,9 +227,9 @@ def _middle_camera(cameras: Sequence[Camera]) -> Camera:
 
 
 def _margin(central: Camera, cameras: Sequence[Camera], bounds: Range) -> int:
-    """Pixels by which a camera's frame is widened to hold all others' up to LAYERS_TUNING.margin_part of the range."""
-    part = bounds[0] + LAYERS_TUNING.margin_part * (bounds[1] - bounds[0])
-    most = LAYERS_TUNING.max_margin_fraction * max(central.width, central.height)
+    """Pixels by which a camera's frame is widened to hold all others' up to LAYERS_MARGIN_PART of the range."""
+    part = bounds[0] + LAYERS_MARGIN_PART * (bounds[1] - bounds[0])
+    most = LAYERS_MAX_MARGIN_FRACTION * max(central.width, central.height)
     beyond = 0.0
     for camera in cameras:
         corners = np.array([(x, y, 1.0) for x in (0, camera.width) for y in (0, camera.height)])

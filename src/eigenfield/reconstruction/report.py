@@ -21,10 +21,8 @@ class ProxyReport:
     """Quality measures of a proxy.
 
     Attributes:
-        triangles: Number of triangles.
         coverage: (n,) fraction of each camera's pixels that the proxy covers.
         error: Of its simplification; None if it was not simplified (reliefs).
-        atlas: Of its UVs.
     """
 
     triangles: int
@@ -35,11 +33,7 @@ class ProxyReport:
     __repr__ = brief_repr
 
     def lines(self, names: Sequence[str]) -> list[str]:
-        """Lines of text.
-
-        Args:
-            names: Of the cameras.
-        """
+        """Lines of text."""
         least = int(self.coverage.argmin())
         coverage = f"coverage {self.coverage.mean():.1%}"
         if self.coverage[least] < 0.9995:
@@ -55,7 +49,5 @@ def measure_proxy(mesh: Mesh, cameras: Sequence[Camera], error: SurfaceError | N
 
     Args:
         mesh: With an atlas.
-        cameras: All cameras.
-        error: Of its simplification, if any.
     """
     return ProxyReport(len(mesh.faces), camera_coverage(mesh, cameras), error, atlas_statistics(mesh))

@@ -27,7 +27,6 @@ def write_cameras(path: Path, capture: Capture, light_field: LightField, points:
     """Write cameras, lenses, problems and points.
 
     Args:
-        path: The .npz file.
         capture: All photographs.
         light_field: Those with a camera.
         points: (n, 3) points of structure from motion.
@@ -46,12 +45,7 @@ def write_cameras(path: Path, capture: Capture, light_field: LightField, points:
 
 
 def read_cameras(path: Path, capture: Capture) -> tuple[LightField, NDArray[np.float64]]:
-    """The light field and points that `write_cameras` wrote.
-
-    Args:
-        path: The .npz file.
-        capture: All photographs.
-    """
+    """The light field and points that `write_cameras` wrote."""
     with np.load(path) as data:
         kept = [int(i) for i in data["kept"]]
         cameras = [
@@ -66,12 +60,7 @@ def read_cameras(path: Path, capture: Capture) -> tuple[LightField, NDArray[np.f
 
 
 def write_planar(path: Path, planar: PlanarArray) -> None:
-    """Write the depth map of an array and the matrices of its views.
-
-    Args:
-        path: The .npz file.
-        planar: The array.
-    """
+    """Write the depth map of an array and the matrices of its views."""
     reference = planar.reference
     views = np.arange(len(planar.parameters))
     np.savez(
@@ -86,7 +75,6 @@ class ArrayDepth:
     """The depth map of an array, as `write_planar` wrote it.
 
     Attributes:
-        reference: The reference view.
         d: (h, w) labels.
         count: (h, w) number of views that see each point.
         matrices: (n, 3, 4) of the views.
@@ -99,11 +87,7 @@ class ArrayDepth:
 
 
 def read_planar(path: Path) -> ArrayDepth:
-    """The depth map that `write_planar` wrote.
-
-    Args:
-        path: The .npz file.
-    """
+    """The depth map that `write_planar` wrote."""
     with np.load(path) as data:
         d = data["d"]
         margin, offset, scale = data["reference"].tolist()
@@ -115,7 +99,6 @@ def write_proxy(path: Path, proxy: Proxy) -> None:
     """Write a proxy with sheets.
 
     Args:
-        path: The .npz file.
         proxy: With an atlas; with or without a lattice.
     """
     mesh, lattice, sheets = proxy.mesh, proxy.lattice, proxy.sheets
@@ -134,11 +117,7 @@ def write_proxy(path: Path, proxy: Proxy) -> None:
 
 
 def read_proxy(path: Path) -> Proxy:
-    """The proxy that `write_proxy` wrote.
-
-    Args:
-        path: The .npz file.
-    """
+    """The proxy that `write_proxy` wrote."""
     with np.load(path) as data:
         lattice = None
         if "matrix" in data:

@@ -18,10 +18,6 @@ Photographs = TypeVar("Photographs", LightField, PhotoSet, Capture)
 def held_out_names(rule: str | None, capture: Capture) -> frozenset[str]:
     """The photographs that a rule of `held_out_cameras` names, by the capture's own order and places.
 
-    Args:
-        rule: The rule.
-        capture: All photographs.
-
     Raises:
         OptionError: `hold-out`: as `held_out_cameras`; or a rule of rows and columns, which are not known yet.
     """
@@ -39,12 +35,7 @@ def held_out_names(rule: str | None, capture: Capture) -> frozenset[str]:
 
 
 def without(photographs: Photographs, names: Collection[str]) -> Photographs:
-    """The photographs but those with these names.
-
-    Args:
-        photographs: With or without cameras.
-        names: Of some.
-    """
+    """The photographs but those with these names."""
     return photographs.subset([index for index, name in enumerate(photographs.names) if name not in names])
 
 

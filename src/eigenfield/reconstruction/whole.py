@@ -5,8 +5,8 @@ from __future__ import annotations
 import hashlib
 import json
 import logging
-from collections.abc import Callable, Collection, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Collection
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,18 +15,18 @@ from numpy.typing import NDArray
 
 from eigenfield.calibration import structure_from_motion, triangulate_points
 from eigenfield.capture import Capture, LightField, PhotoSet
-from eigenfield.capture.photographs.decoded import PhotographSource
+from eigenfield.capture.identity import capture_identity
 from eigenfield.capture.survey import refuse_one_place
 from eigenfield.capture.writers.save import save_calibration
 from eigenfield.core.arguments import checked
 from eigenfield.core.brief import brief_repr
 from eigenfield.core.errors import OptionError
+from eigenfield.core.fields import takes_options
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.notebook import notebook_progress
 from eigenfield.core.progress import Progress
 from eigenfield.core.proxy import Proxy
 from eigenfield.proxy import (
-    PROXY_DEFAULT_TRIANGLES,
     Primitive,
     find_view,
     fit_sphere,
@@ -41,14 +41,15 @@ from eigenfield.proxy import (
 from eigenfield.proxy.surface.trim import SurfaceError
 from eigenfield.reconstruction.array import align_array, looks_one_way, relief_of_array
 from eigenfield.reconstruction.layered import (
-    SheetSource,
+    LayerSource,
     asked_count,
     better_count,
     check_capture,
-    sheets_of_capture,
+    layers_of_capture,
 )
+from eigenfield.reconstruction.options import SurfaceOptions
 from eigenfield.reconstruction.report import ProxyReport, measure_proxy
-from eigenfield.reconstruction.run import ReconstructionSettings, StageRunner
+from eigenfield.reconstruction.run import StageRunner
 from eigenfield.reconstruction.stage_files import (
     STAGE_CAMERAS_FILE,
     STAGE_ERROR_FILE,
@@ -57,8 +58,7 @@ from eigenfield.reconstruction.stage_files import (
     write_cameras,
 )
 from eigenfield.reconstruction.unseen import held_out_names, rule_for, without
-from eigenfield.runtime.parallel import parallel_map
-from eigenfield.runtime.stages import Stages, file_digest
+from eigenfield.runtime.stages import Stages
 from eigenfield.runtime.tasks import Workers
 
 log = logging.getLogger("eigenfield.reconstruction")
@@ -89,44 +89,26 @@ class Reconstruction:
 
 
 @checked
+@takes_options(SurfaceOptions)
 def reconstruct(
     capture: Capture,
+    options: SurfaceOptions | None = None,
     *,
-    surface: str = "auto",
-    layers: int | None = None,
-    refine: bool | None = None,
-    triangles: int = PROXY_DEFAULT_TRIANGLES,
-    background: bool | None = None,
-    primitives: Sequence[str] = (),
-    fit_spheres: Sequence[str] = (),
-    blind: str | None = None,
-    hold_out: str | None = None,
     work: Path | None = None,
     workers: Workers | None = None,
     progress: Progress | None = notebook_progress,
+    **changes: Any,
 ) -> Reconstruction:
     """Estimate what a capture lacks: cameras if it has none, and a proxy.
 
     Args:
         capture: Photographs, with or without cameras.
-        surface: "relief" for arrays with one viewing direction (two layers seen from the centre), "poisson" for
-            everything else, "layers" for soft sheets, if all cameras look about one way. "auto" takes the relief where
-            it fits, else the Poisson surface; or layers where they draw left-out views clearly better.
-        layers: Number of soft sheets, 2 to MAX_SHEETS; 1: none. None: by what they gain in views left out.
-        refine: Correct the cameras of an array together with its depth. None: if no calibration is given or there are
-            25 views or more, unless they are exact.
-        triangles: Most triangles of the proxy, approximately.
-        background: Close the frustum behind the surface. None: unless there are masks.
-        primitives: `sphere:...` or `plane:...`, inserted into the surface.
-        fit_spheres: `VIEW:X,Y,W,H`, spheres fitted to an outline.
-        blind: A rule of `hold_out` (see `encode`), by the order of all photographs: these take no part in cameras and
-            proxy. Each only registers its own camera, where that is not given, and is left out if it cannot.
-        hold_out: A rule of `hold_out`: layers, whose opacity is appearance, are not made from these views. Default:
-            those of `blind`.
+        options: What is asked for; None for the defaults.
         work: The folder of finished stages; None: nothing is stored.
         workers: Of `open_executor`: they find features, compare pairs, and make the depth maps of cameras all around.
             They see `work`.
         progress: Called within stages; by default bars in a notebook.
+        changes: In place of those of `options`.
 
     Raises:
         CaptureError: The photographs cannot be read or do not fit together.
@@ -134,10 +116,9 @@ def reconstruct(
         OptionError: An option does not fit the capture.
         OutputError: `work` cannot be written.
     """
-    settings = ReconstructionSettings(
-        surface, layers, refine, triangles, background, tuple(primitives), tuple(fit_spheres), blind, hold_out
-    )
+    settings = replace(options or SurfaceOptions(), **changes)
     check_settings(capture, settings)
+    blind, hold_out = settings.blind, settings.hold_out
     unseen = held_out_names(blind, capture)
     unknown = capture.light_field is None and capture.layout is None
     rule = blind if hold_out is None else hold_out
@@ -157,21 +138,21 @@ def reconstruct(
         else:
             assert capture.light_field is not None
             light_field = capture.light_field
-        source = SheetSource(capture, light_field, array, points, unseen | held)
+        source = LayerSource(capture, light_field, array, points, unseen | held)
         if settings.surface == "layers":
-            proxy, error = sheets_of_capture(run, source, asked_count(run, source)), None
+            proxy, error = layers_of_capture(run, source, asked_count(run, source)), None
         else:
             mesh, error = _opaque_surface(run, source, without(light_field, unseen))
             proxy = Proxy(mesh)
             count = better_count(run, source, mesh) if settings.surface == "auto" else None
             if count is not None:
-                proxy, error = sheets_of_capture(run, source, count), None
+                proxy, error = layers_of_capture(run, source, count), None
         report = measure_proxy(proxy.mesh, light_field.cameras, error)
         folder = calibration if work is not None else None
         return Reconstruction(light_field, proxy, folder, run.seconds, report, rule_for(light_field, rule, held))
 
 
-def check_settings(capture: Capture, settings: ReconstructionSettings) -> None:
+def check_settings(capture: Capture, settings: SurfaceOptions) -> None:
     """Before the long stages: refuse settings that do not fit what is known of a capture.
 
     Raises:
@@ -187,37 +168,13 @@ def check_settings(capture: Capture, settings: ReconstructionSettings) -> None:
         _is_array(seen, settings)  # raises
 
 
-def _opaque_surface(run: StageRunner, source: SheetSource, shown: LightField) -> tuple[Mesh, SurfaceError | None]:
+def _opaque_surface(run: StageRunner, source: LayerSource, shown: LightField) -> tuple[Mesh, SurfaceError | None]:
     """A relief, or a surface from all sides, with an atlas, made from the photographs `shown`."""
     if source.array is not None:
         mesh, error = relief_of_array(run, source.capture, source.array), None
     else:
         mesh, error = _poisson(run, shown, source.points)
     return _add_atlas(run, shown, mesh), error
-
-
-def capture_identity(capture: Capture, of_file: Callable[[Path], Any] = file_digest) -> list[Any]:
-    """Everything that a result depends on: every file, cameras, lenses, layout.
-
-    Args:
-        capture: Photographs, with or without cameras.
-        of_file: What stands for a file. Default: a digest of its bytes.
-    """
-    if capture.light_field is None:
-        layout = {} if capture.layout is None else vars(capture.layout)
-        own: list[Any] = [v.tolist() if isinstance(v, np.ndarray) else v for _, v in sorted(layout.items())]
-        own += [[shot.focal, shot.width, shot.height] for shot in capture.shots]
-    else:
-        own = [
-            [view.camera.K.tolist(), view.camera.R.tolist(), view.camera.t.tolist(), str(view.lens)]
-            for view in capture.views
-        ] + ([capture.origin.tolist()] if capture.origin.any() else [])
-
-    def digest(source: PhotographSource) -> list[Any]:
-        mask = None if source.mask is None else of_file(source.mask)
-        return [source.name, of_file(source.path), mask, source.upright, source.exposure]
-
-    return [parallel_map(digest, capture.sources), own]
 
 
 def _estimate_cameras(
@@ -240,7 +197,7 @@ def _estimate_cameras(
     return light_field, points, folder / "calibration"
 
 
-def _is_array(capture: Capture, settings: ReconstructionSettings) -> bool:
+def _is_array(capture: Capture, settings: SurfaceOptions) -> bool:
     """Whether cameras and depth are found as an array's; always for a grid with unknown cameras.
 
     Raises OptionError `surface`.

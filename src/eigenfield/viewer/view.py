@@ -65,7 +65,7 @@ def view(
     else:
         data = without_residual(data)
         if given and not isinstance(capture, str | os.PathLike):
-            message = f"--{next(iter(given))} is for a capture, and no folder of one is named"
+            message = f"--{next(iter(given)).replace('_', '-')} is for a capture, and no folder of one is named"
             raise OptionError("no-capture", message, remedy="name it behind the scene")
         if capture is not None:
             photographs = _photographs(loaded, capture, given)

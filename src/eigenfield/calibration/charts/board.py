@@ -112,7 +112,6 @@ def checkerboard(columns: int, rows: int, square: float, unit: str = "", *, inve
         rows: Inner corners a column.
         square: Side of a square, in `unit`.
         unit: "mm", "cm", "m", "in", or "" if unknown.
-        inverted: See `Board`.
 
     Raises:
         OptionError: `board-size` or `square`: such a board cannot exist.
@@ -141,8 +140,6 @@ def charuco(
         marker: Side of a marker, in `unit`.
         dictionary: OpenCV's name of the marker dictionary; case and "DICT_" may be left out.
         unit: "mm", "cm", "m", "in", or "" if unknown.
-        inverted: See `Board`.
-        legacy: See `Board`.
 
     Raises:
         OptionError: `board-size`, `square`, `marker` or `dictionary`: such a board cannot exist.
@@ -192,7 +189,7 @@ def _check_size(columns: int, rows: int, square: float, least: int, what: str) -
         raise OptionError("square", f"a square of {square:g} cannot be", remedy="measure the side of a square")
 
 
-def parse_size(text: str) -> tuple[int, int]:
+def parse_board_size(text: str) -> tuple[int, int]:
     """The two numbers of a board's size.
 
     Args:
@@ -243,9 +240,6 @@ def read_board(path: Path) -> Board:
 
     The side of a square comes from `square_size_override_cm` (or `square_size_cm`), else from `board_width` and
     `board_height` in `units`. The side of a marker is `aruco_scale` times that.
-
-    Args:
-        path: The TOML file.
 
     Raises:
         CaptureError: `board-file`: the file is missing or malformed.

@@ -39,13 +39,7 @@ BUNDLE_FIRST_DAMPING, BUNDLE_MAX_DAMPING = 1e-4, 1e12
 
 @dataclass(frozen=True, eq=False)
 class BoardObservation:
-    """The corners that one camera saw at one moment.
-
-    Attributes:
-        camera: Index of the camera.
-        moment: Index of the moment.
-        corners: What was detected.
-    """
+    """The corners that one camera saw at one moment."""
 
     camera: int
     moment: int
@@ -75,7 +69,6 @@ class RigEstimate:
 
         Args:
             points: (n, 3) corners on the board.
-            observation: Whose corners.
         """
         m, c = observation.moment, observation.camera
         world = points[observation.corners.ids] @ self.board_rotation[m].T + self.board_shift[m]
@@ -86,7 +79,6 @@ class RigEstimate:
 
         Args:
             points: (n, 3) corners on the board.
-            observation: Whose corners.
         """
         inside = self.in_camera(points, observation)
         return project_points(inside, self.intrinsics[observation.camera]) - observation.corners.pixels
@@ -114,8 +106,6 @@ def adjust_bundle(
 
     Args:
         points: (n, 3) corners on the board.
-        observations: What the cameras saw.
-        rig: The start.
         bases: (9, m) directions in which each camera's intrinsics may move; m = 0 holds them.
         fixed: The camera whose pose stays.
 

@@ -115,9 +115,6 @@ class ChartCalibration:
 
         Each view is named after its camera. Its `path` is that name in `folder`, without an extension, so that a
         photograph of any kind is found for it later.
-
-        Args:
-            folder: Of the photographs to come.
         """
         root = Path(folder)
         views = tuple(
@@ -156,11 +153,6 @@ def calibrate_charts(
 
     `docs/calibration.md` describes how files are named. Cameras that cannot be connected to the others are left out and
     listed in `problems`.
-
-    Args:
-        folder: Of the pictures or videos.
-        board: What they show.
-        progress: Called for each picture and stage.
 
     Raises:
         CaptureError: `capture-missing`, `charts-empty`, `charts-one-camera`, `board-unseen`, `board-size`, or

@@ -55,11 +55,7 @@ class DetectedCorners:
 
 
 def board_variants(board: Board) -> list[BoardVariant]:
-    """The variants of a board that its description leaves open.
-
-    Args:
-        board: The board.
-    """
+    """The variants of a board that its description leaves open."""
     inverted = (False, True) if board.inverted is None else (board.inverted,)
     legacy = (False, True) if board.legacy is None and board.kind == "charuco" else (bool(board.legacy),)
     return [BoardVariant(i, old) for old in legacy for i in inverted]
@@ -72,8 +68,6 @@ def find_corners(
 
     Args:
         grey: (H, W) picture.
-        board: What to detect.
-        variant: How it was printed.
         patient: Try the slow detector of checkerboards too, if the quick one finds nothing.
     """
     if min(grey.shape) < CORNERS_MIN_PICTURE_PIXELS:

@@ -12,8 +12,8 @@ from eigenfield.calibration.charts.board import (
     charuco,
     checkerboard,
     convert_length,
+    parse_board_size,
     parse_length,
-    parse_size,
     read_board,
 )
 from eigenfield.core.errors import OptionError
@@ -31,9 +31,6 @@ class ChartOptions:
         board: Columns and rows, or a charuco.toml.
         square: Side of a square, with its unit.
         marker: Side of a marker, with its unit.
-        dictionary: Of the markers.
-        inverted: Whether it is printed white on black.
-        legacy: Whether OpenCV drew it before 4.6.
     """
 
     chart: str | None = None
@@ -57,17 +54,15 @@ class ChartOptions:
 def board_of(options: ChartOptions, folder: Path) -> Board:
     """The board that the options describe, or a charuco.toml in a folder or above it.
 
-    Args:
-        options: The chart.
-        folder: With the pictures.
-
     Raises:
-        OptionError: `chart`, and as `checkerboard`, `charuco`, `parse_size`, `parse_length` do.
+        OptionError: `chart`, and as `checkerboard`, `charuco`, `parse_board_size`, `parse_length` do.
         CaptureError: `board-file`.
     """
     if options.chart == "checkerboard":
         _refuse_options(options, ("marker", "dictionary", "legacy"), "a checkerboard has none")
-        columns, rows = parse_size(_required_option(options, "board", "inner corners, columns by rows: --board 9x6"))
+        columns, rows = parse_board_size(
+            _required_option(options, "board", "inner corners, columns by rows: --board 9x6")
+        )
         square, unit = parse_length(_required_option(options, "square", "the side of a square: --square 25mm"))
         return checkerboard(columns, rows, square, unit, inverted=options.inverted)
     file = _board_file(options, folder)
@@ -77,7 +72,7 @@ def board_of(options: ChartOptions, folder: Path) -> Board:
         inverted = board.inverted if options.inverted is None else options.inverted
         legacy = board.legacy if options.legacy is None or board.rows % 2 else options.legacy
         return replace(board, inverted=inverted, legacy=legacy)
-    columns, rows = parse_size(_required_option(options, "board", "squares, columns by rows: --board 4x5"))
+    columns, rows = parse_board_size(_required_option(options, "board", "squares, columns by rows: --board 4x5"))
     square, unit = parse_length(_required_option(options, "square", "the side of a square: --square 54mm"))
     marker, other = parse_length(_required_option(options, "marker", "the side of a marker: --marker 40.5mm"))
     return charuco(

@@ -48,7 +48,6 @@ class BoardDetections:
     Attributes:
         observations: By camera, then moment.
         variants: How each camera saw the board; None where it did not.
-        problems: One line each, for people.
     """
 
     observations: tuple[BoardObservation, ...]
@@ -61,8 +60,6 @@ class _Picture:
     """One picture: already decoded (a video's frame), or on disk.
 
     Attributes:
-        camera: Index of the camera.
-        moment: Index of the moment.
         source: The (H, W) grey picture, or its path.
     """
 
@@ -78,11 +75,6 @@ def detect_boards(charts: ChartPictures, board: Board, progress: Progress | None
     """The board's corners in every picture of every camera.
 
     Pictures that cannot be decoded are listed in `problems` and left out.
-
-    Args:
-        charts: The pictures.
-        board: What to detect.
-        progress: Called for each picture.
 
     Raises:
         CaptureError: `board-unseen`: no picture shows the board. `board-size`: the pictures show a larger one. The

@@ -38,7 +38,6 @@ class IntrinsicsEstimate:
 
     Attributes:
         intrinsics: (9,), see `lens_models`.
-        model: The model that was selected.
         inliers: Indices of the observations that are no outliers.
     """
 
@@ -54,7 +53,6 @@ def estimate_intrinsics(
 
     Args:
         points: (n, 3) corners on the board.
-        observations: The camera's detections.
         size: (width, height) of its pictures.
     """
     inliers = list(range(len(observations)))
@@ -83,7 +81,6 @@ def board_pose(points: F64, corners: DetectedCorners, intrinsics: F64) -> list[t
 
     Args:
         points: (n, 3) corners on the board.
-        corners: The detection.
         intrinsics: (9,) of the camera.
 
     Returns:

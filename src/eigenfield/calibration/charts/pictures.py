@@ -75,10 +75,8 @@ class ChartPictures:
     """All chart pictures of a rig.
 
     Attributes:
-        root: The folder.
         cameras: In natural order of their names.
         moments: Names of the moments at which the pictures were taken, in order.
-        problems: One line each, for people.
     """
 
     root: Path
@@ -92,9 +90,6 @@ def find_charts(root: Path) -> ChartPictures:
 
     A folder that holds nothing but one folder stands for that one. Pictures that cannot be read, differ in size from
     the rest of their camera, or share a moment with another are listed in `problems` and left out.
-
-    Args:
-        root: The folder.
 
     Raises:
         CaptureError: `capture-missing`: no such folder. `charts-empty`: it holds no readable pictures.
@@ -141,9 +136,6 @@ def decode_frames(camera: ChartCamera) -> Iterator[tuple[int, NDArray[np.uint8]]
 
 def read_grey_picture(path: Path) -> NDArray[np.uint8]:
     """A photograph as (H, W) uint8 grey levels, upright.
-
-    Args:
-        path: The file.
 
     Raises:
         CaptureError: As `decode`.
@@ -205,9 +197,6 @@ def _pictures_by_camera(root: Path) -> dict[str, list[tuple[str, Path]]]:
 
 def split_name(stem: str) -> tuple[str, str]:
     """The camera and the number in a file name: ("left", "1") of left01, left_01 or 01_left.
-
-    Args:
-        stem: The name without extension.
 
     Returns:
         The rest of the name, and the number without leading zeros, "" if there is none.

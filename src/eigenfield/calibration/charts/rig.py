@@ -98,12 +98,9 @@ def solve_rig(
 
     Args:
         points: (n, 3) corners on the board.
-        symmetries: See `Board.symmetries`.
-        observations: What the cameras saw.
         intrinsics: (C, 9) to start from.
         bases: (9, m) for each camera, as in `adjust_bundle`.
         sizes: (width, height) of each camera's pictures.
-        moments: Number of moments.
     """
     cameras = [
         _observing_camera(points, symmetries, row, size, [s for s in observations if s.camera == c])

@@ -36,10 +36,7 @@ def cached_features(
 
     Args:
         stages: Finished stages; None: nothing is stored.
-        photos: The photographs.
         parts: Workers that find them; None: this process does.
-        progress: Called for each photograph.
-        blind: As of `extract_features`.
 
     Returns:
         The features of every photograph, and the stage's key.
@@ -81,15 +78,9 @@ def cached_matches(
 
     Args:
         stages: Finished stages; None: nothing is stored.
-        features_key: The key of the features' stage.
-        photos: The photographs.
         features: Of each photograph, undistorted.
         cameras: A pycolmap.Camera for each photograph.
-        known: Known lenses, if any.
-        matching: Which photographs are compared.
-        seed: Of RANSAC.
         parts: Workers that compare the pairs; None: this process does.
-        progress: Called for each pair.
     """
 
     def compute() -> list[Match]:

@@ -77,14 +77,7 @@ NO_FEATURES = Features(np.zeros((0, 2)), np.zeros((0, 128), np.uint8), np.zeros(
 def extract_here(
     shots: Sequence[Shot], options: FeatureOptions, stage: str, progress: Progress | None
 ) -> list[Features | CaptureError]:
-    """The features of photographs, or the error for one that cannot be read, by the threads of this process.
-
-    Args:
-        shots: The photographs.
-        options: How features are searched.
-        stage: What the progress is called.
-        progress: Called for each photograph.
-    """
+    """The features of photographs, or the error for one that cannot be read, by the threads of this process."""
     extract = or_error(partial(extract_features_of, options=options))
     return tracked_map(extract, shots, stage, progress)
 
@@ -103,10 +96,8 @@ def extract_features(
     """The features of every photograph, or the error for a photograph that cannot be read.
 
     Args:
-        photos: The photographs.
         options: How features are searched. None: the default, and WEAK_FEATURE_OPTIONS if the median photograph has
             few.
-        progress: Called for each photograph.
         extract: Finds them for given photographs and options.
         blind: Photographs that have no part in that choice.
     """
@@ -120,10 +111,6 @@ def extract_features(
 
 def extract_features_of(shot: Shot, options: FeatureOptions) -> Features:
     """The features of one photograph where its mask and alpha allow.
-
-    Args:
-        shot: The photograph.
-        options: How features are searched.
 
     Raises:
         CaptureError: As `decode`.
@@ -179,12 +166,7 @@ def _sift(grey: NDArray[np.uint8], options: FeatureOptions) -> tuple[NDArray[np.
 
 
 def undistort_features(features: Features, lens: KnownLens) -> tuple[Features, Features]:
-    """The features as a pinhole camera sees them, and as the photograph shows them, without those beyond the lens.
-
-    Args:
-        features: Of a photograph.
-        lens: The photograph's.
-    """
+    """The features as a pinhole camera sees them, and as the photograph shows them, without those beyond the lens."""
     points = undistort_pixels(features.points, lens)
     good = np.asarray(np.isfinite(points).all(axis=1))
     seen = Features(features.points[good], features.descriptors[good], features.colours[good])

@@ -13,44 +13,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.calibration.motion.colmap_core import pycolmap, run_interruptibly
-from eigenfield.calibration.motion.matching import MATCHING_TUNING, Match
+from eigenfield.calibration.motion.matching import MATCHING_MIN_INLIERS, Match
 from eigenfield.core.progress import Progress
 from eigenfield.runtime.temporary import temporary_folder
 
-
-@dataclass(frozen=True)
-class MappingTuning:
-    """Constants of `map_views`.
-
-    Attributes:
-        min_views: Views of the smallest model.
-        relaxed_min_inliers: Points that must agree for a photograph that the usual thresholds leave over.
-        relaxed_min_inlier_ratio: Fraction of its points that must agree.
-        min_observations: Points that a registered view must see.
-        min_angle_degrees: Angle between the rays of a point that is kept.
-        outlier_spreads: Spreads of the residuals beyond which a point is dropped, one a round.
-        outlier_range_pixels: Bounds of that limit.
-        loss_range_pixels: Bounds of the loss function's scale.
-        focal_range_sides: Focal lengths that are believed, in longer sides of the photograph. Where nearly all lies on
-            one plane and cameras are parallel, any focal length explains the matches.
-        max_distortion: Absolute value of the radial coefficient that is believed.
-        sigma_per_median: Standard deviation of a normal distribution over its median absolute deviation.
-    """
-
-    min_views: int = 3
-    relaxed_min_inliers: int = 14
-    relaxed_min_inlier_ratio: float = 0.15
-    min_observations: int = 14
-    min_angle_degrees: float = 0.5
-    outlier_spreads: tuple[float, ...] = (4.0, 3.5, 3.0)
-    outlier_range_pixels: tuple[float, float] = (0.5, 4.0)
-    loss_range_pixels: tuple[float, float] = (0.15, 1.5)
-    focal_range_sides: tuple[float, float] = (0.1, 10.0)
-    max_distortion: float = 1.0
-    sigma_per_median: float = 1.4826
-
-
-MAPPING_TUNING = MappingTuning()
+# Constants of `map_views`.
+MAPPING_MIN_VIEWS = 3  # views of the smallest model
+MAPPING_RELAXED_MIN_INLIERS = 14  # points that must agree for a photograph that the usual thresholds leave over
+MAPPING_RELAXED_MIN_INLIER_RATIO = 0.15  # fraction of its points that must agree
+MAPPING_MIN_OBSERVATIONS = 14  # points that a registered view must see
+MAPPING_MIN_ANGLE_DEGREES = 0.5  # angle between the rays of a point that is kept
+MAPPING_OUTLIER_SPREADS = (4.0, 3.5, 3.0)  # spreads of the residuals beyond which a point is dropped, one a round
+MAPPING_OUTLIER_RANGE_PIXELS = (0.5, 4.0)  # bounds of that limit
+MAPPING_LOSS_RANGE_PIXELS = (0.15, 1.5)  # bounds of the loss function's scale
+# Focal lengths that are believed, in longer sides of the photograph. Where nearly all lies on one plane and cameras
+# are parallel, any focal length explains the matches.
+MAPPING_FOCAL_RANGE_SIDES = (0.1, 10.0)
+MAPPING_MAX_DISTORTION = 1.0  # absolute value of the radial coefficient that is believed
+MAPPING_SIGMA_PER_MEDIAN = 1.4826  # standard deviation of a normal distribution over its median absolute deviation
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,12 +61,8 @@ def map_views(
 
     Args:
         points: (n, 2) features of each photograph, in pixels of its camera.
-        cameras: pycolmap cameras.
         shared: Index of each photograph's camera.
-        matches: Verified matches.
         fixed: The intrinsics are not refined.
-        seed: Of RANSAC.
-        progress: Called for each registered photograph.
     """
 
     def work(check: Callable[[], None]) -> SparseModel | None:
@@ -128,8 +104,8 @@ def _options(fixed: bool, seed: int) -> Any:
     options.num_threads = options.mapper.num_threads = 1
     options.random_seed = options.mapper.random_seed = options.triangulation.random_seed = seed
     options.extract_colors = False
-    options.min_model_size = MAPPING_TUNING.min_views
-    options.min_num_matches = MATCHING_TUNING.min_inliers
+    options.min_model_size = MAPPING_MIN_VIEWS
+    options.min_num_matches = MATCHING_MIN_INLIERS
     if fixed:
         options.ba_refine_focal_length = options.ba_refine_extra_params = options.ba_refine_principal_point = False
         options.mapper.abs_pose_refine_focal_length = options.mapper.abs_pose_refine_extra_params = False
@@ -145,7 +121,7 @@ def _map(
     models = sorted(
         (manager.get(k) for k in range(manager.size())), key=lambda m: (-m.num_reg_images(), -m.num_points3D())
     )
-    if not models or models[0].num_reg_images() < MAPPING_TUNING.min_views:
+    if not models or models[0].num_reg_images() < MAPPING_MIN_VIEWS:
         return None
     others = [_registered_views(model) for model in models[1:]]
     best = pycolmap.Reconstruction(models[0])
@@ -154,10 +130,10 @@ def _map(
     check()
     _adjust_and_filter(best, fixed)
     registered = _registered_views(best)
-    if len(registered) < MAPPING_TUNING.min_views:
+    if len(registered) < MAPPING_MIN_VIEWS:
         return None
     rest = [tuple(sorted(set(other) - set(registered))) for other in others]
-    separate = tuple(views for views in rest if len(views) >= MAPPING_TUNING.min_views)
+    separate = tuple(views for views in rest if len(views) >= MAPPING_MIN_VIEWS)
     return SparseModel(best, registered, separate)
 
 
@@ -195,8 +171,8 @@ def _register_leftovers(
 
     `_adjust_and_filter` removes those that do not hold.
     """
-    loose.mapper.abs_pose_min_num_inliers = MAPPING_TUNING.relaxed_min_inliers
-    loose.mapper.abs_pose_min_inlier_ratio = MAPPING_TUNING.relaxed_min_inlier_ratio
+    loose.mapper.abs_pose_min_num_inliers = MAPPING_RELAXED_MIN_INLIERS
+    loose.mapper.abs_pose_min_inlier_ratio = MAPPING_RELAXED_MIN_INLIER_RATIO
     loose.triangulation.ignore_two_view_tracks = False
     manager = pycolmap.ReconstructionManager()
     with temporary_folder() as folder:  # a manager reads models only from files
@@ -223,8 +199,8 @@ def _adjust_and_filter(model: Any, fixed: bool) -> None:
     settings.ceres.solver_options.num_threads = 1
     settings.ceres.solver_options.max_num_iterations = 100
     settings.ceres.solver_options.function_tolerance = 1e-9
-    for times in MAPPING_TUNING.outlier_spreads:
-        settings.ceres.loss_function_scale = float(np.clip(_residual_spread(model), *MAPPING_TUNING.loss_range_pixels))
+    for times in MAPPING_OUTLIER_SPREADS:
+        settings.ceres.loss_function_scale = float(np.clip(_residual_spread(model), *MAPPING_LOSS_RANGE_PIXELS))
         config = pycolmap.BundleAdjustmentConfig()
         for image_id in sorted(model.reg_image_ids()):
             config.add_image(image_id)
@@ -232,14 +208,14 @@ def _adjust_and_filter(model: Any, fixed: bool) -> None:
         # not pycolmap.bundle_adjustment, which turns COLMAP's log back on
         pycolmap.create_default_bundle_adjuster(settings, config, model).solve()
         observations = pycolmap.ObservationManager(model)
-        limit = float(np.clip(times * _residual_spread(model), *MAPPING_TUNING.outlier_range_pixels))
-        observations.filter_all_points3D(limit, MAPPING_TUNING.min_angle_degrees)
+        limit = float(np.clip(times * _residual_spread(model), *MAPPING_OUTLIER_RANGE_PIXELS))
+        observations.filter_all_points3D(limit, MAPPING_MIN_ANGLE_DEGREES)
         for image_id in sorted(model.reg_image_ids()):
             image = model.image(image_id)
-            bogus = image.camera.has_bogus_params(*MAPPING_TUNING.focal_range_sides, MAPPING_TUNING.max_distortion)
-            if image.num_points3D < MAPPING_TUNING.min_observations or (bogus and not fixed):
+            bogus = image.camera.has_bogus_params(*MAPPING_FOCAL_RANGE_SIDES, MAPPING_MAX_DISTORTION)
+            if image.num_points3D < MAPPING_MIN_OBSERVATIONS or (bogus and not fixed):
                 observations.deregister_frame(image.frame_id)
-        if model.num_reg_images() < MAPPING_TUNING.min_views:
+        if model.num_reg_images() < MAPPING_MIN_VIEWS:
             return
 
 
@@ -252,4 +228,4 @@ def _residual_spread(model: Any) -> float:
             pixel = image.project_point(model.point3D(seen.point3D_id).xyz)
             if pixel is not None:
                 errors.append(float(np.linalg.norm(pixel - seen.xy)))
-    return MAPPING_TUNING.sigma_per_median * float(np.median(errors)) if errors else 0.0
+    return MAPPING_SIGMA_PER_MEDIAN * float(np.median(errors)) if errors else 0.0

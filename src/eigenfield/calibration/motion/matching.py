@@ -26,48 +26,23 @@ Matching = Literal["auto", "exhaustive", "similar", "grid", "positions"]
 Pair = tuple[int, int]
 
 
-@dataclass(frozen=True)
-class MatchingTuning:
-    """Constants of `choose_pairs` and `match_pairs`.
-
-    Attributes:
-        max_exhaustive: Photographs up to which `auto` compares all with all.
-        partners: Photographs that each is compared with otherwise.
-        grid_reach_steps: Neighbourhood in a grid.
-        grid_long_steps: Further steps along rows and columns, for wider baselines.
-        block_rows: Rows of the similarity matrix that are computed at a time.
-        preview_multiplications: Multiplications that the choice of similar photographs may take.
-        preview_min_features: Features a photograph that the choice compares, at least.
-        preview_max_features: Features a photograph that the choice compares, at most.
-        descriptor_length: Norm of a descriptor.
-        max_angle_ratio: Largest ratio of the best to the second-best angle between descriptors.
-        max_angle_radians: Largest angle between matching descriptors.
-        guided_max_angle_ratio: As `max_angle_ratio`, for matches along epipolar lines.
-        guided_line_pixels: Distance from an epipolar line within which features are compared.
-        guided_max_matches: Verified matches above which none is searched along epipolar lines.
-        epipolar_error_pixels: RANSAC threshold, for a longer side of 2000 pixels.
-        min_inliers: Verified matches of a pair.
-    """
-
-    max_exhaustive: int = 24
-    partners: int = 14
-    grid_reach_steps: int = 2
-    grid_long_steps: tuple[int, int] = (4, 8)
-    block_rows: int = 1024
-    preview_multiplications: float = 2e12
-    preview_min_features: int = 128
-    preview_max_features: int = 1000
-    descriptor_length: float = 512.0
-    max_angle_ratio: float = 0.8
-    max_angle_radians: float = 0.7
-    guided_max_angle_ratio: float = 0.85
-    guided_line_pixels: float = 3.0
-    guided_max_matches: int = 400
-    epipolar_error_pixels: float = 4.0
-    min_inliers: int = 15
-
-
-MATCHING_TUNING = MatchingTuning()
+# Constants of `choose_pairs` and `match_pairs`.
+MATCHING_MAX_EXHAUSTIVE = 24  # photographs up to which `auto` compares all with all
+MATCHING_PARTNERS = 14  # photographs that each is compared with otherwise
+MATCHING_GRID_REACH_STEPS = 2  # neighbourhood in a grid
+MATCHING_GRID_LONG_STEPS = (4, 8)  # further steps along rows and columns, for wider baselines
+MATCHING_BLOCK_ROWS = 1024  # rows of the similarity matrix that are computed at a time
+MATCHING_PREVIEW_MULTIPLICATIONS = 2e12  # multiplications that the choice of similar photographs may take
+MATCHING_PREVIEW_MIN_FEATURES = 128  # features a photograph that the choice compares, at least
+MATCHING_PREVIEW_MAX_FEATURES = 1000  # features a photograph that the choice compares, at most
+MATCHING_DESCRIPTOR_LENGTH = 512.0  # norm of a descriptor
+MATCHING_MAX_ANGLE_RATIO = 0.8  # largest ratio of the best to the second-best angle between descriptors
+MATCHING_MAX_ANGLE_RADIANS = 0.7  # largest angle between matching descriptors
+MATCHING_GUIDED_MAX_ANGLE_RATIO = 0.85  # as `max_angle_ratio`, for matches along epipolar lines
+MATCHING_GUIDED_LINE_PIXELS = 3.0  # distance from an epipolar line within which features are compared
+MATCHING_GUIDED_MAX_MATCHES = 400  # verified matches above which none is searched along epipolar lines
+MATCHING_EPIPOLAR_ERROR_PIXELS = 4.0  # RANSAC threshold, for a longer side of 2000 pixels
+MATCHING_MIN_INLIERS = 15  # verified matches of a pair
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +50,6 @@ class Match:
     """The common features of two photographs.
 
     Attributes:
-        first: Index of the first photograph.
         second: Index of the second, larger than `first`.
         geometry: COLMAP's two-view geometry with the verified matches; None if there is none.
     """
@@ -99,19 +73,13 @@ def choose_pairs(
     "grid": neighbours of the layout's rows and columns, with some long steps. "positions": the `partners` nearest in
     the layout. "auto": all pairs if there are few, the layout's if there is one, similar photographs otherwise.
 
-    Args:
-        features: Of each photograph.
-        matching: One of these ways.
-        layout: Of the photographs, if known.
-        progress: Called while similar photographs are searched.
-
     Raises:
         OptionError: As `check_matching`.
     """
     check_matching(matching, layout)
     count = len(features)
     if matching == "auto":
-        if count <= MATCHING_TUNING.max_exhaustive:
+        if count <= MATCHING_MAX_EXHAUSTIVE:
             matching = "exhaustive"
         elif layout is None:
             matching = "similar"
@@ -127,10 +95,6 @@ def choose_pairs(
 
 def check_matching(matching: str, layout: GridLayout | None) -> None:
     """Check the way of matching before any work.
-
-    Args:
-        matching: A way of matching.
-        layout: Of the photographs, if known.
 
     Raises:
         OptionError: `matching`: there is no such way. `matching-layout`: it needs a layout.
@@ -151,9 +115,9 @@ def _grid_neighbours(layout: GridLayout) -> list[Pair]:
     node: dict[tuple[int, int], list[int]] = {}
     for index, key in enumerate(zip(layout.rows.tolist(), layout.columns.tolist(), strict=True)):
         node.setdefault(key, []).append(index)
-    near = range(-MATCHING_TUNING.grid_reach_steps, MATCHING_TUNING.grid_reach_steps + 1)
+    near = range(-MATCHING_GRID_REACH_STEPS, MATCHING_GRID_REACH_STEPS + 1)
     steps = {(r, c) for r in near for c in near}
-    for s in MATCHING_TUNING.grid_long_steps:
+    for s in MATCHING_GRID_LONG_STEPS:
         steps |= {(s, 0), (-s, 0), (0, s), (0, -s)}
     pairs = {
         (i, j)
@@ -170,7 +134,7 @@ def _nearest_pairs(positions: NDArray[np.float64]) -> list[Pair]:
     pairs: set[Pair] = set()
     for i, place in enumerate(positions):
         order = np.argsort(((positions - place) ** 2).sum(axis=1), kind="stable")
-        others = [int(j) for j in order if j != i][: MATCHING_TUNING.partners]
+        others = [int(j) for j in order if j != i][:MATCHING_PARTNERS]
         pairs |= {(min(i, j), max(i, j)) for j in others}
     return sorted(pairs)
 
@@ -183,8 +147,8 @@ def _similar_pairs(features: Sequence[Features], progress: Progress | None) -> l
     """
     count = len(features)
     pairs_in_all = max(count * (count - 1) // 2, 1)
-    wanted = np.sqrt(MATCHING_TUNING.preview_multiplications / (256 * pairs_in_all))
-    preview = int(np.clip(wanted, MATCHING_TUNING.preview_min_features, MATCHING_TUNING.preview_max_features))
+    wanted = np.sqrt(MATCHING_PREVIEW_MULTIPLICATIONS / (256 * pairs_in_all))
+    preview = int(np.clip(wanted, MATCHING_PREVIEW_MIN_FEATURES, MATCHING_PREVIEW_MAX_FEATURES))
     large = [f.descriptors[:preview] for f in features]
 
     def count_shared(i: int) -> list[int]:
@@ -198,7 +162,7 @@ def _similar_pairs(features: Sequence[Features], progress: Progress | None) -> l
     score += score.T
     pairs = {(i, i + 1) for i in range(count - 1)}
     for i in range(count):
-        best = np.argsort(-score[i], kind="stable")[: MATCHING_TUNING.partners]
+        best = np.argsort(-score[i], kind="stable")[:MATCHING_PARTNERS]
         pairs |= {(min(i, int(j)), max(i, int(j))) for j in best if score[i, j] > 0}
     return sorted(pairs)
 
@@ -215,11 +179,8 @@ def match_pairs(
     If both cameras have a prior focal length the essential matrix is estimated, else the fundamental matrix.
 
     Args:
-        features: Of each photograph.
         cameras: A pycolmap.Camera for each photograph.
         pairs: Pairs (i, j), i < j.
-        seed: Of RANSAC.
-        progress: Called for each pair.
     """
     count = len(features)
 
@@ -235,7 +196,7 @@ def _match_pair(features: Sequence[Features], cameras: Sequence[Any], i: int, j:
     a, b = features[i], features[j]
     matches = mutual_matches(a.descriptors, b.descriptors)
     geometry = _verify(a, b, cameras[i], cameras[j], matches, seed)
-    few = geometry is not None and len(geometry.inlier_matches) < MATCHING_TUNING.guided_max_matches
+    few = geometry is not None and len(geometry.inlier_matches) < MATCHING_GUIDED_MAX_MATCHES
     if few and geometry.F is not None:
         guided = mutual_matches(a.descriptors, b.descriptors, (a.points, b.points, np.asarray(geometry.F)))
         both = np.unique(np.concatenate([guided, np.asarray(geometry.inlier_matches)]), axis=0)
@@ -269,16 +230,16 @@ def mutual_matches(
     column_top = np.full(len(right), -1, np.float32)
     if epipolar is None:
         transposed = np.ascontiguousarray(right.T, np.float32)
-        for start, stop in pieces(len(left), MATCHING_TUNING.block_rows):
+        for start, stop in pieces(len(left), MATCHING_BLOCK_ROWS):
             similarity = left[start:stop].astype(np.float32) @ transposed
             find_best_two(similarity, start, row, top, second, column, column_top)
     else:
-        tolerance = MATCHING_TUNING.guided_line_pixels
+        tolerance = MATCHING_GUIDED_LINE_PIXELS
         find_best_two_on_lines(left, right, *epipolar, tolerance, row, top, second, column, column_top)
-    angle = np.arccos(np.clip(top / MATCHING_TUNING.descriptor_length**2, 0, 1))
-    runner = np.arccos(np.clip(second / MATCHING_TUNING.descriptor_length**2, 0, 1))
-    ratio = MATCHING_TUNING.max_angle_ratio if epipolar is None else MATCHING_TUNING.guided_max_angle_ratio
-    good = (row >= 0) & (angle <= MATCHING_TUNING.max_angle_radians) & (angle <= ratio * runner)
+    angle = np.arccos(np.clip(top / MATCHING_DESCRIPTOR_LENGTH**2, 0, 1))
+    runner = np.arccos(np.clip(second / MATCHING_DESCRIPTOR_LENGTH**2, 0, 1))
+    ratio = MATCHING_MAX_ANGLE_RATIO if epipolar is None else MATCHING_GUIDED_MAX_ANGLE_RATIO
+    good = (row >= 0) & (angle <= MATCHING_MAX_ANGLE_RADIANS) & (angle <= ratio * runner)
     chosen = np.flatnonzero(good)
     chosen = chosen[column[row[chosen]] == chosen]
     return np.stack([chosen, row[chosen]], axis=1)
@@ -294,15 +255,15 @@ def _one_to_one(matches: NDArray[np.int64]) -> NDArray[np.int64]:
 
 def _verify(a: Features, b: Features, first: Any, second: Any, matches: NDArray[np.int64], seed: int) -> Any:
     """COLMAP's two-view geometry, or None."""
-    if len(matches) < MATCHING_TUNING.min_inliers:
+    if len(matches) < MATCHING_MIN_INLIERS:
         return None
     options = pycolmap.TwoViewGeometryOptions()
-    options.min_num_inliers = MATCHING_TUNING.min_inliers
+    options.min_num_inliers = MATCHING_MIN_INLIERS
     options.ransac.random_seed = seed
     longer = max(first.width, first.height, second.width, second.height, 800)
-    options.ransac.max_error = MATCHING_TUNING.epipolar_error_pixels * longer / 2000
+    options.ransac.max_error = MATCHING_EPIPOLAR_ERROR_PIXELS * longer / 2000
     options.compute_relative_pose = False
     geometry = pycolmap.estimate_two_view_geometry(
         first, a.points, second, b.points, matches.astype(np.uint32), options
     )
-    return geometry if len(geometry.inlier_matches) >= MATCHING_TUNING.min_inliers else None
+    return geometry if len(geometry.inlier_matches) >= MATCHING_MIN_INLIERS else None

@@ -32,15 +32,7 @@ MATCHES_MEMORY_BYTES = 1.3e9  # measured: 6,000 features each, 16 threads; 0.4 w
 def extract_on_workers(
     parts: Parts, shots: Sequence[Shot], options: FeatureOptions, stage: str, progress: Progress | None
 ) -> list[Features | CaptureError]:
-    """As `extract_here`, with the same features.
-
-    Args:
-        parts: Where the work is done.
-        shots: The photographs.
-        options: How features are searched.
-        stage: What the progress is called.
-        progress: Called for each group of photographs.
-    """
+    """As `extract_here`, with the same features."""
     groups = [shots[first:last] for first, last in pieces(len(shots), PHOTOGRAPHS_A_TASK)]
     most = max((sum(shot.width * shot.height for shot in group) for group in groups), default=0)
     memory = PROGRAM_MEMORY_BYTES + PHOTOGRAPHS_A_TASK * PHOTOGRAPH_MEMORY_BYTES + PIXEL_MEMORY_BYTES * most
@@ -50,13 +42,7 @@ def extract_on_workers(
 
 
 def build_features(folder: Path, shots: Sequence[Shot], options: FeatureOptions) -> None:
-    """Write the features of photographs, on a worker.
-
-    Args:
-        folder: That takes the files.
-        shots: The photographs.
-        options: How features are searched.
-    """
+    """Write the features of photographs, on a worker."""
     write_features(folder, extract_here(shots, options, "features", None))
 
 
@@ -72,12 +58,6 @@ def match_on_workers(
     """As `match_pairs`, with the same matches.
 
     Args:
-        parts: Where the work is done.
-        features: Of each photograph.
-        cameras: A pycolmap.Camera for each photograph.
-        pairs: Pairs (i, j), i < j.
-        seed: Of RANSAC.
-        progress: Called for each group of pairs.
         name: Of the parts: each list of pairs has its own.
     """
     groups = [pairs[first:last] for first, last in pieces(len(pairs), PAIRS_A_TASK)]
@@ -96,7 +76,6 @@ def build_matches(
         folder: That takes the file.
         shared: Features and camera of each photograph.
         pairs: Pairs (i, j), i < j.
-        seed: Of RANSAC.
     """
     needed = {index for pair in pairs for index in pair}
     photographs = [each.value() if index in needed else (NO_FEATURES, None) for index, each in enumerate(shared)]

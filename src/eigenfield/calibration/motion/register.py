@@ -13,28 +13,24 @@ from numpy.typing import NDArray
 from eigenfield.calibration.lenses import KnownLens
 from eigenfield.calibration.motion.colmap_core import pycolmap
 from eigenfield.calibration.motion.features import Features
-from eigenfield.calibration.motion.mapping import MAPPING_TUNING, SparseModel
+from eigenfield.calibration.motion.mapping import (
+    MAPPING_LOSS_RANGE_PIXELS,
+    MAPPING_MIN_OBSERVATIONS,
+    MAPPING_OUTLIER_RANGE_PIXELS,
+    MAPPING_OUTLIER_SPREADS,
+    MAPPING_RELAXED_MIN_INLIER_RATIO,
+    MAPPING_RELAXED_MIN_INLIERS,
+    MAPPING_SIGMA_PER_MEDIAN,
+    SparseModel,
+)
 from eigenfield.calibration.motion.matching import Match
 from eigenfield.calibration.motion.result import SfmResult, ViewReport, lost, solved_camera, solved_lens
 from eigenfield.capture.photoset import PhotoSet
 
-
-@dataclass(frozen=True)
-class RegisterTuning:
-    """Constants of `find_pose`.
-
-    Attributes:
-        error_pixels: RANSAC threshold, for a longer side of 2000 pixels.
-        min_side: Longer side of the smallest photograph for which that threshold shrinks.
-        gradient_tolerance: At which the refinement ends.
-    """
-
-    error_pixels: float = 12.0
-    min_side: int = 800
-    gradient_tolerance: float = 1e-3
-
-
-REGISTER_TUNING = RegisterTuning()
+# Constants of `find_pose`.
+REGISTER_ERROR_PIXELS = 12.0  # RANSAC threshold, for a longer side of 2000 pixels
+REGISTER_MIN_SIDE = 800  # longer side of the smallest photograph for which that threshold shrinks
+REGISTER_GRADIENT_TOLERANCE = 1e-3  # at which the refinement ends
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,38 +60,35 @@ def find_pose(
         points: (n, 3) world.
         camera: A pycolmap.Camera.
         estimate_focal: Its focal length is estimated too, and changed.
-        seed: Of RANSAC.
     """
-    if len(pixels) < MAPPING_TUNING.relaxed_min_inliers:
+    if len(pixels) < MAPPING_RELAXED_MIN_INLIERS:
         return None
     options = pycolmap.AbsolutePoseEstimationOptions()
     options.estimate_focal_length = estimate_focal
     options.ransac.random_seed = seed
-    longer = max(camera.width, camera.height, REGISTER_TUNING.min_side)
-    options.ransac.max_error = REGISTER_TUNING.error_pixels * longer / 2000
+    longer = max(camera.width, camera.height, REGISTER_MIN_SIDE)
+    options.ransac.max_error = REGISTER_ERROR_PIXELS * longer / 2000
     found = pycolmap.estimate_absolute_pose(pixels, points, camera, options)
     if found is None:
         return None
     refine = pycolmap.AbsolutePoseRefinementOptions()
     refine.refine_focal_length = estimate_focal
-    refine.gradient_tolerance = REGISTER_TUNING.gradient_tolerance
+    refine.gradient_tolerance = REGISTER_GRADIENT_TOLERANCE
     pose, inliers = found["cam_from_world"], np.asarray(found["inlier_mask"], bool)
     errors = _errors(pose, pixels, points, camera)
-    for times in MAPPING_TUNING.outlier_spreads:
-        if inliers.sum() < max(
-            MAPPING_TUNING.relaxed_min_inliers, MAPPING_TUNING.relaxed_min_inlier_ratio * len(pixels)
-        ):
+    for times in MAPPING_OUTLIER_SPREADS:
+        if inliers.sum() < max(MAPPING_RELAXED_MIN_INLIERS, MAPPING_RELAXED_MIN_INLIER_RATIO * len(pixels)):
             return None
-        spread = MAPPING_TUNING.sigma_per_median * float(np.median(errors[inliers]))
-        refine.loss_function_scale = float(np.clip(spread, *MAPPING_TUNING.loss_range_pixels))
+        spread = MAPPING_SIGMA_PER_MEDIAN * float(np.median(errors[inliers]))
+        refine.loss_function_scale = float(np.clip(spread, *MAPPING_LOSS_RANGE_PIXELS))
         found = pycolmap.refine_absolute_pose(pose, pixels, points, inliers, camera, refine)
         if found is None:
             return None
         pose = found["cam_from_world"]
         errors = _errors(pose, pixels, points, camera)
-        spread = MAPPING_TUNING.sigma_per_median * float(np.median(errors[inliers]))
-        inliers = errors <= np.clip(times * spread, *MAPPING_TUNING.outlier_range_pixels)
-    if inliers.sum() < MAPPING_TUNING.min_observations:
+        spread = MAPPING_SIGMA_PER_MEDIAN * float(np.median(errors[inliers]))
+        inliers = errors <= np.clip(times * spread, *MAPPING_OUTLIER_RANGE_PIXELS)
+    if inliers.sum() < MAPPING_MIN_OBSERVATIONS:
         return None
     return Pose(pose, inliers, float(errors[inliers].mean()))
 
@@ -129,10 +122,8 @@ def register_photographs(
         shown: Their indices among all.
         features: Of all photographs, undistorted.
         cameras: A pycolmap.Camera for each of all photographs, before any is refined.
-        known: Known lenses of all, if any.
         matches: Between photographs that took part and those that did not.
         waiting: What is reported of each that took no part if it gets no camera.
-        seed: Of RANSAC.
     """
     report = dict(waiting) | dict(zip(shown, motion.report, strict=True))
     views = [shown[own] for own in model.registered]

@@ -18,9 +18,6 @@ def describe_motion(motion: SfmResult) -> dict[str, Any]:
 
     Its keys are `schema`, `registered` of `photographs`, `points`, `observations`, `reprojection` (mean and median over
     the points, pixels), `lenses` (one for each that differs) and `views`, as `ViewReport`.
-
-    Args:
-        motion: The result.
     """
     errors = motion.points.errors
     lenses: dict[str, dict[str, Any]] = {}
@@ -45,11 +42,7 @@ def describe_motion(motion: SfmResult) -> dict[str, Any]:
 
 
 def report_lines(report: dict[str, Any]) -> list[str]:
-    """One line a camera, then the photographs without a camera and why, then the summary.
-
-    Args:
-        report: Of `describe_motion`.
-    """
+    """One line a camera, then the photographs without a camera and why, then the summary."""
     views = report["views"]
     found = [view for view in views if view["registered"]]
     rows = [("camera", "features", "points", "error")]

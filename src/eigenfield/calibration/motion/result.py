@@ -79,10 +79,7 @@ def assemble(
     """The light field and points of a model, in the world of `natural_gauge`.
 
     Args:
-        photos: The photographs.
         features: Of each, as it shows them.
-        known: Known lenses, if any.
-        model: Their model.
         report: An entry for each photograph; those with a camera get their figures.
     """
     chosen = list(model.registered)
@@ -136,9 +133,7 @@ def solved_camera(lens: KnownLens, cam_from_world: Any, shot: Shot) -> Camera:
     """The camera of a photograph.
 
     Args:
-        lens: Its lens.
         cam_from_world: Its pycolmap.Rigid3d.
-        shot: The photograph.
     """
     pose = np.asarray(cam_from_world.matrix())
     return Camera.from_matrices(lens.K, pose[:, :3], pose[:, 3], shot.width, shot.height, shot.name)

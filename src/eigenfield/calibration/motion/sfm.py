@@ -21,9 +21,9 @@ from eigenfield.calibration.lenses import KnownLens
 from eigenfield.calibration.motion.cache import cached_features, cached_matches
 from eigenfield.calibration.motion.colmap_core import pycolmap
 from eigenfield.calibration.motion.features import NO_FEATURES, Features, undistort_features
-from eigenfield.calibration.motion.mapping import MAPPING_TUNING, SparseModel, map_views
+from eigenfield.calibration.motion.mapping import MAPPING_MIN_VIEWS, SparseModel, map_views
 from eigenfield.calibration.motion.matching import (
-    MATCHING_TUNING,
+    MATCHING_MIN_INLIERS,
     Match,
     Matching,
     check_matching,
@@ -61,15 +61,12 @@ def structure_from_motion(
     """Estimate the cameras of photographs, and points of the scene.
 
     Args:
-        photos: The photographs.
         intrinsics: Known ones, for all or for each photograph; they are not refined. Without, a focal length and one
             radial coefficient are estimated for each group of photographs of one size and EXIF focal length.
         camera_per_photo: Estimate them for each photograph separately.
         matching: Which photographs are compared; see `choose_pairs`.
         work: A folder that stores features and matches for the next run.
-        seed: Of RANSAC.
         parts: Workers that find features and compare pairs; None: this process does.
-        progress: Called in every stage.
         blind: Indices of photographs that take no part in cameras and points: each only registers its own camera.
 
     Raises:
@@ -127,10 +124,10 @@ def _check_intrinsics(intrinsics: KnownLens | Sequence[KnownLens] | None, photos
 
 
 def _check_photographs(photos: PhotoSet) -> None:
-    if len(photos) < MAPPING_TUNING.min_views:
+    if len(photos) < MAPPING_MIN_VIEWS:
         raise CaptureError(
             "too-few",
-            f"holds {count_phrase(photos.shots, 'photograph', 'photographs')}, {MAPPING_TUNING.min_views} are needed",
+            f"holds {count_phrase(photos.shots, 'photograph', 'photographs')}, {MAPPING_MIN_VIEWS} are needed",
             path=photos.root,
             remedy="name a folder with more photographs of the scene",
         )
@@ -235,7 +232,7 @@ def _failure_reason(
     if not partners:
         return (
             "few-matches",
-            f"too few matches: of {features} features fewer than {MATCHING_TUNING.min_inliers} agree with any other "
+            f"too few matches: of {features} features fewer than {MATCHING_MIN_INLIERS} agree with any other "
             "photograph; another scene, or taken from too far aside",
         )
     best = max(partners, key=lambda j: (partners[j], -j))
@@ -274,7 +271,7 @@ def _failure_error(photos: PhotoSet, report: Sequence[ViewReport], matches: Sequ
         remedy = f"if the photographs are a rectified grid, say --grid RxC (rows x columns); else {remedy}"
     return CaptureError(
         "calibration-failed",
-        f"no {MAPPING_TUNING.min_views} photographs fit together: {why}",
+        f"no {MAPPING_MIN_VIEWS} photographs fit together: {why}",
         path=photos.root,
         remedy=remedy,
     )

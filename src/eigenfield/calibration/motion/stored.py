@@ -23,7 +23,6 @@ def write_features(folder: Path, found: Sequence[Features | CaptureError]) -> No
     """Write the features of photographs into a folder, a file each. A photograph that cannot be read has none.
 
     Args:
-        folder: That takes the files.
         found: Of each photograph, or its error.
     """
     for index, features in enumerate(found):
@@ -32,12 +31,7 @@ def write_features(folder: Path, found: Sequence[Features | CaptureError]) -> No
 
 
 def read_features(folder: Path, shots: Sequence[Shot]) -> list[Features | CaptureError]:
-    """The features that `write_features` wrote. Where there is no file, the photograph is read again for its error.
-
-    Args:
-        folder: With the files.
-        shots: The photographs.
-    """
+    """The features that `write_features` wrote. Where there is no file, the photograph is read again for its error."""
     return [_read(_file(folder, index), shot) for index, shot in enumerate(shots)]
 
 
@@ -53,12 +47,7 @@ def _read(file: Path, shot: Shot) -> Features | CaptureError:
 
 
 def write_matches(path: Path, matches: Sequence[Match]) -> None:
-    """Write matches to a file.
-
-    Args:
-        path: Of the file.
-        matches: Of pairs of photographs.
-    """
+    """Write matches to a file."""
     good = [match for match in matches if match.geometry is not None]
     kinds: dict[str, Any] = {
         name: np.array([_matrix(getattr(m.geometry, name)) for m in good]).reshape(-1, 3, 3) for name in "EFH"
@@ -79,11 +68,7 @@ def _matrix(value: Any) -> Any:
 
 
 def read_matches(path: Path) -> list[Match]:
-    """The matches that `write_matches` wrote.
-
-    Args:
-        path: Of the file.
-    """
+    """The matches that `write_matches` wrote."""
     with np.load(path) as file:
         stored = {name: file[name] for name in file.files}
     ends = np.cumsum(stored["count"])

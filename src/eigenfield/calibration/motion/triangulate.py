@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,32 +21,16 @@ from eigenfield.runtime.parallel import tracked_map
 log = logging.getLogger("eigenfield.calibration")
 
 
-@dataclass(frozen=True)
-class TriangulationTuning:
-    """Constants of `triangulate_points`.
-
-    Attributes:
-        max_views: Views that are used.
-        partners: Views that each is compared with.
-        min_axis_cosine: Cosine between the axes of two cameras that may see the same side of an object.
-        min_distance_sizes: Distance between two compared cameras, relative to the size of the array.
-        min_median_features: Features of the median photograph below which there is little texture.
-        min_track_views: Views of a track. Two views agree by chance wherever a feature lies on the epipolar line.
-        max_error_pixels: Largest reprojection error in a track, for a longer side of 2000 pixels.
-        min_angle_degrees: Angle between the widest rays of a track.
-    """
-
-    max_views: int = 32
-    partners: int = 8
-    min_axis_cosine: float = 0.2
-    min_distance_sizes: float = 0.001
-    min_median_features: int = 1000
-    min_track_views: int = 3
-    max_error_pixels: float = 3.0
-    min_angle_degrees: float = 0.5
-
-
-TRIANGULATION_TUNING = TriangulationTuning()
+# Constants of `triangulate_points`.
+TRIANGULATION_MAX_VIEWS = 32  # views that are used
+TRIANGULATION_PARTNERS = 8  # views that each is compared with
+TRIANGULATION_MIN_AXIS_COSINE = 0.2  # cosine between the axes of two cameras that may see the same side of an object
+TRIANGULATION_MIN_DISTANCE_SIZES = 0.001  # distance between two compared cameras, relative to the size of the array
+TRIANGULATION_MIN_MEDIAN_FEATURES = 1000  # features of the median photograph below which there is little texture
+# Views of a track. Two views agree by chance wherever a feature lies on the epipolar line.
+TRIANGULATION_MIN_TRACK_VIEWS = 3
+TRIANGULATION_MAX_ERROR_PIXELS = 3.0  # largest reprojection error in a track, for a longer side of 2000 pixels
+TRIANGULATION_MIN_ANGLE_DEGREES = 0.5  # angle between the widest rays of a track
 TRIANGULATION_FEATURES = FeatureOptions(max_side=1200, max_features=3000)
 TRIANGULATION_WEAK_FEATURES = FeatureOptions(max_side=1200, max_features=3000, peak_threshold=0.002)
 
@@ -55,11 +38,7 @@ TRIANGULATION_WEAK_FEATURES = FeatureOptions(max_side=1200, max_features=3000, p
 def triangulate_points(light_field: LightField, *, progress: Progress | None = None) -> NDArray[np.float64]:
     """World points that at least three views agree on.
 
-    The cameras are not changed. At most `TRIANGULATION_TUNING.max_views` views are used.
-
-    Args:
-        light_field: The views.
-        progress: Called for each photograph and pair.
+    The cameras are not changed. At most `TRIANGULATION_MAX_VIEWS` views are used.
 
     Returns:
         (n, 3) points; none if the photographs have no texture.
@@ -67,13 +46,13 @@ def triangulate_points(light_field: LightField, *, progress: Progress | None = N
     Raises:
         CaptureError: A photograph cannot be read.
     """
-    count = min(len(light_field), TRIANGULATION_TUNING.max_views)
+    count = min(len(light_field), TRIANGULATION_MAX_VIEWS)
     views = np.linspace(0, len(light_field) - 1, count).astype(np.int64).tolist()
     cameras = [light_field.views[index].camera for index in views]
     shots = tuple(Shot.of(light_field.views[index]) for index in views)
     photos = PhotoSet(light_field.root, shots, None, (), "folder")
     features = _features(photos, TRIANGULATION_FEATURES, progress)
-    if np.median([len(found) for found in features]) < TRIANGULATION_TUNING.min_median_features:
+    if np.median([len(found) for found in features]) < TRIANGULATION_MIN_MEDIAN_FEATURES:
         features = _features(photos, TRIANGULATION_WEAK_FEATURES, progress)
     lenses = [KnownLens(camera.K, light_field.views[index].lens) for camera, index in zip(cameras, views, strict=True)]
     undistorted = [undistort_features(found, lens)[0] for found, lens in zip(features, lenses, strict=True)]
@@ -98,11 +77,11 @@ def _pairs(cameras: Sequence[Camera]) -> list[tuple[int, int]]:
     size = float(np.linalg.norm(np.ptp(centres, axis=0))) or 1.0
     apart = np.linalg.norm(centres[:, None] - centres[None], axis=2) / size
     unlike = np.hypot(apart, np.linalg.norm(axes[:, None] - axes[None], axis=2))
-    unlike[apart < TRIANGULATION_TUNING.min_distance_sizes] = np.inf
-    unlike[axes @ axes.T < TRIANGULATION_TUNING.min_axis_cosine] = np.inf
+    unlike[apart < TRIANGULATION_MIN_DISTANCE_SIZES] = np.inf
+    unlike[axes @ axes.T < TRIANGULATION_MIN_AXIS_COSINE] = np.inf
     pairs = set()
     for i, row in enumerate(unlike):
-        for j in np.argsort(row, kind="stable")[: TRIANGULATION_TUNING.partners].tolist():
+        for j in np.argsort(row, kind="stable")[:TRIANGULATION_PARTNERS].tolist():
             if np.isfinite(row[j]):
                 pairs.add((min(i, j), max(i, j)))
     return sorted(pairs)
@@ -148,7 +127,7 @@ def _triangulate_tracks(
     twice = np.zeros(len(count), np.bool_)  # two features of one view: the track mixes points
     key = np.sort(track_of.astype(np.int64) * len(features) + view)
     twice[key[1:][np.diff(key) == 0] // len(features)] = True
-    chosen = np.flatnonzero(((count >= TRIANGULATION_TUNING.min_track_views) & ~twice)[track_of])
+    chosen = np.flatnonzero(((count >= TRIANGULATION_MIN_TRACK_VIEWS) & ~twice)[track_of])
     if len(chosen) == 0:
         return np.zeros((0, 3))
     _, number = np.unique(track_of[chosen], return_inverse=True)
@@ -166,7 +145,7 @@ def _triangulate_tracks(
     np.add.at(side, number, np.einsum("nij,nj->ni", across, origin))
     total = np.bincount(number)
     # for two rays at angle a the smallest eigenvalue is 2 sin^2(a / 2)
-    sharp = np.sin(np.radians(TRIANGULATION_TUNING.min_angle_degrees)) ** 2 / 4
+    sharp = np.sin(np.radians(TRIANGULATION_MIN_ANGLE_DEGREES)) ** 2 / 4
     normal[np.linalg.eigvalsh(normal)[:, 0] < sharp * total / 2] = np.nan
     known = np.isfinite(normal).all(axis=(1, 2))
     points = np.full((len(total), 3), np.nan)
@@ -176,7 +155,7 @@ def _triangulate_tracks(
         here = view == index
         seen, depth = camera.project(np.nan_to_num(points[number[here]]))
         off = np.linalg.norm(seen - pixels[here], axis=1)
-        limit = TRIANGULATION_TUNING.max_error_pixels * max(camera.width, camera.height) / 2000
+        limit = TRIANGULATION_MAX_ERROR_PIXELS * max(camera.width, camera.height) / 2000
         with np.errstate(invalid="ignore"):
             wrong[number[here][~((depth > 0) & (off < limit))]] = True
     return points[~wrong]

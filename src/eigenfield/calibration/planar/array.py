@@ -69,8 +69,6 @@ class ArrayModel:
             width: Pixels.
             height: Pixels.
             focal: Pixels.
-            offset: See `ArrayModel`.
-            scale: See `ArrayModel`.
         """
         K = np.array([[focal, 0, width / 2], [0, focal, height / 2], [0, 0, 1.0]])
         camera = Camera(K, np.diag([1.0, -1.0, -1.0]), np.zeros(3), width, height)
@@ -83,7 +81,6 @@ class ArrayModel:
         """The camera of a view.
 
         Args:
-            view: Its index.
             parameters: (10,) of the view.
         """
         base = self.bases[view]
@@ -138,7 +135,6 @@ class ArrayModel:
             reference: Whose points are projected.
             views: (v,) indices.
             parameters: (v, 10).
-            count: Number of the parameters.
         """
         result = np.zeros((len(views), count, 3, 4))
         for index, step in enumerate(ARRAY_DERIVATIVE_STEPS[:count]):

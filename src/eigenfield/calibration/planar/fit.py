@@ -49,8 +49,6 @@ def select_textured_points(
         d: (h, w) labels.
         texture: (h, w, 3) mean texture, grey levels.
         count: (h, w) number of views that see each point.
-        views: Number of views.
-        parameters: Number of parameters that are fitted to them.
 
     Returns:
         (k, 3) x, y, d, and (k, 3) colours.
@@ -75,10 +73,8 @@ def gauss_newton_step(
     """One Gauss-Newton step of the first `count` parameters of each view.
 
     Args:
-        model: The array.
         views: (v,) indices.
         parameters: (v, 10) before the step.
-        target: What the cameras are fitted to.
         count: Number of free parameters.
         tau: Scale of the Cauchy loss, grey levels.
 

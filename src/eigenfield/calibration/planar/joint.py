@@ -36,54 +36,28 @@ from eigenfield.stereo.visibility import depth_buffers, mean_texture
 log = logging.getLogger("eigenfield.calibration")
 
 
-@dataclass(frozen=True)
-class PlanarTuning:
-    """Constants of `refine_planar`. Pixels are those of the outermost camera unless said otherwise.
-
-    Attributes:
-        tau_levels: Scale of the Cauchy loss, grey levels.
-        visibility_bias_pixels: Distance behind the depth buffer at which a point still counts as visible.
-        sweep_step_pixels: Distance between two labels of a sweep.
-        smooth_pixels: Distance within which neighbours are one surface.
-        last_smooth_pixels: The same, in the last rounds.
-        half_confidence: Curvature of the cost, squared grey levels per squared pixel, at which smoothing gives a depth
-            half weight.
-        depth_step_pixels: Steps of the rounds of depth refinement.
-        last_depth_step_pixels: Steps of the rounds after the cameras are final.
-        regular_pixels: Cameras this close to a regular grid, or to their calibration, are not corrected.
-        min_depth_view_fraction: Fraction of the views that must see a point for its depth to be its own.
-        sweep_max_views: Views of a plane sweep.
-        sweep_reach_labels: Labels that a sweep of an outer ring tries beyond the local range of the depth so far.
-        sweep_window_pixels: Window of that local range, at half resolution.
-        sweep_near_max_parallax_pixels: Range of disparities between neighbouring cameras up to which outer rings sweep
-            so. With 26 they gain (Tarot 9x9), with 108 the depth so far is too often wrong (the sparse Tarot).
-        vote_max_views: Views of a ring that vote on which side is near.
-        vote_gap_pixels: Distance between two surfaces in the outermost voter.
-        vote_contrast_levels: Difference of their colours, grey levels.
-        vote_clear_ratio: Ratio of the votes below which both orders are tried.
-    """
-
-    tau_levels: float = 15.0
-    visibility_bias_pixels: float = 0.96
-    sweep_step_pixels: float = 1.2
-    smooth_pixels: float = 1.2
-    last_smooth_pixels: float = 0.6
-    half_confidence: float = 2.7
-    depth_step_pixels: tuple[float, ...] = (0.64, 0.48, 0.48, 0.32, 0.24)
-    last_depth_step_pixels: tuple[float, float] = (0.24, 0.16)
-    regular_pixels: float = 0.1
-    min_depth_view_fraction: float = 0.02
-    sweep_max_views: int = 90
-    sweep_reach_labels: float = 4.0
-    sweep_window_pixels: int = 15
-    sweep_near_max_parallax_pixels: float = 50.0
-    vote_max_views: int = 12
-    vote_gap_pixels: float = 4.0
-    vote_contrast_levels: float = 8.0
-    vote_clear_ratio: float = 1.5
-
-
-PLANAR_TUNING = PlanarTuning()
+# Constants of `refine_planar`. Pixels are those of the outermost camera unless said otherwise.
+PLANAR_TAU_LEVELS = 15.0  # scale of the Cauchy loss, grey levels
+PLANAR_VISIBILITY_BIAS_PIXELS = 0.96  # distance behind the depth buffer at which a point still counts as visible
+PLANAR_SWEEP_STEP_PIXELS = 1.2  # distance between two labels of a sweep
+PLANAR_SMOOTH_PIXELS = 1.2  # distance within which neighbours are one surface
+PLANAR_LAST_SMOOTH_PIXELS = 0.6  # the same, in the last rounds
+# curvature of the cost, squared grey levels per squared pixel, at which smoothing gives a depth half weight
+PLANAR_HALF_CONFIDENCE = 2.7
+PLANAR_DEPTH_STEP_PIXELS = (0.64, 0.48, 0.48, 0.32, 0.24)  # steps of the rounds of depth refinement
+PLANAR_LAST_DEPTH_STEP_PIXELS = (0.24, 0.16)  # steps of the rounds after the cameras are final
+PLANAR_REGULAR_PIXELS = 0.1  # cameras this close to a regular grid, or to their calibration, are not corrected
+PLANAR_MIN_DEPTH_VIEW_FRACTION = 0.02  # fraction of the views that must see a point for its depth to be its own
+PLANAR_SWEEP_MAX_VIEWS = 90  # views of a plane sweep
+PLANAR_SWEEP_REACH_LABELS = 4.0  # labels that a sweep of an outer ring tries beyond the local range of the depth so far
+PLANAR_SWEEP_WINDOW_PIXELS = 15  # window of that local range, at half resolution
+# Range of disparities between neighbouring cameras up to which outer rings sweep so. With 26 they gain (Tarot 9x9),
+# with 108 the depth so far is too often wrong (the sparse Tarot).
+PLANAR_SWEEP_NEAR_MAX_PARALLAX_PIXELS = 50.0
+PLANAR_VOTE_MAX_VIEWS = 12  # views of a ring that vote on which side is near
+PLANAR_VOTE_GAP_PIXELS = 4.0  # distance between two surfaces in the outermost voter
+PLANAR_VOTE_CONTRAST_LEVELS = 8.0  # difference of their colours, grey levels
+PLANAR_VOTE_CLEAR_RATIO = 1.5  # ratio of the votes below which both orders are tried
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,8 +98,8 @@ class _JointRefinement:
         self.low, self.high = start.low, start.high
         self.extent = self.extent_of(np.arange(len(pictures)))
         apart = float(np.median(np.asarray(cKDTree(start.places).query(start.places, 2)[0])[:, 1]))
-        self.dense = apart * (start.high - start.low) <= PLANAR_TUNING.sweep_near_max_parallax_pixels
-        self.bias = PLANAR_TUNING.visibility_bias_pixels / self.extent
+        self.dense = apart * (start.high - start.low) <= PLANAR_SWEEP_NEAR_MAX_PARALLAX_PIXELS
+        self.bias = PLANAR_VISIBILITY_BIAS_PIXELS / self.extent
         side = np.abs(start.places).max()
         margin = int(np.ceil(side * max(abs(start.low), abs(start.high)) / 8)) * 8 + 8
         self.reference = self.model.reference_view(margin)
@@ -174,20 +148,19 @@ class _JointRefinement:
         """Plane sweep at half resolution and semi-global matching.
 
         Args:
-            views: That are compared.
             coarser: Factor of the distance of labels.
             outer: Whether a ring around others is among the views: of a dense array, only labels near those of the
                 depth that the others gave are tried.
         """
         small = self.reference.at_half_resolution()
         matrices = HALF_FROM_FULL_INDEX @ self.model.matrices(small, views, self.parameters[views])
-        step = min(coarser * PLANAR_TUNING.sweep_step_pixels / self.extent_of(views), (self.high - self.low) / 64)
+        step = min(coarser * PLANAR_SWEEP_STEP_PIXELS / self.extent_of(views), (self.high - self.low) / 64)
         labels = np.arange(self.low, self.high + step, step, dtype=np.float32)
         floor = ceiling = None
         if outer and self.dense:
             d = cv2.resize(self.d, small.shape[::-1], interpolation=cv2.INTER_NEAREST)
-            window = np.ones((PLANAR_TUNING.sweep_window_pixels,) * 2, np.uint8)
-            reach = PLANAR_TUNING.sweep_reach_labels * step
+            window = np.ones((PLANAR_SWEEP_WINDOW_PIXELS,) * 2, np.uint8)
+            reach = PLANAR_SWEEP_REACH_LABELS * step
             floor = np.asarray(cv2.erode(d, window) - reach, np.float32)
             ceiling = np.asarray(cv2.dilate(d, window) + reach, np.float32)
         reference, known = _pad_to_reference(unpack_pictures(self.half_size[self.centre]), small.shape)
@@ -210,7 +183,7 @@ class _JointRefinement:
         rounds: int,
         *,
         pictures: NDArray[np.uint32] | None = None,
-        tau: float = PLANAR_TUNING.tau_levels,
+        tau: float = PLANAR_TAU_LEVELS,
         fixed: bool = True,
         buffers: NDArray[np.float32] | None = None,
     ) -> None:
@@ -235,7 +208,7 @@ class _JointRefinement:
         """The error of each photograph against the mean texture, with unchanged cameras."""
         target = self.make_target(views, self.subset(views, self.pictures), ARRAY_PARAMETERS)
         fixed = self.parameters[views]
-        _, self.error[views] = gauss_newton_step(self.model, views, fixed, target, 2, PLANAR_TUNING.tau_levels)
+        _, self.error[views] = gauss_newton_step(self.model, views, fixed, target, 2, PLANAR_TAU_LEVELS)
 
     def fix_gauge(self, views: NDArray[np.int64]) -> None:
         """Remove the gauge freedom: shifts in proportion to positions are an offset of depth; the mean step is one."""
@@ -251,7 +224,7 @@ class _JointRefinement:
         self.low, self.high = (self.low - offset) * scale, (self.high - offset) * scale
 
     def refine_depth(
-        self, views: NDArray[np.int64], step: float, smooth: float = PLANAR_TUNING.smooth_pixels
+        self, views: NDArray[np.int64], step: float, smooth: float = PLANAR_SMOOTH_PIXELS
     ) -> NDArray[np.float32]:
         """Depth refined over `views`; returns the depth buffers that it had before."""
         pictures = self.subset(views, self.pictures)
@@ -261,14 +234,14 @@ class _JointRefinement:
             pictures, matrices, self.d, step / self.extent, buffers=buffers, texture=self.texture,
             bias=self.bias, depth_scale=apart,
         )  # fmt: skip
-        half = PLANAR_TUNING.half_confidence * self.extent**2
+        half = PLANAR_HALF_CONFIDENCE * self.extent**2
         self.d = smooth_depth(d, confidence, self.texture, half_confidence=half, depth_scale=apart)
         self.extend(len(views))
         return buffers
 
     def extend(self, views: int) -> None:
         """Extrapolate depth outside the photographs' common part, where too few views look."""
-        known = self.count >= max(2, PLANAR_TUNING.min_depth_view_fraction * views)
+        known = self.count >= max(2, PLANAR_MIN_DEPTH_VIEW_FRACTION * views)
         self.d = extend_depth(self.d, known, self.low, self.high)
 
 
@@ -281,14 +254,12 @@ def refine_planar(
 
     Args:
         photographs: (n, H, W, 3) uint8.
-        start: The array before refinement.
         exact: Do not correct the cameras.
-        progress: Called for each step.
     """
     pictures = pack_pictures(photographs)
     joint = _JointRefinement(pictures, start)
     rings = _rings(start.places)
-    total = len(rings) + len(PLANAR_TUNING.depth_step_pixels) + 1
+    total = len(rings) + len(PLANAR_DEPTH_STEP_PIXELS) + 1
     report = progress or (lambda stage, done, of: None)
     report("cameras and depth", 0, total)
     joint.sweep_depth(rings[0], 2.0)
@@ -321,7 +292,7 @@ def _correct_cameras(joint: _JointRefinement, rings: Sequence[NDArray[np.int64]]
     for number, views in enumerate(rings):
         if old is not None:
             _extrapolate(joint, old, np.setdiff1d(views, old))
-        joint.refine_cameras(views, 4, 3, pictures=soft, tau=2 * PLANAR_TUNING.tau_levels)
+        joint.refine_cameras(views, 4, 3, pictures=soft, tau=2 * PLANAR_TAU_LEVELS)
         joint.refine_cameras(views, 4, 2)
         joint.sweep_depth(_subsample(views), 2.0 if number == 0 else 1.0, outer=number > 0)
         joint.refine_cameras(views, 4, 2)
@@ -332,13 +303,13 @@ def _correct_cameras(joint: _JointRefinement, rings: Sequence[NDArray[np.int64]]
         old = views
         report("cameras and depth", number + 1, total)
     everything = np.arange(len(pictures))
-    for number, step in enumerate(PLANAR_TUNING.depth_step_pixels):
+    for number, step in enumerate(PLANAR_DEPTH_STEP_PIXELS):
         visible = joint.refine_depth(everything, step)
         count = 6 if number == 0 else ARRAY_PARAMETERS
         joint.refine_cameras(everything, count, 2, fixed=number == 0, buffers=visible)
         report("cameras and depth", len(rings) + number + 1, total)
-    for step in PLANAR_TUNING.last_depth_step_pixels:
-        joint.refine_depth(everything, step, PLANAR_TUNING.last_smooth_pixels)
+    for step in PLANAR_LAST_DEPTH_STEP_PIXELS:
+        joint.refine_depth(everything, step, PLANAR_LAST_SMOOTH_PIXELS)
     return True
 
 
@@ -346,7 +317,7 @@ def _is_regular(joint: _JointRefinement, views: NDArray[np.int64]) -> bool:
     """Whether refinement found nothing to correct in the cameras of `views`; their parameters are then restored."""
     moved = irregularity(joint.parameters, joint.start, views)
     log.info("cameras leave the %s by %.3f px", "calibration" if joint.start.given else "grid", moved)
-    if moved >= PLANAR_TUNING.regular_pixels:
+    if moved >= PLANAR_REGULAR_PIXELS:
         return False
     joint.parameters[:] = joint.start.parameters
     return True
@@ -366,7 +337,7 @@ def _rings(places: NDArray[np.float64]) -> list[NDArray[np.int64]]:
 
 def _subsample(views: NDArray[np.int64]) -> NDArray[np.int64]:
     """An evenly spread subset of many views: a sweep does not gain from more."""
-    return views[:: -(-len(views) // PLANAR_TUNING.sweep_max_views)]
+    return views[:: -(-len(views) // PLANAR_SWEEP_MAX_VIEWS)]
 
 
 def _extrapolate(joint: _JointRefinement, old: NDArray[np.int64], new: NDArray[np.int64]) -> None:
@@ -388,22 +359,20 @@ def _is_reversed(joint: _JointRefinement, rings: Sequence[NDArray[np.int64]]) ->
     for number, ring in enumerate(rings):
         views = ring if number == 0 else np.setdiff1d(ring, rings[number - 1])
         views = views[views != joint.centre]
-        views = views[:: max(1, len(views) // PLANAR_TUNING.vote_max_views)]
+        views = views[:: max(1, len(views) // PLANAR_VOTE_MAX_VIEWS)]
         matrices = joint.model.matrices(narrow, views, joint.parameters[views])
-        gap = PLANAR_TUNING.vote_gap_pixels / joint.extent_of(views)
+        gap = PLANAR_VOTE_GAP_PIXELS / joint.extent_of(views)
 
         def votes(k: int, views=views, matrices=matrices, gap=gap) -> tuple[int, int]:  # type: ignore[no-untyped-def]
             near, far = np.full((height, width), -1, np.int64), np.full((height, width), -1, np.int64)
             picture = unpack_pictures(joint.pictures[views[k]])
-            return occlusion_votes(
-                picture, reference, matrices[k], inner, gap, PLANAR_TUNING.vote_contrast_levels, near, far
-            )
+            return occlusion_votes(picture, reference, matrices[k], inner, gap, PLANAR_VOTE_CONTRAST_LEVELS, near, far)
 
         counts = np.sum(parallel_map(votes, range(len(views))), axis=0)
         larger, smaller = larger + int(counts[0]), smaller + int(counts[1])
     log.info("occlusion: %d pixels say that larger disparities are nearer, %d the reverse", larger, smaller)
     voted = smaller > larger
-    if max(larger, smaller) >= PLANAR_TUNING.vote_clear_ratio * max(1, min(larger, smaller)):
+    if max(larger, smaller) >= PLANAR_VOTE_CLEAR_RATIO * max(1, min(larger, smaller)):
         return voted
     ways = (joint.start, reverse_depth(joint.start))
     forward, backward = (_inner_error(joint.pictures, start, rings) for start in ways)

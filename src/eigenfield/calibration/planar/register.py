@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from eigenfield.calibration.planar.array import ARRAY_PARAMETERS, ARRAY_POSITION
 from eigenfield.calibration.planar.fit import PhotometricTarget, gauss_newton_step, select_textured_points
-from eigenfield.calibration.planar.joint import PLANAR_TUNING, PlanarArray, blurred
+from eigenfield.calibration.planar.joint import PLANAR_TAU_LEVELS, PLANAR_VISIBILITY_BIAS_PIXELS, PlanarArray, blurred
 from eigenfield.core.camera import Camera
 from eigenfield.runtime.parallel import parallel_map
 from eigenfield.stereo.views import pack_pictures
@@ -29,7 +29,6 @@ def register_views(
     """The array with further views, each fitted to the array's texture and depth by its own photograph alone.
 
     Args:
-        planar: The refined array.
         known: Indices of its views among all n.
         photographs: (v, H, W, 3) uint8 of the new views.
         new: (v,) their indices among all n.
@@ -47,12 +46,12 @@ def register_views(
     sharp = pack_pictures(photographs)
     soft = np.stack(parallel_map(blurred, sharp))
     extent = max(1.0, float(np.linalg.norm(planar.parameters[:, ARRAY_POSITION], axis=1).max()))
-    bias = PLANAR_TUNING.visibility_bias_pixels / extent
+    bias = PLANAR_VISIBILITY_BIAS_PIXELS / extent
     points = select_textured_points(planar.d, planar.texture, planar.count, len(known), ARRAY_PARAMETERS)
     for pictures, count, tau, rounds in (
-        (soft, 4, 2 * PLANAR_TUNING.tau_levels, 3),
-        (sharp, 4, PLANAR_TUNING.tau_levels, 2),
-        (sharp, ARRAY_PARAMETERS, PLANAR_TUNING.tau_levels, 3),
+        (soft, 4, 2 * PLANAR_TAU_LEVELS, 3),
+        (sharp, 4, PLANAR_TAU_LEVELS, 2),
+        (sharp, ARRAY_PARAMETERS, PLANAR_TAU_LEVELS, 3),
     ):
         for _ in range(rounds):
             matrices = model.matrices(planar.reference, new, parameters[new])

@@ -39,12 +39,9 @@ class PlanarStart:
     """A planar array before refinement.
 
     Attributes:
-        model: The fixed part of the cameras.
         parameters: (n, 10) of the cameras.
         places: (n, 2) positions in steps from the central camera, x right, y down.
         centre: Index of the central camera.
-        low: Lowest disparity.
-        high: Highest disparity.
         known_signs: False if positions and disparities may both be negated.
         given: The cameras are a calibration's, not a regular grid's.
         exchanged: The names gave the column first, so that rows and columns of the layout are swapped here.
@@ -71,8 +68,6 @@ def start_planar(
 
     Args:
         pictures: n of (H, W, 3), one size.
-        layout: Of the photographs.
-        names: Of the photographs, for messages.
 
     Raises:
         CaptureError: `grid-texture`: too few points. `grid-still`: the points do not move. `grid-motion`: they do not
@@ -142,11 +137,7 @@ def _refuse_still(tracks: Tracks, name: str) -> None:
 
 
 def nominal_positions(layout: GridLayout) -> NDArray[np.float64]:
-    """(n, 2) positions in steps, x right, y DOWN; one step is the median distance of neighbouring columns.
-
-    Args:
-        layout: Of the photographs.
-    """
+    """(n, 2) positions in steps, x right, y DOWN; one step is the median distance of neighbouring columns."""
     places = layout.positions * np.array([1.0, -1.0])
     if layout.measured:
         return places / _median_step(places, layout)
@@ -211,7 +202,6 @@ def start_given(cameras: Sequence[Camera], low: float, high: float) -> PlanarSta
     Disparities are those of one step, the median distance of a camera to its nearest neighbour.
 
     Args:
-        cameras: All cameras.
         low: Lowest inverse depth in the central camera, 1 / world unit.
         high: Highest inverse depth.
     """
@@ -234,11 +224,7 @@ def start_given(cameras: Sequence[Camera], low: float, high: float) -> PlanarSta
 
 
 def reverse_depth(start: PlanarStart) -> PlanarStart:
-    """The same motion with near and far exchanged.
-
-    Args:
-        start: The array.
-    """
+    """The same motion with near and far exchanged."""
     parameters = start.parameters.copy()
     parameters[:, ARRAY_POSITION] *= -1
     return replace(start, parameters=parameters, places=-start.places, low=-start.high, high=-start.low)

@@ -49,9 +49,7 @@ def decode_with_mask(
     """Decode a photograph with its mask.
 
     Args:
-        source: What it is read from.
         width: As the capture was opened and reduced, pixels.
-        height: Likewise.
 
     Returns:
         (H, W, 3) pixels, and (H, W) the lesser of alpha and mask; None where there is neither.

@@ -30,7 +30,6 @@ class Header:
     Attributes:
         format: "PNG", "JPEG", "WebP", "TIFF", "AVIF", "HEIC" or "JPEG XL".
         width: As stored, before the orientation is applied, pixels.
-        height: Likewise.
         depth: Bits a channel, 8, 10, 12 or 16.
         orientation: EXIF's, 1 to 8; 1 is as stored.
         alpha: Whether there is transparency.

@@ -36,9 +36,7 @@ def decode_jpeg(data: bytes, mode: str, size: tuple[int, int], path: Path) -> ND
 
     Args:
         data: A whole file, or its first picture with anything behind.
-        mode: Pillow's.
         size: Width and height, pixels.
-        path: For messages.
 
     Raises:
         CaptureError: `image-unreadable`.

@@ -26,10 +26,8 @@ class JxlHeader:
 
     Attributes:
         width: As stored, pixels.
-        height: Likewise.
         orientation: As in EXIF, which does not count here.
         jpeg: Whether it holds a whole JPEG file, which the plug-in decodes without turning it.
-        exif: Its metadata.
     """
 
     width: int

@@ -97,9 +97,7 @@ def source_positions(
 
     Args:
         K: (3, 3) pixels, centres at +0.5.
-        lens: The photograph's distortion.
         width: Of both pictures, pixels.
-        height: Likewise.
 
     Returns:
         x and y, (H, W) float32 positions with integer pixel centres, and (H, W) bool, whether the photograph covers
@@ -141,7 +139,6 @@ def metashape_distortion(
     Args:
         x: X / Z.
         y: Y / Z.
-        lens: The distortion.
     """
     k1, k2, k3, k4, p1, p2, p3, p4, skew = lens.coefficients
     if lens.model != "metashape":

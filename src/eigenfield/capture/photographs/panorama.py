@@ -23,8 +23,6 @@ def refuse_panorama(path: Path, header: Header, focal: float | None, *, by_shape
     """Raise CaptureError `image-panorama` for a panorama.
 
     Args:
-        path: The photograph.
-        header: Its header.
         focal: Focal length that EXIF states, which a panorama has none of.
         by_shape: Also look into pictures that are twice as wide as high and have no focal length.
     """

@@ -70,10 +70,6 @@ def read_png_colours(data: bytes, info: dict[Any, Any]) -> tuple[Profile | None,
     """The profile that chunks state (cICP before iCCP and sRGB, and those before cHRM and gAMA), and whether values are
     of the narrow range.
 
-    Args:
-        data: The file.
-        info: Pillow's.
-
     Raises:
         ValueError: Where it states no colours that there are.
     """

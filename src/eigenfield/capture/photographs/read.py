@@ -88,7 +88,6 @@ def decode(
     """A photograph as (H, W, 3) float32 sRGB-coded values in 0..1, and its alpha (H, W) or None.
 
     Args:
-        path: The file.
         upright: Apply the EXIF orientation.
         exposure: Factor of linear values (OpenEXR) before the sRGB curve; None for 1.
 

@@ -32,11 +32,7 @@ def read_stated_colours(
     the narrow range.
 
     Args:
-        kind: As in `Header`.
-        data: The file.
-        image: Pillow's, not decoded.
         depth: Bits a channel.
-        path: For messages.
     """
     if image.mode in ("CMYK", "LAB"):
         return None, False

@@ -18,11 +18,6 @@ def photographs_in_order(root: Path, count: int, path: Path) -> list[str]:
     """Names of photographs relative to `root`, sorted as plain text: from `images`, else the least reduced `images_N`,
     else `root` itself, whichever holds exactly `count`.
 
-    Args:
-        root: Folder of the capture.
-        count: Number of photographs.
-        path: The calibration, named in the error.
-
     Raises:
         CaptureError: `calibration-count` where no folder fits.
     """

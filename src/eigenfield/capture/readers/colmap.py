@@ -55,7 +55,6 @@ class _ImageRecord:
         quaternion: w, x, y, z, world to camera.
         translation: World to camera.
         camera: Its number in `cameras`.
-        name: Of the photograph.
     """
 
     quaternion: tuple[float, ...]

@@ -9,7 +9,6 @@ from pathlib import Path
 from eigenfield.capture.arrangement import (
     NAMES_MIN_PHOTOGRAPHS,
     Arrangement,
-    OpenOptions,
     photographs_of,
     require_photographs,
 )
@@ -18,6 +17,7 @@ from eigenfield.capture.messages import list_names
 from eigenfield.capture.readers.grid_names import largest_name_group
 from eigenfield.capture.readers.video import find_videos
 from eigenfield.core.errors import CaptureError, OptionError
+from eigenfield.core.open_options import OpenOptions
 from eigenfield.core.shell import shell_word
 
 FOLDER_WORDS = "like one (.png, .jpg, .webp, .tif, .avif)"

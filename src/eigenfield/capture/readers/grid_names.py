@@ -18,13 +18,13 @@ from eigenfield.capture.arrangement import (
     NAMES_MIN_FRACTION,
     NAMES_MIN_PHOTOGRAPHS,
     Arrangement,
-    OpenOptions,
     make_grid_layout,
     photographs_of,
     require_photographs,
 )
 from eigenfield.capture.readers.stanford import find_stanford
 from eigenfield.core.errors import CaptureError, OptionError, one_line
+from eigenfield.core.open_options import OpenOptions
 
 GRID_MAX_NODE_NUMBER = 999
 GRID_MIN_FILLED_FRACTION = 0.5  # of the nodes must hold a photograph for the names to be taken for a grid
@@ -39,10 +39,7 @@ class _Nodes(NamedTuple):
     """Photographs of a folder on nodes of a grid.
 
     Attributes:
-        files: The photographs.
-        others: Those with other names.
         rows: Of each of `files`.
-        columns: Likewise.
     """
 
     files: list[Path]
@@ -161,7 +158,6 @@ def largest_name_group(
     """The largest group of photographs whose names differ in numbers alone.
 
     Args:
-        folder: Of the photographs.
         fits: Whether a group counts, by its names in pieces.
 
     Returns:

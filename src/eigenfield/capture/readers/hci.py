@@ -21,7 +21,6 @@ import numpy as np
 
 from eigenfield.capture.arrangement import (
     Arrangement,
-    OpenOptions,
     describe_missing_nodes,
     find_by_names,
     make_grid_layout,
@@ -32,6 +31,7 @@ from eigenfield.capture.calibration import CALIBRATION_MAX_MAGNITUDE, Calibratio
 from eigenfield.capture.layout import GridLayout
 from eigenfield.capture.readers.text import CALIBRATION_MAX_SIDE_PIXELS, read_text
 from eigenfield.core.errors import CaptureError
+from eigenfield.core.open_options import OpenOptions
 
 log = logging.getLogger(__name__)
 

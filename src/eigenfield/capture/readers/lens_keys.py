@@ -45,8 +45,6 @@ def refuse_lens_keys(values: Mapping[str, Any], read: Container[str], label: str
     Args:
         values: Of the camera, as its file has them; mappings in it count as parts of the camera.
         read: Keys that the reader uses, as the file spells them.
-        label: Names the camera.
-        path: The calibration.
     """
     for key in lens_keys(values, read):
         refuse_lens_key(key, label, path)

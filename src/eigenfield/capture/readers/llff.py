@@ -40,7 +40,6 @@ def read_llff(path: Path, photographs: Path | None = None) -> Calibration:
     `Entry.bounds` keeps the near and far depth. A row with NaN or an impossible size becomes an error of its own.
 
     Args:
-        path: The poses_bounds.npy.
         photographs: Folder that holds the photographs; by default the file's own.
 
     Raises:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from eigenfield.capture.arrangement import Arrangement, OpenOptions, make_grid_layout, require_photographs
+from eigenfield.capture.arrangement import Arrangement, make_grid_layout, require_photographs
 from eigenfield.capture.readers.grid_names import largest_name_group
 from eigenfield.core.errors import CaptureError, OptionError, one_line
+from eigenfield.core.open_options import OpenOptions
 
 
 def read_numbered(folder: Path, options: OpenOptions) -> Arrangement:

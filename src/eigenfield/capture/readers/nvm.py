@@ -47,7 +47,6 @@ def read_nvm(path: Path, photographs: Path | None = None) -> Calibration:
     """Every camera of the first model as an entry; those that cannot be used become errors of their own.
 
     Args:
-        path: The file.
         photographs: Folder of the photographs, whose sizes bound the radial distortion; by default the file's own.
 
     Raises:

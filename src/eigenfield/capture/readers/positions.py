@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from eigenfield.capture.arrangement import (
     Arrangement,
-    OpenOptions,
     find_by_names,
     make_grid_layout,
     match_names,
@@ -26,6 +25,7 @@ from eigenfield.capture.arrangement import (
 from eigenfield.capture.calibration import Calibration, Entry, Intrinsics
 from eigenfield.capture.photographs.read import read_header
 from eigenfield.core.errors import CaptureError
+from eigenfield.core.open_options import OpenOptions
 
 POSITIONS_NUMBER = r"[-+]?\d{1,9}(?:\.\d{1,12})?"
 POSITIONS_NAMES = re.compile(

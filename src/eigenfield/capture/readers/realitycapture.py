@@ -43,7 +43,6 @@ def read_realitycapture(path: Path, photographs: Path | None = None) -> Calibrat
     """Every line as an entry; those that cannot be used become errors of their own.
 
     Args:
-        path: The CSV.
         photographs: Folder that holds the photographs, whose sizes the CSV does not say; by default the file's own.
 
     Raises:

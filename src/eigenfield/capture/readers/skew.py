@@ -21,8 +21,6 @@ def remove_skew(K: NDArray[np.float64], label: str, path: Path) -> tuple[NDArray
 
     Args:
         K: (3, 3) upper triangular.
-        label: Names the camera in errors.
-        path: The calibration, named in errors.
 
     Returns:
         (3, 3) K with K[0, 1] = 0 and K[2, 2] = 1, and the lens; None where s is negligible.

@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from eigenfield.capture.arrangement import (
     Arrangement,
-    OpenOptions,
     find_by_names,
     make_grid_layout,
     match_names,
@@ -26,6 +25,7 @@ from eigenfield.capture.arrangement import (
     with_measured_positions,
 )
 from eigenfield.core.errors import CaptureError
+from eigenfield.core.open_options import OpenOptions
 
 STANFORD_NUMBER = r"[-+]?\d{1,9}(?:\.\d{0,12})?"
 # "out" with or without positions; any other name only with positions that have decimals

@@ -86,9 +86,6 @@ def parse_numbers(words: Sequence[str], count: int, what: str, path: Path) -> ND
 
     Args:
         words: As a file has them; NaN and infinities are allowed.
-        count: How many there must be.
-        what: Names them in errors.
-        path: The calibration, named in errors.
 
     Returns:
         (count,) float64.
@@ -138,8 +135,6 @@ def check_rotation_vector(longest: float, label: str, path: Path) -> None:
 
     Args:
         longest: Of all vectors of the file: small angles in degrees are told by others beside them.
-        label: Names the camera.
-        path: The calibration.
     """
     if longest > ROTATION_VECTOR_MAX_LENGTH:
         raise CaptureError(

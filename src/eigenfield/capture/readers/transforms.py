@@ -142,8 +142,6 @@ class _Frame:
         own: The frame's own values.
         top: Those of the file, where the frame has none.
         top_lens_keys: Of those of the file, what looks like a lens and is not read.
-        label: Names the frame in errors.
-        path: The file, named in errors.
     """
 
     own: Mapping[str, Any]

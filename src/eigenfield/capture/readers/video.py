@@ -7,6 +7,7 @@ of interpolating it).
 
 from __future__ import annotations
 
+import os
 import re
 from collections import Counter
 from collections.abc import Iterator
@@ -21,13 +22,14 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from eigenfield.capture.arrangement import Arrangement, OpenOptions, require_photographs
+from eigenfield.capture.arrangement import Arrangement, require_photographs
 from eigenfield.capture.locate import IMAGES_FOLDER, files_named, photographs_in
 from eigenfield.capture.messages import Note, natural_key
 from eigenfield.capture.photographs.colour import COLOUR_HDR_CURVES, Profile, read_code_points
 from eigenfield.capture.photographs.kinds import VIDEO_EXTENSIONS
 from eigenfield.core.camera_names import name_key
 from eigenfield.core.errors import CaptureError, OptionError
+from eigenfield.core.open_options import OpenOptions
 from eigenfield.runtime.parallel import parallel_map
 from eigenfield.runtime.stages import Stages, stage_key
 
@@ -53,7 +55,6 @@ class Shown(NamedTuple):
     """A decoded frame.
 
     Attributes:
-        frame: As decoded.
         damaged: Whether something was made up, in it or in one before it that it may be built on.
         matrix: The AVColorSpace of its values, of an unmarked one by the rule.
         colours: The profile of its values; None for sRGB, by which SDR video is shown.
@@ -135,10 +136,10 @@ def video_identity(path: Path) -> list[Any]:
     return [str(path.resolve()), path.stat().st_size, path.stat().st_mtime_ns]
 
 
-def frames_stage(work: Path | None) -> Stages:
+def frames_stage(work: str | os.PathLike[str] | None) -> Stages:
     """Where frames are kept: a folder, or a temporary one that goes with the process, in which they are found again."""
     if work is not None:
-        return Stages(work)
+        return Stages(Path(work))
     if not _temporary or not _temporary[-1].folder.is_dir():
         _temporary.append(Stages(None))
     return _temporary[-1]
@@ -148,7 +149,6 @@ def read_frame(path: Path, frame: int | float) -> NDArray[np.uint8]:
     """One frame of a video, upright.
 
     Args:
-        path: The video.
         frame: Its index (int), or a time in seconds at which it is shown (float).
 
     Returns:

@@ -16,11 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from eigenfield.capture.arrangement import Arrangement, OpenOptions
+from eigenfield.capture.arrangement import Arrangement
 from eigenfield.capture.locate import IMAGES_FOLDER, photographs_in
 from eigenfield.capture.messages import Note
 from eigenfield.capture.readers.video import decode_video, frames_stage, to_rgb, video_identity, videos_in
 from eigenfield.core.errors import CaptureError, OptionError
+from eigenfield.core.open_options import OpenOptions
 from eigenfield.runtime.stages import stage_key
 
 WALK_FRAMES_RANGE = (3, 1000)  # that may be asked for
@@ -55,11 +56,12 @@ def find_walk(folder: Path) -> Path | None:
     return videos[0] if len(videos) == 1 and not others else None
 
 
-def parse_frames(frames: int | None) -> int | None:
-    """The number of frames that is asked for; OptionError `frames-unknown`."""
+def parse_walk_frames(frames: int | None) -> int | None:
+    """The number of frames that is asked for; OptionError `walk-frames-unknown`."""
     low, high = WALK_FRAMES_RANGE
     if frames is not None and not low <= frames <= high:
-        raise OptionError("frames-unknown", f"--frames {frames} is no number of frames", remedy=f"say {low} to {high}")
+        message = f"--walk-frames {frames} is no number of frames"
+        raise OptionError("walk-frames-unknown", message, remedy=f"say {low} to {high}")
     return frames
 
 
@@ -72,7 +74,7 @@ def read_walk(video: Path, options: OpenOptions) -> Arrangement:
     found = find_walk(video) if video.is_dir() else video
     if found is None:
         raise CaptureError("names-unknown", "does not hold one video", path=video, remedy="name the video itself")
-    count = parse_frames(options.frames)
+    count = parse_walk_frames(options.walk_frames)
 
     def build(place: Path) -> None:
         motion = _measure(found)
@@ -88,7 +90,7 @@ def read_walk(video: Path, options: OpenOptions) -> Arrangement:
     line = f"{len(files)} frames of the video are used{fewer}"
     damaged = int((place / WALK_DAMAGED_FILE).read_text())
     left_out = [f"{damaged} damaged frames of the video are left out"] if damaged else []
-    said = Note(line if options.frames else f"{line}; --frames says how many")
+    said = Note(line if options.walk_frames else f"{line}; --walk-frames says how many")
     return Arrangement("walk", files, None, (said, *left_out))
 
 

@@ -42,7 +42,6 @@ def save_calibration(
     photograph, `sparse` is left out, with a warning. Skew is refused.
 
     Args:
-        light_field: The cameras.
         folder: Made if it does not exist.
         points: Sparse points, written to `sparse/0` and to `points.ply`.
         overwrite: Replace what an earlier calibration wrote there; other files in the folder stay as they are.

@@ -22,7 +22,6 @@ def transforms_document(light_field: LightField, folder: Path, points: str | Non
     Intrinsics stand at the top where all views share them, which some readers need, else in every frame.
 
     Args:
-        light_field: The cameras.
         folder: Of the file; paths are relative to it.
         points: Name of a PLY of the sparse points in the same folder; None for none.
     """

@@ -1,0 +1,37 @@
+"""What a result that was made from a capture depends on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from eigenfield.capture.photographs.decoded import PhotographSource
+from eigenfield.capture.photoset import Capture
+from eigenfield.runtime.parallel import parallel_map
+from eigenfield.runtime.stages import file_digest
+
+
+def capture_identity(capture: Capture, of_file: Callable[[Path], Any] = file_digest) -> list[Any]:
+    """Everything that a result depends on: every file, cameras, lenses, layout.
+
+    Args:
+        of_file: What stands for a file. Default: a digest of its bytes.
+    """
+    if capture.light_field is None:
+        layout = {} if capture.layout is None else vars(capture.layout)
+        own: list[Any] = [v.tolist() if isinstance(v, np.ndarray) else v for _, v in sorted(layout.items())]
+        own += [[shot.focal, shot.width, shot.height] for shot in capture.shots]
+    else:
+        own = [
+            [view.camera.K.tolist(), view.camera.R.tolist(), view.camera.t.tolist(), str(view.lens)]
+            for view in capture.views
+        ] + ([capture.origin.tolist()] if capture.origin.any() else [])
+
+    def digest(source: PhotographSource) -> list[Any]:
+        mask = None if source.mask is None else of_file(source.mask)
+        return [source.name, of_file(source.path), mask, source.upright, source.exposure]
+
+    return [parallel_map(digest, capture.sources), own]
