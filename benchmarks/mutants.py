@@ -10,8 +10,8 @@ is missing. Some test should fail. Where none does, a test is missing, or the li
    a fork of a process that has already imported what the tests import, except the package itself.
 
 Python does not see lines of a compiled kernel: every test of a file that imports the kernel counts as running it. A
-changed kernel, or a changed constant that kernels import, makes numba compile again what the tests call. The new code
-goes to a temporary cache and takes up to a minute, so fewer such mutants are tried in the same time.
+changed kernel, or a changed constant that kernels import, makes numba compile again what the tests call. That takes up
+to a minute, so fewer such mutants are tried in the same time.
 
 A test that finds an earlier test's result in a cache does not count as running the lines that made it. What is run in
 processes that tests start is not seen either. A reader therefore looks at each survivor and at each line not run.
@@ -116,21 +116,13 @@ class _Watch:
         return {"tests": self.tests, "modules": others}
 
 
-def _kernels() -> str:
-    """The name of this state of all kernels and of what they import."""
-    with contextlib.suppress(Exception):  # another package, or a mutant of what makes the name
-        from eigenfield.runtime.jit import _cache_folder
-
-        return _cache_folder()
-    return ""
-
-
 class Tree:
     """A copy of the tree, and the process that runs tests in it."""
 
     def __init__(self, root: Path, folder: Path) -> None:
         self.folder, self.output = folder / "tree", folder / "result.json"
-        self.cache, self.changed, self.kernels = folder / "cache", folder / "changed", ""
+        self.cache = folder / "cache"  # of kernels: a folder for each state of a file of them
+        self.cache.mkdir()
         shutil.copytree(root, self.folder, ignore=shutil.ignore_patterns(*NOT_COPIED), symlinks=True)
 
     def run(self, room: str, files: list[str], chosen: list[str] | None, limit: float) -> Any:
@@ -139,7 +131,7 @@ class Tree:
         A word if it ended without a note.
         """
         self.output.unlink(missing_ok=True)
-        shutil.rmtree(self.changed, ignore_errors=True)
+        known = set(self.cache.iterdir())
         begin, late, child = time.monotonic(), False, os.fork()
         if not child:
             try:
@@ -149,10 +141,12 @@ class Tree:
         try:
             while not late and os.waitpid(child, os.WNOHANG)[0] == 0:
                 time.sleep(0.01)
-                late = time.monotonic() - begin > limit + COMPILE_SECONDS * self.changed.exists()
+                late = time.monotonic() - begin > limit + COMPILE_SECONDS * (known != set(self.cache.iterdir()))
         finally:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(child, signal.SIGKILL)  # and what its tests have started
+            for state in set(self.cache.iterdir()) - known if chosen else ():
+                shutil.rmtree(state)
         if late:
             os.waitpid(child, 0)
             return "timed out"
@@ -171,19 +165,14 @@ class Tree:
             threading.settrace(watch.trace)
         else:
             sys.dont_write_bytecode, os.environ["PYTHONDONTWRITEBYTECODE"] = True, "1"
-        kernels = _kernels()
-        if self.kernels in ("", kernels):
-            os.environ["NUMBA_CACHE_DIR"] = str(self.cache)
-        else:
-            os.environ["NUMBA_CACHE_DIR"] = str(self.changed)
-            self.changed.mkdir()
+        os.environ["NUMBA_CACHE_DIR"] = str(self.cache)
         if "numba" in sys.modules:
             sys.modules["numba"].config.reload_config()
         words = ["-q", "-m", "not slow", "-p", "no:cacheprovider", "--assert=plain", "--tb=no", *files]
         code = pytest.main(words if chosen is None else ["-x", *words], plugins=[watch])
         sys.settrace(None)
         passed = code in (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED)
-        result = {"failed": "" if passed else watch.failed or "pytest", "kernels": kernels}
+        result = {"failed": "" if passed else watch.failed or "pytest"}
         self.output.write_text(json.dumps(result | (watch.noted(self.folder) if chosen is None else {})))
 
 
@@ -218,7 +207,6 @@ class Room:
             if isinstance(result, str):
                 say(f"{file}: {result}, left out")
                 continue
-            tree.kernels = result["kernels"]
             for module in result["modules"]:  # the next processes have them from the start
                 with contextlib.suppress(Exception), warnings.catch_warnings(action="ignore"):
                     importlib.import_module(module)
@@ -271,11 +259,10 @@ def main(arguments: list[str] | None = None) -> int:
                 continue
             file = tree.folder / "src" / mutation.path
             source = file.read_bytes()
-            kept = file.rename(tree.folder / "kept")  # with its time, on which the name of the kernels' cache depends
             file.write_bytes(mutation.apply(source))
             files = list(dict.fromkeys(test.split("::")[0] for test in chosen))
             result = tree.run(room.name, files, chosen, START_SECONDS + SLOWER * room.sum(chosen))
-            kept.replace(file)
+            file.write_bytes(source)
             failed = result if isinstance(result, str) else result["failed"]
             verdict = "survived" if not failed else failed if failed == "timed out" else "killed"
             counts[verdict] += 1
