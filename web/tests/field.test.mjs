@@ -158,6 +158,9 @@ test("other sheets take the place of the first", () => {
   assert.deepEqual(drawing.geometry.boundingBox.min.toArray(), [4, 0, -1]); // it is left out of view as they would be
   field.setGeometry(next);
   assert.equal(next.groups.length, 4);
+  assert.throws(() => field.setGeometry(makeGeometry(0, 4)), /the sheets have 3 triangles, the mesh has 4/);
+  assert.throws(() => field.setGeometry(makeGeometry(0, 3).setIndex(null)), TypeError);
+  assert.equal(field.mesh.geometry, next);
 });
 
 test("a source fills the same textures again, frame by frame", async () => {

@@ -22,7 +22,7 @@ export function readSheets(value: Value<SheetsJson>, viewOf: ViewReader): Sheets
 }
 
 /** Raises SceneError `damaged` unless the sheets divide the mesh, without a vertex in two of them. */
-export function checkSheets({ faces, where }: Sheets, { index, attributes }: BufferGeometry): void {
+export function checkSheets({ faces, where }: Omit<Sheets, "opacity">, { index, attributes }: BufferGeometry): void {
   const total = faces.reduce((a, b) => a + b, 0);
   const triangles = (index?.count ?? 0) / 3;
   if (total !== triangles) {

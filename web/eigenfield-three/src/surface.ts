@@ -5,6 +5,7 @@ import { medianFootprint } from "./footprint.js";
 import type { CaptureCamera } from "./info.js";
 import { makeMaterial, type SurfaceMaterial } from "./material.js";
 import { SheetStack } from "./sheet-stack.js";
+import { checkSheets } from "./sheets.js";
 
 /** Called before each draw of a mesh. */
 type Prepare = (renderer: WebGLRenderer, camera: Camera, mesh: Mesh) => void;
@@ -49,10 +50,18 @@ export class Surface {
     return this.stack?.bytes ?? 0;
   }
 
-  /** Another shape, or the same one whose vertices have moved. `faces`: of each sheet; as many as before unless said. */
+  /** Another shape, or the same one whose vertices have moved. `faces`: of each sheet; as many as before unless said.
+   * Raises TypeError, or SceneError `damaged` unless the sheets divide it. */
   setGeometry(geometry: BufferGeometry, faces = this.faces): void {
     const before = this.geometry;
-    if (before !== geometry) before.dispose();
+    if (before !== geometry) {
+      const { index, attributes } = geometry;
+      if (!index || !attributes["position"] || !attributes["uv"]) {
+        throw new TypeError("A surface needs position, uv and an index.");
+      }
+      if (this.stack && faces) checkSheets({ faces, where: "the geometry" }, geometry);
+      before.dispose();
+    }
     for (const mesh of this.meshes) mesh.geometry = geometry;
     geometry.boundingBox = geometry.boundingSphere = null; // three.js makes them anew
     this.faces = faces;

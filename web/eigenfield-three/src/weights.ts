@@ -1,5 +1,5 @@
-// View weights: how much of each encoded camera a viewpoint takes. The rules of eigenfield/rendering/weights.py, with
-// the triangles in bins so that whole maps of weights are quick.
+// Equation 7: view weights, how much of each encoded camera a viewpoint takes. The rules of
+// eigenfield/rendering/weights.py, with the triangles in bins so that whole maps of weights are quick.
 
 import { findGrid, type Grid } from "./grid.js";
 
