@@ -97,7 +97,9 @@ def expected_cost(capture: Capture, options: EncodeOptions, settings: Mapping[st
 
     Args:
         capture: Photographs, with or without cameras.
+        options: Of the scene.
         settings: The arguments of `reconstruct`; None: the proxy is given.
+        threads: Number of threads.
     """
     sizes, share = capture.sizes, threads**-THREADS_POWER
     pixels = float(sum(width * height for width, height in sizes))
