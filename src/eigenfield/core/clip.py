@@ -48,7 +48,7 @@ class Timeline:
     @property
     def times(self) -> NDArray[np.float64]:
         """(frames,) in seconds."""
-        return self.first + np.arange(self.frames) * (self.rate.denominator / self.rate.numerator)
+        return self.first + np.arange(self.frames, dtype=np.float64) * (self.rate.denominator / self.rate.numerator)
 
     def frame_at(self, time: float) -> int:
         """The number of the frame that is nearest to a time in seconds. OptionError `time`, more than half a frame
@@ -137,20 +137,6 @@ class GroupSource(Protocol):
 
     def group(self, index: int) -> Group:
         """A group by its number."""
-
-
-@dataclass(frozen=True, eq=False)
-class GroupsInMemory:
-    """Groups that are decoded already."""
-
-    groups: tuple[Group, ...]
-
-    @property
-    def lengths(self) -> Sequence[int]:
-        return [len(group.frames) for group in self.groups]
-
-    def group(self, index: int) -> Group:
-        return self.groups[index]
 
 
 @dataclass(frozen=True, eq=False)
