@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
 
-from eigenfield.core.clip import Clip, Frame, Group, GroupsInMemory, Timeline
+from eigenfield.core.clip import Clip, Frame, Group, Timeline
 from eigenfield.core.errors import OptionError
 from eigenfield.core.payloads import Payload, Payloads, mesh_key
 from support.scenes import tiny_scene
@@ -17,6 +18,20 @@ from support.soft_scenes import soft_scene
 SCENE = tiny_scene()
 PLANE = SCENE.appearance.planes[0]
 BASIS = PLANE.bases[0]
+
+
+@dataclass(frozen=True, eq=False)
+class GroupsInMemory:
+    """Groups that are decoded already."""
+
+    groups: tuple[Group, ...]
+
+    @property
+    def lengths(self) -> Sequence[int]:
+        return [len(group.frames) for group in self.groups]
+
+    def group(self, index: int) -> Group:
+        return self.groups[index]
 
 
 def frame(level: float, **more) -> Frame:

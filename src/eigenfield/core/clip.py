@@ -140,20 +140,6 @@ class GroupSource(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class GroupsInMemory:
-    """Groups that are decoded already."""
-
-    groups: tuple[Group, ...]
-
-    @property
-    def lengths(self) -> Sequence[int]:
-        return [len(group.frames) for group in self.groups]
-
-    def group(self, index: int) -> Group:
-        return self.groups[index]
-
-
-@dataclass(frozen=True, eq=False)
 class Clip:
     """A scene that changes with time, seen by cameras that stand still.
 
