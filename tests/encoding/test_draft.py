@@ -88,10 +88,11 @@ def test_what_is_named_in_pixels_or_by_photographs_stays_with_the_scene(array, m
         raise ProxyError("surface-empty", "stopped", remedy="")
 
     monkeypatch.setattr(drafts, "reconstruct", note_and_stop)
-    given = SurfaceOptions(surface="layers", fit_spheres=("a.png:1,2,3,4",), hold_out="every:4", blind="every:4")
-    with pytest.raises(ProxyError):
-        make_draft(open_any(array), None, ef.EncodeOptions(hold_out="every:4"), given)
-    assert asked == [SurfaceOptions(layers=1, triangles=drafts.DRAFT_TRIANGLES)]
+    for named in ({"surface": "layers"}, {"fit_spheres": ("a.png:1,2,3,4",)}):
+        given = SurfaceOptions(**named, hold_out="every:4", blind="every:4")
+        with pytest.raises(ProxyError):
+            make_draft(open_any(array), None, ef.EncodeOptions(hold_out="every:4"), given)
+    assert asked == 2 * [SurfaceOptions(layers=1, triangles=drafts.DRAFT_TRIANGLES)]
 
 
 def test_the_command_writes_a_draft_and_says_what_it_is(row, tmp_path, worth_it, monkeypatch, capsys):
