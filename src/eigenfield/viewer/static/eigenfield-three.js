@@ -67,7 +67,7 @@ function ve(e, t) {
 			0
 		]),
 		...N("colr", [
-			...F("nclx"),
+			...be("nclx"),
 			0,
 			2,
 			0,
@@ -77,15 +77,15 @@ function ve(e, t) {
 			128
 		])
 	]), c = N("ftyp", [
-		...F("avif"),
+		...be("avif"),
 		...P(0),
-		...F("avifmif1miafMA1B")
+		...be("avifmif1miafMA1B")
 	]), l = (t) => N("meta", [
 		...P(0),
 		...N("hdlr", [
 			...P(0),
 			...P(0),
-			...F("pict"),
+			...be("pict"),
 			...Array(13).fill(0)
 		]),
 		...N("pitm", [
@@ -121,7 +121,7 @@ function ve(e, t) {
 				1,
 				0,
 				0,
-				...F("av01"),
+				...be("av01"),
 				0
 			])
 		]),
@@ -140,7 +140,7 @@ function ve(e, t) {
 		...c,
 		...l(u),
 		...P(8 + e.byteLength),
-		...F("mdat")
+		...be("mdat")
 	], f = new Uint8Array(u + e.byteLength);
 	return f.set(d), f.set(new Uint8Array(e), u), f.buffer;
 }
@@ -165,7 +165,7 @@ function ye(e, t) {
 function N(e, t) {
 	return [
 		...P(8 + t.length),
-		...F(e),
+		...be(e),
 		...t
 	];
 }
@@ -177,11 +177,11 @@ function P(e) {
 		0
 	].map((t) => e >>> t & 255);
 }
-function F(e) {
+function be(e) {
 	return Array.from(e, (e) => e.charCodeAt(0));
 }
 // eigenfield-three/src/inflate.ts
-async function be(e, t, n, r) {
+async function xe(e, t, n, r) {
 	let i = [], a = 0, o = new Blob([e]).stream().pipeThrough(new DecompressionStream(t)).getReader();
 	try {
 		for (let e = await o.read(); !e.done && a <= n; e = await o.read()) i.push(e.value), a += e.value.length;
@@ -194,11 +194,11 @@ async function be(e, t, n, r) {
 	return s;
 }
 // eigenfield-three/src/limits.ts
-var xe = "EIGENFIELD_eigen_textures", Se = 64 * 2 ** 20, I = 16384, Ce = 16384, we = 1024, Te = 2 ** 27, Ee = 4096, De = 8 * 2 ** 30, L = 1e5, Oe = 65535, ke = 2 ** 29, R = 1024, Ae = 2 ** 25, je = 2 ** 26, Me = 2 ** 27, Ne = 2 ** 28, Pe = 1e30, z = 65536, Fe = 126, B = 64, Ie = 0, Le = 1, Re = 2, ze = 24, Be = 44, Ve = 21, He = 26214, Ue = 4, We = Float64Array.from({ length: 4095 }, (e, t) => Math.round(z / (1 + Math.exp((2047 - t) / 256)))), Ge = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), Ke = Float64Array.from({ length: 127 }, (e, t) => Math.round(z / (t + 1.5)));
-function V(e) {
-	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + V(Math.floor(e / 4294967296));
+var Se = "EIGENFIELD_eigen_textures", Ce = 64 * 2 ** 20, F = 16384, we = 16384, Te = 1024, Ee = 2 ** 27, De = 4096, Oe = 8 * 2 ** 30, I = 1e5, ke = 65535, Ae = 2 ** 29, L = 1024, je = 2 ** 25, Me = 2 ** 26, Ne = 2 ** 27, Pe = 2 ** 28, Fe = 1e30, R = 65536, Ie = 126, z = 64, Le = 0, Re = 1, ze = 2, Be = 24, Ve = 44, He = 21, Ue = 26214, We = 4, Ge = Float64Array.from({ length: 4095 }, (e, t) => Math.round(R / (1 + Math.exp((2047 - t) / 256)))), Ke = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), qe = Float64Array.from({ length: 127 }, (e, t) => Math.round(R / (t + 1.5)));
+function B(e) {
+	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + B(Math.floor(e / 4294967296));
 }
-var qe = class {
+var Je = class {
 	bytes;
 	low = 0;
 	high = 4294967295;
@@ -208,49 +208,49 @@ var qe = class {
 	seen;
 	weights;
 	constructor(e, t, n) {
-		this.bytes = e, this.probability = new Uint16Array(t * B).fill(z / 2), this.seen = new Uint8Array(t * B), this.weights = new Float64Array(n * B * 3).fill(He);
-		for (let e = 0; e < Ue; e++) this.code = this.code * 256 + this.next();
+		this.bytes = e, this.probability = new Uint16Array(t * z).fill(R / 2), this.seen = new Uint8Array(t * z), this.weights = new Float64Array(n * z * 3).fill(Ue);
+		for (let e = 0; e < We; e++) this.code = this.code * 256 + this.next();
 	}
 	checkEnd(e) {
-		if (this.at > this.bytes.length + Ue) throw ue(e);
+		if (this.at > this.bytes.length + We) throw ue(e);
 	}
 	flag(e, t, n, r) {
 		return this.node(e, t, n, r, 0) === 1;
 	}
 	raw(e) {
 		let t = 0;
-		for (let n = 0; n < e; n++) t = t * 2 + this.split(z / 2);
+		for (let n = 0; n < e; n++) t = t * 2 + this.split(R / 2);
 		return t;
 	}
 	integer(e, t, n, r) {
 		let i = this.magnitude(e, t, n, r);
-		return i === 0 ? 0 : this.node(e, t, n, r, Le) ? -i : i;
+		return i === 0 ? 0 : this.node(e, t, n, r, Re) ? -i : i;
 	}
 	magnitude(e, t, n, r) {
-		if (!this.node(e, t, n, r, Ie)) return 0;
+		if (!this.node(e, t, n, r, Le)) return 0;
 		let i = 0;
-		for (; i < Ve && this.node(e, t, n, r, Re + i);) i += 1;
+		for (; i < He && this.node(e, t, n, r, ze + i);) i += 1;
 		if (i < 2) return i + 1;
 		let a = 1;
 		for (let o = i - 2; o >= 0; o--) {
 			let s;
-			s = o === i - 2 ? this.node(e, t, n, r, ze + i) : o === i - 3 ? this.node(e, t, n, r, Be + 2 * Math.min(i, 9) + (a & 1)) : this.split(z / 2), a = a * 2 + s;
+			s = o === i - 2 ? this.node(e, t, n, r, Be + i) : o === i - 3 ? this.node(e, t, n, r, Ve + 2 * Math.min(i, 9) + (a & 1)) : this.split(R / 2), a = a * 2 + s;
 		}
 		return a + 1;
 	}
 	node(e, t, n, r, i) {
-		return this.bit(e * B + i, t * B + i, n * B + i, (r * B + i) * 3);
+		return this.bit(e * z + i, t * z + i, n * z + i, (r * z + i) * 3);
 	}
 	bit(e, t, n, r) {
-		let { probability: i, weights: a } = this, o = Ge[i[e] >> 4], s = Ge[i[t] >> 4], c = Ge[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / z), u = We[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? z - u : -u;
+		let { probability: i, weights: a } = this, o = Ke[i[e] >> 4], s = Ke[i[t] >> 4], c = Ke[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / R), u = Ge[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? R - u : -u;
 		return a[r] += o * f >> 14, a[r + 1] += s * f >> 14, a[r + 2] += c * f >> 14, this.learn(e, d), this.learn(t, d), this.learn(n, d), d;
 	}
 	learn(e, t) {
 		let [n, r] = [this.probability[e], this.seen[e]];
-		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * Ke[r] / z), r < Fe && (this.seen[e] = r + 1);
+		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * qe[r] / R), r < Ie && (this.seen[e] = r + 1);
 	}
 	split(e) {
-		let t = this.low + Math.floor((this.high - this.low) * e / z), n = +(this.code <= t);
+		let t = this.low + Math.floor((this.high - this.low) * e / R), n = +(this.code <= t);
 		for (n ? this.high = t : this.low = t + 1; !((this.low ^ this.high) >>> 24);) this.low = this.low << 8 >>> 0, this.high = (this.high << 8 | 255) >>> 0, this.code = (this.code << 8 | this.next()) >>> 0;
 		return n;
 	}
@@ -258,26 +258,26 @@ var qe = class {
 		return this.bytes[this.at++] ?? 0;
 	}
 };
-function Je(e, t, n, r = 1) {
+function Ye(e, t, n, r = 1) {
 	if (e.length < t) throw ue(n);
 	if (e[0] !== r) throw M(n, `coded numbers of version ${e[0]}`);
 	return new DataView(e.buffer, e.byteOffset, e.byteLength);
 }
-function Ye(e, t, n, r) {
+function Xe(e, t, n, r) {
 	if (t > n || t > 16 * e.length + 1024) throw M(r, `${t} numbers announced`);
 }
 // eigenfield-three/src/table-decoder.ts
-var Xe = 12, Ze = 3, Qe = 312, $e = Ze * Qe, et = 938, tt = 24, nt = 16, rt = 1722, it = 1726, at = 4, ot = 5;
-function st(e) {
-	return new qe(e, it, 21);
-}
-function ct(e) {
-	return e.flag($e, $e, $e, Ze) ? 2 : +!!e.flag(937, 937, 937, Ze);
-}
+var Ze = 12, Qe = 1, $e = 3, et = 312, tt = $e * et, nt = 938, rt = 24, it = 16, at = 1722, ot = 1726, st = 4, ct = 5;
 function lt(e) {
-	return Math.min(V(e), 11);
+	return new Je(e, ot, 21);
 }
-function ut(e, t, n, r) {
+function ut(e) {
+	return e.flag(tt, tt, tt, $e) ? 2 : e.flag(937, 937, 937, $e) ? Qe : 0;
+}
+function dt(e) {
+	return Math.min(B(e), 11);
+}
+function ft(e, t, n, r) {
 	let i = new Float64Array(n.length), a = n.length / t, o = (e, n, r) => n < 0 || r < 0 || r >= t ? 0 : e[n * t + r], s = 0;
 	for (let c = 0; c < a; c++) for (let a = 0; a < t; a++) {
 		let [l, u] = [o(i, c, a - 1), o(i, c - 1, a)], [d, f] = [o(i, c - 1, a - 1), o(i, c - 1, a + 1)], [p, m, h] = [
@@ -285,32 +285,32 @@ function ut(e, t, n, r) {
 			0,
 			s
 		];
-		r === 1 ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
-		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * Qe, y = e.integer(v + lt(m) * Xe + lt(g), v + 144 + lt(m + h), v + 144 + 24 + _ * Xe + lt(g + Math.abs(l)), r);
+		r === Qe ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
+		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * et, y = e.integer(v + dt(m) * Ze + dt(g), v + 144 + dt(m + h), v + 144 + 24 + _ * Ze + dt(g + Math.abs(l)), r);
 		i[c * t + a] = p + y, s = Math.abs(y);
 	}
 	return i;
 }
-function dt(e, t, n, r) {
+function pt(e, t, n, r) {
 	let i = new Float64Array(t * n), a = new Float64Array(n);
 	for (let o = 0; o < t; o++) {
 		let t = 0;
 		for (let s = 0; s < n; s++) {
-			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(V(a[s]), 23), d = Math.min(V(t), 23), f = e.integer(et + l * tt + u, et + (nt + l) * tt + d, 1706 + l, ot + l);
+			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(B(a[s]), 23), d = Math.min(B(t), 23), f = e.integer(nt + l * rt + u, nt + (it + l) * rt + d, 1706 + l, ct + l);
 			i[o * n + s] = c + f, t = Math.abs(f), a[s] = Math.floor((a[s] + t + 1) / 2);
 		}
 	}
 	return i;
 }
-function ft(e, t, n, r) {
+function mt(e, t, n, r) {
 	let i = new Float64Array(t).fill(-1), a = new Uint8Array(n), [o, s, c] = [
 		0,
 		1,
 		0
 	];
 	for (let l = 0; l < t; l++) {
-		if (s = +!!e.flag(rt + s, rt + s, 1724, at), !s) continue;
-		let t = o + e.integer(1725, 1725, 1725, at);
+		if (s = +!!e.flag(at + s, at + s, 1724, st), !s) continue;
+		let t = o + e.integer(1725, 1725, 1725, st);
 		if (!(t >= 0 && t < n) || a[t]) throw M(r, "a grid with a camera out of place");
 		a[t] = 1, i[l] = t, o = t + 1, c += 1;
 	}
@@ -318,20 +318,20 @@ function ft(e, t, n, r) {
 	return i;
 }
 // eigenfield-three/src/camera-decoder.ts
-var pt = 130, H = 11, mt = 1, ht = 2, gt = 2, _t = 44 * L + 1024;
-async function vt(e, t) {
-	if (e[0] !== gt) throw M(t, `version ${e[0]}`);
-	let n = await be(Uint8Array.from(e.subarray(1)), "deflate-raw", _t, t);
-	return yt(Uint8Array.from([1, ...n]), t);
+var ht = 130, V = 11, gt = 1, _t = 2, vt = 2, yt = 44 * I + 1024;
+async function bt(e, t) {
+	if (e[0] !== vt) throw M(t, `version ${e[0]}`);
+	let n = await xe(Uint8Array.from(e.subarray(1)), "deflate-raw", yt, t);
+	return xt(Uint8Array.from([1, ...n]), t);
 }
-function yt(e, t) {
-	let n = Je(e, pt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & mt) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
+function xt(e, t) {
+	let n = Ye(e, ht, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & gt) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
 	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw M(t, "cameras that cannot be");
 	if (i > 1e5 || a && o * s < i) throw M(t, `${i} cameras`);
-	Ye(e, Math.max(H * i, o * s), H * L, t);
-	let l = pt + (a ? 132 : 0);
-	Je(e, l, t);
-	let u = (e, t) => a ? n.getFloat32(pt + 4 * (e * H + t), !0) : 0, d = st(e.subarray(l)), f = a ? ft(d, o * s, i, t) : null, p = dt(d, i, H, (r & ht) !== 0);
+	Xe(e, Math.max(V * i, o * s), V * I, t);
+	let l = ht + (a ? 132 : 0);
+	Ye(e, l, t);
+	let u = (e, t) => a ? n.getFloat32(ht + 4 * (e * V + t), !0) : 0, d = lt(e.subarray(l)), f = a ? mt(d, o * s, i, t) : null, p = pt(d, i, V, (r & _t) !== 0);
 	d.checkEnd(t);
 	let m = {
 		intrinsics: new Float32Array(5 * i),
@@ -342,27 +342,27 @@ function yt(e, t) {
 		0,
 		0,
 		...c.subarray(12)
-	], g = xt(c[3], c[4], c[5], c[6]), _ = new Float64Array(H), v = 0;
+	], g = Ct(c[3], c[4], c[5], c[6]), _ = new Float64Array(V), v = 0;
 	for (let e = 0; e < (f ? f.length : i); e++) {
 		let t = f ? f[e] : e;
 		if (t < 0) continue;
 		let [n, r] = f ? [Math.floor(e / s), e % s] : [0, 0];
-		for (let e = 0; e < H; e++) {
+		for (let e = 0; e < V; e++) {
 			let t = c[e < 5 ? 0 : e < 8 ? 1 : 2], i = u(0, e) + u(1, e) * n + u(2, e) * r;
-			_[e] = p[v * H + e] * t + h[e] + i;
+			_[e] = p[v * V + e] * t + h[e] + i;
 		}
-		bt(_, g, m, t), v += 1;
+		St(_, g, m, t), v += 1;
 	}
 	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw M(t, "cameras that are not finite");
 	return m;
 }
-function bt(e, t, n, r) {
+function St(e, t, n, r) {
 	n.intrinsics.set(e.subarray(0, 5), 5 * r);
 	let [i, a, o] = [
 		e[5],
 		e[6],
 		e[7]
-	], s = i * i + a * a + o * o, c = 1 + s, l = xt(2 * i / c, 2 * a / c, 2 * o / c, (1 - s) / c);
+	], s = i * i + a * a + o * o, c = 1 + s, l = Ct(2 * i / c, 2 * a / c, 2 * o / c, (1 - s) / c);
 	for (let i = 0; i < 3; i++) {
 		let a = 0;
 		for (let o = 0; o < 3; o++) {
@@ -373,7 +373,7 @@ function bt(e, t, n, r) {
 		n.poses[12 * r + 4 * i + 3] = a;
 	}
 }
-function xt(e, t, n, r) {
+function Ct(e, t, n, r) {
 	return [
 		[
 			1 - 2 * (t * t + n * n),
@@ -392,7 +392,8 @@ function xt(e, t, n, r) {
 		]
 	].flat();
 }
-var St = 2 ** 24, Ct = class {
+// eigenfield-three/src/mesh-front.ts
+var wt = 0, Tt = 2 ** 24, Et = class {
 	points;
 	start;
 	end;
@@ -430,8 +431,8 @@ var St = 2 ** 24, Ct = class {
 	}
 	closeLeft(e) {
 		let [t, n] = [this.before[e], this.after[e]], r = this.start[t];
-		if (this.status[e] = this.status[t] = 0, this.status[n] === 1 && this.end[n] === r && n !== t) {
-			this.status[n] = 0, this.link(this.before[t], this.after[n]);
+		if (this.status[e] = this.status[t] = wt, this.status[n] === 1 && this.end[n] === r && n !== t) {
+			this.status[n] = wt, this.link(this.before[t], this.after[n]);
 			return;
 		}
 		let i = this.before[t], a = this.add(r, this.end[e], this.start[e]);
@@ -439,7 +440,7 @@ var St = 2 ** 24, Ct = class {
 	}
 	closeRight(e) {
 		let [t, n] = [this.before[e], this.after[e]];
-		this.status[e] = this.status[n] = 0;
+		this.status[e] = this.status[n] = wt;
 		let r = this.after[n], i = this.add(this.start[e], this.end[n], this.end[e]);
 		this.link(t, i), this.link(i, r);
 	}
@@ -449,9 +450,9 @@ var St = 2 ** 24, Ct = class {
 			this.after[e],
 			this.into[t]
 		];
-		this.status[e] = 0;
+		this.status[e] = wt;
 		let a = this.add(this.start[e], t, this.end[e]), o = this.add(t, this.end[e], this.start[e]);
-		i >= 0 && this.status[i] !== 0 ? (this.link(a, this.after[i]), this.link(i, o)) : this.link(a, o), this.link(n, a), this.link(o, r), this.into[t] = a;
+		i >= 0 && this.status[i] !== wt ? (this.link(a, this.after[i]), this.link(i, o)) : this.link(a, o), this.link(n, a), this.link(o, r), this.into[t] = a;
 	}
 	link(e, t) {
 		this.after[e] = t, this.before[t] = e;
@@ -459,7 +460,7 @@ var St = 2 ** 24, Ct = class {
 	add(e, t, n) {
 		let { heap: r, key: i, points: a } = this, o = this.gates++;
 		this.start[o] = e, this.end[o] = t, this.opposite[o] = n, this.status[o] = 1, this.into[t] = o;
-		let s = (a[3 * e] + a[3 * t]) * St + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
+		let s = (a[3 * e] + a[3 * t]) * Tt + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
 		for (; c > 0;) {
 			let e = c - 1 >> 1;
 			if (i[e] <= s) break;
@@ -467,57 +468,57 @@ var St = 2 ** 24, Ct = class {
 		}
 		return r[c] = o, i[c] = s, o;
 	}
-}, wt = 2 ** 20, Tt = .8, Et = 44, Dt = 385, Ot = 897, kt = 1086, At = 1095, [jt, Mt, Nt, Pt, Ft] = [
+}, Dt = 2 ** 20, Ot = .8, kt = 44, At = 385, jt = 897, Mt = 1086, Nt = 1095, [Pt, Ft, It, Lt, Rt] = [
 	0,
 	1,
 	2,
 	3,
 	15
 ];
-function It(e) {
-	return Math.floor(Math.min(Math.max(e, -wt), wt) + .5);
+function zt(e) {
+	return Math.floor(Math.min(Math.max(e, -Dt), Dt) + .5);
 }
-function Lt(e, t, n) {
+function Bt(e, t, n) {
 	let r = Math.max((1 << n) - 1, 1);
 	return (e[3 * t] & r ? 1 : 0) + (e[3 * t + 1] & r ? 2 : 0);
 }
-function Rt(e, t, n, r, i) {
-	i.flat ? zt(e, t, n, r, i.fine) : Bt(e, t, n, r);
+function Vt(e, t, n, r, i) {
+	i.flat ? Ht(e, t, n, r, i.fine) : Ut(e, t, n, r);
 }
-function zt(e, t, n, r, i) {
+function Ht(e, t, n, r, i) {
 	let { a, b: o, o: s, pair: c } = r, [l, u, d, f] = [
 		t[3 * a],
 		t[3 * a + 1],
 		t[3 * o],
 		t[3 * o + 1]
-	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? Tt : -.8, _ = 1 << i >> 1, v = It((l + d) * .5 + g * m) + _ >> i, y = It((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(V(Math.floor((p * p + m * m) / b)), 23), S = Math.min(V(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, jt), T = Math.min(V(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(Dt + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, Mt);
+	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? Ot : -.8, _ = 1 << i >> 1, v = zt((l + d) * .5 + g * m) + _ >> i, y = zt((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(B(Math.floor((p * p + m * m) / b)), 23), S = Math.min(B(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, Pt), T = Math.min(B(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(At + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, Ft);
 	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + O << i, i === 0) return;
-	let k = Lt(t, a, i) + 4 * Lt(t, o, i);
-	if (e.flag(Ot + k, 913 + Lt(t, s, i), 917 + c, Ft)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
+	let k = Bt(t, a, i) + 4 * Bt(t, o, i);
+	if (e.flag(jt + k, 913 + Bt(t, s, i), 917 + c, Rt)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
 }
-function Bt(e, t, n, { a: r, b: i, o: a }) {
+function Ut(e, t, n, { a: r, b: i, o: a }) {
 	let o = 0;
 	for (let e = 0; e < 3; e++) o += (t[3 * i + e] - t[3 * r + e]) ** 2;
-	let s = Math.min(V(o), 43), c = 0;
+	let s = Math.min(B(o), 43), c = 0;
 	for (let o = 0; o < 3; o++) {
-		let l = It(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, Et + o * 24 + c, 116 + o * Et + s, Nt);
-		t[3 * n + o] = l + u, c = Math.min(V(Math.abs(u)), 23);
+		let l = zt(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, kt + o * 24 + c, 116 + o * kt + s, It);
+		t[3 * n + o] = l + u, c = Math.min(B(Math.abs(u)), 23);
 	}
 }
-function Vt(e, t, n, r, i) {
+function Wt(e, t, n, r, i) {
 	for (let a = 0; a < (i ? 2 : 3); a++) {
-		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -wt), wt) : 0, o = kt + a;
-		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, Pt);
+		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -Dt), Dt) : 0, o = Mt + a;
+		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, Lt);
 	}
 }
 // eigenfield-three/src/mesh-faces.ts
-var Ht = 13, Ut = 11, Wt = 12, U = 169, Gt = 8, Kt = At, qt = Kt + U + 104 + 26, Jt = qt + U + 104 + Ht, Yt = Jt + 64 + 64 + U, Xt = Yt + U + 4 + 1, Zt = Xt + 6, [Qt, $t, en, tn, nn] = [
+var Gt = 13, Kt = 11, qt = 12, H = 169, Jt = 8, Yt = Nt, Xt = Yt + H + 104 + 26, Zt = Xt + H + 104 + Gt, Qt = Zt + 64 + 64 + H, $t = Qt + H + 4 + 1, en = $t + 6, [tn, nn, rn, an, on] = [
 	4,
 	5,
 	6,
 	7,
 	8
-], rn = [
+], sn = [
 	-1,
 	-.4,
 	0,
@@ -528,12 +529,12 @@ var Ht = 13, Ut = 11, Wt = 12, U = 169, Gt = 8, Kt = At, qt = Kt + U + 104 + 26,
 	2,
 	4
 ];
-function an(e, t, n, r, i) {
+function cn(e, t, n, r, i) {
 	let a = new Int32Array(3 * t), o = {
 		points: a,
 		faces: new Int32Array(3 * n),
 		parents: new Int32Array(3 * t).fill(-1)
-	}, s = new Int32Array(t), c = new Ct(a, n), [l, u] = [0, 0], d = (e, t, n) => {
+	}, s = new Int32Array(t), c = new Et(a, n), [l, u] = [0, 0], d = (e, t, n) => {
 		o.faces.set([
 			e,
 			t,
@@ -548,7 +549,7 @@ function an(e, t, n, r, i) {
 		if (l >= t) throw M(i, "more places than announced");
 		return l++;
 	}, p = () => {
-		let t = e.raw(V(l - 1));
+		let t = e.raw(B(l - 1));
 		if (t >= l) throw M(i, "a place that is not there yet");
 		return t;
 	}, m = () => {
@@ -557,44 +558,44 @@ function an(e, t, n, r, i) {
 			-1,
 			-1
 		];
-		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(Xt + n, Xt + 3 + n, Xt + n, nn)) t[n] = p();
+		for (let n = 0; n < 3; n++) if (l > 0 && e.flag($t + n, $t + 3 + n, $t + n, on)) t[n] = p();
 		else {
 			let i = t[n] = f();
-			Vt(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
+			Wt(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
 		}
 		let [n, o, s] = t;
 		if (n === o || o === s || s === n) throw M(i, "a face of two corners");
 		d(n, o, s), c.seed(t);
-	}, h = (e, t, n, i) => c.status[t] === 2 ? Wt : c.status[t] !== 1 || n === i || t === e ? Ut : on(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
+	}, h = (e, t, n, i) => c.status[t] === 2 ? qt : c.status[t] !== 1 || n === i || t === e ? Kt : ln(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
 	for (; u < n;) {
 		let t = c.next();
 		if (t < 0) {
 			m();
 			continue;
 		}
-		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * Ht + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = Kt + U + 104 + 2 * y + +(_ === v);
-		if (y < Ut && e.flag(Kt + x, Kt + U + y * Gt + S, w, Qt)) {
+		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * Gt + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = Yt + H + 104 + 2 * y + +(_ === v);
+		if (y < Kt && e.flag(Yt + x, Yt + H + y * Jt + S, w, tn)) {
 			d(l, n, _), c.closeLeft(t);
 			continue;
 		}
-		if (b < Ut && (v !== _ || y >= Ut) && e.flag(qt + x, qt + U + b * Gt + C, qt + U + 104 + b, $t)) {
+		if (b < Kt && (v !== _ || y >= Kt) && e.flag(Xt + x, Xt + H + b * Jt + C, Xt + H + 104 + b, nn)) {
 			d(l, n, v), c.closeRight(t);
 			continue;
 		}
-		let T = +(y === Wt) + (b === Wt ? 2 : 0), E = Lt(a, n, r.fine) + 4 * Lt(a, l, r.fine), ee = Jt + 64 + S * Gt + C;
-		if (e.flag(Jt + T * 16 + E, ee, Jt + 64 + 64 + x, en)) {
+		let T = +(y === qt) + (b === qt ? 2 : 0), E = Bt(a, n, r.fine) + 4 * Bt(a, l, r.fine), ee = Zt + 64 + S * Jt + C;
+		if (e.flag(Zt + T * 16 + E, ee, Zt + 64 + 64 + x, rn)) {
 			c.status[t] = 2;
 			continue;
 		}
 		let D;
-		if (e.flag(Yt + x, Yt + U + T, Yt + U + 4, tn)) {
+		if (e.flag(Qt + x, Qt + H + T, Qt + H + 4, an)) {
 			D = f();
 			let i = c.opposite[t];
 			o.parents.set([
 				n,
 				l,
 				i
-			], 3 * D), Rt(e, a, D, {
+			], 3 * D), Vt(e, a, D, {
 				a: n,
 				b: l,
 				o: i,
@@ -606,7 +607,7 @@ function an(e, t, n, r, i) {
 	if (l !== t) throw M(i, "fewer places than announced");
 	return o;
 }
-function on(e, t, n, r, i, a) {
+function ln(e, t, n, r, i, a) {
 	let o = (n, r) => a && r === 2 ? 0 : e[3 * n + r] - e[3 * t + r], [s, c, l] = [
 		o(n, 0),
 		o(n, 1),
@@ -629,21 +630,21 @@ function on(e, t, n, r, i, a) {
 		s * m - c * p
 	], S = Math.sqrt(g * g + _ * _ + v * v);
 	if (S === 0 || g * y + _ * b + v * x > 0) return 0;
-	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = rn.findIndex((e) => C < e);
+	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = sn.findIndex((e) => C < e);
 	return w < 0 ? 10 : w + 1;
 }
 // eigenfield-three/src/mesh-corners.ts
-var sn = 32, cn = 4, [ln, un, dn, fn] = [
+var un = 32, dn = 4, [fn, pn, mn, hn] = [
 	0,
 	1,
 	2,
 	3
-], pn = Zt, mn = pn + 64 + 12 + 16, W = mn + cn + 1, hn = W + 4, [gn, _n, vn] = [
+], gn = en, _n = gn + 64 + 12 + 16, U = _n + dn + 1, vn = U + 4, [yn, bn, xn] = [
 	9,
 	10,
 	11
 ];
-function yn(e, t) {
+function Sn(e, t) {
 	let n = new Int32Array(t + 1);
 	for (let t of e) n[t + 1] += 1;
 	for (let e = 0; e < t; e++) n[e + 1] += n[e];
@@ -653,7 +654,7 @@ function yn(e, t) {
 		corners: i
 	};
 }
-function bn(e, t, n, r, i, a, o) {
+function Cn(e, t, n, r, i, a, o) {
 	let s = t.faces.length / 3, c = Math.min(s, Math.floor(n / 3)), l = {
 		faces: new Int32Array(3 * s),
 		place: new Int32Array(n),
@@ -668,7 +669,7 @@ function bn(e, t, n, r, i, a, o) {
 		0,
 		0,
 		0
-	], m = new Int32Array(cn), h = /* @__PURE__ */ new Int32Array(8), [g, _, v] = [
+	], m = new Int32Array(dn), h = /* @__PURE__ */ new Int32Array(8), [g, _, v] = [
 		0,
 		0,
 		-1
@@ -677,7 +678,7 @@ function bn(e, t, n, r, i, a, o) {
 		return -1;
 	}, b = (e, n) => {
 		let [a, o] = [t.faces[3 * e + n], t.faces[3 * e + (n + 1) % 3]];
-		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + sn); t++) {
+		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + un); t++) {
 			let n = Math.floor(i[t] / 3);
 			if (n >= e) break;
 			if (y(n, o) >= 0) return n;
@@ -686,42 +687,42 @@ function bn(e, t, n, r, i, a, o) {
 	}, x = (e, t) => l.faces[3 * e + y(e, t)], S = (n, r) => {
 		let i = t.faces[3 * n + r], a = u[i];
 		if (a < 0) return -1;
-		h.fill(fn);
+		h.fill(hn);
 		let s = 0;
 		for (let e of [r, (r + 2) % 3]) {
 			if (f[e] < 0) continue;
 			let t = x(f[e], i);
 			s === 1 && m[0] === t ? h[1] = p[e] : (m[s] = t, h[2 * s] = p[e], s += 1);
 		}
-		for (let e = 0; e < sn && s < cn && a >= 0; e++) (s < 1 || a !== m[0]) && (s < 2 || a !== m[1]) && (m[s++] = a), a = d[a];
+		for (let e = 0; e < un && s < dn && a >= 0; e++) (s < 1 || a !== m[0]) && (s < 2 || a !== m[1]) && (m[s++] = a), a = d[a];
 		let c = -1;
 		for (let t = 0; t < s && c < 0; t++) {
-			let [n, i] = [h[2 * t], h[2 * t + 1]], a = pn + 76 + Math.min(s, 3) * 4 + n;
-			e.flag(pn + t * 16 + n * 4 + i, pn + 64 + t * 3 + r, a, gn) && (c = m[t]);
+			let [n, i] = [h[2 * t], h[2 * t + 1]], a = gn + 76 + Math.min(s, 3) * 4 + n;
+			e.flag(gn + t * 16 + n * 4 + i, gn + 64 + t * 3 + r, a, yn) && (c = m[t]);
 		}
 		if (c < 0) {
-			if (e.flag(mn + s, mn + s, mn + cn, _n)) return -1;
-			if (c = e.raw(V(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
+			if (e.flag(_n + s, _n + s, _n + dn, bn)) return -1;
+			if (c = e.raw(B(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
 		}
-		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? un : dn);
+		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? pn : mn);
 		return c;
 	}, C = () => {
 		let t = _++;
-		if (!e.flag(W, W, W, vn)) return l.kinds[t] = e.flag(W + 1, W + 1, W + 1, vn) ? 2 : 0, t;
+		if (!e.flag(U, U, U, xn)) return l.kinds[t] = e.flag(U + 1, U + 1, U + 1, xn) ? 2 : 0, t;
 		l.kinds[t] = 1;
 		let n = v;
-		if (v = t, n >= 0 && e.flag(W + 2, W + 2, W + 2, vn)) {
-			let n = e.raw(V(t - 1));
+		if (v = t, n >= 0 && e.flag(U + 2, U + 2, U + 2, xn)) {
+			let n = e.raw(B(t - 1));
 			if (n >= t || l.kinds[n] !== 1) throw M(o, "a map that is not there");
 			return l.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
 		}
-		let r = n >= 0 && e.flag(W + 3, W + 3, W + 3, vn);
+		let r = n >= 0 && e.flag(U + 3, U + 3, U + 3, xn);
 		for (let i = 0; i < 4; i++) l.maps[6 * t + i] = r ? l.maps[6 * n + i] : e.raw(32);
 		for (let n = 4; n < 6; n++) l.maps[6 * t + n] = e.raw(a);
 		return t;
 	};
 	for (let e = 0; e < s; e++) {
-		for (let t = 0; t < 3; t++) f[t] = b(e, t), p[t] = ln;
+		for (let t = 0; t < 3; t++) f[t] = b(e, t), p[t] = fn;
 		let r = -1, i = [];
 		for (let a = 0; a < 3; a++) {
 			let s = S(e, a);
@@ -741,7 +742,7 @@ function bn(e, t, n, r, i, a, o) {
 	return l;
 }
 // eigenfield-three/src/mesh-values.ts
-var xn = 16, Sn = 6, Cn = 13, wn = 14, Tn = 20, En = hn, Dn = En + 169 + 280 + 182, On = Dn + 144 + 576 + 48, [kn, An] = [12, 13], jn = [
+var wn = 16, Tn = 6, En = 13, Dn = 14, On = 20, kn = vn, An = kn + 169 + 280 + 182, jn = An + 144 + 576 + 48, [Mn, Nn] = [12, 13], Pn = [
 	.5,
 	1.5,
 	3,
@@ -749,14 +750,14 @@ var xn = 16, Sn = 6, Cn = 13, wn = 14, Tn = 20, En = hn, Dn = En + 169 + 280 + 1
 	12,
 	30
 ];
-function Mn(e, t) {
-	return It(Number.isNaN(e) ? t : e);
+function Fn(e, t) {
+	return zt(Number.isNaN(e) ? t : e);
 }
-function Nn(e) {
-	let t = jn.filter((t) => Math.abs(e) >= t).length;
-	return e < 0 ? Sn - t : Sn + t;
+function In(e) {
+	let t = Pn.filter((t) => Math.abs(e) >= t).length;
+	return e < 0 ? Tn - t : Tn + t;
 }
-function Pn(e, t, n, r) {
+function Ln(e, t, n, r) {
 	let { points: i, faces: a, parents: o } = t, s = /* @__PURE__ */ new Float64Array(9), c = (e) => i[3 * e], l = (e) => i[3 * e + 1], u = (e) => i[3 * e + 2], d = (e, t) => {
 		let [n, r, i] = [
 			c(t) - c(e),
@@ -777,18 +778,18 @@ function Pn(e, t, n, r) {
 			Infinity,
 			-Infinity
 		];
-		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + xn); e++) for (let i = 1; i < 3; i++) {
-			let o = Fn(a, r[e], i);
+		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + wn); e++) for (let i = 1; i < 3; i++) {
+			let o = Rn(a, r[e], i);
 			if (o >= t) continue;
 			let s = d(t, o);
 			h += s * u(o), g += s, _ = Math.min(_, u(o)), v = Math.max(v, u(o));
-			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + xn); e++) for (let n = 1; n < 3; n++) {
-				let i = Fn(a, r[e], n);
+			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + wn); e++) for (let n = 1; n < 3; n++) {
+				let i = Rn(a, r[e], n);
 				i < t && d(t, i);
 			}
 		}
 		let y = 13, b = t > 0 ? u(t - 1) : 0, x = b;
-		g > 0 && (y = Math.min(V(v - _), 12), b = h / g, x = Math.min(Math.max(In(s), p), m));
+		g > 0 && (y = Math.min(B(v - _), 12), b = h / g, x = Math.min(Math.max(zn(s), p), m));
 		let S = b, [C, w, T] = [
 			o[3 * t],
 			o[3 * t + 1],
@@ -806,15 +807,15 @@ function Pn(e, t, n, r) {
 				S = Math.min(Math.max(u(C) + t * (u(w) - u(C)) + c * (u(T) - u(C)), p), m);
 			}
 		}
-		let E = Mn(x, b), [ee, D] = [Nn(S - E), Nn(b - E)], O = e.integer(En + ee * Cn + D, En + 169 + y * Tn + f, En + 169 + 280 + ee * wn + y, kn), k = E + O;
-		i[3 * t + 2] = k, f = Math.min(V(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
+		let E = Fn(x, b), [ee, D] = [In(S - E), In(b - E)], O = e.integer(kn + ee * En + D, kn + 169 + y * On + f, kn + 169 + 280 + ee * Dn + y, Mn), k = E + O;
+		i[3 * t + 2] = k, f = Math.min(B(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
 	}
 }
-function Fn(e, t, n) {
+function Rn(e, t, n) {
 	let r = t % 3;
 	return e[t - r + (r + n) % 3];
 }
-function In(e) {
+function zn(e) {
 	let [t, n, r] = [
 		e[0],
 		e[1],
@@ -834,7 +835,7 @@ function In(e) {
 	];
 	return (s * u - c * d + l * f) / (t * u - n * d + r * f);
 }
-function Ln(e, t, n, r, i) {
+function Bn(e, t, n, r, i) {
 	let { faces: a, chart: o, kinds: s, place: c } = t, l = new Int32Array(2 * c.length), u = [0, 0], d = -1;
 	for (let t = 0; t < c.length; t++) {
 		let f = s[o[t]];
@@ -846,25 +847,25 @@ function Ln(e, t, n, r, i) {
 			-1,
 			0
 		];
-		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + xn); e++) {
-			let [r, s] = [Fn(a, i[e], 1), Fn(a, i[e], 2)];
+		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + wn); e++) {
+			let [r, s] = [Rn(a, i[e], 1), Rn(a, i[e], 2)];
 			if (r < t && o[r] === o[t] && (g = Math.max(g, r)), s < t && o[s] === o[t] && (g = Math.max(g, s)), r >= t || s >= t) continue;
-			let [u, d] = Rn(n, c, l, t, r, s, f === 2);
+			let [u, d] = Vn(n, c, l, t, r, s, f === 2);
 			if (!Number.isFinite(u) || !Number.isFinite(d)) continue;
 			p += u, m += d, h += 1;
 			let v = Math.abs(l[2 * r] - l[2 * s]) + Math.abs(l[2 * r + 1] - l[2 * s + 1]);
-			_ = Math.max(_, V(v));
+			_ = Math.max(_, B(v));
 		}
 		g < 0 && (g = d), d = t;
-		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = Dn + 144;
+		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = An + 144;
 		for (let n = 0; n < 2; n++) {
-			let r = e.integer(Dn + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], An + n);
-			l[2 * t + n] = Mn(y[n], 0) + r, u[n] = Math.min(V(Math.abs(r)), 23);
+			let r = e.integer(An + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], Nn + n);
+			l[2 * t + n] = Fn(y[n], 0) + r, u[n] = Math.min(B(Math.abs(r)), 23);
 		}
 	}
 	return l;
 }
-function Rn(e, t, n, r, i, a, o) {
+function Vn(e, t, n, r, i, a, o) {
 	let [s, c, l] = [
 		0,
 		0,
@@ -878,15 +879,15 @@ function Rn(e, t, n, r, i, a, o) {
 	return [n[2 * i] + f * u - m * d, n[2 * i + 1] + f * d + m * u];
 }
 // eigenfield-three/src/mesh-decoder.ts
-var zn = 144, Bn = 2, Vn = 3, Hn = 18, Un = 8;
-function Wn(e, t) {
-	return Kn(e, t, 1);
+var Hn = 144, Un = 2, Wn = 3, Gn = 18, Kn = 8;
+function qn(e, t) {
+	return Yn(e, t, 1);
 }
-function Gn(e, t) {
-	return Kn(e, t, Bn);
+function Jn(e, t) {
+	return Yn(e, t, Un);
 }
-function Kn(e, t, n) {
-	let r = Je(e, zn, t, n), [i, a, o] = [
+function Yn(e, t, n) {
+	let r = Ye(e, Hn, t, n), [i, a, o] = [
 		r.getUint8(1),
 		r.getUint8(2),
 		r.getUint8(3)
@@ -895,21 +896,21 @@ function Kn(e, t, n) {
 		8,
 		12
 	].map((e) => r.getUint32(e, !0)), u = Float64Array.from({ length: 16 }, (e, t) => r.getFloat64(16 + 8 * t, !0));
-	if (s > je || l > je || c > Me) throw M(t, `${l} vertices and ${c} faces`);
-	if (Ye(e, Math.max(s, c, l), Me, t), i > 1 || o > Un * i || a < 1 || a > Hn || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
-	let d = new qe(e.subarray(zn), On, 16), f = an(d, s, c, {
+	if (s > Me || l > Me || c > Ne) throw M(t, `${l} vertices and ${c} faces`);
+	if (Xe(e, Math.max(s, c, l), Ne, t), i > 1 || o > Kn * i || a < 1 || a > Gn || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
+	let d = new Je(e.subarray(Hn), jn, 16), f = cn(d, s, c, {
 		flat: i === 1,
 		fine: o
 	}, t);
 	d.checkEnd(t);
-	let p = yn(f.faces, s);
-	i && Pn(d, f, p.first, p.corners);
-	let m = n === Bn ? a + Vn : 32, h = bn(d, f, l, p.first, p.corners, m, t), g = qn(f.points, u), _ = yn(h.faces, l), v = Ln(d, h, g, _.first, _.corners);
+	let p = Sn(f.faces, s);
+	i && Ln(d, f, p.first, p.corners);
+	let m = n === Un ? a + Wn : 32, h = Cn(d, f, l, p.first, p.corners, m, t), g = Xn(f.points, u), _ = Sn(h.faces, l), v = Bn(d, h, g, _.first, _.corners);
 	d.checkEnd(t);
 	let y = new Float32Array(h.maps.buffer);
-	return Yn(Jn(f, h, g, v, 2 ** a, (e) => n === Bn ? h.maps[e] / 2 ** (a + 1) - 2 : y[e]), t);
+	return Qn(Zn(f, h, g, v, 2 ** a, (e) => n === Un ? h.maps[e] / 2 ** (a + 1) - 2 : y[e]), t);
 }
-function qn(e, t) {
+function Xn(e, t) {
 	let n = new Float64Array(e.length);
 	for (let r = 0; r < e.length; r += 3) {
 		let i = (n) => t[4 * n] * e[r] + t[4 * n + 1] * e[r + 1] + t[4 * n + 2] * e[r + 2] + t[4 * n + 3], a = i(3);
@@ -917,7 +918,7 @@ function qn(e, t) {
 	}
 	return n;
 }
-function Jn(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) {
+function Zn(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) {
 	let u = new Float32Array(3 * n.length), d = new Float32Array(2 * n.length), f = new Float32Array(a.buffer);
 	return n.forEach((t, n) => {
 		u.set(o.subarray(3 * t, 3 * t + 3), 3 * n);
@@ -932,15 +933,15 @@ function Jn(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) 
 		indices: new Uint32Array(t)
 	};
 }
-function Yn(e, t) {
-	let n = (e) => Math.abs(e) <= Pe;
+function Qn(e, t) {
+	let n = (e) => Math.abs(e) <= Fe;
 	if (!e.positions.every(n) || !e.uv.every(n)) throw M(t, "positions or texture coordinates that are not finite");
 	return e;
 }
 // eigenfield-three/src/name-decoder.ts
-var Xn = 4 * R;
-async function Zn(e, t, n) {
-	let r = Math.min(Ae, Xn * t), i = await be(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
+var $n = 4 * L;
+async function er(e, t, n) {
+	let r = Math.min(je, $n * t), i = await xe(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
 	if (a === 0 || !Number.isInteger(a)) throw M(n, `${i.length} bytes of ${t} names`);
 	let o = new TextDecoder("utf-8", {
 		fatal: !0,
@@ -959,16 +960,16 @@ async function Zn(e, t, n) {
 	return c;
 }
 // eigenfield-three/src/headers.ts
-function Qn(e) {
+function tr(e) {
 	let t = new DataView(e);
 	try {
-		return er(t) ?? tr(t) ?? nr(t) ?? rr(t);
+		return rr(t) ?? ir(t) ?? ar(t) ?? or(t);
 	} catch (e) {
 		if (e instanceof RangeError) return null;
 		throw e;
 	}
 }
-function $n(e, t) {
+function nr(e, t) {
 	return String.fromCharCode(...[
 		0,
 		1,
@@ -976,15 +977,15 @@ function $n(e, t) {
 		3
 	].map((n) => e.getUint8(t + n)));
 }
-function er(e) {
-	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || $n(e, 12) !== "IHDR" ? null : {
+function rr(e) {
+	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || nr(e, 12) !== "IHDR" ? null : {
 		type: "image/png",
 		width: e.getUint32(16),
 		height: e.getUint32(20),
 		bits: null
 	};
 }
-function tr(e) {
+function ir(e) {
 	if (e.getUint16(0) !== 65496) return null;
 	for (let t = 2;;) {
 		let n = e.getUint16(t);
@@ -1007,12 +1008,12 @@ function tr(e) {
 		t += 2 + e.getUint16(t + 2);
 	}
 }
-function nr(e) {
-	if ($n(e, 0) !== "RIFF" || $n(e, 8) !== "WEBP") return null;
+function ar(e) {
+	if (nr(e, 0) !== "RIFF" || nr(e, 8) !== "WEBP") return null;
 	let t = {
 		type: "image/webp",
 		bits: null
-	}, n = $n(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
+	}, n = nr(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
 	if (n === "VP8X") return {
 		...t,
 		width: 1 + r(24),
@@ -1032,11 +1033,11 @@ function nr(e) {
 		height: e.getUint16(28, !0) & 16383
 	} : null;
 }
-function rr(e) {
-	if ($n(e, 4) !== "ftyp") return null;
+function or(e) {
+	if (nr(e, 4) !== "ftyp") return null;
 	let t = null, n = null, r = (i, a) => {
 		for (let o = i; o + 8 <= a;) {
-			let i = e.getUint32(o), s = $n(e, o + 4), c = i === 0 ? a : o + i;
+			let i = e.getUint32(o), s = nr(e, o + 4), c = i === 0 ? a : o + i;
 			if (i === 1 || c < o + 8 || c > a) return;
 			if (s === "meta" && r(o + 12, c), (s === "iprp" || s === "ipco") && r(o + 8, c), s === "ispe") {
 				let [n, r] = [e.getUint32(o + 12), e.getUint32(o + 16)];
@@ -1059,29 +1060,29 @@ function rr(e) {
 	};
 }
 // eigenfield-three/src/pictures-8bit.ts
-var ir = {
+var sr = {
 	colorSpaceConversion: "none",
 	premultiplyAlpha: "none"
-}, ar = {
+}, cr = {
 	"image/avif": "AAAAHGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZgAAAOltZXRhAAAAAAAAACFoZGxyAAAAAAAAAABwaWN0AAAAAAAAAAAAAAAAAAAAAA5waXRtAAAAAAABAAAAHmlsb2MAAAAARAAAAQABAAAAAQAAAQ0AAAAZAAAAKGlpbmYAAAAAAAEAAAAaaW5mZQIAAAAAAQAAYXYwMUNvbG9yAAAAAGhpcHJwAAAASWlwY28AAAAUaXNwZQAAAAAAAAAIAAAACAAAAA5waXhpAAAAAAEIAAAADGF2MUOBABwAAAAAE2NvbHJuY2x4AAEADQAGgAAAABdpcG1hAAAAAAAAAAEAAQQBAoMEAAAAIW1kYXQSAAoIGAi/aYCGg1AyCxlGIYeeaACQQNmg",
 	"image/webp": "UklGRh4AAABXRUJQVlA4TBEAAAAvAAAAAAdQwAIWsP+BiOh/AAA="
 };
-function or(e, t, n) {
-	let r = Qn(e);
+function lr(e, t, n) {
+	let r = tr(e);
 	if (!r) throw M(t.where, "no picture");
 	let { width: i, height: a, bits: o } = r;
 	if (n && (i !== n[0] || a !== n[1])) throw M(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
 	if (t.codec.bits !== 8 && t.codec.bits !== o) throw M(t.where, `no picture of ${t.codec.bits} bits`);
 	let s = i * a;
-	if (!s || i > 16384 || a > 32768 || s > Te) throw M(t.where, `a picture of ${i} x ${a}`);
+	if (!s || i > 16384 || a > 32768 || s > Ee) throw M(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
-var sr = async (e, t, n) => {
-	let r = t.pieces * t.textures, [i, a] = or(e, t, n && [n[0], r * n[1]]), o = Qn(e)?.type ?? t.codec.mimeType, s;
+var ur = async (e, t, n) => {
+	let r = t.pieces * t.textures, [i, a] = lr(e, t, n && [n[0], r * n[1]]), o = tr(e)?.type ?? t.codec.mimeType, s;
 	try {
-		s = await createImageBitmap(new Blob([e], { type: o }), ir);
+		s = await createImageBitmap(new Blob([e], { type: o }), sr);
 	} catch (e) {
-		throw await cr(o) ? M(t.where, "it cannot be decoded") : lr(o, t, e);
+		throw await dr(o) ? M(t.where, "it cannot be decoded") : fr(o, t, e);
 	}
 	if (s.width !== i || s.height !== a) throw s.close(), M(t.where, `decoded to ${s.width} x ${s.height}, not to ${i} x ${a}`);
 	let c = a / r;
@@ -1091,8 +1092,8 @@ var sr = async (e, t, n) => {
 		rows: c
 	}));
 };
-async function cr(e) {
-	let t = ar[e];
+async function dr(e) {
+	let t = cr[e];
 	if (!t) return !0;
 	let n = Uint8Array.from(atob(t), (e) => e.charCodeAt(0));
 	try {
@@ -1101,17 +1102,17 @@ async function cr(e) {
 		return !1;
 	}
 }
-function lr(e, t, n) {
+function fr(e, t, n) {
 	return new j("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
 }
 // eigenfield-three/src/pictures-10bit.ts
-var ur = /* @__PURE__ */ new Set([
+var pr = /* @__PURE__ */ new Set([
 	"I420P10",
 	"I422P10",
 	"I444P10"
-]), dr = async (e, t, n) => {
-	let r = t.pieces * t.textures, [i, a] = or(e, t, n && [n[0], r * n[1]]), o = await fr(e, i, a);
-	if (!o) return sr(e, t, n);
+]), mr = async (e, t, n) => {
+	let r = t.pieces * t.textures, [i, a] = lr(e, t, n && [n[0], r * n[1]]), o = await hr(e, i, a);
+	if (!o) return ur(e, t, n);
 	let s = a / r;
 	return Array.from({ length: r }, (e, t) => ({
 		picture: o,
@@ -1119,7 +1120,7 @@ var ur = /* @__PURE__ */ new Set([
 		rows: s
 	}));
 };
-async function fr(e, t, n) {
+async function hr(e, t, n) {
 	if (typeof ImageDecoder > "u") return null;
 	let r = null, i = null;
 	try {
@@ -1128,7 +1129,7 @@ async function fr(e, t, n) {
 			type: "image/avif"
 		}), i = (await r.decode()).image;
 		let a = i.visibleRect;
-		if (!ur.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
+		if (!pr.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
 		let o = new Uint8Array(i.allocationSize()), [s] = await i.copyTo(o);
 		return s ? {
 			data: o.subarray(s.offset),
@@ -1143,36 +1144,36 @@ async function fr(e, t, n) {
 	}
 }
 // eigenfield-three/src/triangle-decoder.ts
-var pr = 5;
-function mr(e, t) {
-	let n = Je(e, pr, t).getUint32(1, !0);
-	Ye(e, 3 * n, 6 * L, t);
-	let r = st(e.subarray(pr)), i = dt(r, n, 3, !0);
+var gr = 5;
+function _r(e, t) {
+	let n = Ye(e, gr, t).getUint32(1, !0);
+	Xe(e, 3 * n, 6 * I, t);
+	let r = lt(e.subarray(gr)), i = pt(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
 	if (!a.every((e) => e >= 0 && e < 1e5)) throw M(t, "triangles of cameras that there cannot be");
 	return { corners: Uint32Array.from(a) };
 }
 // eigenfield-three/src/weight-decoder.ts
-var hr = 14, gr = 2 ** 20;
-function _r(e, t) {
-	let n = Je(e, hr, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
+var vr = 14, yr = 2 ** 20;
+function br(e, t) {
+	let n = Ye(e, vr, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
 	if (n.getUint8(1) > 1 || i === 0) throw M(t, "weights of no camera, or of an unknown kind");
-	Ye(e, o * s * Math.max(a, 1), Ne, t), Je(e, hr + 4 * a, t);
+	Xe(e, o * s * Math.max(a, 1), Pe, t), Ye(e, vr + 4 * a, t);
 	let c = o * s;
 	if (c < i) throw M(t, "a grid with too few cells");
-	let l = st(e.subarray(hr + 4 * a)), u = r ? ft(l, c, i, t) : null, d = u !== null && i === c, f = [
+	let l = lt(e.subarray(vr + 4 * a)), u = r ? mt(l, c, i, t) : null, d = u !== null && i === c, f = [
 		0,
 		1,
 		2
-	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * gr * Math.max(o, s);
+	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * yr * Math.max(o, s);
 	for (let e = 0; e < a; e++) {
-		let r = n.getFloat32(hr + 4 * e, !0);
+		let r = n.getFloat32(vr + 4 * e, !0);
 		if (!(r > 0 && r < Infinity)) throw M(t, "a step that is not positive");
-		let i = ct(l), h = ut(l, s, f[i], i);
+		let i = ut(l), h = ft(l, s, f[i], i);
 		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw M(t, `numbers of component ${e} that cannot be`);
 		f[i] = h;
-		let g = i === 2 ? vr(h, o, s) : h;
+		let g = i === 2 ? xr(h, o, s) : h;
 		for (let t = 0; t < c; t++) {
 			let n = u ? u[t] : t;
 			n >= 0 && (p[n * a + e] = g[t] * r);
@@ -1186,14 +1187,14 @@ function _r(e, t) {
 		values: p
 	};
 }
-function vr(e, t, n) {
-	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = yr(n);
+function xr(e, t, n) {
+	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = Sr(n);
 	for (let i = 0; i < t; i++) for (let t = 0; t < n; t++) {
 		let o = 0;
 		for (let r = 0; r < n; r++) o += a(r, t) * e[i * n + r];
 		r[i * n + t] = o;
 	}
-	let o = yr(t);
+	let o = Sr(t);
 	for (let e = 0; e < t; e++) for (let a = 0; a < n; a++) {
 		let s = 0;
 		for (let i = 0; i < t; i++) s += o(i, e) * r[i * n + a];
@@ -1201,13 +1202,13 @@ function vr(e, t, n) {
 	}
 	return i;
 }
-function yr(e) {
+function Sr(e) {
 	let [t, n] = [Math.sqrt(1 / e), Math.sqrt(2 / e)], r = Float64Array.from({ length: 4 * e }, (t, r) => n * Math.cos(Math.PI * r / (2 * e)));
 	return (n, i) => n === 0 ? t : r[(2 * i + 1) * n % (4 * e)];
 }
 // eigenfield-three/src/codecs.ts
-function br(e) {
-	let [t, n] = [sr, sr];
+function Cr(e) {
+	let [t, n] = [ur, ur];
 	return {
 		kind: "picture",
 		decode: t,
@@ -1222,86 +1223,86 @@ function br(e) {
 		bits: 8
 	};
 }
-var G = {
+var W = {
 	"mesh-1": {
 		kind: "mesh",
-		decode: Wn,
+		decode: qn,
 		needs: "codedMesh",
 		limits: ["MAX_VERTICES", "MAX_TRIANGLES"]
 	},
 	"mesh-2": {
 		kind: "mesh",
-		decode: Gn,
+		decode: Jn,
 		needs: "mesh-2",
 		limits: ["MAX_VERTICES", "MAX_TRIANGLES"]
 	},
 	"cameras-1": {
 		kind: "cameras",
-		decode: yt,
+		decode: xt,
 		needs: "codedCameras",
 		limits: ["MAX_CAMERAS"]
 	},
 	"cameras-2": {
 		kind: "cameras",
-		decode: vt,
+		decode: bt,
 		needs: "cameras-2",
 		limits: ["MAX_CAMERAS"]
 	},
 	"names-1": {
 		kind: "names",
-		decode: Zn,
+		decode: er,
 		needs: "codedNames",
 		limits: ["MAX_NAMES", "MAX_CAMERAS"]
 	},
 	"triangles-1": {
 		kind: "triangles",
-		decode: mr,
+		decode: _r,
 		needs: "codedTriangles",
 		limits: ["MAX_CAMERAS"]
 	},
 	"weights-1": {
 		kind: "weights",
-		decode: _r,
+		decode: br,
 		needs: "codedWeights",
 		limits: ["MAX_WEIGHTS"]
 	},
-	png: br("image/png"),
-	webp: br("image/webp"),
-	avif: br("image/avif"),
-	jpeg: br("image/jpeg"),
+	png: Cr("image/png"),
+	webp: Cr("image/webp"),
+	avif: Cr("image/avif"),
+	jpeg: Cr("image/jpeg"),
 	"av1-10bit-1": {
-		...br("image/avif"),
+		...Cr("image/avif"),
 		bits: 10,
-		decode: dr,
+		decode: mr,
 		needs: "bits"
 	},
 	"av1-10bit-2": {
-		...br("video/AV1"),
+		...Cr("video/AV1"),
 		bits: 10,
-		decode: (e, t, n) => dr(ve(e, t.where), t, n),
-		bitmaps: (e, t, n) => sr(ve(e, t.where), t, n),
+		decode: (e, t, n) => mr(ve(e, t.where), t, n),
+		bitmaps: (e, t, n) => ur(ve(e, t.where), t, n),
 		needs: "av1-10bit-2"
 	}
-}, xr = {
+}, wr = {
 	mesh: "mesh-1",
 	cameras: "cameras-1",
 	names: "names-1",
 	triangles: "triangles-1",
 	weights: "weights-1"
 };
-function Sr(e, t, n) {
-	let r = t.exists ? t.text(R) : n, i = Object.hasOwn(G, r) ? G[r] : null;
+function Tr(e, t, n) {
+	let r = t.exists ? t.text(L) : n, i = Object.hasOwn(W, r) ? W[r] : null;
 	if (i?.kind === e) return i;
 	throw new j("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
 }
-function Cr(e, t) {
-	return Object.keys(G).find((n) => {
-		let r = G[n];
+function Er(e, t) {
+	return Object.keys(W).find((n) => {
+		let r = W[n];
 		return r.kind === "picture" && r.mimeType === e && (t ?? r.bits) === r.bits;
 	});
 }
 // eigenfield-three/src/json.ts
-var K = class e {
+var G = class e {
 	raw;
 	where;
 	constructor(e, t) {
@@ -1332,7 +1333,7 @@ var K = class e {
 		if (this.raw.length > e) throw this.wrong(`longer than ${e} characters`);
 		return this.raw;
 	}
-	number(e = -Pe, t = Pe) {
+	number(e = -Fe, t = Fe) {
 		if (typeof this.raw != "number") throw this.wrong("no number");
 		if (!(this.raw >= e && this.raw <= t)) throw this.wrong(`${this.raw} is not in ${e}..${t}`);
 		return this.raw;
@@ -1342,7 +1343,7 @@ var K = class e {
 		if (!Number.isInteger(n)) throw this.wrong(`${n} is no whole number`);
 		return n;
 	}
-	numbers(e, t = -Pe, n = Pe) {
+	numbers(e, t = -Fe, n = Fe) {
 		let r = this.items(e);
 		if (r.length !== e) throw this.wrong(`${e} numbers are needed`);
 		return r.map((e) => e.number(t, n));
@@ -1358,25 +1359,25 @@ var K = class e {
 	wrong(e) {
 		return M(this.where || "/", this.exists ? e : "missing");
 	}
-}, wr = 5121, Tr = 5123, Er = 5125, q = 5126, Dr = {
-	[wr]: 1,
-	[Tr]: 2,
-	[Er]: 4,
-	[q]: 4
-}, Or = /* @__PURE__ */ new Set([
+}, Dr = 5121, Or = 5123, kr = 5125, K = 5126, Ar = {
+	[Dr]: 1,
+	[Or]: 2,
+	[kr]: 4,
+	[K]: 4
+}, jr = /* @__PURE__ */ new Set([
 	"cameras",
 	"triangles",
 	"weights"
-]), kr = {
+]), Mr = {
 	SCALAR: 1,
 	VEC2: 2,
 	VEC3: 3
 };
-function Ar(e) {
+function Nr(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
-	return e.key("bufferViews").items(I).map((e) => {
+	return e.key("bufferViews").items(F).map((e) => {
 		let t = e.key("byteOffset"), r = e.key("byteStride");
 		e.key("buffer").integer(0, 0);
 		let i = {
@@ -1388,11 +1389,11 @@ function Ar(e) {
 		return i;
 	});
 }
-function jr(e) {
+function Pr(e) {
 	return (t) => t.integer(0, e.length - 1);
 }
-function Mr(e, t) {
-	let n = e.key("accessors"), r = n.exists ? n.items(I) : [];
+function Fr(e, t) {
+	let n = e.key("accessors"), r = n.exists ? n.items(F) : [];
 	return (e, n, i, a) => {
 		let o = r[e.integer(0, r.length - 1)];
 		if (!o) throw e.wrong("no such accessor");
@@ -1402,14 +1403,14 @@ function Mr(e, t) {
 		if (o.key("sparse").exists) throw o.wrong("sparse");
 		let c = o.key("normalized");
 		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = kr[n] ?? 1, u = o.key("count").integer(1, Ne);
+		let l = Mr[n] ?? 1, u = o.key("count").integer(1, Pe);
 		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
 		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
 		if (!f) throw o.wrong("no such buffer view");
-		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = Dr[s] * l;
+		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = Ar[s] * l;
 		if (f.stride && (f.stride < h || n === "SCALAR")) throw o.wrong("a stride that cannot be");
 		if (m + (u - 1) * (f.stride || h) + h > f.length) throw o.wrong("outside its buffer view");
-		if ((m + f.offset) % Dr[s]) throw o.wrong("not aligned");
+		if ((m + f.offset) % Ar[s]) throw o.wrong("not aligned");
 		return {
 			view: d,
 			offset: m,
@@ -1420,40 +1421,40 @@ function Mr(e, t) {
 		};
 	};
 }
-function Nr(e, t, n) {
-	let r = typeof t.raw == "number" && Or.has(e), i = Sr(e, r ? new K(void 0, t.where) : t.key("codec"), xr[e]);
+function Ir(e, t, n) {
+	let r = typeof t.raw == "number" && jr.has(e), i = Tr(e, r ? new G(void 0, t.where) : t.key("codec"), wr[e]);
 	return {
 		view: n(r ? t : t.key("bufferView")),
 		codec: i,
 		where: t.where
 	};
 }
-async function Pr(e, t, n) {
+async function Lr(e, t, n) {
 	let r = await n(e.view), i = t[e.view]?.length ?? Infinity;
 	if (r.byteLength < i) throw ue(e.where);
-	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + Dr[c] * o * s);
-	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : Fr(new Float32Array(l), e.where);
+	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + Ar[c] * o * s);
+	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : Rr(new Float32Array(l), e.where);
 }
-function Fr(e, t) {
+function Rr(e, t) {
 	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw M(t, `${n} among its numbers`);
 	return e;
 }
 // eigenfield-three/src/planes.ts
-var J = 8, Ir = 16;
-function Lr(e, t) {
+var q = 8, zr = 16;
+function Br(e, t) {
 	return new j("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function Rr(e, t = Ce) {
+function Vr(e, t = we) {
 	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
 	if (!n || !r) throw e.wrong("two numbers are needed");
-	if (n * r > Te) throw e.wrong(`more than ${Te} texels`);
+	if (n * r > Ee) throw e.wrong(`more than ${Ee} texels`);
 	return [n, r];
 }
-function zr(e, t, n, r, i) {
+function Hr(e, t, n, r, i) {
 	let a = e.key("planes").items(16);
 	if (!a.length) throw e.key("planes").wrong("no plane");
 	let o = a.map((e, a) => {
-		let o = e.key("channels").integer(1, 64), s = Jr(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => Zr(e, o, t, r, i);
+		let o = e.key("channels").integer(1, 64), s = Zr(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => ei(e, o, t, r, i);
 		return {
 			channels: o,
 			...s,
@@ -1463,15 +1464,15 @@ function zr(e, t, n, r, i) {
 	for (let { channels: e, meanSize: t, bases: n } of o) {
 		s += 4 * e * (t ? t[0] * t[1] : 0);
 		for (let { size: t, count: r, pictures: i } of n) {
-			let n = i.reduce((e, { textures: t, codec: n }) => e + t * (n.bits === J ? 1 : 2), 0);
+			let n = i.reduce((e, { textures: t, codec: n }) => e + t * (n.bits === q ? 1 : 2), 0);
 			s += t[0] * t[1] * e * n, c += r;
 		}
 	}
-	if (c > 4096) throw e.key("planes").wrong(`more than ${Ee} textures`);
-	if (s > De) throw e.key("planes").wrong("too large when it is decoded");
+	if (c > 4096) throw e.key("planes").wrong(`more than ${De} textures`);
+	if (s > Oe) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
-function Br(e, t) {
+function Ur(e, t) {
 	let n = t.reduce((e, { channels: t }) => e + t, 0), r = e.key("toRGB");
 	if (r.exists) {
 		let e = r.numbers(3 * n), t = (t, r) => e[t * n + r] ?? 0;
@@ -1503,11 +1504,11 @@ function Br(e, t) {
 			1
 		]
 	];
-	throw Lr(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
+	throw Br(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
 }
-function Vr(e, t, n, r, i, a = !1) {
-	let o = Hr(e), s = t === 3 && o.bits === J ? 1 : t;
-	r && Qr(e, s * n, r);
+function Wr(e, t, n, r, i, a = !1) {
+	let o = Gr(e), s = t === 3 && o.bits === q ? 1 : t;
+	r && ti(e, s * n, r);
 	let [c, l] = [e.key("scale"), e.key("zero")], u = {
 		view: i(e.key("bufferView")),
 		codec: o,
@@ -1515,72 +1516,72 @@ function Vr(e, t, n, r, i, a = !1) {
 		pieces: s,
 		where: e.where
 	};
-	return a && o.bits === J && !c.exists && !l.exists ? {
+	return a && o.bits === q && !c.exists && !l.exists ? {
 		...u,
-		...Ur(t)
+		...Kr(t)
 	} : {
 		...u,
-		scale: qr(c, t, n),
-		zero: qr(l, t, n)
+		scale: Xr(c, t, n),
+		zero: Xr(l, t, n)
 	};
 }
-function Hr(e) {
-	let t = e.key("mimeType").text(R);
-	if (!Cr(t)) throw e.key("mimeType").wrong("an unknown type");
-	let n = e.key("bits"), r = n.exists ? n.integer(1, Ir) : J, i = Cr(t, r);
+function Gr(e) {
+	let t = e.key("mimeType").text(L);
+	if (!Er(t)) throw e.key("mimeType").wrong("an unknown type");
+	let n = e.key("bits"), r = n.exists ? n.integer(1, zr) : q, i = Er(t, r);
 	if (!i) throw n.wrong(`${r} bits of ${t}`);
-	let a = e.key("codec"), o = Sr("picture", a, i);
+	let a = e.key("codec"), o = Tr("picture", a, i);
 	if (o.mimeType !== t || o.bits !== r) throw a.wrong(`${r} bits of ${t}`);
 	return o;
 }
-function Ur(e) {
+function Kr(e) {
 	return {
 		scale: Array(e).fill(1 / 255),
 		zero: Array(e).fill(0)
 	};
 }
-function Wr(e) {
-	return e.some(({ codec: e }) => e.bits > J);
+function qr(e) {
+	return e.some(({ codec: e }) => e.bits > q);
 }
-function Gr({ codec: e }) {
+function Jr({ codec: e }) {
 	return (2 ** e.bits - 1) / 255;
 }
-function Kr(e, t) {
-	return t ? 1 : 1 / (255 * Gr(e));
+function Yr(e, t) {
+	return t ? 1 : 1 / (255 * Jr(e));
 }
-function qr(e, t, n) {
+function Xr(e, t, n) {
 	let r = e.items(t * n).map((e) => e.number());
 	if (r.length === t * n) return r;
 	if (r.length !== t) throw e.wrong(`${t} or ${t * n} numbers are needed`);
 	return Array(n).fill(r).flat();
 }
-function Jr(e, t, n, r) {
+function Zr(e, t, n, r) {
 	let i = e.key("mean");
 	if (!i.exists) {
 		if (n === null || t !== 1 && t !== 3) throw i.wrong("no mean");
 		return {
 			mean: {
 				view: n,
-				codec: G.png,
+				codec: W.png,
 				textures: 1,
 				pieces: 1,
 				where: "/images/0",
-				...Ur(t)
+				...Kr(t)
 			},
 			meanSize: null,
 			precision: null
 		};
 	}
-	let a = Rr(i.key("size")), o = Vr(i, t, 1, a, r, !0);
+	let a = Vr(i.key("size")), o = Wr(i, t, 1, a, r, !0);
 	return {
 		mean: o,
 		meanSize: a,
-		precision: Xr(i.key("precision"), o, r)
+		precision: $r(i.key("precision"), o, r)
 	};
 }
-function Yr(e, t) {
-	let n = Rr(e.key("size")), r = Hr(e);
-	return Qr(e, 1, n), {
+function Qr(e, t) {
+	let n = Vr(e.key("size")), r = Gr(e);
+	return ti(e, 1, n), {
 		channels: 1,
 		mean: {
 			view: t(e.key("bufferView")),
@@ -1595,11 +1596,11 @@ function Yr(e, t) {
 		precision: null
 	};
 }
-function Xr(e, t, n) {
+function $r(e, t, n) {
 	if (!e.exists) return null;
-	if (t.codec.bits === J) throw e.wrong(`of a mean of ${J} bits`);
-	let r = Rr(e.key("size"), we), i = Sr("picture", e.key("codec"), "png");
-	if (i !== G.png) throw e.key("codec").wrong("no PNG");
+	if (t.codec.bits === q) throw e.wrong(`of a mean of ${q} bits`);
+	let r = Vr(e.key("size"), Te), i = Tr("picture", e.key("codec"), "png");
+	if (i !== W.png) throw e.key("codec").wrong("no PNG");
 	return {
 		view: n(e.key("bufferView")),
 		codec: i,
@@ -1609,19 +1610,19 @@ function Xr(e, t, n) {
 		where: e.where
 	};
 }
-function Zr(e, t, n, r, i) {
-	let a = Rr(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Rr(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, Ce) : [];
+function ei(e, t, n, r, i) {
+	let a = Vr(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Vr(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, we) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
-	let d = 0, f = e.key("picture"), p = f.exists ? f.object() : {}, m = e.key("textures").items(Ee).map((e) => {
-		let n = new K({
+	let d = 0, f = e.key("picture"), p = f.exists ? f.object() : {}, m = e.key("textures").items(De).map((e) => {
+		let n = new G({
 			...p,
 			...e.object()
-		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, Ee) : 1;
-		return d += o, Vr(n, t, o, a, i);
+		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, De) : 1;
+		return d += o, Wr(n, t, o, a, i);
 	});
-	if (d > 4096) throw e.wrong(`more than ${Ee} textures`);
-	let h = e.key("codedWeights"), g = d ? h.exists ? Nr("weights", h, i) : r(e.key("weights"), "SCALAR", [q], n * d) : null;
+	if (d > 4096) throw e.wrong(`more than ${De} textures`);
+	let h = e.key("codedWeights"), g = d ? h.exists ? Ir("weights", h, i) : r(e.key("weights"), "SCALAR", [K], n * d) : null;
 	return {
 		size: a,
 		grid: c,
@@ -1632,23 +1633,23 @@ function Zr(e, t, n, r, i) {
 		where: e.where
 	};
 }
-function Qr(e, t, [n, r]) {
+function ti(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
-	if (n * i > Te) throw e.wrong(`more than ${Te} texels`);
+	if (n * i > Ee) throw e.wrong(`more than ${Ee} texels`);
 }
 // eigenfield-three/src/sheets.ts
-function $r(e, t) {
+function ni(e, t) {
 	if (!e.exists) return null;
-	let n = e.key("faces").items(32).map((e) => e.integer(1, Me));
+	let n = e.key("faces").items(32).map((e) => e.integer(1, Ne));
 	if (!n.length) throw e.key("faces").wrong("no sheet");
 	return {
 		faces: n,
-		opacity: Yr(e.key("opacity"), t),
+		opacity: Qr(e.key("opacity"), t),
 		where: e.where
 	};
 }
-function ei({ faces: e, where: t }, { index: n, attributes: r }) {
+function ri({ faces: e, where: t }, { index: n, attributes: r }) {
 	let i = e.reduce((e, t) => e + t, 0), a = (n?.count ?? 0) / 3;
 	if (i !== a) throw M(`${t}/faces`, `the sheets have ${i} triangles, the mesh has ${a}`);
 	let o = new Uint8Array(r.position?.count ?? 0), s = 0;
@@ -1661,7 +1662,7 @@ function ei({ faces: e, where: t }, { index: n, attributes: r }) {
 	});
 }
 // eigenfield-three/src/document.ts
-var ti = [
+var ii = [
 	"namePattern",
 	"noFallback",
 	"packed",
@@ -1671,72 +1672,72 @@ var ti = [
 	"sheets",
 	"stacks",
 	"toRGB"
-], ni = Object.values(G).flatMap(({ needs: e }) => e ?? []), ri = /* @__PURE__ */ new Set([...ti, ...ni]), ii = 64, ai = 9, oi = 10 ** ai;
-function si(e) {
-	let t = new K(e, "");
+], ai = Object.values(W).flatMap(({ needs: e }) => e ?? []), oi = /* @__PURE__ */ new Set([...ii, ...ai]), si = 64, ci = 9, li = 10 ** ci;
+function ui(e) {
+	let t = new G(e, "");
 	try {
-		return t.key("extensions").key(xe).exists;
+		return t.key("extensions").key(Se).exists;
 	} catch {
 		return !1;
 	}
 }
-function ci(e) {
-	let t = new K(e, ""), n = t.key("extensions").key(xe), r = di(n), i = Ar(t), a = Mr(t, i), o = jr(i);
-	fi(t);
-	let s = hi(t, o), c = n.key("cameras"), { count: l, names: u } = gi(c, o), d = yi(c, l), f = d.filter((e) => !e).length, p = zr(n, f, s, a, o), m = Br(n, p), h = c.key("colour"), g = c.key("codedColour");
+function di(e) {
+	let t = new G(e, ""), n = t.key("extensions").key(Se), r = mi(n), i = Nr(t), a = Fr(t, i), o = Pr(i);
+	hi(t);
+	let s = vi(t, o), c = n.key("cameras"), { count: l, names: u } = yi(c, o), d = Si(c, l), f = d.filter((e) => !e).length, p = Hr(n, f, s, a, o), m = Ur(n, p), h = c.key("colour"), g = c.key("codedColour");
 	if ((h.exists || g.exists) && m.length < 3) throw h.wrong("needs three channels");
 	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), x = n.key("mesh");
 	return {
 		version: r,
-		generator: b.exists ? b.text(R) : "",
+		generator: b.exists ? b.text(L) : "",
 		planes: p,
 		colours: m,
 		names: u,
 		heldOut: d,
 		reference: n.key("reference").integer(0, l - 1),
-		calibration: bi(c, l, a, o),
-		sizes: xi(c, l, a),
-		colour: g.exists ? Nr("weights", g, o) : h.exists ? a(h, "SCALAR", [q], 6 * l) : null,
-		...Si(_),
-		triangles: y.exists ? Nr("triangles", y, o) : v.exists ? mi(a(v, "SCALAR", [Tr, Er], null), 2 * L) : null,
-		settings: Ci(n.key("settings")),
-		scores: Ci(n.key("scores")),
+		calibration: Ci(c, l, a, o),
+		sizes: wi(c, l, a),
+		colour: g.exists ? Ir("weights", g, o) : h.exists ? a(h, "SCALAR", [K], 6 * l) : null,
+		...Ti(_),
+		triangles: y.exists ? Ir("triangles", y, o) : v.exists ? _i(a(v, "SCALAR", [Or, kr], null), 2 * I) : null,
+		settings: Ei(n.key("settings")),
+		scores: Ei(n.key("scores")),
 		views: i,
-		mesh: x.exists ? Nr("mesh", x, o) : null,
-		sheets: $r(n.key("sheets"), o),
-		shown: x.exists && !t.key("meshes").exists ? null : li(t, a),
+		mesh: x.exists ? Ir("mesh", x, o) : null,
+		sheets: ni(n.key("sheets"), o),
+		shown: x.exists && !t.key("meshes").exists ? null : fi(t, a),
 		preview: s
 	};
 }
-function li(e, t) {
+function fi(e, t) {
 	let n = e.key("meshes").at(0).key("primitives").at(0), r = n.key("mode");
 	if (r.exists && r.integer(0, 6) !== 4) throw r.wrong("no triangles");
 	let [i, a] = [n.key("attributes"), n.key("indices")];
 	return {
-		position: pi(t(i.key("POSITION"), "VEC3", [q], null), je),
-		uv: pi(t(i.key("TEXCOORD_0"), "VEC2", [q], null), je),
-		indices: mi(t(a, "SCALAR", [
-			wr,
-			Tr,
-			Er
-		], null), Me)
+		position: gi(t(i.key("POSITION"), "VEC3", [K], null), Me),
+		uv: gi(t(i.key("TEXCOORD_0"), "VEC2", [K], null), Me),
+		indices: _i(t(a, "SCALAR", [
+			Dr,
+			Or,
+			kr
+		], null), Ne)
 	};
 }
-function ui({ planes: e, sheets: t }) {
+function pi({ planes: e, sheets: t }) {
 	return t ? [...e, t.opacity] : e;
 }
-function di(e) {
-	let t = e.key("version").text(R);
+function mi(e) {
+	let t = e.key("version").text(L);
 	if (!/^1\.\d+$/.test(t)) throw new j("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
-	for (let e of n.exists ? n.items(I) : []) {
-		let t = e.text(R);
-		if (!ri.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
+	for (let e of n.exists ? n.items(F) : []) {
+		let t = e.text(L);
+		if (!oi.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
-function fi(e) {
-	let t = e.key("nodes").items(I), n = Array(t.length).fill(!1);
+function hi(e) {
+	let t = e.key("nodes").items(F), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
 		for (let e of r.exists ? r.items(t.length) : []) {
@@ -1745,64 +1746,64 @@ function fi(e) {
 			n[r] = !0;
 		}
 	}
-	for (let r of e.key("scenes").items(I)) {
+	for (let r of e.key("scenes").items(F)) {
 		let e = r.key("nodes");
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
-function pi(e, t) {
+function gi(e, t) {
 	if (e.count > t) throw M(e.where, `more than ${t}`);
 	return e;
 }
-function mi(e, t) {
+function _i(e, t) {
 	if (e.count % 3) throw M(e.where, "torn triangles");
-	return pi(e, 3 * t);
+	return gi(e, 3 * t);
 }
-function hi(e, t) {
+function vi(e, t) {
 	let n = e.key("images");
 	if (!n.exists) return null;
 	let r = n.at(0).key("bufferView");
 	return r.exists ? t(r) : null;
 }
-function gi(e, t) {
+function yi(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
-		count: n.key("count").integer(1, L),
-		names: Nr("names", n, t)
+		count: n.key("count").integer(1, I),
+		names: Ir("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? vi(r) : i.items(L).map((e) => e.text(R));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? xi(r) : i.items(I).map((e) => e.text(L));
 	if (!a.length) throw i.wrong("no cameras");
-	let o = _i(a);
+	let o = bi(a);
 	if (o) throw i.wrong(o);
 	return {
 		count: a.length,
 		names: a
 	};
 }
-function _i(e) {
+function bi(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
-function vi(e) {
-	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, L));
+function xi(e) {
+	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, I));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
-	let r = e.key("parts").items(ii).map((e) => {
-		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(R))];
+	let r = e.key("parts").items(si).map((e) => {
+		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(L))];
 		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
 		if (a.exists) {
-			let e = a.items(i).map((e) => e.text(R));
+			let e = a.items(i).map((e) => e.text(L));
 			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
 			return [r, e];
 		}
-		let [o, s] = [e.key("first").integer(0, oi), e.key("step").integer(0, oi)], c = e.key("digits").integer(1, ai);
+		let [o, s] = [e.key("first").integer(0, li), e.key("step").integer(0, li)], c = e.key("digits").integer(1, ci);
 		return [r, Array.from({ length: i }, (e, t) => String(o + s * t).padStart(c, "0"))];
 	});
 	return Array.from({ length: t * n }, (t, i) => {
 		let a = [Math.floor(i / n), i % n], o = r.map(([e, t]) => t[a[e] ?? 0]).join("");
-		if (o.length > 1024) throw e.wrong(`names of more than ${R} characters`);
+		if (o.length > 1024) throw e.wrong(`names of more than ${L} characters`);
 		return o;
 	});
 }
-function yi(e, t) {
+function Si(e, t) {
 	let n = Array(t).fill(!1), r = e.key("heldOut");
 	if (!r.exists) return n;
 	for (let e of r.items(t)) {
@@ -1813,21 +1814,21 @@ function yi(e, t) {
 	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
 	return n;
 }
-function bi(e, t, n, r) {
+function Ci(e, t, n, r) {
 	let i = e.key("coded");
-	return i.exists ? Nr("cameras", i, r) : {
-		intrinsics: n(e.key("intrinsics"), "SCALAR", [q], 5 * t),
-		poses: n(e.key("poses"), "SCALAR", [q], 12 * t)
+	return i.exists ? Ir("cameras", i, r) : {
+		intrinsics: n(e.key("intrinsics"), "SCALAR", [K], 5 * t),
+		poses: n(e.key("poses"), "SCALAR", [K], 12 * t)
 	};
 }
-function xi(e, t, n) {
+function wi(e, t, n) {
 	let r = e.key("size");
-	if (!r.exists) return n(e.key("sizes"), "SCALAR", [Er], 2 * t);
-	let [i = 0, a = 0] = r.numbers(2, 1, Oe);
+	if (!r.exists) return n(e.key("sizes"), "SCALAR", [kr], 2 * t);
+	let [i = 0, a = 0] = r.numbers(2, 1, ke);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
-function Si(e) {
+function Ti(e) {
 	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
 	for (let i of [
 		r(t, t) - 1,
@@ -1842,23 +1843,23 @@ function Si(e) {
 		extent: [i, a]
 	};
 }
-function Ci(e) {
+function Ei(e) {
 	return e.exists ? e.object() : {};
 }
 // eigenfield-three/src/info.ts
-var wi = 1e-6;
-async function Ti(e, t) {
+var Di = 1e-6;
+async function Oi(e, t) {
 	let [n, { lenses: r, poses: i }, a, o] = await Promise.all([
-		Di(e, t),
-		ki(e, t),
 		Ai(e, t),
-		Ei(e, t)
+		Mi(e, t),
+		Ni(e, t),
+		ki(e, t)
 	]);
 	return n.map((t, n) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
-		if (!(s > wi && c > wi)) throw M(r.where, `focal lengths of "${t}"`);
-		let { R: f, t: p } = ji([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
-		if (!m || !h || Math.max(m, h) > 65535 || m * h > ke) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
+		if (!(s > Di && c > Di)) throw M(r.where, `focal lengths of "${t}"`);
+		let { R: f, t: p } = Pi([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
+		if (!m || !h || Math.max(m, h) > 65535 || m * h > Ae) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
 				s,
@@ -1875,13 +1876,13 @@ async function Ti(e, t) {
 				0,
 				1
 			]
-		], [_, v] = o ? Mi([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
+		], [_, v] = o ? Fi([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
 		return {
 			name: t,
 			K: g,
 			R: f,
 			t: p,
-			centre: Ui(f, p),
+			centre: Gi(f, p),
 			width: m,
 			height: h,
 			gain: _,
@@ -1889,8 +1890,8 @@ async function Ti(e, t) {
 		};
 	});
 }
-async function Ei({ colour: e, heldOut: t, views: n }, r) {
-	if (!e || "type" in e) return e && Pr(e, n, r);
+async function ki({ colour: e, heldOut: t, views: n }, r) {
+	if (!e || "type" in e) return e && Lr(e, n, r);
 	let { cameras: i, components: a, values: o } = await e.codec.decode(new Uint8Array(await r(e.view)), e.where);
 	if (a !== 6 || i !== t.filter((e) => !e).length) throw M(e.where, `${i} x ${a} colours`);
 	let s = 0;
@@ -1903,31 +1904,31 @@ async function Ei({ colour: e, heldOut: t, views: n }, r) {
 		0
 	] : [...o.subarray(6 * s, 6 * ++s)]));
 }
-async function Di({ names: e, heldOut: t }, n) {
+async function Ai({ names: e, heldOut: t }, n) {
 	if (Array.isArray(e)) return e;
-	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : _i(r);
+	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : bi(r);
 	if (i) throw M(e.where, i);
 	return r;
 }
-async function Oi(e, t, n) {
+async function ji(e, t, n) {
 	return {
-		numbers: await Pr(e, t.views, n),
+		numbers: await Lr(e, t.views, n),
 		where: e.where
 	};
 }
-async function ki(e, t) {
+async function Mi(e, t) {
 	let { calibration: n, heldOut: r } = e;
 	if ("intrinsics" in n) {
 		let { intrinsics: r, poses: i } = n;
 		return {
-			lenses: await Oi(r, e, t),
-			poses: await Oi(i, e, t)
+			lenses: await ji(r, e, t),
+			poses: await ji(i, e, t)
 		};
 	}
 	let { view: i, codec: a, where: o } = n, s = await a.decode(new Uint8Array(await t(i)), o), c = s.poses.length / 12;
 	if (c !== r.length) throw M(o, `${c} cameras in it, and ${r.length} names`);
 	let l = (e) => ({
-		numbers: Fr(e, o),
+		numbers: Rr(e, o),
 		where: o
 	});
 	return {
@@ -1935,15 +1936,15 @@ async function ki(e, t) {
 		poses: l(s.poses)
 	};
 }
-async function Ai(e, t) {
-	if (!Array.isArray(e.sizes)) return Oi(e.sizes, e, t);
+async function Ni(e, t) {
+	if (!Array.isArray(e.sizes)) return ji(e.sizes, e, t);
 	let [n, r] = e.sizes;
 	return {
 		numbers: Uint32Array.from({ length: 2 * e.heldOut.length }, (e, t) => t % 2 ? r : n),
 		where: "its cameras' size"
 	};
 }
-function ji(e, t, n) {
+function Pi(e, t, n) {
 	let r = (t) => [
 		e[4 * t] ?? NaN,
 		e[4 * t + 1] ?? NaN,
@@ -1961,19 +1962,19 @@ function ji(e, t, n) {
 		let a = Y(i[e], i[r]) - +(e === r);
 		if (!(Math.abs(a) <= 2e-4)) throw M(t, `the pose of "${n}" is no rotation`);
 	}
-	if (!(Y(Wi(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
+	if (!(Y(Ki(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
 	return {
 		R: i,
 		t: a
 	};
 }
-function Mi(e, t, n) {
+function Fi(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
 	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw M(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
-async function Ni(e, t) {
-	let n = Fi(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => Pi(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
+async function Ii(e, t) {
+	let n = J(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => Li(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
 	for (let e of i) {
 		let t = e.length / r;
 		for (let n = 0; n < r; n++) o.set(e.subarray(n * t, (n + 1) * t), n * a + s);
@@ -1981,26 +1982,26 @@ async function Ni(e, t) {
 	}
 	return o;
 }
-async function Pi({ weights: e, count: t }, n, r, i) {
+async function Li({ weights: e, count: t }, n, r, i) {
 	if (!e) return /* @__PURE__ */ new Float32Array();
-	if ("type" in e) return Pr(e, r.views, i);
+	if ("type" in e) return Lr(e, r.views, i);
 	let { view: a, codec: o, where: s } = e, { cameras: c, components: l, values: u } = o.decode(new Uint8Array(await i(a)), s);
-	if (c === n && l === t) return Fr(u, s);
+	if (c === n && l === t) return Rr(u, s);
 	throw M(s, `${c} x ${l} weights, and ${n} encoded cameras x ${t} textures`);
 }
-function Fi(e) {
+function J(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
 }
-function Ii(e) {
-	return Math.max(0, ...Fi(e).map(({ count: e }) => e));
+function Ri(e) {
+	return Math.max(0, ...J(e).map(({ count: e }) => e));
 }
-function Li(e, t) {
-	let n = [...t.slice(0, e.planes.length), ...Fi(e).map(({ grid: e }) => e)];
+function zi(e, t) {
+	let n = [...t.slice(0, e.planes.length), ...J(e).map(({ grid: e }) => e)];
 	return [Math.max(...n.map(([e]) => e)), Math.max(...n.map(([, e]) => e))];
 }
-async function Ri(e, t) {
+async function Bi(e, t) {
 	if (!e.triangles) return /* @__PURE__ */ new Uint32Array();
-	let { where: n } = e.triangles, r = await zi(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
+	let { where: n } = e.triangles, r = await Vi(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
 		if (Math.max(t, a, o) >= i) throw M(n, `no encoded camera ${Math.max(t, a, o)}`);
@@ -2008,11 +2009,11 @@ async function Ri(e, t) {
 	}
 	return r;
 }
-async function zi(e, t, n) {
-	return "type" in e ? Uint32Array.from(await Pr(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
+async function Vi(e, t, n) {
+	return "type" in e ? Uint32Array.from(await Lr(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
 }
-function Bi(e, t, n, r, i, a) {
-	let { right: o, up: s } = e, c = Wi(o, s), l = [
+function Hi(e, t, n, r, i, a) {
+	let { right: o, up: s } = e, c = Ki(o, s), l = [
 		0,
 		0,
 		0
@@ -2040,8 +2041,8 @@ function Bi(e, t, n, r, i, a) {
 		settings: e.settings,
 		scores: e.scores,
 		metresPerUnit: typeof u == "number" && u > 0 && u <= 1e30 ? u : null,
-		bytes: Vi(e, i),
-		size: Li(e, n),
+		bytes: Ui(e, i),
+		size: zi(e, n),
 		planes: e.planes.map(({ channels: e, bases: t }, r) => ({
 			channels: e,
 			mean: n[r] ?? [1, 1],
@@ -2057,9 +2058,9 @@ function Bi(e, t, n, r, i, a) {
 		facesPlane: Math.abs(Y(l, c)) > .7
 	};
 }
-function Vi(e, t) {
-	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(Ii(e)).fill(0);
-	for (let { pictures: t } of Fi(e)) {
+function Ui(e, t) {
+	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(Ri(e)).fill(0);
+	for (let { pictures: t } of J(e)) {
 		let e = 0;
 		for (let { view: n, textures: i } of t) {
 			let t = r(n);
@@ -2069,7 +2070,7 @@ function Vi(e, t) {
 			}
 		}
 	}
-	let c = i(Fi(e).flatMap((e) => e.weights ? [e.weights.view] : [])), l = i([...Object.values(e.shown ?? {}), ...e.mesh ? [e.mesh] : []].map(({ view: e }) => e)), u = e.sheets ? r(e.sheets.opacity.mean.view) : 0;
+	let c = i(J(e).flatMap((e) => e.weights ? [e.weights.view] : [])), l = i([...Object.values(e.shown ?? {}), ...e.mesh ? [e.mesh] : []].map(({ view: e }) => e)), u = e.sheets ? r(e.sheets.opacity.mean.view) : 0;
 	return {
 		total: t,
 		mesh: l,
@@ -2080,7 +2081,7 @@ function Vi(e, t) {
 		textures: s
 	};
 }
-function Hi(e, t) {
+function Wi(e, t) {
 	let { origin: n, extent: r } = e, i = [
 		t[0] - n[0],
 		t[1] - n[1],
@@ -2088,7 +2089,7 @@ function Hi(e, t) {
 	];
 	return [r[0] > 0 ? Y(i, e.right) / r[0] : 0, r[1] > 0 ? Y(i, e.up) / r[1] : 0];
 }
-function Ui(e, t) {
+function Gi(e, t) {
 	let n = (n) => -(e[0][n] * t[0] + e[1][n] * t[1] + e[2][n] * t[2]);
 	return [
 		n(0),
@@ -2099,7 +2100,7 @@ function Ui(e, t) {
 function Y(e, t) {
 	return e[0] * t[0] + e[1] * t[1] + e[2] * t[2];
 }
-function Wi(e, t) {
+function Ki(e, t) {
 	return [
 		e[1] * t[2] - e[2] * t[1],
 		e[2] * t[0] - e[0] * t[2],
@@ -2107,7 +2108,7 @@ function Wi(e, t) {
 	];
 }
 // eigenfield-three/src/cameras.ts
-function Gi(e, t, n) {
+function qi(e, t, n) {
 	let { info: r } = e, i = r.cameras.filter((e, t) => !r.heldOut[t]), a = r.cameras[r.reference];
 	if (!a) throw RangeError(`no camera ${r.reference}`);
 	let { width: o, height: s } = a, c = [
@@ -2146,7 +2147,7 @@ function Gi(e, t, n) {
 	e.viewWeights(t, n, "delaunay").forEach((e, t) => {
 		let n = i[t];
 		if (!e || !n) return;
-		let r = Ki(n, o, s);
+		let r = Ji(n, o, s);
 		for (let t of [
 			0,
 			1,
@@ -2157,7 +2158,7 @@ function Gi(e, t, n) {
 			2
 		]) t < 2 && (c[t][i] += e * r[t][i]), l[t][i] += e * n.R[t][i];
 	});
-	let u = Ji(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [qi(t) * m[0], qi(n) * m[1]], _ = [
+	let u = Xi(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Yi(t) * m[0], Yi(n) * m[1]], _ = [
 		0,
 		1,
 		2
@@ -2174,7 +2175,7 @@ function Gi(e, t, n) {
 		offset: null
 	};
 }
-function Ki({ K: e, width: t, height: n }, r, i) {
+function Ji({ K: e, width: t, height: n }, r, i) {
 	let a = Math.max(r / t, i / n), [o, s] = [(r - a * t) / 2, (i - a * n) / 2];
 	return [
 		[
@@ -2194,16 +2195,16 @@ function Ki({ K: e, width: t, height: n }, r, i) {
 		]
 	];
 }
-function qi(e) {
+function Yi(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Ji(e) {
+function Xi(e) {
 	let t = e;
 	for (let e = 0; e < 50; e++) {
 		let e = [
-			Wi(t[1], t[2]),
-			Wi(t[2], t[0]),
-			Wi(t[0], t[1])
+			Ki(t[1], t[2]),
+			Ki(t[2], t[0]),
+			Ki(t[0], t[1])
 		], n = Y(t[0], e[0]);
 		if (!(n > 1e-12)) break;
 		let r = t.map((t, r) => t.map((t, i) => (t + e[r][i] / n) / 2)), i = Math.max(...r.flatMap((e, n) => e.map((e, r) => Math.abs(e - t[n][r]))));
@@ -2211,24 +2212,24 @@ function Ji(e) {
 	}
 	return t;
 }
-function Yi(e, t, n, r, i = 1) {
+function Zi(e, t, n, r, i = 1) {
 	let a = n.width / n.height, o = i * Math.min(1, a / r), s = i * Math.min(1, r / a), c = {
 		left: (1 - o) / 2,
 		top: (1 - s) / 2,
 		width: o,
 		height: s
 	};
-	return Xi(e, t, n), Zi(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
+	return Qi(e, t, n), $i(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
 }
-function Xi(e, t, n) {
+function Qi(e, t, n) {
 	let { R: r, centre: i } = n, a = new x().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
 	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new A()), t.updateMatrixWorld(!0);
 }
-function Zi(e, t, n, r) {
-	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Qi(e, n);
+function $i(e, t, n, r) {
+	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = ea(e, n);
 	t.near = d, t.far = f, t.projectionMatrix.set(l * i, -l * a, -(2 * r.left - 1 + l * o), 0, 0, u * s, -(1 - 2 * r.top - u * c), 0, 0, 0, -(f + d) / (f - d), -2 * f * d / (f - d), 0, 0, -1, 0), t.projectionMatrixInverse.copy(t.projectionMatrix).invert();
 }
-function Qi(e, t) {
+function ea(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
@@ -2237,82 +2238,67 @@ function Qi(e, t) {
 	}, o = r.getMaxScaleOnAxis(), s = i.distanceTo(new A(...t.centre)) * o, c = 1.01 * (s + a * o);
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
-// eigenfield-three/src/footprint.ts
-var $i = 256;
-function ea(e, t, n) {
-	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
-	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / $i)), c = [];
-	for (let e = 0; e < o; e += s) {
-		let o = [
-			0,
-			1,
-			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => ta(t, i.getX(e), i.getY(e), i.getZ(e))), l = na(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
-		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = na(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
-		c.push({
-			footprint: Math.sqrt(f / l),
-			area: l
-		});
+// eigenfield-three/src/exposure.ts
+function ta(e) {
+	let [t, n] = [[
+		1,
+		1,
+		1
+	], [
+		0,
+		0,
+		0
+	]];
+	for (let [r, i] of e) if (r?.gain && r.offset) for (let e = 0; e < 3; e++) {
+		let a = 1 / (r.gain[e] ?? 1);
+		t[e] = (t[e] ?? 1) + i * (a - 1), n[e] = (n[e] ?? 0) - i * a * (r.offset[e] ?? 0);
 	}
-	c.sort((e, t) => e.footprint - t.footprint);
-	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
-	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
-}
-function ta({ K: e, R: t, t: n }, r, i, a) {
-	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
-		o(0),
-		o(1),
-		o(2)
-	];
-	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
-}
-function na(e) {
-	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
-	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
+	return {
+		scale: t,
+		bias: n
+	};
 }
 // eigenfield-three/src/memory.ts
-var ra = 4 / 3, ia = da({
+var na = 4 / 3, ra = ua({
 	components: 4,
 	halves: !0
-}), aa = {
+}), ia = {
 	components: 4,
+	halves: !1
+}, aa = {
+	components: 2,
 	halves: !1
 }, oa = {
 	components: 2,
-	halves: !1
-}, sa = {
-	components: 2,
 	halves: !0
-}, ca = 2 ** 20, la = 1 / 64, ua = 34;
-function da({ components: e, halves: t }) {
+}, sa = 2 ** 20, ca = 1 / 64, la = 34;
+function ua({ components: e, halves: t }) {
 	return (e > 2 ? 4 : e) * (t ? 2 : 1);
 }
-function fa() {
+function da() {
 	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
-	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && pa(e) ? Math.min(t ?? 4, 6) * 128 * ca : Math.min(t ?? 8, 8) * 256 * ca;
+	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && fa(e) ? Math.min(t ?? 4, 6) * 128 * sa : Math.min(t ?? 8, 8) * 256 * sa;
 }
-function pa(e) {
+function fa(e) {
 	return (e?.maxTouchPoints ?? 0) > 1;
 }
 function X([e, t], n) {
 	return [Math.ceil(e / n), Math.ceil(t / n)];
 }
-function ma(e, t) {
+function pa(e, t) {
 	let [n, r] = X(e, t);
 	return n * r;
 }
-function ha(e) {
+function ma(e) {
 	return Math.ceil(e / 4);
 }
-function ga(e, t) {
-	return t * _a(e);
+function ha(e, t) {
+	return t * ga(e);
 }
-function _a(e) {
+function ga(e) {
 	return Math.max(1, Math.ceil(e / 4));
 }
-function va(e) {
+function _a(e) {
 	let { atlas: t, means: n, bases: r } = e, i = [
 		t,
 		...n.map(({ size: e }) => e),
@@ -2320,7 +2306,7 @@ function va(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-var ya = [{
+var va = [{
 	meanDown: 1,
 	scaleDown: 1,
 	halves: !0
@@ -2343,14 +2329,14 @@ var ya = [{
 	scaleDown: t * e,
 	halves: !1
 })))];
-function ba(e, t) {
-	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => xa(e, t.meanDown) + e.geometry + Sa(e, t, n), o = (n, r) => a(n, r) + Ta(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = ya.filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
+function ya(e, t) {
+	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => ba(e, t.meanDown) + e.geometry + xa(e, t, n), o = (n, r) => a(n, r) + wa(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = va.filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
 	for (; !u && l > 0; l--) u = c.find((e) => o(e, l - 1));
-	u ??= ya.at(-1);
-	let d = Ea({
+	u ??= va.at(-1);
+	let d = Ta({
 		...u,
 		usable: l
-	}, e), f = Da(d, e, t);
+	}, e), f = Ea(d, e, t);
 	return {
 		...u,
 		usable: l,
@@ -2359,52 +2345,52 @@ function ba(e, t) {
 		limitation: f
 	};
 }
-function xa(e, t) {
-	let n = e.means.map(({ size: e, channels: n, tenBits: r }) => da({
+function ba(e, t) {
+	let n = e.means.map(({ size: e, channels: n, tenBits: r }) => ua({
 		components: n,
 		halves: r
-	}) * ha(n) * ma(e, t)), r = va(e).map((n) => {
-		let r = n.join() === e.atlas.join() ? ra : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
-		return ia * ma(n, t) * (r + +!!i);
+	}) * ma(n) * pa(e, t)), r = _a(e).map((n) => {
+		let r = n.join() === e.atlas.join() ? na : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
+		return ra * pa(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function Sa({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
+function xa({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
 	return e.reduce((e, a) => {
 		let o = Math.min(i, a.count);
 		if (!o) return e;
-		let s = t ? _a(o) * 129 * 129 * ia : 0;
-		return e + da({
+		let s = t ? ga(o) * 129 * 129 * ra : 0;
+		return e + ua({
 			components: o,
 			halves: r && a.tenBits
-		}) * ga(o, a.channels) * ma(a.size, n) + s;
+		}) * ha(o, a.channels) * pa(a.size, n) + s;
 	}, 0);
 }
-function Ca({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
-	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = wa([...a, ...o].map(({ size: e }) => e)), l = Math.floor(la * i / (da(aa) * s)), u = [s, Math.min(c, Math.max(ua, l))], d = [...n > 1 ? a.map((e) => X(e.size, n)) : [], ...r > 1 ? o.map((e) => X(e.size, r)) : []];
+function Sa({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
+	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = Ca([...a, ...o].map(({ size: e }) => e)), l = Math.floor(ca * i / (ua(ia) * s)), u = [s, Math.min(c, Math.max(la, l))], d = [...n > 1 ? a.map((e) => X(e.size, n)) : [], ...r > 1 ? o.map((e) => X(e.size, r)) : []];
 	return {
 		picture: {
 			size: u,
-			format: aa
+			format: ia
 		},
 		codes: [...a, ...o].some(({ tenBits: e }) => e) ? {
 			size: u,
-			format: oa
+			format: aa
 		} : null,
 		smaller: d.length ? {
-			size: wa(d),
-			format: sa
+			size: Ca(d),
+			format: oa
 		} : null
 	};
 }
-function wa(e) {
+function Ca(e) {
 	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
 }
-function Ta(e, t, n) {
-	let r = Object.values(Ca(e, t, n)).map((e) => e ? da(e.format) * ma(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(...va(e).map((e) => ma(e, 1))) : 0;
+function wa(e, t, n) {
+	let r = Object.values(Sa(e, t, n)).map((e) => e ? ua(e.format) * pa(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(..._a(e).map((e) => pa(e, 1))) : 0;
 	return [...r, i].reduce((e, t) => e + t, 0);
 }
-function Ea({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
+function Ta({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 	let a = Math.max(0, ...i.bases.map(({ count: e }) => e)), o = [];
 	return e < a && o.push({
 		kind: "count",
@@ -2418,37 +2404,37 @@ function Ea({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 		percent: Math.round(100 / t)
 	}), o;
 }
-function Da(e, t, n) {
+function Ea(e, t, n) {
 	if (!e.length) return null;
 	let r = e.map((e) => e.kind === "count" ? `${e.part} of ${e.whole} eigen textures are drawn` : e.kind === "bits" ? "eigen textures have 8 bits" : `${e.kind === "mean" ? "the mean texture has" : "eigen textures have"} ${e.percent} % of ${e.kind === "mean" ? "its" : "their"} width and height`), i = {
 		meanDown: 1,
 		scaleDown: 1,
 		halves: !0
-	}, a = xa(t, 1) + Sa(t, i, Infinity) + Ta(t, i, n.memory) + t.geometry, o = a > n.memory ? `the scene needs ${Oa(a)} MB of graphics memory and ${Oa(n.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${ka(r.join(", "))}: ${o}.`;
+	}, a = ba(t, 1) + xa(t, i, Infinity) + wa(t, i, n.memory) + t.geometry, o = a > n.memory ? `the scene needs ${Da(a)} MB of graphics memory and ${Da(n.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${Oa(r.join(", "))}: ${o}.`;
 }
-function Oa(e) {
+function Da(e) {
 	return (e / 1e6).toFixed(+(e < 1e7));
 }
-function ka(e) {
+function Oa(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var Aa = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of four passes. All\n// draw into textures whose row 0 is v = 0. All but the first add R, G, B and opacity to what is there, which is cleared\n// to zeros before:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n//   finerOpacity  in a scene with sheets, once for all of the atlas: the opacity of the sheets\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum; or the opacity, in the first channel, at a density of its own\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n\n// The opacity in `coarse` at texture coordinates of the atlas.\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", ja = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", Ma = 2, Na = `
+var ka = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Aa = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", ja = 2, Ma = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${ja}${Aa}`, Pa = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", Fa = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", Ia = `${Na}
+${Aa}${ka}`, Na = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", Pa = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", Fa = `${Ma}
 in vec3 point;
 out vec4 place;
 void main() { place = placeOf(point); }
-`, La = "sumTextures", Ra = "finerValue", za = "finerOpacity";
-function Ba(n, r, i) {
+`, Ia = "sumTextures", La = "finerValue", Ra = "finerOpacity";
+function za(n, r, i) {
 	let o = new O({
 		glslVersion: h,
-		vertexShader: Pa,
-		fragmentShader: `${Na}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
+		vertexShader: Na,
+		fragmentShader: `${Ma}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
 		uniforms: {
 			rectangle: { value: new ae(...r) },
 			...i
@@ -2484,7 +2470,7 @@ function Ba(n, r, i) {
 	let c = new S(s, o);
 	return c.frustumCulled = !1, c;
 }
-function Va([e, t], n) {
+function Ba([e, t], n) {
 	return new oe(e, t, {
 		type: g,
 		depthBuffer: !1,
@@ -2493,76 +2479,88 @@ function Va([e, t], n) {
 		magFilter: n ? y : w
 	});
 }
-function Ha(e, t) {
-	let n = Wi(e.right, e.up), r = [
+function Va(e, t) {
+	let n = Ki(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
 		t[2] - e.origin[2]
 	];
-	return [...Hi(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
+	return [...Wi(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
 }
-function Ua(t, n, r) {
-	let i = t.geometry.getAttribute("position"), a = t.geometry.getAttribute("uv"), o = new Float32Array(3 * i.count), s = new Float32Array(2 * i.count);
-	for (let e = 0; e < i.count; e++) o.set(Ha(n, [
-		i.getX(e),
-		i.getY(e),
-		i.getZ(e)
-	]), 3 * e), s.set([a.getX(e), a.getY(e)], 2 * e);
-	let c = Array.from({ length: 5 }, (e, t) => t - Ma), l = c.flatMap((e) => c.map((t) => new ie(t, e)));
-	l.sort((e, t) => t.lengthSq() - e.lengthSq());
-	let d = new v();
-	d.setAttribute("position", new e(s, 2)), d.setAttribute("onPlane", new e(o, 3)), d.setIndex(t.geometry.index ? new e(t.geometry.index.array, 1) : null), d.instanceCount = l.length, d.boundingSphere = new te();
-	let f = new O({
+function Ha(t, n, r) {
+	let { index: i } = t, a = t.getAttribute("position"), o = t.getAttribute("uv"), s = new Float32Array(3 * a.count), c = new Float32Array(2 * a.count);
+	for (let e = 0; e < a.count; e++) s.set(Va(n, [
+		a.getX(e),
+		a.getY(e),
+		a.getZ(e)
+	]), 3 * e), c.set([o.getX(e), o.getY(e)], 2 * e);
+	let l = Array.from({ length: 5 }, (e, t) => t - ja), d = l.flatMap((e) => l.map((t) => new ie(t, e)));
+	d.sort((e, t) => t.lengthSq() - e.lengthSq());
+	let f = new v();
+	f.setAttribute("position", new e(c, 2)), f.setAttribute("onPlane", new e(s, 3)), f.setIndex(i && new e(i.array, 1)), f.instanceCount = d.length, f.boundingSphere = new te();
+	let p = new O({
 		glslVersion: h,
-		vertexShader: Fa.replace("SHIFTS", String(l.length)),
-		fragmentShader: Ia,
+		vertexShader: Pa.replace("SHIFTS", String(d.length)),
+		fragmentShader: Fa,
 		uniforms: {
 			texel: { value: new ie(2 / r.width, 2 / r.height) },
-			shifts: { value: l }
+			shifts: { value: d }
 		},
 		side: u,
 		blending: T,
 		depthTest: !1,
 		depthWrite: !1
-	}), p = new S(d, f);
-	p.frustumCulled = !1;
-	let m = new k();
-	return m.add(p), {
-		scene: m,
+	}), m = new S(f, p);
+	m.frustumCulled = !1;
+	let g = new k();
+	return g.add(m), {
+		scene: g,
 		free: () => {
-			d.dispose(), f.dispose();
+			f.dispose(), p.dispose();
 		}
 	};
 }
+var Ua = new i(0), Wa = new i();
+function Ga(e, t, n) {
+	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
+		e.xr.enabled,
+		e.shadowMap.autoUpdate,
+		e.getClearAlpha()
+	], [d, f] = [s.render.frame, s.autoReset];
+	e.getClearColor(Wa), e.setClearColor(Ua, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(Wa, u), e.setRenderTarget(r, i, a);
+	let { viewport: p } = t;
+	p && e.state.viewport(p);
+}
 // eigenfield-three/src/composer.ts
-var Wa = {
+var Ka = {
 	version: 0,
 	mean: !0,
-	opacity: !0,
+	opacity: 0,
 	only: null,
 	count: 0,
 	weights: /* @__PURE__ */ new Float64Array(),
 	eye: null,
+	places: 0,
 	maps: null
-}, Ga = class {
+}, qa = class {
 	opacity;
 	down;
-	mesh;
+	surface;
 	plane;
 	grids;
 	composed = null;
-	opacityDrawn = !1;
+	opacityDrawn = 0;
 	camera = new n();
 	constructor(e, t, n, r, i, a) {
-		this.opacity = n, this.down = r, this.mesh = i, this.plane = a;
-		let [o, ...s] = va({
+		this.opacity = n, this.down = r, this.surface = i, this.plane = a;
+		let [o, ...s] = _a({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), c = (e, n) => {
-			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(qa), a = new k();
+			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(Ya), a = new k();
 			return i.forEach(({ quad: e }, t) => a.add(Object.assign(e, { renderOrder: t }))), {
-				target: Va(X(e, r), n),
+				target: Ba(X(e, r), n),
 				scene: a,
 				steps: i,
 				places: null
@@ -2570,7 +2568,7 @@ var Wa = {
 		}, l = c(o ?? e, !0);
 		this.grids = s.map((e) => c(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = Ba(Ra, [
+			let t = za(La, [
 				0,
 				0,
 				1,
@@ -2584,37 +2582,40 @@ var Wa = {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && Xa(this.composed, n) || (this.composed = n, $a(e, t, () => {
-			n.opacity && !this.opacityDrawn && this.drawOpacity(e);
+		this.composed && Qa(this.composed, n) || (this.composed = n, Ga(e, t, () => {
+			n.opacity > this.opacityDrawn && this.drawOpacity(e, n.opacity);
 			for (let t of this.grids) {
-				n.eye && !t.places && t.steps.some(({ part: e }) => e.basis) && this.findPlaces(e, t);
-				for (let e of t.steps) Ja(e, t.places?.texture ?? null, n);
-				this.draw(e, t.scene, t.target, this.opacityDrawn && t === this.grids.at(-1));
+				n.eye && t.steps.some(({ part: e }) => e.basis) && this.findPlaces(e, t, n.places);
+				for (let e of t.steps) Xa(e, t.places?.target.texture ?? null, n);
+				this.draw(e, t.scene, t.target, this.opacityDrawn > 0 && t === this.grids.at(-1));
 			}
 		}));
 	}
 	dispose() {
-		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.dispose(), Ka(n);
+		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), Ja(n);
 	}
-	drawOpacity(e) {
-		let t = this.grids.at(-1);
-		if (!this.opacity || !t) return;
-		let n = Va(X(this.opacity.grid, this.down), !1), r = qa(this.opacity);
-		for (let e of r) Ja(e, null, Wa);
-		let [i, a] = [new k(), new k()];
-		i.add(...r.map(({ quad: e }) => e)), a.add(Ba(za, [
+	drawOpacity(e, t) {
+		let n = this.grids.at(-1);
+		if (!this.opacity || !n) return;
+		let r = Ba(X(this.opacity.grid, this.down), !1), i = Ya(this.opacity);
+		for (let e of i) Xa(e, null, Ka);
+		let [a, o] = [new k(), new k()];
+		a.add(...i.map(({ quad: e }) => e)), o.add(za(Ra, [
 			0,
 			0,
 			1,
 			1
-		], { coarse: { value: n.texture } })), this.draw(e, i, n), this.draw(e, a, t.target);
-		for (let e of [i, a]) Ka(e);
-		n.dispose(), this.opacityDrawn = !0;
+		], { coarse: { value: r.texture } })), this.draw(e, a, r), this.draw(e, o, n.target);
+		for (let e of [a, o]) Ja(e);
+		r.dispose(), this.opacityDrawn = t;
 	}
-	findPlaces(e, t) {
-		t.places = Va([t.target.width, t.target.height], !1);
-		let { scene: n, free: r } = Ua(this.mesh, this.plane, t.places);
-		this.draw(e, n, t.places), r();
+	findPlaces(e, t, n) {
+		if (t.places?.version === n) return;
+		let r = t.places?.target ?? Ba([t.target.width, t.target.height], !1), { scene: i, free: a } = Ha(this.surface.geometry, this.plane, r);
+		this.draw(e, i, r), a(), t.places = {
+			target: r,
+			version: n
+		};
 	}
 	draw(e, t, n, r = !1) {
 		e.setRenderTarget(n), e.state.buffers.color.setMask(!0);
@@ -2622,17 +2623,17 @@ var Wa = {
 		r && i.colorMask(!0, !0, !0, !1), e.clear(!0, !1, !1), r && i.colorMask(!0, !0, !0, !0), e.render(t, this.camera);
 	}
 };
-function Ka(e) {
+function Ja(e) {
 	for (let { geometry: t, material: n } of e.children) t.dispose(), n.dispose();
 }
-function qa(e) {
+function Ya(e) {
 	let t = e.colours.length, [n, r] = [e.scale.length / (4 * t), Math.floor(64 / t)], i = [];
 	for (let a = 0; a < n; a += r) {
 		let o = Array.from({ length: 64 }, (t, n) => new A(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), s = e.basis ? 1 : 4, c = Ba(La, e.rectangle, {
+		])), s = e.basis ? 1 : 4, c = za(Ia, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(a * t / s) },
 			sharing: { value: s },
@@ -2656,42 +2657,31 @@ function qa(e) {
 	}
 	return i;
 }
-function Ja({ part: e, first: t, groups: n, quad: r }, i, a) {
+function Xa({ part: e, first: t, groups: n, quad: r }, i, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Ya(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Za(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
 	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", u ? i : null), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function Ya(e, t, n, r) {
+function Za(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function Xa(e, t) {
+function Qa(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
-var Za = new i(0), Qa = new i();
-function $a(e, t, n) {
-	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
-		e.xr.enabled,
-		e.shadowMap.autoUpdate,
-		e.getClearAlpha()
-	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(Qa), e.setClearColor(Za, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(Qa, u), e.setRenderTarget(r, i, a);
-	let { viewport: p } = t;
-	p && e.state.viewport(p);
-}
 // eigenfield-three/src/maps.ts
-function eo(e, t, n, i, a) {
+function $a(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? _a(t) : 0;
+		u += e, d += t ? ga(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -2709,8 +2699,55 @@ function eo(e, t, n, i, a) {
 	let p = new o(f, 129, 129, Math.max(1, d));
 	return p.format = D, p.type = g, p.minFilter = p.magFilter = y, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
 }
-// ../src/eigenfield/rendering/shaders/surface.glsl?raw
-var to = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/renderer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B and opacity at texture coordinates; nothing is cut off.\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What is seen of a value of the surface.\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\n\n// What an opaque surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\n\n// What a sheet adds to the sheets behind it at texture coordinates: R, G, B times its opacity, and its opacity. It is\n// blended with the factors ONE and ONE_MINUS_SRC_ALPHA. Colours are not cut off: those of all sheets together count.\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", no = {
+// eigenfield-three/src/eigen-weights.ts
+var eo = class {
+	info;
+	counts;
+	omega;
+	views;
+	total;
+	rowOf;
+	made = null;
+	constructor(e, t, n, r) {
+		this.info = e, this.counts = t, this.omega = n, this.views = r, this.total = t.reduce((e, t) => e + t, 0);
+		let i = 0;
+		this.rowOf = Int32Array.from(e.heldOut, (e) => e ? -1 : i++);
+	}
+	viewsAt(e, t, n) {
+		let r = new Float64Array(this.views.places.length / 2), { camera: i, weight: a } = this.views.at(e, t, n);
+		return i.forEach((e, t) => r[e] = (r[e] ?? 0) + (a[t] ?? 0)), r;
+	}
+	at(e, t, n) {
+		let { camera: r, weight: i } = this.views.at(e, t, n), a = new Float64Array(this.total);
+		for (let e = 0; e < 4; e++) {
+			let t = i[e] ?? 0;
+			if (!t) continue;
+			let n = (r[e] ?? 0) * this.total;
+			for (let e = 0; e < this.total; e++) a[e] = (a[e] ?? 0) + t * (this.omega[n + e] ?? 0);
+		}
+		return a;
+	}
+	ofCamera(e, t) {
+		let n = this.rowOf[e] ?? -1;
+		if (n >= 0) return Float64Array.from(this.omega.subarray(n * this.total, (n + 1) * this.total));
+		let r = this.info.cameras[e];
+		if (!r) throw RangeError(`no camera ${e}`);
+		return this.at(...Wi(this.info.viewPlane, r.centre), t);
+	}
+	maps(e, t) {
+		if (this.made?.mixing === e && this.made.usable === t) return this.made.texture;
+		this.dispose();
+		let n = $a(this.views, e, this.omega, this.counts, t);
+		return this.made = {
+			texture: n,
+			mixing: e,
+			usable: t
+		}, n;
+	}
+	dispose() {
+		this.made?.texture.dispose();
+	}
+}, to = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", no = {
 	bilinear: 0,
 	bicubic: 1
 }, ro = {
@@ -2719,7 +2756,7 @@ var to = "// The composed texture (compose.glsl) on the surface of the proxy.\n/
 	eigen: 2,
 	error: 3
 }, io = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", ao = io.replace("void main", "invariant gl_Position;\nvoid main"), oo = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", so = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", co = `${oo}
-${ja}${to}
+${Aa}${to}
 uniform float shownGain;       // of the eigen texture around mid grey
 in vec2 surfaceUv;
 vec3 eigenColour(vec3 value) { return clamp(0.5 + shownGain * value, 0.0, 1.0); }
@@ -2794,7 +2831,14 @@ function go(e) {
 		stencilZPass: se
 	});
 }
-var _o = 3, vo = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", yo = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", bo = `#version 300 es
+function _o(e, t, n) {
+	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !vo(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
+	u && (d.elements[13] = 1), e.toPhotograph.value.multiplyMatrices(d, l.multiply(c)), e.photograph.value = n;
+}
+function vo(e) {
+	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
+}
+var yo = 3, bo = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", xo = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", So = `#version 300 es
 precision highp float;
 precision highp int;
 uniform highp sampler2D picture; // values, and whether they are of a chart
@@ -2804,7 +2848,7 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec2 own = texelFetch(picture, at, 0).rg;
   vec2 sum = vec2(own.r * own.g, own.g);
-  for (int far = 1; far <= ${_o} && sum.y == 0.0; far++) {
+  for (int far = 1; far <= ${yo} && sum.y == 0.0; far++) {
     for (int y = -far; y <= far; y++) {
       for (int x = -far; x <= far; x++) {
         vec2 near = texelFetch(picture, clamp(at + ivec2(x, y), ivec2(0), size - 1), 0).rg;
@@ -2814,9 +2858,9 @@ void main() {
   }
   stored = vec4(sum.y > 0.0 ? sum.x / sum.y : own.r);
 }
-`, xo = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
+`, Co = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
 // eigenfield-three/src/parts.ts
-function So(e, t, n) {
+function wo(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -2826,7 +2870,7 @@ function So(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = wo(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = Eo(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -2854,7 +2898,7 @@ function So(e, t, n) {
 						a + e[1] / i[1]
 					],
 					colours: f,
-					...To(l, u, h, n.halves && Wr(l)),
+					...Do(l, u, h, n.halves && qr(l)),
 					basis: {
 						ready: m,
 						column: o,
@@ -2862,11 +2906,11 @@ function So(e, t, n) {
 					}
 				});
 			}
-			o += p, s += h ? _a(h) : 0;
+			o += p, s += h ? ga(h) : 0;
 		}
 	}), r;
 }
-function Co({ planes: e, sheets: t }, { means: n, needs: r }) {
+function To({ planes: e, sheets: t }, { means: n, needs: r }) {
 	let i = n[e.length], a = r.means[e.length]?.size;
 	return !t || !i || !a ? null : {
 		stored: i,
@@ -2882,12 +2926,12 @@ function Co({ planes: e, sheets: t }, { means: n, needs: r }) {
 			0,
 			0
 		]],
-		...wo(t.opacity),
+		...Eo(t.opacity),
 		basis: null
 	};
 }
-function wo({ mean: e, channels: t, precision: n }) {
-	let { scale: r, zero: i } = e, a = n ? 4 : 1 / Kr(e, Wr([e])), o = {
+function Eo({ mean: e, channels: t, precision: n }) {
+	let { scale: r, zero: i } = e, a = n ? 4 : 1 / Yr(e, qr([e])), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
 	};
@@ -2897,8 +2941,8 @@ function wo({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function To(e, t, n, r) {
-	let i = e.flatMap((e) => Array(e.textures).fill(Kr(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * _a(n), c = {
+function Do(e, t, n, r) {
+	let i = e.flatMap((e) => Array(e.textures).fill(Yr(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * ga(n), c = {
 		scale: new Float32Array(s),
 		bias: new Float32Array(s)
 	};
@@ -2908,8 +2952,43 @@ function To(e, t, n, r) {
 	}
 	return c;
 }
+// eigenfield-three/src/footprint.ts
+var Oo = 256;
+function ko(e, t, n) {
+	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
+	if (!r || !i || !a) return 0;
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / Oo)), c = [];
+	for (let e = 0; e < o; e += s) {
+		let o = [
+			0,
+			1,
+			2
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Ao(t, i.getX(e), i.getY(e), i.getZ(e))), l = jo(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
+		let f = jo(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		c.push({
+			footprint: Math.sqrt(f / l),
+			area: l
+		});
+	}
+	c.sort((e, t) => e.footprint - t.footprint);
+	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
+	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
+}
+function Ao({ K: e, R: t, t: n }, r, i, a) {
+	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
+		o(0),
+		o(1),
+		o(2)
+	];
+	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
+}
+function jo(e) {
+	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
+	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
+}
 // eigenfield-three/src/sheet-stack.ts
-var Eo = "sheets", Do = 16, Oo = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", ko = `${oo}${so}
+var Mo = "sheets", No = 16, Po = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Fo = `${oo}${so}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -2934,36 +3013,34 @@ void main() {
   gl_FragDepth = depth;
   fragment = colour;
 }
-`, Ao = new ae(), jo = class {
+`, Io = new ae(), Lo = class {
+	material;
 	scene = new k();
 	camera = new n();
-	sheets;
+	sheets = new S();
 	depth;
 	screen;
+	everywhere = new t();
 	target = null;
-	constructor(e, t, n) {
-		let r = 0;
-		e.forEach((e, n) => {
-			for (let i of [0, 1]) t.addGroup(r, 3 * e, 2 * n + i);
-			r += 3 * e;
-		}), this.depth = go(n), this.depth.transparent = n.transparent = !0, this.sheets = new S(t, e.flatMap(() => [this.depth, n])), this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (t, n, r, i, a, o) => {
-			let { materialIndex: s = 0 } = o, c = e.length - 1 - (s >> 1);
-			t.getContext().depthRange(c / e.length, (c + 1) / e.length);
+	constructor(t) {
+		this.material = t, this.depth = go(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
+			let { materialIndex: o = 0 } = a, s = this.sheets.material.length / 2, c = s - 1 - (o >> 1);
+			e.getContext().depthRange(c / s, (c + 1) / s);
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
-		let { shown: i, photograph: a, toPhotograph: o } = n.uniforms;
+		let { shown: n, photograph: r, toPhotograph: i } = t.uniforms;
 		this.screen = new O({
-			name: Eo,
+			name: Mo,
 			glslVersion: h,
-			vertexShader: Oo,
-			fragmentShader: ko,
+			vertexShader: Po,
+			fragmentShader: Fo,
 			uniforms: {
-				shown: i,
-				photograph: a,
-				toPhotograph: o,
+				shown: n,
+				photograph: r,
+				toPhotograph: i,
 				sheets: { value: null },
 				solid: { value: null },
 				nearest: { value: null },
-				slices: { value: e.length },
+				slices: { value: 1 },
 				corner: { value: new ie() },
 				size: { value: new ie() },
 				toPlace: { value: new x() }
@@ -2971,15 +3048,7 @@ void main() {
 			transparent: !0,
 			...po
 		});
-	}
-	get bytes() {
-		return this.target ? Do * this.target.width * this.target.height : 0;
-	}
-	attach(n, r) {
-		for (let e of [n.material].flat()) e.visible = !1;
-		n.geometry.computeBoundingBox(), n.geometry.computeBoundingSphere();
-		let { boundingBox: i, boundingSphere: a } = n.geometry, o = new t();
-		o.setAttribute("position", new e(new Float32Array([
+		let a = new Float32Array([
 			-1,
 			-1,
 			0,
@@ -2989,33 +3058,51 @@ void main() {
 			-1,
 			3,
 			0
-		]), 3)), Object.assign(o, {
-			boundingBox: i,
-			boundingSphere: a
+		]);
+		this.everywhere.setAttribute("position", new e(a, 3));
+	}
+	get bytes() {
+		return this.target ? No * this.target.width * this.target.height : 0;
+	}
+	setGeometry(e, t) {
+		e.clearGroups();
+		let n = 0;
+		t.forEach((t, r) => {
+			for (let i of [0, 1]) e.addGroup(n, 3 * t, 2 * r + i);
+			n += 3 * t;
+		}), this.sheets.geometry = e, this.sheets.material = t.flatMap(() => [this.depth, this.material]), this.set("slices", t.length), e.computeBoundingBox(), e.computeBoundingSphere();
+		let { boundingBox: r, boundingSphere: i } = e;
+		Object.assign(this.everywhere, {
+			boundingBox: r,
+			boundingSphere: i
 		});
-		let s = new S(o, this.screen);
-		s.name = Eo, s.raycast = () => void 0, s.onBeforeRender = (e, t, i) => {
-			r(e, i), this.draw(e, i, n);
-		}, n.add(s);
+	}
+	attach(e, t) {
+		for (let t of [e.material].flat()) t.visible = !1;
+		let n = new S(this.everywhere, this.screen);
+		n.name = Mo, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
+			t(n, i), this.draw(n, i, e);
+		}, e.add(n);
+	}
+	set(e, t) {
+		Object.assign(this.screen.uniforms[e] ?? {}, { value: t });
 	}
 	dispose() {
 		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
 	}
 	draw(e, t, n) {
-		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Ao);
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Io);
 		if (!a || !o) return;
-		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Mo(a, o));
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Ro(a, o));
 		let { target: s } = this;
-		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), $a(e, t, () => {
+		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), Ga(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
 		}), e.getContext().depthRange(0, 1);
-		let { uniforms: c } = this.screen, l = (e, t) => {
-			Object.assign(c[e] ?? {}, { value: t });
-		};
-		l("sheets", s.textures[0]), l("solid", s.textures[1]), l("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
+		let { uniforms: c } = this.screen;
+		this.set("sheets", s.textures[0]), this.set("solid", s.textures[1]), this.set("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
 	}
 };
-function Mo(e, t) {
+function Ro(e, t) {
 	let n = new l(e, t, re);
 	n.format = c;
 	let r = new oe(e, t, {
@@ -3028,74 +3115,95 @@ function Mo(e, t) {
 	}), [, i] = r.textures;
 	return i && (i.type = ne), r;
 }
-// eigenfield-three/src/pieces.ts
-function No(e) {
-	for (let { picture: t } of e) "close" in t && t.close();
-}
-// eigenfield-three/src/strength.ts
-var Po = 128, Fo = .98;
-async function Io(e, t, n, r) {
-	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
-	if (!o) return 1;
-	let s = t - (a - o.textures), c = Gr(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Po, Po).getContext("2d", { willReadFrequently: !0 });
-	if (!d) return 1;
-	d.imageSmoothingEnabled = !1;
-	let f = [];
-	u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, Po, Po);
-		let { data: u } = d.getImageData(0, 0, Po, Po);
-		(l ? [
-			0,
-			1,
-			2
-		] : [a]).forEach((e) => {
-			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
-			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
-		});
-	}), No(u), f.sort((e, t) => e - t);
-	let p = f[Math.floor(Fo * f.length)] ?? 0;
-	return p > 0 ? .45 / p : 1;
-}
+// eigenfield-three/src/surface.ts
+var zo = class {
+	meshes;
+	faces;
+	reference;
+	mesh;
+	material;
+	version = 0;
+	detail = 0;
+	stack;
+	constructor(e, t, n, r) {
+		this.meshes = e, this.faces = t, this.reference = n;
+		let [i] = e;
+		if (!i) throw Error("a field needs a mesh");
+		this.mesh = i;
+		let a = [i.material].flat().some((e) => e.side !== m);
+		this.material = ho(a, t !== null), this.stack = t && new Lo(this.material);
+		for (let t of e) {
+			let e = (e, n) => r(e, n, t);
+			this.stack ? this.stack.attach(t, e) : (t.material = this.material, t.onBeforeRender = (t, n, r) => e(t, r));
+		}
+		this.show(t);
+	}
+	get geometry() {
+		return this.mesh.geometry;
+	}
+	get bytes() {
+		return this.stack?.bytes ?? 0;
+	}
+	setGeometry(e, t = this.faces) {
+		let n = this.geometry;
+		if (n !== e) {
+			let { index: r, attributes: i } = e;
+			if (!r || !i.position || !i.uv) throw TypeError("A surface needs position, uv and an index.");
+			this.stack && t && ri({
+				faces: t,
+				where: "the geometry"
+			}, e), n.dispose();
+		}
+		for (let t of this.meshes) t.geometry = e;
+		e.boundingBox = e.boundingSphere = null, this.faces = t, this.version += 1, this.show(t);
+	}
+	show(e) {
+		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? ko(this.geometry, this.reference, [1, 1]) : 0;
+	}
+	dispose() {
+		this.stack?.dispose(), this.material.dispose(), this.geometry.dispose();
+	}
+};
 // eigenfield-three/src/gpu.ts
-function Lo(e) {
+function Bo(e) {
 	let t = e.getContext();
 	if (!(t instanceof WebGL2RenderingContext)) throw new j("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
 	if ((t.getExtension("EXT_color_buffer_float") ?? t.getExtension("EXT_color_buffer_half_float")) || t.isContextLost()) return t;
 	throw new j("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
 }
-function Ro(e, t) {
+function Vo(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function zo(e, { components: t, halves: n }) {
+function Ho(e, { components: t, halves: n }) {
 	return t > 2 ? n ? e.RGBA16F : e.RGBA8 : t > 1 ? n ? e.RG16F : e.RG8 : n ? e.R16F : e.R8;
 }
-function Bo(e, [t, n], r, i, a) {
-	return Uo(e, e.TEXTURE_2D_ARRAY, () => {
-		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, zo(e, a), t, n, r);
+function Uo(e, [t, n], r, i, a) {
+	return Ko(e, e.TEXTURE_2D_ARRAY, () => {
+		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, Ho(e, a), t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function Vo(e, t, n, r) {
+function Wo(e, t, n, r) {
 	let { width: i, height: a } = n, o = r > 2 ? e.RGBA : r > 1 ? e.RG : e.RED;
-	Wo(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
+	qo(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
 }
-function Ho(e, [t, n], r) {
-	return Uo(e, e.TEXTURE_2D, () => {
-		e.texStorage2D(e.TEXTURE_2D, 1, zo(e, r), t, n);
+function Go(e, [t, n], r) {
+	return Ko(e, e.TEXTURE_2D, () => {
+		e.texStorage2D(e.TEXTURE_2D, 1, Ho(e, r), t, n);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D, t, e.NEAREST);
 	});
 }
-function Uo(e, t, n) {
+function Ko(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return Wo(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return qo(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function Wo(e, t, n, r) {
+function qo(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -3109,7 +3217,7 @@ function Wo(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-function Go(e, t, n) {
+function Jo(e, t, n) {
 	let r = e.createProgram();
 	for (let [i, a] of [[e.VERTEX_SHADER, t], [e.FRAGMENT_SHADER, n]]) {
 		let t = e.createShader(i);
@@ -3117,7 +3225,7 @@ function Go(e, t, n) {
 	}
 	return e.linkProgram(r), r;
 }
-function Ko(e, t, n, r) {
+function Yo(e, t, n, r) {
 	if (!n) {
 		r();
 		return;
@@ -3125,9 +3233,9 @@ function Ko(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), Wo(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), qo(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function qo(e, t) {
+function Xo(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -3141,48 +3249,32 @@ function qo(e, t) {
 	].filter((t) => e.isEnabled(t)), r = e.getParameter(e.CURRENT_PROGRAM), i = e.getParameter(e.VERTEX_ARRAY_BINDING), a = e.getParameter(e.DRAW_FRAMEBUFFER_BINDING), [o = 0, s = 0, c = 0, l = 0] = e.getParameter(e.VIEWPORT), [u, d, f, p] = e.getParameter(e.COLOR_WRITEMASK);
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r && e.isProgram(r) ? r : null), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
-// eigenfield-three/src/means.ts
-async function Jo(e, t) {
-	let { mean: n, meanSize: r } = e, i = e.precision && await Yo(await t(e.precision.view), e.precision);
-	return {
-		pieces: await n.codec.decode(await t(n.view), n, r),
-		precision: i
-	};
-}
-async function Yo(e, t) {
-	let { type: n } = Qn(e) ?? {}, { mimeType: r } = t.codec;
-	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
-	let [i] = await t.codec.bitmaps(e, t, t.size);
-	if (!i) throw M(t.where, "no picture");
-	return i.picture;
-}
-function Xo({ pieces: e, precision: t }) {
-	No(e), t?.close();
-}
 // eigenfield-three/src/charts.ts
 function Zo(e, t) {
-	let n = Go(e, ...xo), r = e.createFramebuffer(), i = null, a = (i, a) => {
+	let n = Jo(e, ...Co), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
 		let { index: o } = t, s = t.getAttribute("uv"), c = Float32Array.from({ length: 2 * (o?.count ?? 0) }, (e, t) => {
 			let n = o?.getX(t >> 1) ?? 0;
 			return t % 2 ? s.getY(n) : s.getX(n);
 		}), [l, u] = [e.createVertexArray(), e.createBuffer()], d = e.getParameter(e.ARRAY_BUFFER_BINDING);
-		qo(e, () => {
+		Xo(e, () => {
 			e.useProgram(n), e.bindVertexArray(l), e.bindBuffer(e.ARRAY_BUFFER, u), e.bufferData(e.ARRAY_BUFFER, c, e.STREAM_DRAW);
 			let t = e.getAttribLocation(n, "uv");
 			e.enableVertexAttribArray(t), e.vertexAttribPointer(t, 2, e.FLOAT, !1, 0, 0), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, a, 0), e.viewport(0, 0, ...i), e.colorMask(!0, !0, !0, !0), e.drawArrays(e.TRIANGLES, 0, c.length / 2);
 		}), e.bindBuffer(e.ARRAY_BUFFER, d), e.deleteBuffer(u), e.deleteVertexArray(l);
 	};
 	return {
-		covered(t) {
-			if (i?.grid.join() !== t.join()) {
+		covered(n) {
+			let { geometry: r } = t;
+			if (i?.grid.join() !== n.join() || i.geometry !== r) {
 				e.deleteTexture(i?.texture ?? null);
-				let n = Ho(e, t, {
+				let t = Go(e, n, {
 					components: 1,
 					halves: !1
 				});
-				n && a(t, n), i = {
-					grid: t,
-					texture: n
+				t && a(r, n, t), i = {
+					geometry: r,
+					grid: n,
+					texture: t
 				};
 			}
 			return i.texture;
@@ -3194,7 +3286,7 @@ function Zo(e, t) {
 }
 // eigenfield-three/src/packing.ts
 function Qo(e, t, n, r) {
-	let [i, a] = [Go(e, vo, yo), Go(e, vo, bo)], [o, s] = [e.createFramebuffer(), e.createVertexArray()], c = t.smaller && Zo(e, r), l = (t) => e.getUniformLocation(i, t), u = Object.fromEntries([
+	let [i, a] = [Jo(e, bo, xo), Jo(e, bo, So)], [o, s] = [e.createFramebuffer(), e.createVertexArray()], c = t.smaller && Zo(e, r), l = (t) => e.getUniformLocation(i, t), u = Object.fromEntries([
 		"precisions",
 		"covered",
 		"factors",
@@ -3218,14 +3310,14 @@ function Qo(e, t, n, r) {
 		f(t, n), e.colorMask(r === 0, r === 1, r === 2, r === 3);
 	}, m = (r, o, l, m, h, g) => {
 		let { picture: _, row: v, rows: y } = r, [b, x] = h.size, S = b < _.width || x < y ? t.smaller : null, C = Math.max(1, Math.floor((S ? n - 2 : n) * x / y));
-		Ko(e, 2, (S && c?.covered(h.grid)) ?? null, () => Ko(e, 0, o, () => {
+		Yo(e, 2, (S && c?.covered(h.grid)) ?? null, () => Yo(e, 0, o, () => {
 			for (let t = 0; t < x; t += C) {
 				let n = Math.min(C, x - t), a = Math.floor(t * y / x), o = Math.ceil((t + n) * y / x);
-				$o(_) ? ts(e, _, v + a, o - a) : es(e, _, v + a, o - a), qo(e, () => {
+				$o(_) ? ts(e, _, v + a, o - a) : es(e, _, v + a, o - a), Xo(e, () => {
 					e.useProgram(i), e.bindVertexArray(s), e.uniform1i(u.precisions, +!!g), e.uniform1i(u.covered, S ? 2 : 0), e.uniform2i(u.nodes, g?.precision.width ?? 0, g?.precision.height ?? 0), e.uniform1f(u.zero, g?.zero ?? 0), S ? (f(S, null), e.colorMask(!0, !0, !0, !0)) : p(l, m), d(r, m.channel, h, a, t, n);
 				});
 			}
-		})), S && Ko(e, 0, S, () => qo(e, () => {
+		})), S && Yo(e, 0, S, () => Xo(e, () => {
 			e.useProgram(a), e.bindVertexArray(s), e.uniform2i(e.getUniformLocation(a, "size"), b, x), p(l, m), e.viewport(0, 0, b, x), e.drawArrays(e.TRIANGLES, 0, 3);
 		}));
 	};
@@ -3234,7 +3326,7 @@ function Qo(e, t, n, r) {
 			let s = $o(n.picture) ? t.codes : t.picture;
 			if (!s) return;
 			let c = () => i.forEach((e) => m(n, s, r, e, a, o));
-			o ? Ko(e, 1, t.precision, () => {
+			o ? Yo(e, 1, t.precision, () => {
 				es(e, o.precision, 0, o.precision.height), c();
 			}) : c();
 		},
@@ -3254,162 +3346,200 @@ function ts(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
 // eigenfield-three/src/textures.ts
-var ns = 3, rs = class {
+var ns = class {
 	parts;
-	geometry;
+	source;
+	surface;
 	options;
 	means;
 	bases;
 	ready;
 	plan = null;
-	hasMeans = !1;
 	version = 0;
 	onPlan = () => void 0;
 	onTexture = () => void 0;
 	onComplete = () => void 0;
 	onError = () => void 0;
 	needs;
-	entries;
+	layout;
+	stillVersions;
 	renderer = null;
 	packer = null;
-	decoded;
-	turn = 0;
+	turn = new AbortController();
 	disposed = !1;
-	constructor(e, t, n) {
-		this.parts = e, this.geometry = t, this.options = n;
-		let { scene: r, meanSizes: i, rays: a } = e;
-		this.decoded = e.means;
-		let o = r.planes.flatMap(({ channels: e, bases: t }) => t.map((t) => ({
+	constructor(e, t, n, r) {
+		this.parts = e, this.source = t, this.surface = n, this.options = r;
+		let { scene: i, info: a, meanSizes: o } = e, s = i.planes.flatMap(({ channels: e, bases: t }) => t.map((t) => ({
 			...t,
 			channels: e,
-			tenBits: Wr(t.pictures)
-		}))), s = ui(r).map(({ channels: e, mean: t }, n) => ({
-			size: i[n] ?? [1, 1],
+			tenBits: qr(t.pictures)
+		})));
+		this.layout = s;
+		let c = pi(i).map(({ channels: e, mean: t }, n) => ({
+			size: o[n] ?? [1, 1],
 			channels: e,
 			pieces: t.pieces,
-			tenBits: Wr([t])
+			tenBits: qr([t])
 		}));
 		this.needs = {
-			atlas: Li(r, i),
-			means: s,
-			bases: o,
-			rays: a,
-			geometry: is(t)
-		}, this.means = s.map(() => new p()), this.bases = o.map(() => new p()), this.ready = o.map(({ count: e }) => Array(e).fill(!1)), this.entries = o.flatMap((e, t) => {
-			let n = 0;
-			return e.pictures.map((r) => {
-				let i = n;
-				return n += r.textures, {
-					basis: e,
-					number: t,
-					channels: e.channels,
-					picture: r,
-					first: i
-				};
-			});
-		}), this.entries.sort((e, t) => e.first - t.first || e.number - t.number);
+			atlas: a.size,
+			means: c,
+			bases: s,
+			rays: a.facesPlane,
+			geometry: rs(n.geometry)
+		}, this.means = c.map(() => new p()), this.bases = s.map(() => new p()), this.ready = s.map(({ count: e }) => Array(e).fill(!1)), this.stillVersions = c.map(() => 0);
+	}
+	get hasMeans() {
+		return this.stillVersions.every((e) => e > 0);
+	}
+	get opacityVersion() {
+		return this.stillVersions[this.parts.scene.planes.length] ?? 0;
 	}
 	get loaded() {
 		let e = this.ready.map((e) => e.indexOf(!1)).filter((e) => e >= 0), t = Math.max(0, ...this.ready.map((e) => e.length));
 		return Math.min(t, ...e);
+	}
+	get bytes() {
+		return this.plan ? this.plan.bytes - this.needs.geometry + rs(this.surface.geometry) : 0;
 	}
 	get attached() {
 		return this.renderer !== null || this.disposed;
 	}
 	attach(e) {
 		if (this.disposed) return;
-		this.detach(), this.renderer = e, e.domElement.addEventListener("webglcontextlost", this.onLost), e.domElement.addEventListener("webglcontextrestored", this.onRestored);
-		let t = this.turn;
+		this.detach(), this.renderer = e, e.domElement.addEventListener("webglcontextlost", this.forget), e.domElement.addEventListener("webglcontextrestored", this.onRestored);
+		let { signal: t } = this.turn;
 		this.load(e, t).catch((e) => {
-			t === this.turn && this.onError(e);
+			t.aborted || this.onError(e);
 		});
 	}
 	dispose() {
-		this.detach(), this.disposed = !0, this.decoded?.forEach(Xo), this.decoded = null;
+		this.detach(), this.disposed = !0, this.source.dispose();
 	}
 	detach() {
 		let e = this.renderer?.getContext();
-		this.packer?.free(), this.renderer?.domElement.removeEventListener("webglcontextlost", this.onLost), this.renderer?.domElement.removeEventListener("webglcontextrestored", this.onRestored), this.renderer = null;
+		this.packer?.free(), this.renderer?.domElement.removeEventListener("webglcontextlost", this.forget), this.renderer?.domElement.removeEventListener("webglcontextrestored", this.onRestored), this.renderer = null;
 		for (let { sourceTexture: t } of [...this.means, ...this.bases]) e && t instanceof WebGLTexture && e.deleteTexture(t);
 		this.forget();
 	}
 	forget = () => {
-		this.turn += 1, this.version += 1, this.packer = null, this.hasMeans = !1, this.ready.forEach((e) => e.fill(!1));
+		this.turn.abort(), this.turn = new AbortController(), this.version += 1, this.packer = null, this.stillVersions.fill(0), this.ready.forEach((e) => e.fill(!1));
 		for (let e of [...this.means, ...this.bases]) e.sourceTexture = null;
 	};
-	onLost = this.forget;
 	onRestored = () => {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		let n = Lo(e);
+		let n = Bo(e);
 		if (n.isContextLost()) return;
 		let { packer: r, plan: i } = this.makeRoom(n);
-		if (this.plan = i, this.packer = r, this.onPlan(i), await this.loadMeans(n, t), t !== this.turn) return;
-		let a = this.entries.filter(({ first: e }) => e < i.usable), o = [], s = 0;
-		try {
-			for (let e of a) {
-				for (; o.length < ns && s < a.length;) o.push(this.decode(a[s++]));
-				let n = await o[0] ?? [];
-				if (o.shift(), t === this.turn && this.pack(n, e, r, i), No(n), t !== this.turn) return;
-				this.onTexture();
-			}
-		} finally {
-			for (let e of o) e.then(No).catch(() => void 0);
-		}
-		r.free(), this.packer = null, this.onComplete();
+		this.plan = i, this.packer = r, this.onPlan(i), await this.source.fill(this.filling(n, i, t)), t.aborted || this.onComplete();
 	}
-	pack(e, t, n, { usable: r, scaleDown: i, halves: a }) {
-		let { basis: o, number: s, channels: c, first: l, picture: u } = t, d = this.bases[s]?.sourceTexture, f = this.ready[s];
-		if (!(d instanceof WebGLTexture) || !f) return;
-		let { grid: p, corner: m } = o, h = Kr(u, a && Wr(o.pictures)), g = {
-			size: X(o.size, i),
-			grid: p,
-			corner: m,
-			unit: h,
-			codes: 255 * Gr(u)
-		}, _ = u.pieces < c;
-		for (let t = l; t < Math.min(l + u.textures, r); t++) {
-			for (let r = 0; r < u.pieces; r++) {
-				let i = (e) => c * Math.floor(t / 4) + e, a = (_ ? [
-					0,
-					1,
-					2
-				] : [r]).map((e) => ({
-					channel: _ ? e : 0,
-					layer: i(e),
-					component: t % 4
-				})), o = e[(t - l) * u.pieces + r];
-				o && n.put(o, d, a, g);
+	filling(e, t, n) {
+		return {
+			plan: t,
+			signal: n,
+			putMean: (r, i) => {
+				n.aborted || this.putMean(e, t, r, i);
+			},
+			putTextures: (e, r, i, a) => {
+				n.aborted || this.putTextures(t, e, r, i, a);
+			},
+			announce: () => {
+				n.aborted || this.onTexture();
+			},
+			end: () => {
+				n.aborted || (this.packer?.free(), this.packer = null);
 			}
-			f[t] = !0;
+		};
+	}
+	putTextures(e, t, n, r, i) {
+		let { usable: a, scaleDown: o, halves: s } = e, [c, l, u] = [
+			this.bases[t]?.sourceTexture,
+			this.ready[t],
+			this.layout[t]
+		];
+		if (!(c instanceof WebGLTexture) || !l || !u) return;
+		let { size: d, grid: f, corner: p, channels: m, tenBits: h } = u, g = Yr(i, s && h), _ = {
+			size: X(d, o),
+			grid: f,
+			corner: p,
+			unit: g,
+			codes: 255 * Jr(i)
+		};
+		for (let e = n; e < Math.min(n + i.textures, a); e++) {
+			let t = r.slice((e - n) * i.pieces, (e - n + 1) * i.pieces), a = m * Math.floor(e / 4);
+			this.put(t, c, m, _, (t) => ({
+				layer: a + t,
+				component: e % 4
+			})), l[e] = !0;
 		}
 		this.version += 1;
 	}
+	putMean(e, t, n, { pieces: r, precision: i }) {
+		let [a, o] = [this.means[n]?.sourceTexture, pi(this.parts.scene)[n]], { size: s, tenBits: c } = this.needs.means[n] ?? {};
+		if (!(a instanceof WebGLTexture) || !o || !s) return;
+		this.stillVersions[n] = this.version += 1;
+		let { mean: l, channels: u } = o, d = X(s, t.meanDown), [f] = r;
+		if (f && r.length === 1 && "close" in f.picture && !c && d.join() === s.join()) {
+			Wo(e, a, f.picture, u);
+			return;
+		}
+		let p = {
+			size: d,
+			grid: s,
+			corner: [0, 0],
+			unit: Yr(l, c === !0),
+			codes: 255 * Jr(l)
+		};
+		this.put(r, a, u, p, (e) => ({
+			layer: Math.floor(e / 4),
+			component: e % 4
+		}), (e) => i && {
+			precision: i,
+			zero: l.zero[e] ?? 0
+		});
+	}
+	put(e, t, n, r, i, a = () => null) {
+		let o = e.length < n;
+		e.forEach((e, n) => {
+			let s = (o ? [
+				0,
+				1,
+				2
+			] : [n]).map((e) => ({
+				channel: o ? e : 0,
+				...i(e)
+			}));
+			this.packer?.put(e, t, s, r, a(n));
+		});
+	}
 	makeRoom(e) {
-		let { means: t, bases: n } = this.needs, r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
-		for (let i = this.options.memory ?? fa();; i /= 2) {
-			let a = ba(this.needs, Ro(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => Bo(e, X(t, o), ha(n), !1, {
+		let { means: t, bases: n } = this.needs;
+		this.needs.geometry = rs(this.surface.geometry);
+		let r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
+		for (let i = this.options.memory ?? da();; i /= 2) {
+			let a = ya(this.needs, Vo(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => Uo(e, X(t, o), ma(n), !1, {
 				components: n,
 				halves: r
 			})), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return Bo(e, a ? X(t, s) : [1, 1], a ? ga(a, n) : 1, u, {
+				return Uo(e, a ? X(t, s) : [1, 1], a ? ha(a, n) : 1, u, {
 					components: Math.max(1, a),
 					halves: l && i
 				});
-			})], f = Ca(this.needs, a, i), [p, m, h] = [
+			})], f = Sa(this.needs, a, i), [p, m, h] = [
 				f.picture,
 				f.codes,
 				f.smaller
-			].map((t) => t ? Ho(e, t.size, t.format) : null), g = Ho(e, wa(r), aa);
+			].map((t) => t ? Go(e, t.size, t.format) : null), g = Go(e, Ca(r), ia);
 			if (p && g && (m || !f.codes) && (h || !f.smaller) && !d.includes(null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = d[t] ?? null), {
 				packer: Qo(e, {
 					picture: p,
 					codes: m ?? null,
 					precision: g,
 					smaller: h ?? null
-				}, f.picture.size[1], this.geometry),
+				}, f.picture.size[1], this.surface),
 				plan: a
 			};
 			for (let t of [
@@ -3422,54 +3552,14 @@ var ns = 3, rs = class {
 			if (!c) throw new j("unsupported", "The graphics memory is full; close other pages and try again.");
 		}
 	}
-	async loadMeans(e, t) {
-		let { scene: n, bytes: r } = this.parts, i = ui(n), a = this.decoded ?? await Promise.all(i.map((e) => Jo(e, r)));
-		this.decoded = null, a.forEach((n, r) => {
-			let a = this.means[r]?.sourceTexture, o = i[r], { size: s } = this.needs.means[r] ?? {};
-			t === this.turn && o && s && a instanceof WebGLTexture && this.putMean(e, n, o, s, a), Xo(n);
-		}), t === this.turn && (this.hasMeans = !0, this.version += 1);
-	}
-	putMean(e, t, n, r, i) {
-		let { pieces: a, precision: o } = t, { mean: s, channels: c } = n, l = X(r, this.plan?.meanDown ?? 1), u = Wr([s]), [d] = a;
-		if (d && a.length === 1 && "close" in d.picture && !u && l.join() === r.join()) {
-			Vo(e, i, d.picture, c);
-			return;
-		}
-		let f = {
-			size: l,
-			grid: r,
-			corner: [0, 0],
-			unit: Kr(s, u),
-			codes: 255 * Gr(s)
-		}, p = a.length < c;
-		a.forEach((e, t) => {
-			let n = (p ? [
-				0,
-				1,
-				2
-			] : [t]).map((e) => ({
-				channel: p ? e : 0,
-				layer: Math.floor(e / 4),
-				component: e % 4
-			}));
-			this.packer?.put(e, i, n, f, o && {
-				precision: o,
-				zero: s.zero[t] ?? 0
-			});
-		});
-	}
-	decode(e) {
-		if (!e) return Promise.reject(/* @__PURE__ */ RangeError("no such eigen texture"));
-		let { basis: t, picture: n } = e, r = this.parts.bytes(n.view).then((e) => n.codec.decode(e, n, t.size));
-		return r.catch(() => void 0), r;
-	}
 };
-function is({ attributes: e, index: t }) {
+function rs({ attributes: e, index: t }) {
 	return Object.values(e).reduce((e, t) => e + t.array.byteLength, 0) + (t?.array.byteLength ?? 0);
 }
 // eigenfield-three/src/field.ts
-var as = 1.5, os = .001, ss = class extends f {
+var is = 1.5, as = .001, os = class extends f {
 	parts;
+	source;
 	mesh;
 	info;
 	total;
@@ -3486,35 +3576,23 @@ var as = 1.5, os = .001, ss = class extends f {
 	lastWeights = [];
 	lastByRay = !1;
 	complete;
-	material;
-	stack;
+	surface;
 	textures;
-	counts;
+	weights;
+	summed = {
+		parts: [],
+		opacity: null
+	};
 	composers = /* @__PURE__ */ new Map();
 	encoded;
-	rowOf;
 	gains = /* @__PURE__ */ new Map();
-	detail;
-	maps = null;
 	frame = -1;
-	constructor(e, t = {}) {
-		super(), this.parts = e;
-		let { scene: n, info: r, meshes: i } = e, [a] = i;
-		if (!a) throw Error("a field needs a mesh");
-		this.mesh = a, this.info = r, this.total = Ii(n), this.counts = Fi(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye", this.encoded = r.cameras.filter((e, t) => !r.heldOut[t]);
-		let o = 0;
-		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new rs(e, a.geometry, t);
-		let s = [a.material].flat().some((e) => e.side !== m);
-		this.material = ho(s, n.sheets !== null), this.stack = n.sheets && new jo(n.sheets.faces, a.geometry, this.material), this.complete = new Promise((e, t) => {
+	constructor(e, t, n = {}) {
+		super(), this.parts = e, this.source = t;
+		let { scene: r, info: i } = e, a = r.sheets?.faces ?? null;
+		this.surface = new zo(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = Ri(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = new eo(i, J(r).map(({ count: e }) => e), e.omega, e.weights), this.textures = new ns(e, t, this.surface, n), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
-		}), this.complete.catch(() => void 0);
-		let c = r.cameras[r.reference];
-		this.detail = c ? ea(a.geometry, c, [1, 1]) : 0, this.listen();
-		for (let e of i) {
-			let t = (t, n) => this.prepare(t, n, e);
-			this.stack ? this.stack.attach(e, t) : (e.material = this.material, e.onBeforeRender = (e, n, r) => t(e, r));
-		}
-		t.renderer && this.textures.attach(t.renderer);
+		}), this.complete.catch(() => void 0), this.listen(), n.renderer && this.textures.attach(n.renderer);
 	}
 	get usable() {
 		return this.textures.plan?.usable ?? this.total;
@@ -3532,86 +3610,79 @@ var as = 1.5, os = .001, ss = class extends f {
 		return this.textures.plan?.limitation ?? null;
 	}
 	get gpuBytes() {
-		return (this.textures.plan?.bytes ?? 0) + (this.stack?.bytes ?? 0);
+		return this.textures.bytes + this.surface.bytes;
 	}
 	viewWeights(e, t, n = this.mixing) {
-		let r = new Float64Array(this.parts.weights.places.length / 2), { camera: i, weight: a } = this.parts.weights.at(e, t, n);
-		return i.forEach((e, t) => r[e] = (r[e] ?? 0) + (a[t] ?? 0)), r;
+		return this.weights.viewsAt(e, t, n);
 	}
 	componentWeights(e, t) {
-		return this.mix(this.parts.weights.at(e, t, this.mixing));
+		return this.weights.at(e, t, this.mixing);
 	}
 	cameraWeights(e) {
-		let t = this.rowOf[e] ?? -1, n = this.info.cameras[e], r = this.columns;
-		if (t >= 0) return Float64Array.from(this.parts.omega.subarray(t * r, (t + 1) * r));
-		if (!n) throw RangeError(`no camera ${e}`);
-		return this.componentWeights(...Hi(this.info.viewPlane, n.centre));
+		return this.weights.ofCamera(e, this.mixing);
+	}
+	setGeometry(e, t) {
+		this.surface.setGeometry(e, t);
 	}
 	restore(e) {
 		this.textures.attach(e);
 	}
 	dispose() {
-		this.textures.dispose(), this.freeComposers(), this.stack?.dispose(), this.maps?.texture.dispose(), this.material.dispose(), this.mesh.geometry.dispose();
+		this.textures.dispose(), this.freeComposers(), this.surface.dispose(), this.weights.dispose();
 	}
 	listen() {
-		this.textures.onPlan = ({ limitation: e }) => {
-			this.freeComposers(), e && queueMicrotask(() => this.dispatchEvent({ type: "limited" }));
+		this.textures.onPlan = (e) => {
+			let { scene: t } = this.parts;
+			this.freeComposers(), this.summed = {
+				parts: wo(t, this.textures, e),
+				opacity: To(t, this.textures)
+			}, e.limitation && queueMicrotask(() => this.dispatchEvent({ type: "limited" }));
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return as * Math.max(1, this.detail * Math.sqrt(e * t) / n);
-	}
-	get columns() {
-		return this.counts.reduce((e, t) => e + t, 0);
-	}
-	mix({ camera: e, weight: t }) {
-		let { omega: n } = this.parts, r = this.columns, i = new Float64Array(r);
-		for (let a = 0; a < 4; a++) {
-			let o = t[a] ?? 0;
-			if (!o) continue;
-			let s = (e[a] ?? 0) * r;
-			for (let e = 0; e < r; e++) i[e] = (i[e] ?? 0) + o * (n[s + e] ?? 0);
-		}
-		return i;
+		return is * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = us(t, n), [i, a] = Hi(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
+		let r = ls(t, n), [i, a] = Wi(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
 		this.setView(), this.setExposure(o, [i, a]);
-		let l = no[this.filter];
-		this.material.defines.BICUBIC !== l && (this.material.defines.BICUBIC = l, this.material.needsUpdate = !0), this.material.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
+		let u = no[this.filter];
+		l.defines.BICUBIC !== u && (l.defines.BICUBIC = u, l.needsUpdate = !0), l.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
 		let { plan: r } = this.textures, { size: i, viewPlane: a } = this.info;
 		if (!r) return;
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
 		if (!s) {
-			let { scene: e } = this.parts, t = Co(e, this.textures);
-			s = new Ga(i, So(e, this.textures, r), t, o, this.mesh, a), this.composers.set(o, s);
+			let { parts: e, opacity: t } = this.summed;
+			s = new qa(i, e, t, o, this.surface, a), this.composers.set(o, s);
 		}
-		s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
+		s.compose(e, t, n);
+		let { composed: c, finest: l } = this.surface.material.uniforms;
+		c.value = s.texture, l.value = this.finestOf(i, o);
 	}
 	freeComposers() {
 		for (let e of this.composers.values()) e.dispose();
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.material.uniforms.shown.value, r = n === ro.eigen ? this.shownEigen : null;
+		let n = this.surface.material.uniforms.shown.value, r = n === ro.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
-			opacity: this.textures.hasMeans && this.stack !== null,
+			opacity: this.textures.opacityVersion,
 			only: r,
 			count: n === ro.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && Ha(this.info.viewPlane, t),
-			maps: t && this.mapsOf(this.mixing)
+			eye: t && Va(this.info.viewPlane, t),
+			places: t ? this.surface.version : 0,
+			maps: t && this.weights.maps(this.mixing, this.usable)
 		};
 	}
 	setExposure(e, t) {
 		let { cameras: n, heldOut: r, mixedColours: i, viewPlane: a } = this.info, o = this.exposure ?? (i || this.showsErrors ? e : null), s = o === null ? void 0 : n[o], c = [[s, 1]];
 		if (i && (o === null || r[o])) {
-			let e = s ? Hi(a, s.centre) : t, { camera: n, weight: r } = this.parts.weights.at(...e, this.mixing);
+			let e = s ? Wi(a, s.centre) : t, { camera: n, weight: r } = this.parts.weights.at(...e, this.mixing);
 			c = [
 				0,
 				1,
@@ -3619,92 +3690,52 @@ var as = 1.5, os = .001, ss = class extends f {
 				3
 			].map((e) => [this.encoded[n[e] ?? 0], r[e] ?? 0]);
 		}
-		let [l, u] = [[
-			1,
-			1,
-			1
-		], [
-			0,
-			0,
-			0
-		]];
-		for (let [e, t] of c) if (e?.gain && e.offset) for (let n = 0; n < 3; n++) {
-			let r = 1 / (e.gain[n] ?? 1);
-			l[n] = (l[n] ?? 1) + t * (r - 1), u[n] = (u[n] ?? 0) - t * r * (e.offset[n] ?? 0);
-		}
-		this.material.uniforms.exposureScale.value.fromArray(l), this.material.uniforms.exposureBias.value.fromArray(u);
+		let { scale: l, bias: u } = ta(c), { exposureScale: d, exposureBias: f } = this.surface.material.uniforms;
+		d.value.fromArray(l), f.value.fromArray(u);
 	}
 	get showsErrors() {
 		return this.view === "error" && this.photograph !== null && this.camera !== null;
 	}
 	setView() {
-		let { uniforms: e } = this.material, t = this.showsErrors, n = this.view === "error" && !t ? "picture" : this.view, r = this.shownEigen;
-		e.shown.value = ro[n === "eigen" && r >= this.loaded ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r)), t && this.aimPhotograph();
+		let { uniforms: e } = this.surface.material, t = this.showsErrors, n = this.view === "error" && !t ? "picture" : this.view, r = this.shownEigen;
+		e.shown.value = ro[n === "eigen" && r >= this.loaded ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
+		let i = t && this.info.cameras[this.camera ?? 0];
+		i && this.photograph && _o(e, i, this.photograph);
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
 	}
-	aimPhotograph() {
-		let e = this.camera === null ? void 0 : this.info.cameras[this.camera], { photograph: t } = this;
-		if (!e || !t) return;
-		let { K: n, R: r, t: i, width: a, height: o } = e, s = new x().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new x().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !ds(t.image), u = new x().makeScale(1 / a, (l ? -1 : 1) / o, 1);
-		l && (u.elements[13] = 1), this.material.uniforms.toPhotograph.value.multiplyMatrices(u, c.multiply(s)), this.material.uniforms.photograph.value = t;
-	}
 	gainOf(e) {
 		let t = this.gains.get(e);
-		if (t !== void 0) return t;
-		this.gains.set(e, 1);
-		let { scene: n, bytes: r } = this.parts, i = 0;
-		for (let { channels: t, bases: a } of n.planes) {
-			let o = n.colours.slice(i, i += t), s = a.find(({ count: t }) => t > e);
-			if (!(!s || e < 0)) {
-				Io(s, e, o, r).then((t) => {
-					this.gains.set(e, t), this.dispatchEvent({ type: "texture" });
-				}).catch(() => void 0);
-				break;
-			}
-		}
-		return 1;
+		return t !== void 0 || e < 0 ? t ?? 1 : (this.gains.set(e, 1), this.source.gain(e).then((t) => {
+			this.gains.set(e, t), this.dispatchEvent({ type: "texture" });
+		}).catch(() => void 0), 1);
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= os * Math.max(...r);
-	}
-	mapsOf(e) {
-		let { usable: t } = this;
-		if (this.maps?.mixing === e && this.maps.usable === t) return this.maps.texture;
-		this.maps?.texture.dispose();
-		let n = eo(this.parts.weights, e, this.parts.omega, this.counts, t);
-		return this.maps = {
-			texture: n,
-			mixing: e,
-			usable: t
-		}, n;
+		return Math.abs(i) <= as * Math.max(...r);
 	}
 	fail(e) {
-		if (fs(e)) return;
+		if (us(e)) return;
 		let t = de(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
 		this.dispatchEvent({
 			type: "error",
 			error: new j(t.code, r, t.where)
 		});
 	}
-}, cs = new x(), ls = new A();
-function us(e, t) {
-	return ls.setFromMatrixPosition(e.matrixWorld).applyMatrix4(cs.copy(t.matrixWorld).invert()), [
-		ls.x,
-		ls.y,
-		ls.z
+}, ss = new x(), cs = new A();
+function ls(e, t) {
+	return cs.setFromMatrixPosition(e.matrixWorld).applyMatrix4(ss.copy(t.matrixWorld).invert()), [
+		cs.x,
+		cs.y,
+		cs.z
 	];
 }
-function ds(e) {
-	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
-}
-function fs(e) {
+function us(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var ps = class {
+var ds = class {
 	received = 0;
 	chunks = [];
 	waiters = [];
@@ -3747,53 +3778,53 @@ var ps = class {
 		}
 		return n.buffer;
 	}
-}, ms = 1179937895, hs = 1313821514, gs = 5130562;
-async function _s(e) {
+}, fs = 1179937895, ps = 1313821514, ms = 5130562;
+async function hs(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof j && t.code === "truncated" ? Ss(e.received === 0) : t;
+		throw t instanceof j && t.code === "truncated" ? bs(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== ms) throw Ss(!1);
+	if (new DataView(t).getUint32(0, !0) !== fs) throw bs(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
 	if (r !== 2) throw new j("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
 	if (i < 20) throw M("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== hs) throw M("16", "it does not begin with JSON");
-	if (o > Se) throw M("12", `${o} bytes of JSON`);
+	if (a.getUint32(4, !0) !== ps) throw M("16", "it does not begin with JSON");
+	if (o > Ce) throw M("12", `${o} bytes of JSON`);
 	if (20 + o > i) throw M("12", "a chunk longer than the file");
-	let s = ys(await e.read(20, 20 + o));
+	let s = _s(await e.read(20, 20 + o));
 	return {
 		length: i,
 		text: s,
-		json: bs(s, "20"),
-		binary: () => vs(e, 20 + o, i)
+		json: vs(s, "20"),
+		binary: () => gs(e, 20 + o, i)
 	};
 }
-async function vs(e, t, n) {
+async function gs(e, t, n) {
 	let r = t;
 	for (let t = 1; t < 64 && r + 8 <= n; t++) {
 		let t = new DataView(await e.read(r, r + 8)), i = t.getUint32(0, !0);
 		if (r + 8 + i > n) throw M(String(r), "a chunk longer than the file");
-		if (t.getUint32(4, !0) === gs) return r + 8;
+		if (t.getUint32(4, !0) === ms) return r + 8;
 		r += 8 + i;
 	}
 	throw M(String(t), "no binary chunk");
 }
-function ys(e) {
+function _s(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
 		throw M("20", "its JSON is not UTF-8");
 	}
 }
-function bs(e, t) {
-	if (xs(e) > 64) throw M(t, "its JSON is nested too deep");
+function vs(e, t) {
+	if (ys(e) > 64) throw M(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
 		throw M(t, "its JSON cannot be read");
 	}
 }
-function xs(e) {
+function ys(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3804,34 +3835,56 @@ function xs(e) {
 	}
 	return n;
 }
-function Ss(e) {
+function bs(e) {
 	return new j("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
+// eigenfield-three/src/pieces.ts
+function xs(e) {
+	for (let { picture: t } of e) "close" in t && t.close();
+}
+// eigenfield-three/src/means.ts
+async function Ss(e, t) {
+	let { mean: n, meanSize: r } = e, i = e.precision && await Cs(await t(e.precision.view), e.precision);
+	return {
+		pieces: await n.codec.decode(await t(n.view), n, r),
+		precision: i
+	};
+}
+async function Cs(e, t) {
+	let { type: n } = tr(e) ?? {}, { mimeType: r } = t.codec;
+	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
+	let [i] = await t.codec.bitmaps(e, t, t.size);
+	if (!i) throw M(t.where, "no picture");
+	return i.picture;
+}
+function ws({ pieces: e, precision: t }) {
+	xs(e), t?.close();
+}
 // eigenfield-three/src/packed.ts
-var Cs = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", ws = 4;
-async function Ts(e, t) {
-	let n = new K(e, ""), r = n.key("extensions").key(xe), i = r.key("packed");
+var Ts = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Es = 4;
+async function Ds(e, t) {
+	let n = new G(e, ""), r = n.key("extensions").key(Se), i = r.key("packed");
 	if (!i.exists) return e;
-	di(r);
-	let a = Ar(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < ws) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, ws)).getUint32(0, !0);
-	if (ws + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new K(bs(await Ds(await t(o.offset + ws, s), i.where), i.where), i.where).object(), u = Es(new K(c, `${i.where}/lengths`), o, ws + s), { packed: d, ...f } = r.object();
+	mi(r);
+	let a = Nr(n), o = a[i.integer(a.length - 1, a.length - 1)];
+	if (!o || o.length < Es) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, Es)).getUint32(0, !0);
+	if (Es + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new G(vs(await ks(await t(o.offset + Es, s), i.where), i.where), i.where).object(), u = Os(new G(c, `${i.where}/lengths`), o, Es + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
-		bufferViews: [...n.key("bufferViews").items(I).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
+		bufferViews: [...n.key("bufferViews").items(F).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
 		extensions: {
 			...n.key("extensions").object(),
-			[xe]: {
+			[Se]: {
 				...f,
 				...l
 			}
 		}
 	};
 }
-function Es(e, t, n) {
-	let r = n, i = e.items(I).map((e) => {
+function Os(e, t, n) {
+	let r = n, i = e.items(F).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
 			buffer: 0,
@@ -3842,8 +3895,8 @@ function Es(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function Ds(e, t) {
-	let n = new TextEncoder().encode(Cs), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function ks(e, t) {
+	let n = new TextEncoder().encode(Ts), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -3851,7 +3904,7 @@ async function Ds(e, t) {
 		~r,
 		~i
 	]), a.set(n, 5), a.set(new Uint8Array(e), 5 + n.length);
-	let o = await be(a, "deflate-raw", n.length + Se, t);
+	let o = await xe(a, "deflate-raw", n.length + Ce, t);
 	try {
 		return new TextDecoder("utf-8", {
 			fatal: !0,
@@ -3862,8 +3915,8 @@ async function Ds(e, t) {
 	}
 }
 // eigenfield-three/src/proxy.ts
-var Os = 65535;
-function ks(e, t) {
+var As = 65535;
+function js(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
 	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
 	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
@@ -3873,46 +3926,123 @@ function ks(e, t) {
 	}
 	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
 }
-async function As({ view: n, codec: r, where: i }, a) {
+async function Ms({ view: n, codec: r, where: i }, a) {
 	let { positions: o, uv: s, indices: c } = r.decode(new Uint8Array(await a(n)), i);
 	if (!c.length) throw M(i, "a mesh without faces");
 	let l = new t();
 	l.setAttribute("position", new e(o, 3)), l.setAttribute("uv", new e(s, 2));
-	let u = o.length / 3 <= Os;
+	let u = o.length / 3 <= As;
 	return l.setIndex(new e(u ? Uint16Array.from(c) : c, 1)), l;
 }
-function js(e) {
+function Ns(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
+// eigenfield-three/src/strength.ts
+var Ps = 128, Fs = .98;
+async function Is(e, t, n, r) {
+	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
+	if (!o) return 1;
+	let s = t - (a - o.textures), c = Jr(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Ps, Ps).getContext("2d", { willReadFrequently: !0 });
+	if (!d) return 1;
+	d.imageSmoothingEnabled = !1;
+	let f = [];
+	u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
+		d.drawImage(e, 0, t, e.width, r, 0, 0, Ps, Ps);
+		let { data: u } = d.getImageData(0, 0, Ps, Ps);
+		(l ? [
+			0,
+			1,
+			2
+		] : [a]).forEach((e) => {
+			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
+			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
+		});
+	}), xs(u), f.sort((e, t) => e - t);
+	let p = f[Math.floor(Fs * f.length)] ?? 0;
+	return p > 0 ? .45 / p : 1;
+}
+// eigenfield-three/src/still-textures.ts
+var Ls = 3;
+function Rs(e) {
+	return J(e).flatMap((e, t) => {
+		let n = 0;
+		return e.pictures.map((r) => {
+			let i = n;
+			return n += r.textures, {
+				basis: e,
+				number: t,
+				picture: r,
+				first: i
+			};
+		});
+	}).sort((e, t) => e.first - t.first || e.number - t.number);
+}
+function zs(e, t, n) {
+	let r = Rs(e), i = n, a = ({ basis: e, picture: n }) => {
+		let r = t(n.view).then((t) => n.codec.decode(t, n, e.size));
+		return r.catch(() => void 0), r;
+	};
+	return {
+		async fill(n) {
+			let { plan: o, signal: s } = n, c = i ?? await Promise.all(pi(e).map((e) => Ss(e, t)));
+			i = null, c.forEach((e, t) => {
+				n.putMean(t, e), ws(e);
+			});
+			let l = r.filter(({ first: e }) => e < o.usable), u = [], d = 0;
+			try {
+				for (let { number: e, first: t, picture: r } of l) {
+					if (s.aborted) return;
+					for (let e of l.slice(d, d + Ls - u.length)) u.push(a(e)), d += 1;
+					let i = await u[0] ?? [];
+					u.shift(), n.putTextures(e, t, i, r), xs(i), n.announce();
+				}
+			} finally {
+				for (let e of u) e.then(xs).catch(() => void 0);
+			}
+			n.end();
+		},
+		gain(n) {
+			let r = 0;
+			for (let { channels: i, bases: a } of e.planes) {
+				let o = e.colours.slice(r, r += i), s = a.find(({ count: e }) => e > n);
+				if (s) return Is(s, n, o, t);
+			}
+			return Promise.resolve(1);
+		},
+		dispose() {
+			i?.forEach(ws), i = null;
+		}
+	};
+}
 // eigenfield-three/src/grid.ts
-function Ms(e) {
+function Bs(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = Ns(e, n, r) ?? (n === r ? null : Ns(e, r, n));
+		let r = t / n, i = Vs(e, n, r) ?? (n === r ? null : Vs(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function Ns(e, t, n) {
-	let [r, i] = [Fs(e, 0), Fs(e, 1)];
-	if (t === 1 && Is(i) > 0 || n === 1 && Is(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => Ls(i, e) - Ls(i, t));
+function Vs(e, t, n) {
+	let [r, i] = [Us(e, 0), Us(e, 1)];
+	if (t === 1 && Ws(i) > 0 || n === 1 && Ws(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => Gs(i, e) - Gs(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Ls(r, e) - Ls(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Gs(r, e) - Gs(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return Ps(n, t, (e, t) => Ls(r, o(t, e))) && Ps(t, n, (e, t) => Ls(i, o(e, t))) ? {
+	return Hs(n, t, (e, t) => Gs(r, o(t, e))) && Hs(t, n, (e, t) => Gs(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function Ps(e, t, n) {
+function Hs(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -3922,33 +4052,33 @@ function Ps(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function Fs(e, t) {
+function Us(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function Is(e) {
+function Ws(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var Ls = (e, t) => e[t] ?? 0, Rs = 1e-6, zs = 32, Bs = class {
+var Gs = (e, t) => e[t] ?? 0, Ks = 1e-6, qs = 32, Js = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = Ms(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = Bs(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(Vs(e), this.isLine ? 0 : Vs(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(Ys(e), this.isLine ? 0 : Ys(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => Zs(e, t, this.places) : e === "bilinear" && this.grid ? $s(this.places, this.grid) : Ws(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => ac(e, t, this.places) : e === "bilinear" && this.grid ? sc(this.places, this.grid) : Qs(this.places, this.triangles);
 	}
 };
-function Vs(e) {
+function Ys(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Hs(e) {
+function Xs(e) {
 	let t = {
 		camera: [
 			0,
@@ -3968,7 +4098,7 @@ function Hs(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function Us(e, t, n, r, i, a) {
+function Zs(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -3976,49 +4106,49 @@ function Us(e, t, n, r, i, a) {
 		m
 	];
 }
-function Ws(e, t) {
+function Qs(e, t) {
 	if (!t.length) {
-		let t = Xs(e, Ys(e));
-		return (n, r) => Js(n, r, e, t);
+		let t = ic(e, rc(e));
+		return (n, r) => nc(n, r, e, t);
 	}
-	let n = Ks(e, t, 3), r = qs(t);
+	let n = ec(e, t, 3), r = tc(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * zs + $(i)] ?? []) {
+		for (let r of n[$(a) * qs + $(i)] ?? []) {
 			let [n, l, u] = [
-				Gs(t, r, 0),
-				Gs(t, r, 1),
-				Gs(t, r, 2)
-			], d = Us(i, a, e, n, l, u), f = Math.min(...d);
+				$s(t, r, 0),
+				$s(t, r, 1),
+				$s(t, r, 2)
+			], d = Zs(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? Js(i, a, e, r) : Hs(c.map((e, n) => [Gs(t, o, n), e]));
+		return s < -1e-9 ? nc(i, a, e, r) : Xs(c.map((e, n) => [$s(t, o, n), e]));
 	};
 }
-var Gs = (e, t, n) => e[3 * t + n] ?? 0;
+var $s = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * zs)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * qs)));
 }
-function Ks(e, t, n) {
+function ec(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * zs + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * qs + t]?.push(i);
 	}
 	return r;
 }
-function qs(e) {
+function tc(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [Gs(e, n, r), Gs(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [$s(e, n, r), $s(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -4027,7 +4157,7 @@ function qs(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function Js(e, t, n, r) {
+function nc(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -4042,12 +4172,12 @@ function Js(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return Hs([[o, 1 - c], [s, c]]);
+	return Xs([[o, 1 - c], [s, c]]);
 }
-function Ys(e) {
+function rc(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function Xs(e, t) {
+function ic(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -4068,7 +4198,7 @@ function Xs(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function Zs(e, t, n) {
+function ac(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -4082,12 +4212,12 @@ function Zs(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || Qs(n, r, i, a) <= Rs) return Js(e, t, n, Xs(n, [
+	if (a < 0 || oc(n, r, i, a) <= Ks) return nc(e, t, n, ic(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = Us(e, t, n, r, i, a);
+	let [l, u, d] = Zs(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -4103,15 +4233,15 @@ function Zs(e, t, n) {
 		]
 	};
 }
-function Qs(e, t, n, r) {
+function oc(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function $s(e, t) {
+function sc(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = Xs(e, Ys(e));
-		return (n, r) => Js(n, r, e, t);
+		let t = ic(e, rc(e));
+		return (n, r) => nc(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -4120,7 +4250,7 @@ function $s(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = Ks(e, o.flat(), 4), c = [];
+	let s = ec(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -4128,12 +4258,12 @@ function $s(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * zs + $(t)] ?? []) {
-			let s = o[a], c = s ? ec(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * qs + $(t)] ?? []) {
+			let s = o[a], c = s ? cc(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return Js(t, n, e, l);
-		let [a, c] = tc(t, n, e, r);
+		if (!r || i < -1e-9) return nc(t, n, e, l);
+		let [a, c] = lc(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -4145,7 +4275,7 @@ function $s(e, t) {
 		};
 	};
 }
-function ec(e, t, n, r) {
+function cc(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -4153,7 +4283,7 @@ function ec(e, t, n, r) {
 	}
 	return i;
 }
-function tc(e, t, n, r) {
+function lc(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -4171,27 +4301,27 @@ function tc(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = nc(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [nc(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = uc(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [uc(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function nc(e) {
+function uc(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var rc = class {
+var dc = class {
 	parser;
 	options;
-	name = xe;
+	name = Se;
 	scene = null;
 	ours;
 	constructor(e, t = {}) {
-		this.parser = e, this.options = t, this.ours = si(e.json);
+		this.parser = e, this.options = t, this.ours = ui(e.json);
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
-		this.options.renderer && Lo(this.options.renderer);
+		this.options.renderer && Bo(this.options.renderer);
 		let { json: e } = this.parser;
-		me(e), Object.assign(e, await Ts(e, (e, t) => this.read(e, t))), this.scene = ci(e), this.scene.shown || ic(e);
+		me(e), Object.assign(e, await Ds(e, (e, t) => this.read(e, t))), this.scene = di(e), this.scene.shown || fc(e);
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
@@ -4212,36 +4342,33 @@ var rc = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = ac(e, this.parser), [r] = n;
+		let n = pc(e, this.parser), [r] = n;
 		if (!r) throw M("/meshes/0", "no node shows it");
-		t.shown && ks(r.geometry, t.shown);
+		t.shown && js(r.geometry, t.shown);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
 			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ue(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await As(t.mesh, i);
+		}, a = t.mesh && await Ms(t.mesh, i);
 		if (a) {
 			r.geometry.dispose();
 			for (let e of n) e.geometry = a;
 		}
-		t.sheets && ei(t.sheets, r.geometry);
+		t.sheets && ri(t.sheets, r.geometry);
 		let [o, s, c, l] = await Promise.all([
-			Promise.all(ui(t).map((e) => Jo(e, i))),
-			Ti(t, i),
-			Ni(t, i),
-			Ri(t, i)
-		]), u = s.filter((e, n) => !t.heldOut[n]), d = new Bs(Float64Array.from(u.flatMap((e) => Hi(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = Bi(t, s, f, d.grid, this.fileBytes(), js(r.geometry)), m = {
+			Promise.all(pi(t).map((e) => Ss(e, i))),
+			Oi(t, i),
+			Ii(t, i),
+			Bi(t, i)
+		]), u = s.filter((e, n) => !t.heldOut[n]), d = new Js(Float64Array.from(u.flatMap((e) => Wi(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = {
 			scene: t,
-			info: p,
+			info: Hi(t, s, f, d.grid, this.fileBytes(), Ns(r.geometry)),
 			meshes: n,
-			means: o,
 			meanSizes: f,
-			rays: p.facesPlane,
 			omega: c,
-			weights: d,
-			bytes: i
+			weights: d
 		};
-		e.userData.eigenfield = new ss(m, this.options);
+		e.userData.eigenfield = new os(p, zs(t, i, o), this.options);
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -4249,50 +4376,50 @@ var rc = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function ic(e) {
+function fc(e) {
 	let [t] = e.nodes;
 	t && (t.mesh = 0), e.meshes = [{ primitives: [{
 		attributes: {},
 		material: 0
 	}] }], e.materials = [{ doubleSided: !0 }];
 }
-function ac(e, t) {
+function pc(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		oc(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		mc(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function oc(e) {
+function mc(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function sc(e, t = {}) {
+async function hc(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new ps(), i = new AbortController(), a = () => {
+	let r = new ds(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = uc(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = vc(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
-		let e = await _s(r);
-		if (!si(e.json)) return {
-			gltf: await lc(r, e, o),
+		let e = await hs(r);
+		if (!ui(e.json)) return {
+			gltf: await _c(r, e, o),
 			field: null
 		};
-		let i = await cc(r, e, t);
+		let i = await gc(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
 			gltf: i,
-			field: a instanceof ss ? a : null
+			field: a instanceof os ? a : null
 		};
 	} catch (e) {
 		throw i.abort(), n?.throwIfAborted(), de(e);
 	}
 }
-async function cc(e, t, n) {
+async function gc(e, t, n) {
 	let r = new ce(), i = t.binary();
 	i.catch(() => void 0);
 	let a = {
@@ -4302,12 +4429,12 @@ async function cc(e, t, n) {
 			return e.read(r, r + n);
 		}
 	};
-	return r.register((e) => new rc(e, {
+	return r.register((e) => new dc(e, {
 		...n,
 		stream: a
 	})), r.parseAsync(t.text, "");
 }
-async function lc(e, t, n) {
+async function _c(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -4319,25 +4446,25 @@ async function lc(e, t, n) {
 		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function uc(e, t, n, r) {
+async function vc(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? dc(e) : await fc(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? yc(e) : await bc(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : pc(t.received, e);
+			throw n.aborted ? e : xc(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function dc(e) {
+function yc(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function fc(e, t) {
+async function bc(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -4348,7 +4475,7 @@ async function fc(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function pc(e, t) {
+function xc(e, t) {
 	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { ss as EigenField, rc as EigenfieldPlugin, Eo as SHEETS, j as SceneError, fa as defaultMemory, sc as loadEigenfield, Gi as novelCamera, Yi as placeCamera, pe as refuseAddresses };
+export { os as EigenField, dc as EigenfieldPlugin, Mo as SHEETS, j as SceneError, da as defaultMemory, hc as loadEigenfield, qi as novelCamera, Zi as placeCamera, pe as refuseAddresses };
