@@ -134,14 +134,14 @@ def takes_options(cls: type[Any], without: Collection[str] = (), *, others: bool
     def show(function: F) -> F:
         signature, kinds = inspect.signature(function), get_type_hints(cls)
         *before_them, changes = signature.parameters.values()
-        last = changes if others else changes.replace(annotation=Never)
+        rest = changes if others else changes.replace(annotation=Never)
         shown = [(name, one) for name, one in options_of(cls) if name not in without]
         defaults = {one.name: one.default for one in fields(cls)}
         added = [
             inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=defaults[name], annotation=kinds[name])
             for name, _ in shown
         ]
-        function.__signature__ = signature.replace(parameters=[*before_them, *added, last])  # type: ignore[attr-defined]
+        function.__signature__ = signature.replace(parameters=[*before_them, *added, rest])  # type: ignore[attr-defined]
         before, last, after = (function.__doc__ or "").partition(f"        {changes.name}:")
         filler = textwrap.TextWrapper(120, initial_indent=" " * 8, subsequent_indent=" " * 12)
         lines = "".join(filler.fill(f"{name}: {' '.join(one.help.split())}") + "\n" for name, one in shown)
