@@ -15,7 +15,7 @@ import types
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextvars import ContextVar
 from numbers import Integral, Real
-from typing import Any, ParamSpec, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import Any, Never, ParamSpec, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from eigenfield.core.errors import EigenfieldError, OptionError
 
@@ -89,7 +89,10 @@ def _name_arguments(error: EigenfieldError, signature: inspect.Signature) -> Non
     """Write overwrite=True for --overwrite, fit="none" for "say --fit none", and hold_out for other uses of --hold-out,
     where the function has such an argument."""
     parameters = signature.parameters
-    takes_more = any(parameter.kind is inspect.Parameter.VAR_KEYWORD for parameter in parameters.values())
+    takes_more = any(
+        parameter.kind is inspect.Parameter.VAR_KEYWORD and parameter.annotation is not Never
+        for parameter in parameters.values()
+    )
 
     def argument(found: re.Match[str]) -> str:
         if found["option"] is None:  # a command

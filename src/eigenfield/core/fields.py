@@ -7,7 +7,7 @@ import inspect
 import textwrap
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
-from typing import Any, ClassVar, Self, TypeVar, get_type_hints
+from typing import Any, ClassVar, Never, Self, TypeVar, get_type_hints
 
 from eigenfield.core.arguments import in_words, kind_in_words, matches
 from eigenfield.core.errors import OptionError
@@ -122,24 +122,26 @@ def document_options(cls: type[T]) -> type[T]:
     return cls
 
 
-def takes_options(cls: type[Any], without: Collection[str] = ()) -> Callable[[F], F]:
+def takes_options(cls: type[Any], without: Collection[str] = (), *, others: bool = False) -> Callable[[F], F]:
     """Decorator: a function's `**changes` are fields of a dataclass of options, which its signature and docstring show.
 
     Args:
         cls: The dataclass.
         without: Fields that are none of its arguments.
+        others: Whether `changes` has more than these fields.
     """
 
     def show(function: F) -> F:
         signature, kinds = inspect.signature(function), get_type_hints(cls)
-        *others, changes = signature.parameters.values()
+        *before_them, changes = signature.parameters.values()
+        rest = changes if others else changes.replace(annotation=Never)
         shown = [(name, one) for name, one in options_of(cls) if name not in without]
         defaults = {one.name: one.default for one in fields(cls)}
         added = [
             inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=defaults[name], annotation=kinds[name])
             for name, _ in shown
         ]
-        function.__signature__ = signature.replace(parameters=[*others, *added, changes])  # type: ignore[attr-defined]
+        function.__signature__ = signature.replace(parameters=[*before_them, *added, rest])  # type: ignore[attr-defined]
         before, last, after = (function.__doc__ or "").partition(f"        {changes.name}:")
         filler = textwrap.TextWrapper(120, initial_indent=" " * 8, subsequent_indent=" " * 12)
         lines = "".join(filler.fill(f"{name}: {' '.join(one.help.split())}") + "\n" for name, one in shown)

@@ -35,7 +35,7 @@ SURFACE_NAMES = tuple(one.name for one in fields(SurfaceOptions) if one.name not
 
 
 @checked
-@takes_options(SurfaceOptions, without=SURFACE_OF_SCENE)
+@takes_options(SurfaceOptions, without=SURFACE_OF_SCENE, others=True)
 def encode(
     capture: str | os.PathLike[str] | Capture | CalibratedObservations,
     proxy: str | os.PathLike[str] | Mesh | Proxy | None = None,
