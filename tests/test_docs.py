@@ -301,6 +301,19 @@ def test_links_lead_somewhere():
     assert lost == []
 
 
+def test_the_lists_of_contributing_name_what_there_is():
+    """Files, tests, and for a step of a source file the constants and private functions in it."""
+    text = page("docs/contributing.md")
+    paths = re.findall(r"`((?:src|tests|docs|web|benchmarks)/[\w/.-]+)`", text)
+    assert [path for path in paths if "NEW" not in path and not (ROOT / path).exists()] == []
+    tests = "".join(path.read_text("utf-8") for path in (ROOT / "tests").rglob("test_*.py"))
+    assert [name for name in re.findall(r"`(test_\w+)`", text) if f"def {name}(" not in tests] == []
+    steps = re.findall(r"^\d\. `([\w/.-]+\.(?:py|ts))`(.*?)(?=^\d\. |^#|\n\n)", text, re.MULTILINE | re.DOTALL)
+    assert len(steps) > 15
+    words = [(path, word) for path, step in steps for word in re.findall(r"`([A-Z][A-Z_]+|_\w+)`", step)]
+    assert [word for word in words if "NEW" not in word[0] and word[1] not in page(word[0])] == []
+
+
 def test_the_readme_and_the_evaluation_are_short():
     """A bullet of the evaluation has at most 40 words and three numbers; all else is a row of docs/benchmarks.md."""
     assert len(page("README.md").splitlines()) <= 120

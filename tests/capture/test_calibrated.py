@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 import pytest
 
-from eigenfield.capture import open_capture
+from eigenfield.capture import open_any, open_capture
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.readers.llff import find_llff, read_llff
 from eigenfield.capture.readers.middlebury import find_middlebury, read_middlebury
@@ -81,6 +81,24 @@ def test_open_capture_pairs_it_with_photographs(tmp_path, name, apart):
         assert (view.camera.width, view.camera.height) == (WIDTH, HEIGHT)
         assert np.abs(view.camera.project(CUBE)[0] - s.pixels(CUBE)).max() < 1e-6
         assert view.lens is None
+
+
+SHARED_NAMES = {"deepview", "opencv", "opencv-xml", "easymocap", "toml", "realitycapture"}  # other files have them too
+
+
+@pytest.mark.parametrize("name", [name for name in WRITERS if name not in SHARED_NAMES])
+def test_a_damaged_calibration_of_a_name_of_its_own_is_said(tmp_path, name):
+    """`CALIBRATION_PATTERNS` of `capture.formats` has the name; else the photographs are taken without a word."""
+    path = WRITERS[name][0](tmp_path)
+    files = [path] if path.is_file() else sorted(path.iterdir())
+    for file in files:
+        file.write_bytes(b"")
+    write.photographs(tmp_path / "images")
+    try:
+        lines = open_any(tmp_path).problems
+    except CaptureError as error:  # the name alone is a claim
+        lines = (str(error),)
+    assert any(files[0].name in line for line in lines), lines
 
 
 # real captures

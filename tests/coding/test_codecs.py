@@ -31,7 +31,7 @@ VERSIONED = [  # codec, what is coded, the first byte
 
 def test_the_documentation_lists_what_the_table_says():
     text = (DOCUMENTS / "coding.md").read_text("utf-8")
-    rows = re.findall(r"^\| `([a-z0-9-]+)` \| (\w+) \| (.*?) ?\| (1\.\d) \| ([^|]*) \| [^|]* \|$", text, re.M)
+    rows = re.findall(r"^\| `([a-z0-9-]+)` \| (\w+) \| (.*?) ?\| (1\.\d+) \| ([^|]*) \| [^|]* \|$", text, re.M)
     listed = {
         name: (kind, needs.strip("` ") or None, since, tuple(re.findall(r"`(\w+)`", most)))
         for name, kind, needs, since, most in rows
@@ -39,7 +39,8 @@ def test_the_documentation_lists_what_the_table_says():
     assert listed == {name: (codec.kind, codec.needs, codec.since, codec.limits) for name, codec in CODECS.items()}
     assert all(isinstance(getattr(limits, name), int) for codec in CODECS.values() for name in codec.limits)
     assert max(map(minor, FEATURES.values())) <= LATEST
-    assert f"` 1.{LATEST}\n" in (DOCUMENTS / "format.md").read_text("utf-8")
+    format_page = (DOCUMENTS / "format.md").read_text("utf-8")
+    assert f"` 1.{LATEST}\n" in format_page and f"\n- **1.{LATEST}**: " in format_page
 
 
 def test_the_schema_lists_the_codecs_of_each_kind():

@@ -26,6 +26,7 @@ from eigenfield.rendering import RenderJob
 from eigenfield.runtime.files import atomic_files
 from eigenfield.viewer import exports
 from eigenfield.viewer.exports import OPTIONS
+from eigenfield.viewer.exports.export import ENDINGS, FILE_ENDINGS
 from support.scenes import tiny_scene
 
 KINDS = {  # output, options, and a file that must be there
@@ -73,6 +74,9 @@ def test_every_kind_is_documented_and_tried(run):
     listed = re.findall(r"^\| `(\w+)` \|", page.read_text(encoding="utf-8"), re.MULTILINE)
     assert list(dict.fromkeys(listed)) == list(OPTIONS) == list(dict.fromkeys(kind.split()[0] for kind in KINDS))
     words = run("export", "--help").out
+    assert f"--as {'|'.join(OPTIONS)}" in words
+    assert [kind for kind in OPTIONS if f'"{kind}"' not in exports.export.__doc__] == []
+    assert {ending for endings in ENDINGS.values() for ending in endings} <= set(FILE_ENDINGS)
     assert [kind for kind in OPTIONS if not re.search(rf"^ +{kind} {{2,}}\w", words, re.MULTILINE)] == []
 
 
