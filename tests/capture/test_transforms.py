@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import threading
 
 import numpy as np
@@ -153,6 +154,22 @@ def test_calibration_elsewhere(tmp_path):
         for root in (tmp_path / "capture", tmp_path / "capture" / "images"):
             capture = open_capture(root, calibration=calibration)
             assert len(capture) == 4 and capture.root == root and not capture.problems
+
+
+@pytest.mark.skipif(os.name == "nt", reason="links to folders need a privilege there")
+def test_photographs_behind_a_link_are_found_by_a_path_that_leads_out_of_it(tmp_path):
+    """The calibration's path is right from its own folder. From the linked one the system finds it, too, for there `..`
+    is the folder of the link's target."""
+    write(tmp_path / "deep" / "store" / "capture")
+    (tmp_path / "link").symlink_to(tmp_path / "deep" / "store")
+    top = document()
+    for frame in top["frames"]:
+        frame["file_path"] = "../../../link/capture/" + frame["file_path"]
+    far = tmp_path / "far" / "a" / "b"
+    far.mkdir(parents=True)
+    (far / "cameras.json").write_text(json.dumps(top))
+    capture = open_capture(tmp_path / "link" / "capture", calibration=far / "cameras.json")
+    assert len(capture) == 4 and all(capture.bytes(i) for i in range(4))
 
 
 def test_photographs_outside_the_named_folder_are_not_used(tmp_path):

@@ -101,7 +101,8 @@ class PhotographFinder:
         for folder in folders:
             for candidate in _with_extensions(folder / file):
                 if is_file(candidate) and (not self.apart or self._is_below(candidate)):
-                    return Path(os.path.normpath(candidate))
+                    short = Path(os.path.normpath(candidate))
+                    return short if is_file(short) else candidate  # behind a link to a folder, .. is another folder
         spelled = (self._spelled_otherwise(folder, file) for folder in folders)
         return next((path for path in spelled if path and (not self.apart or self._is_below(path))), None)
 
