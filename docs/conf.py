@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -34,7 +35,6 @@ myst_heading_anchors = 3
 
 default_role = "literal"  # names between single backticks in docstrings
 autodoc_member_order = "bysource"
-autodoc_preserve_defaults = True
 autodoc_typehints_format = "short"
 maximum_signature_line_length = 90
 napoleon_numpy_docstring = False
@@ -55,10 +55,15 @@ pygments_style = "a11y-high-contrast-light"
 pygments_dark_style = "a11y-high-contrast-dark"
 
 
-def class_without_signature(app: Sphinx, what: str, *rest: Any) -> tuple[str, None] | None:
-    """Attributes are listed one a line below a class, and no reader makes a `Scene` by hand."""
-    return ("", None) if what == "class" else None
+def signature_to_show(
+    app: Sphinx, what: str, name: str, found: Any, options: Any, signature: str | None, returned: str | None
+) -> tuple[str, str | None] | None:
+    """Attributes are listed one a line below a class, and no reader makes a `Scene` by hand. A function that is a
+    default is shown by its name."""
+    if what == "class":
+        return "", None
+    return None if signature is None else (re.sub(r"<function (\w+)>", r"\1", signature), returned)
 
 
 def setup(app: Sphinx) -> None:
-    app.connect("autodoc-process-signature", class_without_signature)
+    app.connect("autodoc-process-signature", signature_to_show)
