@@ -1,12 +1,15 @@
-"""Tests of many generated inputs: a few of them in the fast suite, and two thousand of each kind as slow tests."""
+"""Tests of many generated inputs: a few of them in the fast suite, five hundred of each kind as slow tests, and each
+night as many as EIGENFIELD_FUZZ says."""
 
 from __future__ import annotations
+
+import os
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-FEW, MANY = 12, 2_000
+FEW, MANY = 12, int(os.environ.get("EIGENFIELD_FUZZ", "500"))
 QUIET = {"deadline": None, "suppress_health_check": list(HealthCheck)}
 
 
