@@ -6,6 +6,7 @@ picture, blurred to the width of the reflection lobe.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 from typing import NamedTuple
 
@@ -64,12 +65,13 @@ GLASS_DARKNESS_FRACTION = 0.3  # of the ambient light that it keeps off, to that
 CAUSTIC_RAYS = 60_000
 
 
-def radiance(directions: Array, softness: float) -> Array:
+def radiance(directions: Array, softness: float, lights: Sequence[SoftBox] = SOFT_BOXES) -> Array:
     """(n, 3) RGB radiance, with the edges of lights and of the room blurred.
 
     Args:
         directions: (n, 3) unit vectors.
         softness: Degrees.
+        lights: In the room.
     """
     x, y, z = directions.T
     blur = np.sin(np.radians(softness))
@@ -80,7 +82,7 @@ def radiance(directions: Array, softness: float) -> Array:
     side = _soft_step(np.abs(x) - z, blur)
     total *= (1 + 0.9 * ceiling - 0.3 * side * (1 - ceiling))[:, None]
     total += 0.10 * np.maximum(z, 0)[:, None] * (1.0, 0.96, 0.9)
-    for light in SOFT_BOXES:
+    for light in lights:
         axis = _unit(np.array(light.direction))
         side = _unit(np.cross((0.0, 1.0, 0.0), axis))
         up = np.cross(axis, side)
@@ -105,7 +107,7 @@ def _soft_interval(angle: Array, half: float, softness: float) -> Array:
     return np.asarray(1 / (1 + np.exp(np.clip((np.abs(angle) - half) / (softness / 2), -50, 50))))
 
 
-def environment_map() -> NDArray[np.float32]:
+def environment_map(lights: Sequence[SoftBox] = SOFT_BOXES) -> NDArray[np.float32]:
     """(3, e, e, 3): the room over the octahedron, sharp, and through lobes of about 4 and 22 degrees."""
     t = np.linspace(-1, 1, LIGHT_OCTAHEDRON_TEXELS)
     z, x = np.meshgrid(t, t, indexing="ij")
@@ -115,7 +117,7 @@ def environment_map() -> NDArray[np.float32]:
     directions = np.stack([folded_x, y, folded_z], axis=-1).reshape(-1, 3)
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     layers = [
-        radiance(directions, softness).reshape(LIGHT_OCTAHEDRON_TEXELS, LIGHT_OCTAHEDRON_TEXELS, 3)
+        radiance(directions, softness, lights).reshape(LIGHT_OCTAHEDRON_TEXELS, LIGHT_OCTAHEDRON_TEXELS, 3)
         for softness in (0.8, 4.0, 22.0)
     ]
     return np.stack(layers).astype(np.float32)

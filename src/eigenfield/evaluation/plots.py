@@ -81,7 +81,7 @@ def write_plots(
     figures[PLOT_CAMERAS_FILE] = cameras_figure(scores["cameras"], _coordinates(scores["cameras"], session))
     figures[PLOT_CONTACT_SHEET_FILE] = contact_sheet_figure(_contact_sheet_rows(scores["cameras"], session))
     for name, figure in figures.items():
-        write_bytes(folder / name, _png(figure), overwrite=overwrite)
+        write_bytes(folder / name, png_bytes(figure), overwrite=overwrite)
     return [folder / name for name in figures]
 
 
@@ -89,7 +89,7 @@ def curve_figure(scores: Mapping[str, Any]) -> Figure:
     """SSIM and PSNR in UV space against the number of eigen textures (figure 5 of the paper)."""
     points = scores["curve"]
     count = [point["textures"] for point in points]
-    figure = _figure(9, 4.2)
+    figure = new_figure(9, 4.2)
     for at, (key, label, colour) in enumerate(
         (("uv_ssim", "SSIM {:.4f}", PLOT_BLUE), ("uv_psnr", "PSNR {:.2f} dB", PLOT_ORANGE)), 1
     ):
@@ -100,7 +100,7 @@ def curve_figure(scores: Mapping[str, Any]) -> Figure:
         axes.set_title(f"{label.format(values[-1])} with all {count[-1]}", fontsize=11, loc="left")
         axes.set_ylabel(f"{label.split()[0]} of the texture maps, mean over {points[-1]['cameras']} cameras")
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-        _style_axes(axes)
+        style_axes(axes)
     return figure
 
 
@@ -110,7 +110,7 @@ def cameras_figure(cameras: Sequence[Mapping[str, Any]], coordinates: NDArray[np
     places = coordinates[[camera["psnr"] is not None for camera in cameras]]
     values = np.array([camera["psnr"] for camera in measured])
     held_out = np.array([camera["held_out"] for camera in measured], bool)
-    figure = _figure(7.6, 6.4)
+    figure = new_figure(7.6, 6.4)
     axes = figure.add_subplot()
     size = float(np.clip(26000 / max(len(measured), 1), 14, 260))
     drawn = None
@@ -150,13 +150,13 @@ def cameras_figure(cameras: Sequence[Mapping[str, Any]], coordinates: NDArray[np
     axes.set_ylabel("Y on the view plane (up)")
     axes.margins(0.08)
     axes.set_aspect("equal" if np.ptp(coordinates[:, 1]) > 0 else "auto")
-    _style_axes(axes)
+    style_axes(axes)
     return figure
 
 
 def bytes_figure(sizes: Mapping[str, int], ratio: Mapping[str, float | None] | None) -> Figure:
     """The file's bytes by part."""
-    figure = _figure(8.2, 3.6)
+    figure = new_figure(8.2, 3.6)
     axes = figure.add_subplot()
     keys, labels, colours = zip(*PLOT_PARTS, strict=True)
     kilobytes = np.array([sizes[key] for key in keys]) / 1e3
@@ -172,7 +172,7 @@ def bytes_figure(sizes: Mapping[str, int], ratio: Mapping[str, float | None] | N
     text = [f"{label} {value:.{1 if value < 20 else 0}f}" for value, label in times if value is not None]
     smaller = f"\ntimes smaller than: {', '.join(text)}" if text else ""
     axes.set_title(f"{sizes['total'] / 1e6:.2f} MB{smaller}", fontsize=10.5, loc="left")
-    _style_axes(axes)
+    style_axes(axes)
     axes.grid(False, axis="y")
     return figure
 
@@ -181,7 +181,7 @@ def contact_sheet_figure(rows: Sequence[ContactSheetRow]) -> Figure:
     """Photograph, drawn picture and error side by side; a title for each row."""
     height, width = rows[0][1].shape[:2] if rows else (1, 1)
     inches = 3.6
-    figure = _figure(3 * inches + 0.3, len(rows) * (inches * height / width + 0.45) + 0.2)
+    figure = new_figure(3 * inches + 0.3, len(rows) * (inches * height / width + 0.45) + 0.2)
     axes = figure.subplots(len(rows), 3, squeeze=False) if rows else np.empty((0, 3))
     for line, (title, *pictures) in zip(axes, rows, strict=True):
         for place, picture, label in zip(
@@ -218,13 +218,13 @@ def _coordinates(cameras: Sequence[Mapping[str, Any]], session: Session) -> NDAr
     return scene.rig.view_plane.coordinates([centre[camera["name"]] for camera in cameras])
 
 
-def _figure(width: float, height: float) -> Figure:
+def new_figure(width: float, height: float) -> Figure:
     figure = Figure(figsize=(width, height), dpi=PLOT_DPI, layout="constrained")
     FigureCanvasAgg(figure)
     return figure
 
 
-def _style_axes(axes: Axes) -> None:
+def style_axes(axes: Axes) -> None:
     """No frame at the top and right, and a pale grid behind."""
     axes.spines[["top", "right"]].set_visible(False)
     axes.grid(True, color="#e4e7ea", linewidth=0.8)
@@ -235,7 +235,7 @@ def _shorten(name: str) -> str:
     return name if len(name) <= PLOT_MAX_NAME_CHARACTERS else f"…{name[1 - PLOT_MAX_NAME_CHARACTERS :]}"
 
 
-def _png(figure: Figure) -> bytes:
+def png_bytes(figure: Figure) -> bytes:
     data = io.BytesIO()
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing")  # names in scripts that the font lacks
