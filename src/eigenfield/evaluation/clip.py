@@ -184,9 +184,9 @@ def figures_of(
     """All figures of measured pictures, whoever made them: a clip or a codec.
 
     Args:
-        rows: By frame.
-        flickers: By camera, shown the same pictures.
-        held_out: Cameras.
+        rows: Of all pictures that were measured.
+        flickers: By camera, shown the same pictures. A camera may have none.
+        held_out: Names of cameras.
         timeline: Of the frames.
         starts: The first frame of each group.
 
@@ -194,14 +194,16 @@ def figures_of(
         `image`, `flicker` and `border` for "encoded" and "held_out" cameras, `over_time`, `group_times` and `cameras`.
     """
     moving = {name: flicker.figures for name, flicker in flickers.items()}
-    kinds = {"encoded": [name for name in moving if name not in held_out], "held_out": list(held_out)}
-    of_kind = {kind: [row for row in rows if row[1] in names] for kind, names in kinds.items()}
+    names = list(dict.fromkeys(name for _, name, _ in rows))
+    kinds = {"encoded": [name for name in names if name not in held_out],
+             "held_out": [name for name in names if name in held_out]}
+    of_kind = {kind: [row for row in rows if row[1] in some] for kind, some in kinds.items()}
     over_time = {kind: _over_time(some) for kind, some in of_kind.items()}
+    pooled = {kind: [moving[name] for name in some if name in moving] for kind, some in kinds.items()}
     frames = sorted({frame for frame, _, _ in rows})
     return {
         "image": {kind: _summary(some, len(kinds[kind])) for kind, some in of_kind.items()},
-        "flicker": {kind: pool_flicker([moving[name] for name in names]) if names else None
-                    for kind, names in kinds.items()},
+        "flicker": {kind: pool_flicker(some) if some else None for kind, some in pooled.items()},
         "border": {kind: border_step({frame: one["psnr"] for frame, one in some.items()}, starts)
                    for kind, some in over_time.items()},
         "over_time": [
@@ -210,9 +212,9 @@ def figures_of(
         ],
         "group_times": [float(timeline.times[start]) for start in starts],
         "cameras": [
-            {"name": name, "held_out": name in held_out, **moving[name]}
+            {"name": name, "held_out": name in held_out, **moving.get(name, {})}
             | _means([scores for _, camera, scores in rows if camera == name], ("psnr", "psnr_luma", "ssim"))
-            for name in moving
+            for name in names
         ],
     }  # fmt: skip
 

@@ -1,0 +1,232 @@
+"""Clips beside AV1 streams of their cameras and beside our own stills, in one run, every byte counted.
+
+    EIGENFIELD_DATA=captures python benchmarks/video.py [CLIP...] [--out out/video] [--size N] [--grid N] [--frames N]
+        [--qualities 60,75,88,94] [--peers keys-6,one-key-6,keys-2,joint-6] [--stills N] [--store]
+
+CLIP: `light`, the demo's scene with still geometry and moving light, drawn on the first run and kept; `cloth` and
+`panoptic`, of EIGENFIELD_DATA. --size, --grid and --frames are of `light`. Every fifth camera is held out, and takes no
+part in clips, streams and stills; of `panoptic`, which is no array, none is.
+
+Ours is one file a quality: encoded, saved, read and drawn again. A peer is a way of `evidence.simulcast` with a preset
+of SVT-AV1 behind it: one stream a camera with a key picture where our groups begin (`keys`), one stream a camera with
+one key (`one-key`), and one stream through all cameras and frames (`joint`). Their held-out views are drawn from decoded
+streams as a lumigraph on our mesh. `--stills N` encodes N of the frames by themselves at the same qualities. What is
+done stays in OUT, and a run that was stopped goes on while the code is the same.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import accumulate
+from pathlib import Path
+from typing import Any
+
+import eigenfield as ef
+import measure
+from eigenfield.core.clip import Clip
+from eigenfield.core.spread import spread_indices
+from eigenfield.evaluation.clip import Instants, evaluate_clip
+from eigenfield.evaluation.strip import write_strip
+from eigenfield.gltf import parts
+from evidence import moving_light, prepared, rates, simulcast
+from evidence.runner import kept
+from evidence.simulcast import Taken
+
+QUALITIES = "60,75,88,94"
+PEERS = "keys-6,one-key-6,keys-2,joint-6"
+BETWEEN = 4  # frames at which held-out cameras are drawn of peers
+KEYS = ("psnr_luma", "psnr", "ssim")
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where a clip comes from.
+
+    Attributes:
+        proxy: A mesh file; None: it is made from the photographs of the first frame.
+        hold_out: Rule of `encode --hold-out`; None: all cameras are encoded.
+    """
+
+    name: str
+    folder: Path
+    proxy: Path | None = None
+    hold_out: str | None = "every:5"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("clips", nargs="*", metavar="CLIP")
+    parser.add_argument("--out", type=Path, default=Path("out") / "video")
+    parser.add_argument("--size", type=int, default=320)
+    parser.add_argument("--grid", type=int, default=5)
+    parser.add_argument("--frames", type=int, default=60)
+    parser.add_argument("--qualities", default=QUALITIES)
+    parser.add_argument("--peers", default=PEERS)
+    parser.add_argument("--stills", type=int, default=3)
+    parser.add_argument("--store", action="store_true", help="append to benchmarks/results/video.json")
+    options = parser.parse_args()
+    out = options.out.resolve()
+    figures = {}
+    for name in options.clips or ["light"]:
+        source = source_of(name, out, options.size, options.grid, options.frames)
+        qualities = [int(quality) for quality in options.qualities.split(",")]
+        peers = [peer for peer in options.peers.split(",") if peer]
+        make = partial(of_clip, source, out / source.name, qualities, peers, options.stills)
+        asked = f"{options.qualities} {options.peers} {options.stills}"
+        figures[source.name] = kept(out / source.name / "figures.json", Path(__file__), make, asked)
+        print(f"\n{source.name}\n{table(figures[source.name])}", flush=True)
+    if options.store:
+        print(measure.store("video", {"captures": figures}))
+
+
+def source_of(name: str, out: Path, size: int, grid: int, frames: int) -> Source:
+    """A clip by its name; `light` is drawn where it is not there. SystemExit: there is none of that name."""
+    if name == "light":
+        whole = f"light-{grid}x{grid}-{size}-{frames}"
+        folder = moving_light.draw_clip(out / "clips" / whole, grid, grid, size, frames)
+        return Source(whole, folder, folder / moving_light.PROXY)
+    if name in ("cloth", "panoptic"):
+        folder = measure.data() / {"cloth": "clip_cloth_5x4", "panoptic": "panoptic_arc_10"}[name]
+        return Source(name, folder, hold_out=None if name == "panoptic" else "every:5")
+    raise SystemExit(f"no clip is called {name}: name light, cloth or panoptic")
+
+
+def of_clip(
+    source: Source, work: Path, qualities: Sequence[int], peers: Sequence[str], stills: int
+) -> dict[str, Any]:
+    """All curves of one clip."""
+    work.mkdir(parents=True, exist_ok=True)
+    footage = ef.open(source.folder, clip="all")
+    proxy = source.proxy or proxy_of(footage, work)
+    points = [our_point(source, footage, proxy, work, quality) for quality in qualities]
+    clip = ef.load_clip(work / f"clip-{qualities[-1]}.glb")
+    starts = [0, *accumulate(clip.groups.lengths)][:-1]
+    taken = simulcast.take(footage, clip.scene(float(clip.timeline.times[0])), clip.timeline, starts)
+    curves = {peer: peer_curve(taken, peer) for peer in peers}
+    return {
+        "cameras": len(taken.encoded), "held_out": len(taken.held_out), "frames": clip.timeline.frames,
+        "rate": float(clip.timeline.rate), "groups": list(clip.groups.lengths),
+        "size": list(next(iter(taken.pictures.values()))[0].shape[:2]),
+        "ours": points,
+        "peers": curves,
+        "stills": our_stills(source, footage, proxy, work, clip, qualities, stills) if stills else [],
+        "bd": {peer: {key: rates.bd_rate(curve, points, key) for key in KEYS} for peer, curve in curves.items()},
+    }  # fmt: skip
+
+
+def proxy_of(footage: Any, work: Path) -> Path:
+    """The surface of the first frame, kept."""
+    path = work / "proxy.glb"
+    if not path.exists():
+        from eigenfield.proxy import write_mesh
+
+        write_mesh(ef.reconstruct(footage.instant(0), surface="opaque").proxy.mesh, path)
+    return path
+
+
+def our_point(source: Source, footage: Any, proxy: Path, work: Path, quality: int) -> dict[str, Any]:
+    """A file of a quality, read and measured again."""
+    path = work / f"clip-{quality}.glb"
+    began = time.perf_counter()
+    clip = ef.encode(footage, proxy, quality=quality, hold_out=source.hold_out, work=work / "stages")
+    ef.save(clip, path, overwrite=True)
+    seconds = time.perf_counter() - began
+    figures = evaluate_clip(ef.load_clip(path), footage, path=path)
+    write_strip(figures, work / f"plots-{quality}", overwrite=True)
+    point = {
+        "parameter": quality, "bytes": path.stat().st_size, "encode_seconds": round(seconds, 1),
+        "parts": dict(parts(path)), **simulcast.short(figures),
+    }  # fmt: skip
+    print(f"{source.name}: quality {quality}: {line(point)}", flush=True)
+    return point
+
+
+def our_stills(
+    source: Source, footage: Any, proxy: Path, work: Path, clip: Clip, qualities: Sequence[int], count: int
+) -> list[dict[str, Any]]:
+    """Some frames encoded by themselves; bytes are scaled up to all frames."""
+    points = []
+    chosen = [int(frame) for frame in spread_indices(clip.timeline.frames, count)]
+    for quality in qualities:
+        sizes, figures, seconds = [], [], 0.0
+        for frame in chosen:
+            path = work / f"still-{quality}-{frame}.glb"
+            capture = footage.instant(footage.timeline.frame_at(float(clip.timeline.times[frame])))
+            began = time.perf_counter()
+            scene = ef.encode(capture, proxy, quality=quality, hold_out=source.hold_out)
+            scene.save(path, overwrite=True)
+            seconds += time.perf_counter() - began
+            sizes.append(path.stat().st_size)
+            figures.append(ef.evaluate(path, capture, png_maps="none")["image"]["encoded"])
+        point = {
+            "parameter": quality, "bytes": round(sum(sizes) / count * clip.timeline.frames), "frames": chosen,
+            "encode_seconds": round(seconds / count, 1),
+            **{key: sum(one[key] for one in figures) / count for key in KEYS},
+        }  # fmt: skip
+        print(f"{source.name}: stills of quality {quality}: {line(point)}", flush=True)
+        points.append(point)
+    return points
+
+
+def peer_curve(taken: Taken, peer: str) -> list[dict[str, Any]]:
+    """A way of `simulcast` and a preset, joined by a hyphen, at all rates."""
+    way, _, preset = peer.rpartition("-")
+    between = [int(frame) for frame in spread_indices(taken.timeline.frames, BETWEEN)]
+    points = []
+    for crf in simulcast.CRFS:
+        coded = simulcast.streams(taken, way, crf, int(preset))
+        points.append({"parameter": crf, **simulcast.point(taken, coded, between)})
+        print(f"{peer}, crf {crf}: {line(points[-1])}", flush=True)
+    return points
+
+
+def line(point: dict[str, Any]) -> str:
+    """A point in words."""
+    words = [f"{point['bytes'] / 1000:.1f} kB, {point['psnr_luma']:.2f} dB luma, {point['psnr']:.2f} RGB"]
+    if point.get("held_out"):
+        words.append(f"held out {point['held_out']['psnr_luma']:.2f}")
+    if point.get("flicker") and point["flicker"]["still"] is not None:
+        words.append(f"flicker {point['flicker']['still']:.2f} levels")
+    if point.get("flicker") and point["flicker"]["moving_ssim"] is not None:
+        words.append(f"SSIM of changes {point['flicker']['moving_ssim']:.3f}")
+    if point.get("border"):
+        words.append(f"step {point['border']['step']:.2f} dB")
+    return ", ".join(words)
+
+
+def table(found: dict[str, Any]) -> str:
+    """Our bytes over the peers' at equal luma, and what is drawn between cameras and flickers at equal bytes."""
+    lines = []
+    for name, curve in (*found["peers"].items(), ("stills", found["stills"])):
+        if not curve:
+            continue
+        for point in found["ours"]:
+            theirs = rates.bytes_at(curve, point["psnr_luma"], "psnr_luma")
+            ratio = "not reached" if theirs is None else f"{point['bytes'] / theirs:.3f} of {theirs / 1000:.1f} kB"
+            words = [f"{name}, quality {point['parameter']}, {point['psnr_luma']:.2f} dB: {ratio}"]
+            for what, value in at_bytes(curve, point["bytes"]).items():
+                words.append(f"{what} at equal bytes {value:.3f}")
+            lines.append("; ".join(words))
+    return "\n".join(lines)
+
+
+def at_bytes(curve: Sequence[dict[str, Any]], size: float) -> dict[str, float]:
+    """Held-out luma and flicker of a curve at some bytes, between its points; nothing beyond its ends."""
+    values = {
+        "held out": [(point["bytes"], (point.get("held_out") or {}).get("psnr_luma")) for point in curve],
+        "flicker": [(point["bytes"], (point.get("flicker") or {}).get("still")) for point in curve],
+    }
+    found = {}
+    for what, pairs in values.items():
+        known = sorted((some, value) for some, value in pairs if value is not None)
+        if known and known[0][0] <= size <= known[-1][0]:
+            found[what] = rates.between_points(known, size)
+    return found
+
+
+if __name__ == "__main__":
+    main()
