@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from evidence import simulcast
-from support.clips import tiny_clip, write_footage
+from support.moving_clips import tiny_clip, write_footage
 
 CRF, PRESET = 24, 12
 

@@ -15,7 +15,7 @@ from eigenfield.core.errors import CaptureError, OptionError, OutputError
 from eigenfield.evaluation.clip import evaluate_clip
 from eigenfield.evaluation.strip import STRIP_FILE, write_strip
 from eigenfield.imaging.metrics import PSNR_MAX_DECIBELS
-from support.clips import Instants, tiny_clip, write_footage
+from support.moving_clips import Instants, tiny_clip, write_footage
 
 HELD = (4,)
 TEN_LEVELS = 20 * np.log10(25.5)  # dB
