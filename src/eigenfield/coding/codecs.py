@@ -15,6 +15,8 @@ docs/coding.md describes its bytes. What a codec's functions take and return is 
     picture    (codes, quality or crf) -> bytes          (data, colour, where) -> codes (H, W) or (H, W, 3)
     video      (frames, size, crf, preset,               (data, size, count, where, name)
                key_interval) -> bytes                    -> frames, one after the other
+    film       (frames, size, crf, preset)               (units, size, where)
+               -> units, one for each frame              -> frames, one after the other
 
 `where` is the place that a FormatError names, and `name` what it says is damaged. `codes` are those of a whole picture
 (`stacking`).
@@ -33,6 +35,7 @@ from eigenfield.coding.pictures import pictures_8bit as eight
 from eigenfield.coding.pictures import pictures_10bit as ten
 from eigenfield.coding.pictures.av1_units import frame_size
 from eigenfield.coding.video.av1 import decode_video, encode_video
+from eigenfield.coding.video.film import decode_film, encode_film
 
 AVIF = "image/avif"
 AV1 = "video/AV1"
@@ -134,5 +137,6 @@ CODECS: dict[str, Codec] = {
         "picture", ten.encode_10bit, ten.decode_10bit, "av1-10bit-2", "1.8", PICTURE_LIMITS,
         frame_size, AV1, ten.PICTURE_BITS,
     ),
+    "film-1": Codec("film", encode_film, decode_film, "film-1", "1.11", ("MAX_FILM_SIDE", "MAX_FILM_PIXELS")),
     "video-1": Codec("video", encode_video, decode_video, None, "1.3", ("MAX_TEXELS", "MAX_VIDEO")),
 }  # fmt: skip

@@ -34,6 +34,17 @@ MAX_WEIGHTS = 2**28
 MAX_GAIN = 1_000  # of a camera's colours, and at least its reciprocal
 MAX_OFFSET = 1_000
 
+MAX_GROUPS = 65_536  # of a clip
+MAX_FRAMES = 2**20  # of a clip
+MAX_GROUP_FRAMES = 1_024
+MAX_GROUP = 2**30  # bytes
+MAX_GROUP_JSON = 2**22  # bytes of a group's head, inflated
+MAX_RATE = 1_000  # frames a second, and at least its reciprocal
+MAX_TIME = 10**9  # seconds
+MAX_FILMS = 4
+MAX_FILM_SIDE = 8_192
+MAX_FILM_PIXELS = 2**24
+
 MAX_VIDEO = 2**35  # pixels of all frames of a residual: they are decoded one by one
 
 MAX_NUMBER = 1e30  # magnitude of lengths, calibrations, scales, weights: squares and products stay finite

@@ -5,7 +5,6 @@ SVT-AV1 codes them, tuned for squared error; dav1d decodes them, a frame at a ti
 
 from __future__ import annotations
 
-import io
 import os
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
@@ -22,7 +21,6 @@ from eigenfield.runtime.parallel import ordinary_scheduling
 
 Planes = tuple[NDArray[np.uint16], NDArray[np.uint16], NDArray[np.uint16]]
 
-CONTAINER = "obu"
 FRAME_RATE_HZ = 25  # without meaning here, but a video has one
 SVT_PARALLELISM = 2  # SVT-AV1's level, fixed: its memory grows with it, and the bytes are the same
 ENDLESS_INTERVAL = 99999  # frames: no key frame follows the first
@@ -40,29 +38,37 @@ def encode_video(
         preset: SVT-AV1's, 0 the slowest.
         key_interval: Frames from one key frame to the next; None: the first is the only one.
     """
+    return b"".join(encode_units(frames, size, crf, preset, "scd=0", key_interval))
+
+
+def encode_units(
+    frames: Iterable[Planes], size: tuple[int, int], crf: int, preset: int, more: str, key_interval: int | None = None
+) -> Iterator[bytes]:
+    """The temporal units of a video, with their delimiters: as many as frames, in the order in which they are shown.
+
+    Args:
+        more: Parameters of SVT-AV1.
+    """
     os.environ.setdefault("SVT_LOG", "1")  # errors alone: its settings go to stderr otherwise
     import av
 
-    buffer = io.BytesIO()
-    with av.open(buffer, "w", format=CONTAINER) as container:
-        stream: Any = container.add_stream("libsvtav1", rate=FRAME_RATE_HZ)
-        stream.height, stream.width = size
-        stream.pix_fmt = PIXEL_FORMAT
-        context = stream.codec_context
-        context.gop_size = key_interval or ENDLESS_INTERVAL
-        context.color_range, context.colorspace = 2, 1  # full, BT.709
-        stream.options = {
-            "crf": str(crf), "preset": str(preset),
-            "svtav1-params": f"keyint={key_interval or -1}:scd=0:tune=1:lp={SVT_PARALLELISM}",
-        }  # fmt: skip
-        with ordinary_scheduling():
-            context.open()
-        for number, planes in enumerate(frames):
-            frame = frame_of(planes)
-            frame.pts, frame.time_base = number, Fraction(1, FRAME_RATE_HZ)
-            container.mux(stream.encode(frame))
-        container.mux(stream.encode(None))
-    return buffer.getvalue()
+    context: Any = av.CodecContext.create("libsvtav1", "w")
+    context.height, context.width = size
+    context.pix_fmt = PIXEL_FORMAT
+    context.framerate, context.time_base = Fraction(FRAME_RATE_HZ), Fraction(1, FRAME_RATE_HZ)
+    context.gop_size = key_interval or ENDLESS_INTERVAL
+    context.color_range, context.colorspace = 2, 1  # full, BT.709
+    context.options = {
+        "crf": str(crf), "preset": str(preset),
+        "svtav1-params": f"keyint={key_interval or -1}:tune=1:lp={SVT_PARALLELISM}:{more}",
+    }  # fmt: skip
+    with ordinary_scheduling():
+        context.open()
+    for number, planes in enumerate(frames):
+        frame = frame_of(planes)
+        frame.pts, frame.time_base = number, Fraction(1, FRAME_RATE_HZ)
+        yield from map(bytes, context.encode(frame))
+    yield from map(bytes, context.encode(None))
 
 
 def decode_video(data: bytes, size: tuple[int, int], count: int, where: str, name: str) -> Iterator[Planes]:
