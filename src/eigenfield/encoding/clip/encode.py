@@ -9,11 +9,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eigenfield.capture.footage import Footage
 from eigenfield.core.clip import Clip
 from eigenfield.core.errors import OptionError, one_line
 from eigenfield.core.mesh import Mesh
@@ -31,8 +30,12 @@ from eigenfield.encoding.prepare import plan_encoding
 from eigenfield.gltf.clips import coded_clip
 from eigenfield.gltf.group import group_bytes
 from eigenfield.imaging.metrics import to_codes
+from eigenfield.proxy import refuse_no_mesh
 from eigenfield.runtime.parallel import even_pieces, parallel_map
 from eigenfield.runtime.stages import SCENE_ROOMS, Stages, stage_key
+
+if TYPE_CHECKING:
+    from eigenfield.capture.footage import Footage
 
 DEFAULT_GROUP = "1s"
 GROUP_PATTERN = re.compile(r"(\d{1,9})|(\d{1,9}(?:\.\d*)?|\.\d+)s")  # frames, or seconds
@@ -45,7 +48,7 @@ STILL_OPTIONS = (  # that have no meaning for clips
 
 def encode_clip(
     footage: Footage,
-    proxy: str | os.PathLike[str] | Mesh | Proxy,
+    proxy: str | os.PathLike[str] | Mesh | Proxy | None,
     asked: EncodeOptions,
     work: Path | None = None,
     progress: Progress | None = None,
@@ -53,16 +56,16 @@ def encode_clip(
     """A clip on one still proxy: its frames share the weights of their group (equation 6, summed over its frames).
 
     Args:
-        footage: Whose cameras are known.
-        proxy: Opaque.
+        proxy: Opaque. None is refused: nothing estimates the surface of a clip yet.
         asked: Options; those that clips have no use for are refused.
         work: Folder that keeps finished stages; None: nothing is kept.
 
     Raises:
-        OptionError: `clip-option`, `group-unknown`.
+        OptionError: `clip-proxy`, `clip-cameras`, `clip-option`, `group-unknown`.
         CaptureError, ProxyError, OutputError: As `encode`.
     """
-    refuse_still_options(asked, proxy)
+    refuse_still_options(asked)
+    proxy = _checked_proxy(footage, proxy)
     length = group_length(asked.group or DEFAULT_GROUP, footage.timeline.rate)
     plan = plan_encoding(footage.instant(len(footage) // 2), proxy, asked, work, progress)
     identity = stage_key([_footage_digest(footage), asked, _plan_digest(plan)], SCENE_ROOMS)
@@ -139,25 +142,36 @@ def group_length(text: str, rate: Fraction) -> int:
     raise OptionError("group-unknown", f"--group {one_line(text[:40])} is no length of a group", remedy=remedy)
 
 
-def refuse_still_options(asked: EncodeOptions, proxy: object) -> None:
-    """Raise OptionError `clip-option` for what clips have no use for, or have not yet."""
-    for name in STILL_OPTIONS:
-        if getattr(asked, name) not in (None, False, "none"):
-            words = f"--{name.replace('_', '-')} is for scenes of one instant"
-            raise OptionError("clip-option", words, remedy="leave it out, or encode one instant without --clip")
-    if asked.fit == "none":
-        raise OptionError("clip-option", "--fit none is for scenes of one instant", remedy="leave it out")
-    if isinstance(proxy, Proxy) and proxy.sheets is not None:
-        raise OptionError(
-            "clip-option", "a clip has one opaque surface, and this proxy has sheets", remedy="give a mesh"
-        )
+def refuse_still_options(asked: EncodeOptions) -> None:
+    """Raise OptionError `clip-option` for what has no meaning for clips, or has none yet."""
+    given = [name for name in STILL_OPTIONS if getattr(asked, name) not in (None, False, "none")]
+    if given or asked.fit == "none":
+        name = f"--{given[0].replace('_', '-')}" if given else "--fit none"
+        remedy = "leave it out, or encode one instant without --clip"
+        raise OptionError("clip-option", f"{name} is for scenes of one instant", remedy=remedy)
 
 
 def refuse_no_proxy(proxy: object) -> None:
     """Raise OptionError `clip-proxy` where no mesh is given."""
     if proxy is None:
-        remedy = "make one of an instant with `eigenfield proxy`, and name it as --proxy"
+        remedy = "make one of an instant (`eigenfield proxy`), and give it as --proxy"
         raise OptionError("clip-proxy", "a clip is encoded on a mesh that is given", remedy=remedy)
+
+
+def _checked_proxy(
+    footage: Footage, proxy: str | os.PathLike[str] | Mesh | Proxy | None
+) -> str | os.PathLike[str] | Mesh | Proxy:
+    """The proxy, where it is one for clips and its cameras are known."""
+    refuse_no_proxy(proxy)
+    assert proxy is not None
+    if footage.cameras is None:
+        remedy = "calibrate an instant (`eigenfield calibrate`), and give the result as --calibration"
+        raise OptionError("clip-cameras", "the cameras of this footage are not known", remedy=remedy)
+    if isinstance(proxy, str | os.PathLike):
+        refuse_no_mesh(Path(proxy))
+    elif isinstance(proxy, Proxy) and proxy.sheets is not None:
+        raise OptionError("clip-proxy", "a clip is encoded on one opaque surface, not on sheets", remedy="give a mesh")
+    return proxy
 
 
 def _footage_digest(footage: Footage) -> list[Any]:
