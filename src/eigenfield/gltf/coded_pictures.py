@@ -177,3 +177,9 @@ def _rgb_mean(scene: Scene, to_rgb: NDArray[np.float32]) -> NDArray[np.float32]:
 def shortest_decimals(numbers: NDArray[Any]) -> list[float]:
     """The shortest decimals of the same numbers."""
     return [float(str(number)) for number in numbers.ravel()]
+
+
+def affine_numbers(numbers: NDArray[np.float64], count: int) -> list[float]:
+    """The numbers of `count` textures; of one, where all have the same."""
+    each = numbers.reshape(count, -1)
+    return shortest_decimals(each[:1] if (each == each[0]).all() else each)

@@ -8,7 +8,7 @@ import struct
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import chain
-from typing import Any
+from typing import Any, Protocol
 
 from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError, OutputError
@@ -19,6 +19,7 @@ from eigenfield.gltf.source import ByteRange, ByteSource, HeldBytes, truncation_
 MAGIC = b"glTF"
 JSON_CHUNK = b"JSON"
 BINARY_CHUNK = b"BIN\0"
+GROUPS_CHUNK = b"EFTL"  # of a clip, behind the binary chunk
 HEADER = struct.Struct("<4sII")  # magic, version, length of the file
 CHUNK = struct.Struct("<I4s")  # length of the data, type
 MAX_EXACT_INTEGER = 2.0**53  # below which a float is a whole number exactly
@@ -31,12 +32,14 @@ class Glb:
     Attributes:
         chunks: Where the data of each chunk lie, by its type; of several of one type the last.
         missing: Bytes of the binary chunk that lie behind the end of the file.
+        missing_groups: Likewise of the chunk of groups.
     """
 
     json: Any
     source: ByteSource
     chunks: Mapping[bytes, ByteRange]
     missing: int = 0
+    missing_groups: int = 0
 
     @property
     def binary(self) -> ByteRange:
@@ -49,13 +52,13 @@ class Glb:
 
     def cut_off(self) -> FormatError:
         """The error to raise where the missing bytes are needed."""
-        return truncation_error(self.source.size, self.source.size + self.missing)
+        return truncation_error(self.source.size, self.source.size + self.missing + self.missing_groups)
 
 
 def parse_glb(data: bytes | ByteSource) -> Glb:
     """Parse a container, of which only the JSON and the heads of chunks are read.
 
-    One that ends within its binary chunk is not refused here: see `Glb.missing`.
+    One that ends within its binary chunk or its groups is not refused here: see `Glb.missing`.
 
     Raises:
         FormatError: `not-glb`, `truncated`, `glb-version`, `glb-length`, `glb-chunk`, `json-*`.
@@ -86,16 +89,22 @@ def _parse_json(chunk: ByteRange) -> Any:
 
 
 def _parse_truncated(source: ByteSource, length: int) -> Glb:
-    """A container of `length` bytes that ends within its binary chunk; FormatError `truncated` where it ends before."""
-    start, end = HEADER.size + CHUNK.size, source.size
-    if end >= start:
-        size, kind = CHUNK.unpack(source.read(HEADER.size, start))
-        json, first = ByteRange(source, start, start + size), start + size + CHUNK.size
-        if kind == JSON_CHUNK and first <= end:
-            extent, kind = CHUNK.unpack(source.read(json.last, first))
-            if kind == BINARY_CHUNK and end < first + extent <= length:
-                chunks = {JSON_CHUNK: json, BINARY_CHUNK: ByteRange(source, first, end)}
-                return Glb(_parse_json(json), source, chunks, first + extent - end)
+    """A container of `length` bytes that ends within its second or third chunk, of its binary bytes or of its groups.
+    FormatError `truncated` where it ends elsewhere."""
+    chunks: dict[bytes, ByteRange] = {}
+    offset, end, expected = HEADER.size, source.size, (JSON_CHUNK, BINARY_CHUNK, GROUPS_CHUNK)
+    for wanted in expected:
+        start = offset + CHUNK.size
+        if start > end:
+            break
+        size, kind = CHUNK.unpack(source.read(offset, start))
+        offset = start + size
+        if kind != wanted or offset > length:
+            break
+        chunks[kind] = ByteRange(source, start, min(offset, end))
+        if offset > end and kind != JSON_CHUNK:
+            missing = (offset - end, 0) if kind == BINARY_CHUNK else (0, offset - end)
+            return Glb(_parse_json(chunks[JSON_CHUNK]), source, chunks, *missing)
     raise truncation_error(end, length)
 
 
@@ -156,8 +165,19 @@ def file_head(text: bytes, rest: int, path: str | os.PathLike[str] | None) -> by
     return HEADER.pack(MAGIC, 2, size) + CHUNK.pack(len(text), JSON_CHUNK) + text
 
 
+class Pieces(Protocol):
+    """Bytes that are read a piece at a time."""
+
+    @property
+    def size(self) -> int:
+        """How many there are."""
+
+    def pieces(self) -> Iterator[memoryview]:
+        """All of them."""
+
+
 def glb_blocks(
-    text: bytes, binary: bytes, path: str | os.PathLike[str] | None = None, behind: ByteRange | None = None
+    text: bytes, binary: bytes, path: str | os.PathLike[str] | None = None, behind: Pieces | None = None
 ) -> Iterator[bytes | memoryview]:
     """The bytes of a file, to be written one block after the other.
 

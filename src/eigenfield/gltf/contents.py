@@ -16,8 +16,8 @@ from eigenfield.gltf.container import BINARY_CHUNK, JSON_CHUNK, Glb, file_head, 
 from eigenfield.gltf.document import Document
 from eigenfield.gltf.layout import FileLayout, find_extension, unpacked_document
 from eigenfield.gltf.packed import is_packed, repack
-from eigenfield.gltf.read import layout_of, name_file_in_errors, read_scene
-from eigenfield.gltf.source import open_source
+from eigenfield.gltf.read import layout_of, read_scene
+from eigenfield.gltf.source import name_file_in_errors, open_source
 from eigenfield.gltf.streams import streams
 from eigenfield.gltf.strict_json import Value
 from eigenfield.gltf.write import encode_scene

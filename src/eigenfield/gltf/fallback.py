@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from eigenfield.coding.pictures.pictures_8bit import encode_small_preview
 from eigenfield.core.camera import Camera, axis_angles
+from eigenfield.core.clip import Clip
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Payload
@@ -25,7 +26,7 @@ from eigenfield.gltf.accessors import DTYPES
 from eigenfield.gltf.coarse import coarse_mesh
 from eigenfield.gltf.write_geometry import index_type
 
-SceneT = TypeVar("SceneT", bound=Scene)
+SceneT = TypeVar("SceneT", Scene, Clip)
 
 MAX_AXIS_ANGLE_DEGREES = 25.0  # between a camera's axis and the mean axis, of cameras that look one way
 MAX_MARGIN_FRACTION = 0.12  # by which the view is widened, of the reference camera's side
@@ -98,7 +99,7 @@ DEFAULT = "small"
 
 
 def with_fallback(scene: SceneT, fallback: str) -> SceneT:
-    """The scene, to be written with this, a key of BUDGETS, for other viewers. OptionError `fallback`."""
+    """The scene or clip, to be written with this, a key of BUDGETS, for other viewers. OptionError `fallback`."""
     if fallback not in BUDGETS:
         raise OptionError("fallback", f"no fallback is called {fallback}", remedy=f"use one of {', '.join(BUDGETS)}")
     kept = {key: value for key, value in scene.settings.items() if key != SETTING}

@@ -7,7 +7,7 @@ code, through `Findings.part`.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +18,7 @@ from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Payload
+from eigenfield.core.rig import Rig
 from eigenfield.core.scene import Residual
 from eigenfield.core.viewplane import ViewPlane
 from eigenfield.gltf import layout_geometry as geometry
@@ -34,39 +35,52 @@ from eigenfield.gltf.strict_json import Value, quote
 
 _KEYS = {
     "version", "needs", "mesh", "sheets", "planes", "toRGB", "cameras", "viewPlane", "reference",
-    "residual", "settings", "scores", "generator",
+    "residual", "timeline", "settings", "scores", "generator",
 }  # fmt: skip
-_SEVERAL_INSTANTS = {  # keys and features of files that are no scene of one instant: what they are, and the remedy
-    "timeline": ("is a clip (`timeline`), and a scene is of one instant", "use a later eigenfield"),
-    "times": ("has weights for several instants (`times`), which no version reads", "encode each instant on its own"),
-}
+TIMELINE = "timeline"  # the key, and the feature, of a clip
 
 
 @dataclass(frozen=True, eq=False)
-class FileLayout:
-    """A whole file; a part that could not be read is None (only while validating).
+class Surroundings:
+    """What files of scenes and of clips have in common; a part that could not be read is None (only while validating).
 
     Attributes:
-        mesh_payload: Its stream; None where it is plain.
-        sheets: Of the proxy; None: it is one opaque surface.
         triangles: (T, 3) of encoded cameras.
         to_rgb: (3, K) from the channels of all planes; None: they are R, G, B.
     """
 
     version: str
-    mesh: Mesh | None
-    mesh_payload: Payload | None
-    sheets: SheetsLayout | None
-    planes: tuple[PlaneLayout, ...] | None
     cameras: geometry.CameraList | None
     view_plane: ViewPlane | None
     triangles: NDArray[np.int32] | None
     reference: int | None
     to_rgb: NDArray[np.float32] | None
-    residual: Residual | None
     settings: Mapping[str, Any]
     scores: Mapping[str, Any]
     generator: str
+
+    @property
+    def rig(self) -> Rig:
+        """The cameras of a file that was read strictly."""
+        given, plane, triangles = self.cameras, self.view_plane, self.triangles
+        assert given is not None and plane is not None and triangles is not None and self.reference is not None
+        return Rig(given.names, given.cameras, given.held_out, self.reference, plane, triangles)
+
+
+@dataclass(frozen=True, eq=False)
+class FileLayout(Surroundings):
+    """The whole file of a scene; a part that could not be read is None (only while validating).
+
+    Attributes:
+        mesh_payload: Its stream; None where it is plain.
+        sheets: Of the proxy; None: it is one opaque surface.
+    """
+
+    mesh: Mesh | None
+    mesh_payload: Payload | None
+    sheets: SheetsLayout | None
+    planes: tuple[PlaneLayout, ...] | None
+    residual: Residual | None
 
     @property
     def lost(self) -> int:
@@ -91,13 +105,42 @@ def read_layout(document: Document, findings: Findings) -> FileLayout | None:
 
     def root_extension() -> Value:
         found = find_extension(document)
+        if is_clip(found):
+            remedy = "name the time of one of its frames (`--time 1.5s`, in Python `time=1.5`)"
+            found.fail("timeline", "is a clip, and a scene of one instant is expected", remedy)
         document.check_end(found)
         return found
 
-    attempt, note = findings.attempt, findings.note
+    attempt = findings.attempt
     extension = attempt(root_extension)
     if extension is None:
         return None
+    check_container(document, extension, findings)
+    sheets = attempt(lambda: read_sheets(document, extension["sheets"]) if extension.has("sheets") else None)
+    mesh = mesh_payload = None
+    with findings.part():
+        if document.root.has("meshes") or not extension.has("mesh"):
+            mesh = geometry.read_mesh(document)  # of a coded one the coarse one, which is checked too
+        if extension.has("mesh"):
+            mesh, mesh_payload = geometry.read_coded_mesh(document, extension["mesh"])
+    attempt(lambda: check_sheets(extension["sheets"], sheets, mesh) if extension.has("sheets") else None)
+    cameras = attempt(lambda: geometry.read_cameras(document, extension["cameras"]))
+    planes = attempt(lambda: read_planes(document, extension["planes"], cameras, findings))
+    channels = None if planes is None else [plane.mean.channels for plane in planes]
+    around = read_surroundings(document, extension, cameras, channels, findings)
+    with findings.part():
+        if not findings.strict and any(plane.lost for plane in planes or ()):
+            raise document.glb.cut_off()  # a fault, though what is left can be drawn
+    residual = attempt(lambda: read_residual(document, extension, cameras, findings))
+    attempt(document.check_addresses)
+    return FileLayout(
+        **vars(around), mesh=mesh, mesh_payload=mesh_payload, sheets=sheets, planes=planes, residual=residual
+    )
+
+
+def check_container(document: Document, extension: Value, findings: Findings) -> None:
+    """Check what surrounds the extension, and note what is odd in it."""
+    attempt, note = findings.attempt, findings.note
     version = extension["version"].text()
     if minor(version) > LATEST:
         text = f"version {version}: what it adds is ignored"
@@ -110,39 +153,35 @@ def read_layout(document: Document, findings: Findings) -> FileLayout | None:
         note("warning", "extension-required", "/extensionsRequired", "keeps other viewers from showing the mean")
     attempt(document.check_buffer)
     attempt(document.check_overlap)
-    sheets = attempt(lambda: read_sheets(document, extension["sheets"]) if extension.has("sheets") else None)
-    mesh = mesh_payload = None
-    with findings.part():
-        if document.root.has("meshes") or not extension.has("mesh"):
-            mesh = geometry.read_mesh(document)  # of a coded one the coarse one, which is checked too
-        if extension.has("mesh"):
-            mesh, mesh_payload = geometry.read_coded_mesh(document, extension["mesh"])
-    attempt(lambda: check_sheets(extension["sheets"], sheets, mesh) if extension.has("sheets") else None)
-    cameras = attempt(lambda: geometry.read_cameras(document, extension["cameras"]))
-    planes = attempt(lambda: read_planes(document, extension["planes"], cameras, findings))
-    to_rgb = attempt(lambda: read_matrix(extension, planes))
+
+
+def read_surroundings(
+    document: Document, extension: Value, cameras: geometry.CameraList | None, planes: Sequence[int] | None,
+    findings: Findings,
+) -> Surroundings:  # fmt: skip
+    """What a scene and a clip have in common.
+
+    Args:
+        cameras: None where they could not be read (only while validating), as are `planes`.
+        planes: Channels of each.
+    """
+    attempt = findings.attempt
+    to_rgb = attempt(lambda: read_matrix(extension, None if planes is None else sum(planes)))
     attempt(lambda: check_colours(extension["cameras"], cameras, planes, to_rgb))
     view_plane = attempt(lambda: geometry.read_view_plane(extension["viewPlane"]))
     triangles = attempt(lambda: geometry.read_triangles(document, extension["viewPlane"], cameras))
     count = limits.MAX_CAMERAS if cameras is None else len(cameras.names)
     reference = attempt(lambda: extension["reference"].integer(0, count - 1))
-    with findings.part():
-        if not findings.strict and any(plane.lost for plane in planes or ()):
-            raise document.glb.cut_off()  # a fault, though what is left can be drawn
-    residual = attempt(lambda: read_residual(document, extension, cameras, findings))
     settings = attempt(lambda: extension["settings"].mapping() if extension.has("settings") else {}) or {}
     scores = attempt(lambda: extension["scores"].mapping() if extension.has("scores") else {}) or {}
     generator = attempt(lambda: extension["generator"].text() if extension.has("generator") else "") or ""
-    attempt(document.check_addresses)
-    return FileLayout(
-        version, mesh, mesh_payload, sheets, planes, cameras, view_plane, triangles, reference, to_rgb, residual,
-        settings, scores, generator,
-    )  # fmt: skip
+    version = extension["version"].text()
+    return Surroundings(version, cameras, view_plane, triangles, reference, to_rgb, settings, scores, generator)
 
 
 def find_extension(document: Document) -> Value:
     """Our root extension, of a version and with needs that this reader knows. FormatError `gltf-version`,
-    `not-a-scene`, `version`, `needs`, `timeline`, `times`."""
+    `not-a-scene`, `version`, `needs`, `times`."""
     root = document.root
     asset = root["asset"]["version"]
     if not re.fullmatch(r"2\.\d+", asset.text()):
@@ -157,13 +196,18 @@ def find_extension(document: Document) -> Value:
         message = f"version {quote(version.value)} of {limits.EXTENSION}, 1.x is read here"
         version.fail("version", message, "use a later eigenfield")
     needs = list(extension["needs"].items(limits.MAX_VIEWS)) if extension.has("needs") else []
-    for name, (message, remedy) in _SEVERAL_INSTANTS.items():
-        if extension.has(name) or name in [need.value for need in needs]:
-            extension.fail(name, message, remedy)
+    if extension.has("times") or "times" in [need.value for need in needs]:
+        message = "has weights for several instants (`times`), which no version reads"
+        extension.fail("times", message, "encode each instant on its own")
     for need in needs:
         if need.text() not in FEATURES:
             need.fail("needs", f"needs the unknown feature {quote(need.value)}", "use a later eigenfield")
     return extension
+
+
+def is_clip(extension: Value) -> bool:
+    """Whether a file is a clip, of which a frame is a scene."""
+    return extension.has(TIMELINE)
 
 
 def _names(document: Document, key: str) -> list[Any]:

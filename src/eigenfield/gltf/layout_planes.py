@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -255,7 +256,7 @@ def read_picture(
     affine = None
     plain = place == "mean" and PICTURES[codec].bits == 8 and not (entry.has("scale") or entry.has("zero"))
     if not plain and place != "opacity":
-        affine = Affine(*(_affine(entry[key], channels, count) for key in ("scale", "zero")))
+        affine = Affine(*(read_affine(entry[key], channels, count) for key in ("scale", "zero")))
     stacking.check_picture(data, codec, *size, channels, entry.where, count)
     return PictureLayout(data, codec, *size, channels, affine, entry.where, count)
 
@@ -282,31 +283,31 @@ def _precision(document: Document, entry: Value, mean: PictureLayout) -> Picture
     return PictureLayout(data, codec, width, height, 1, None, entry.where)
 
 
-def _affine(entry: Value, channels: int, count: int) -> NDArray[np.float64]:
-    """(channels * count,): C numbers for each texture, or C that stand for all."""
+def read_affine(entry: Value, channels: int, count: int) -> NDArray[np.float64]:
+    """(channels * count,), of a `scale` or a `zero`: C numbers for each texture, or C that stand for all."""
     given = [item.number(limits.MAX_NUMBER) for item in entry.items(channels * count, channels)]
     if len(given) not in (channels, channels * count):
         entry.fail("json-value", f"{len(given)} numbers, {channels} or {channels * count} expected")
     return np.tile(np.array(given), 1 if len(given) == channels * count else count)
 
 
-def read_matrix(entry: Value, planes: tuple[PlaneLayout, ...] | None) -> NDArray[np.float32] | None:
-    """(3, K) float32: R, G, B from the channels of all planes. FormatError `plane-matrix`."""
+def read_matrix(entry: Value, channels: int | None) -> NDArray[np.float32] | None:
+    """(3, K) float32: R, G, B from the channels of all planes; None where there is none, or where these are not known
+    (only while validating). FormatError `plane-matrix`."""
     if not entry.has("toRGB"):
         return None
-    channels = 0 if planes is None else sum(plane.mean.channels for plane in planes)
     most = limits.MAX_PLANES * limits.MAX_CHANNELS
     numbers = [item.number(limits.MAX_GAIN) for item in entry["toRGB"].items(3 * most, 3)]
-    if planes is not None and len(numbers) != 3 * channels:
+    if channels is not None and len(numbers) != 3 * channels:
         entry["toRGB"].fail("plane-matrix", f"{len(numbers)} numbers, 3 for each of {channels} channels expected")
-    return None if planes is None else np.array(numbers, np.float32).reshape(3, channels)
+    return None if channels is None else np.array(numbers, np.float32).reshape(3, channels)
 
 
 def check_colours(
-    entry: Value, cameras: CameraList | None, planes: tuple[PlaneLayout, ...] | None, to_rgb: NDArray[np.float32] | None
+    entry: Value, cameras: CameraList | None, planes: Sequence[int] | None, to_rgb: NDArray[np.float32] | None
 ) -> None:
-    """Check that colours of cameras are those of R, G and B. FormatError `camera-colour`."""
+    """Check that colours of cameras are those of R, G and B; planes: channels of each. FormatError `camera-colour`."""
     if cameras is None or cameras.colours is None or not planes or to_rgb is not None:
         return
-    if planes[0].mean.channels != 3:
+    if planes[0] != 3:
         entry["colour"].fail("camera-colour", "colours of cameras, but the first plane has not three channels")

@@ -7,7 +7,6 @@ all of it gives way to those of the streams.
 from __future__ import annotations
 
 import struct
-import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -17,6 +16,7 @@ from eigenfield.core.errors import FormatError, OutputError
 from eigenfield.gltf import strict_json
 from eigenfield.gltf.buffer import Buffer
 from eigenfield.gltf.container import BINARY_CHUNK, Glb, glb_blocks, json_bytes
+from eigenfield.gltf.deflate import deflate, inflate
 from eigenfield.gltf.document import BufferView, Document
 from eigenfield.gltf.strict_json import Value
 
@@ -56,8 +56,7 @@ def pack(extension: Mapping[str, Any], streams: Sequence[bytes]) -> bytes:
     if len(text) > limits.MAX_JSON:
         message = f"{len(text)} bytes of JSON, {limits.MAX_JSON} are allowed"
         raise OutputError("scene-limit", message, remedy="store less in it")
-    coder = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS, 9, zlib.Z_DEFAULT_STRATEGY, DICTIONARY)
-    head = coder.compress(text) + coder.flush()
+    head = deflate(text, DICTIONARY)
     return b"".join([HEAD.pack(len(head)), head, *streams])
 
 
@@ -135,7 +134,8 @@ def _read(glb: Glb, index: int) -> tuple[dict[str, Any], list[BufferView]]:
         raise FormatError("coded-size", f"the JSON ends at byte {end} of {view.end}", where=_WHERE)
     if end > available:
         raise glb.cut_off()
-    inner = Value(strict_json.parse(_inflated(glb.binary.data[start:end]), _WHERE), _WHERE)
+    text = inflate(glb.binary.data[start:end], limits.MAX_JSON, _WHERE, DICTIONARY)
+    inner = Value(strict_json.parse(text, _WHERE), _WHERE)
     streams: list[BufferView] = []
     at = end
     for item in inner["lengths"].items(limits.MAX_VIEWS):
@@ -145,14 +145,3 @@ def _read(glb: Glb, index: int) -> tuple[dict[str, Any], list[BufferView]]:
     if at != view.end:
         raise FormatError("coded-size", f"the streams end at byte {at}, not at {view.end}", where=_WHERE)
     return {key: value for key, value in inner.mapping().items() if key != "lengths"}, streams
-
-
-def _inflated(data: memoryview) -> bytes:
-    decoder = zlib.decompressobj(-zlib.MAX_WBITS, zdict=DICTIONARY)
-    try:
-        text = decoder.decompress(data, limits.MAX_JSON + 1)
-    except zlib.error as error:
-        raise FormatError("coded-damaged", "the packed JSON does not inflate", where=_WHERE) from error
-    if len(text) <= limits.MAX_JSON and (not decoder.eof or decoder.unused_data):
-        raise FormatError("coded-damaged", "the packed JSON does not end where it should", where=_WHERE)
-    return text

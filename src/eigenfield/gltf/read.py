@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import logging
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +15,8 @@ from eigenfield.coding.pictures.pictures_8bit import check_preview
 from eigenfield.coding.pictures.quantise import mean_values, spread_precision
 from eigenfield.core.appearance import Appearance, Basis, Plane
 from eigenfield.core.arguments import checked
-from eigenfield.core.errors import FormatError
+from eigenfield.core.clip import Clip
+from eigenfield.core.errors import FormatError, OptionError
 from eigenfield.core.payloads import (
     Coded,
     Payload,
@@ -28,7 +29,6 @@ from eigenfield.core.payloads import (
     preview_key,
 )
 from eigenfield.core.proxy import Proxy, Sheets
-from eigenfield.core.rig import Rig
 from eigenfield.core.scene import Scene
 from eigenfield.gltf.document import Document
 from eigenfield.gltf.findings import Finding, Findings
@@ -36,24 +36,12 @@ from eigenfield.gltf.layout import FileLayout, open_document, read_layout
 from eigenfield.gltf.layout_geometry import read_mesh
 from eigenfield.gltf.layout_planes import BasisLayout, PlaneLayout, read_image
 from eigenfield.gltf.layout_residual import residual_frames
-from eigenfield.gltf.source import ByteSource, open_source, read_file
+from eigenfield.gltf.read_clip import holds_clip, load_clip, read_clip
+from eigenfield.gltf.source import ByteSource, name_file_in_errors, open_source, read_file
 from eigenfield.gltf.streams import streams
 from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger("eigenfield.format")
-
-
-@contextlib.contextmanager
-def name_file_in_errors(path: str | os.PathLike[str]) -> Iterator[None]:
-    """Put the file's name into every FormatError, and turn a lack of memory into one."""
-    try:
-        yield
-    except FormatError as error:
-        error.path = os.fspath(path)
-        raise
-    except MemoryError as error:
-        message, remedy = "does not fit into memory", "open it on a larger machine"
-        raise FormatError("memory", message, path=path, remedy=remedy) from error
 
 
 def layout_of(data: bytes | ByteSource) -> tuple[Document, FileLayout]:
@@ -65,17 +53,35 @@ def layout_of(data: bytes | ByteSource) -> tuple[Document, FileLayout]:
 
 
 @checked
-def load(path: str | os.PathLike[str]) -> Scene:
+def load(path: str | os.PathLike[str], time: float | None = None) -> Scene:
     """Read a scene: float32 means, uint8 or uint16 textures with their scale and zero, and their payloads.
 
     Limits are checked before memory is taken.
 
+    Args:
+        path: Of a .glb.
+        time: Seconds, of a clip, of which the nearest frame is read. A file of one instant needs none.
+
     Raises:
+        OptionError: `time`, outside the clip.
         FormatError: With a stable `code`, and `where`, for anything that is not as docs/format.md specifies; the
             content of a file never raises another exception.
     """
     with name_file_in_errors(path), open_source(Path(path)) as source:
-        return read_scene(source)
+        if time is None or not holds_clip(source):
+            return read_scene(source)
+        try:
+            return read_clip(source).scene(time)
+        except OptionError as error:
+            error.path = os.fspath(path)
+            raise
+
+
+def load_any(path: str | os.PathLike[str]) -> Scene | Clip:
+    """What a file holds, as `load` or `load_clip` read it."""
+    with name_file_in_errors(path), open_source(Path(path)) as source:
+        clip = holds_clip(source)
+    return load_clip(path) if clip else load(path)
 
 
 def as_scene(scene: Scene | str | os.PathLike[str]) -> Scene:
@@ -122,9 +128,8 @@ def _preview(document: Document, layout: FileLayout) -> Payload | None:
 def _scene(
     layout: FileLayout, planes: Sequence[Coded[Plane]], sheets: Coded[Sheets] | None, preview: Payload | None
 ) -> Scene:
-    mesh, given, view_plane = layout.mesh, layout.cameras, layout.view_plane
-    assert mesh is not None and given is not None and view_plane is not None
-    assert layout.triangles is not None and layout.reference is not None
+    mesh, given = layout.mesh, layout.cameras
+    assert mesh is not None and given is not None
     payloads = Payloads.merge(plane.payloads for plane in planes)
     if layout.mesh_payload is not None:
         payloads |= {mesh_key(mesh): [layout.mesh_payload]}
@@ -138,7 +143,7 @@ def _scene(
         payloads |= {preview_key(sources, layout.to_rgb, given.colours is not None): [preview]}
     return Scene(
         proxy=Proxy(mesh, sheets=None if sheets is None else sheets.value),
-        rig=Rig(given.names, given.cameras, given.held_out, layout.reference, view_plane, layout.triangles),
+        rig=layout.rig,
         appearance=Appearance(
             tuple(plane.value for plane in planes), layout.to_rgb, given.colours, given.mixed_colours
         ),

@@ -122,6 +122,42 @@ def open_source(path: Path) -> Iterator[ByteSource]:
         yield OpenFile(file, size)
 
 
+@contextlib.contextmanager
+def name_file_in_errors(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Put the file's name into every FormatError, and turn a lack of memory into one."""
+    try:
+        yield
+    except FormatError as error:
+        error.path = os.fspath(path)
+        raise
+    except MemoryError as error:
+        message, remedy = "does not fit into memory", "open it on a larger machine"
+        raise FormatError("memory", message, path=path, remedy=remedy) from error
+
+
+@dataclass(frozen=True, eq=False)
+class StoredBytes:
+    """The bytes [first, last) of a file on disk, which is open only while they are read.
+
+    Reading raises FormatError as `open_source` does; `truncated`: the file ends before them.
+    """
+
+    path: Path
+    first: int
+    last: int
+
+    @property
+    def size(self) -> int:
+        return self.last - self.first
+
+    def read(self, first: int, last: int) -> memoryview:
+        """As of `ByteSource`."""
+        with name_file_in_errors(self.path), open_source(self.path) as source:
+            if source.size < self.last:
+                raise truncation_error(source.size, self.last)
+            return source.read(self.first + first, min(self.first + last, self.last))
+
+
 def read_file(path: Path) -> bytes:
     """The whole file, with the errors of `open_source`."""
     with open_source(path) as source:

@@ -5,18 +5,17 @@ from __future__ import annotations
 import logging
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from eigenfield.coding import limits
 from eigenfield.coding.codecs import CODECS
 from eigenfield.coding.stacking import DEFAULT_CODEC, PICTURES, check_codec, dimensions
 from eigenfield.core.appearance import Plane
 from eigenfield.core.arguments import checked
+from eigenfield.core.clip import Clip
 from eigenfield.core.errors import OptionError, OutputError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.notebook import notebook_progress
@@ -24,30 +23,33 @@ from eigenfield.core.payloads import Payload, PicturePayload
 from eigenfield.core.progress import Progress
 from eigenfield.core.proxy import Sheets
 from eigenfield.core.scene import Residual, Scene
-from eigenfield.core.version import __version__
-from eigenfield.gltf import packed, strict_json
+from eigenfield.gltf import strict_json
 from eigenfield.gltf.accessors import FLOAT, UINT16, UINT32
 from eigenfield.gltf.buffer import Buffer
 from eigenfield.gltf.cached import CachedPayloads, cached_payloads
-from eigenfield.gltf.coded_pictures import PlanePictures, ScenePictures, code_pictures, shortest_decimals, shown_mean
+from eigenfield.gltf.coded_pictures import (
+    PlanePictures,
+    ScenePictures,
+    affine_numbers,
+    code_pictures,
+    shown_mean,
+)
 from eigenfield.gltf.container import BINARY_CHUNK, Glb, glb_blocks, json_bytes
 from eigenfield.gltf.fallback import make_fallback, with_fallback
 from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.layout import read_layout, unpacked_document
-from eigenfield.gltf.read import as_scene
+from eigenfield.gltf.read import load_any
 from eigenfield.gltf.source import ByteRange, HeldBytes
 from eigenfield.gltf.streams import FEATURES, codec_entry, minor
 from eigenfield.gltf.writable import check_writable
+from eigenfield.gltf.write_clip import clip_blocks
 from eigenfield.gltf.write_geometry import (
-    NODE_DIGITS,
-    PACKED_NODE_DIGITS,
     index_type,
     write_cameras,
-    write_nodes,
-    write_primitive,
     write_stream,
     write_view_plane,
 )
+from eigenfield.gltf.write_root import write_drawn, write_rest, write_root
 from eigenfield.runtime.files import atomic_writer, refuse_existing
 
 log = logging.getLogger("eigenfield.format")
@@ -57,7 +59,7 @@ DEFAULT_AVIF_QUALITY = 70  # of the eigen textures
 
 @checked
 def save(
-    scene: Scene | str | os.PathLike[str],
+    scene: Scene | Clip | str | os.PathLike[str],
     path: str | os.PathLike[str],
     *,
     codec: str | None = None,
@@ -66,13 +68,14 @@ def save(
     overwrite: bool = False,
     progress: Progress | None = notebook_progress,
 ) -> None:
-    """Write `scene` as a .glb, atomically.
+    """Write a scene or a clip as a .glb, atomically.
 
-    Parts whose content has not changed since they were coded keep their bytes. One line of the log lists the parts that
-    are coded anew, and the bytes that this costs; as a warning where the file grows by it.
+    The groups of a clip are copied, never coded again. Parts of a scene whose content has not changed since they were
+    coded keep their bytes, too. One line of the log lists the parts that are coded anew, and the bytes that this costs;
+    as a warning where the file grows by it.
 
     Args:
-        scene: To be written, or the file of one.
+        scene: To be written, or a file.
         path: Of the .glb.
         codec: "png", "webp" (both keep every code of 8 bits) or "avif" (lossy), for all pictures. Without codec and
             quality, pictures that are coded already (by a fit, or read from a file) stay as they are, and the rest
@@ -85,15 +88,19 @@ def save(
 
     Raises:
         OutputError: `output-exists`, `disk-full`, `file-too-large`, `scene-limit`, ...
-        OptionError: `codec`, `codec-missing`, `quality`, `fallback`.
+        OptionError: `codec`, `codec-missing`, `quality`, `fallback`; `clip-groups`: the clip is of no coded groups.
         FormatError: The scene is inconsistent in itself. Nothing is written.
     """
     path = Path(path)
     refuse_output(path, overwrite)
-    scene = as_scene(scene)
+    made = scene if isinstance(scene, Scene | Clip) else load_any(scene)
     if fallback is not None:
-        scene = with_fallback(scene, fallback)
-    blocks, anew = _blocks(scene, codec, quality, progress, path)
+        made = with_fallback(made, fallback)
+    if isinstance(made, Clip):
+        _refuse_coding(codec, quality, path)
+        blocks, anew = clip_blocks(made, path), {}
+    else:
+        blocks, anew = _blocks(made, codec, quality, progress, path)
     with atomic_writer(path, overwrite=overwrite) as file:
         for block in blocks:
             file.write(block)
@@ -101,6 +108,13 @@ def save(
         grows = sum(now - before for now, before in anew.values()) > 0
         parts = ", ".join(f"{part} ({now:,} bytes, it had {before:,})" for part, (now, before) in anew.items())
         log.log(logging.WARNING if grows else logging.INFO, "%s: coded anew: %s", path, parts)
+
+
+def _refuse_coding(codec: str | None, quality: int | None, path: Path) -> None:
+    if codec is not None or quality is not None:
+        option = "quality" if codec is None else "codec"
+        message = f"a clip keeps the bytes of its groups, and takes no {option}"
+        raise OptionError(option, message, path=path, remedy="leave it out")
 
 
 def refuse_output(path: Path, overwrite: bool) -> None:
@@ -188,7 +202,7 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayl
     shown: tuple[Mesh, Payload] | None = (scene.proxy.mesh, coded.preview or coded.planes[0].mean)
     if mesh is not None:
         shown = make_fallback(scene, shown_mean(scene), coded.bytes + len(mesh.data))
-    drawn = {} if shown is None else _drawn(scene, *shown, buffer, mesh is not None)
+    drawn = {} if shown is None else write_drawn(scene, *shown, buffer, mesh is not None)
     plain = buffer.packed is None
     order = {} if plain or scene.residual is None else _frame_order(scene.residual, buffer)
     cameras = {} if plain else write_cameras(scene, buffer, poses)
@@ -207,69 +221,13 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayl
     codecs = buffer.codecs | {("textures", picture.codec) for _, picture in entries}
     needs = _needs(scene, coded, {codec for _, codec in codecs}, cameras, planes, bool(drawn))
     version = _version(scene, needs, any(codec_entry(codec, place) for place, codec in codecs))
-    extension: dict[str, Any] = {
-        "needs": needs,
-        **proxy,
-        "planes": planes,
-        **({} if scene.appearance.to_rgb is None else {"toRGB": shortest_decimals(scene.appearance.to_rgb.ravel())}),
-        "cameras": cameras,
-        "viewPlane": view_plane,
-        "reference": int(scene.rig.reference),
-        **({"settings": dict(scene.settings)} if scene.settings else {}),
-        **({"scores": dict(scene.scores)} if scene.scores else {}),
-        "generator": scene.generator or f"eigenfield {__version__}",
-    }
+    extension: dict[str, Any] = {"needs": needs, **proxy, "planes": planes, **write_rest(scene, cameras, view_plane)}
     for entry, picture in entries:  # last: a file that is still arriving can be drawn
         entry["bufferView"] = buffer.stream(picture, "textures")
     if scene.residual is not None:  # behind all that any view is drawn of: a file that is cut off there loses it alone
         order = _frame_order(scene.residual, buffer) if plain else order
         extension["residual"] = _residual(scene.residual, buffer) | order
-    if plain:
-        extension = {"version": version} | extension
-    else:
-        extension = {"version": version, "needs": [packed.FEATURE], packed.FEATURE: packed.write(extension, buffer)}
-    perspective, nodes = write_nodes(scene, NODE_DIGITS if plain else PACKED_NODE_DIGITS)
-    if not drawn:
-        del nodes[0]["mesh"]
-    named = partial(_named, plain)
-    return {
-        "asset": {"version": "2.0", **({"generator": f"eigenfield {__version__}"} if plain else {})},
-        "extensionsUsed": [*(["KHR_materials_unlit"] if drawn else []), limits.EXTENSION],
-        "extensions": {limits.EXTENSION: extension},
-        "scene": 0,
-        "scenes": [{"nodes": [0, 1]}],
-        "nodes": [named("proxy", nodes[0]), named("reference camera", nodes[1])],
-        "cameras": [{"type": "perspective", "perspective": perspective}],
-        **drawn,
-        **({"accessors": buffer.accessors} if buffer.accessors else {}),
-        "bufferViews": buffer.views,
-        "buffers": [{"byteLength": buffer.length}],
-    }
-
-
-def _drawn(scene: Scene, mesh: Mesh, picture: Payload, buffer: Buffer, coded: bool) -> dict[str, Any]:
-    """What other viewers show: a mesh with a picture; coded: whether the scene's own mesh is a stream."""
-    primitive = write_primitive(mesh, buffer, coded)
-    image = {"bufferView": buffer.view(picture.data), "mimeType": PICTURES[picture.codec].mime}
-    plain, holes = buffer.packed is None, scene.proxy.sheets is not None and not coded
-    material = {
-        "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0.0},
-        "extensions": {"KHR_materials_unlit": {}},
-        **({"alphaMode": "MASK"} if holes else {}),  # below glTF's default of 0.5
-        "doubleSided": True,
-    }
-    return {
-        "meshes": [_named(plain, "proxy", {"primitives": [primitive]})],
-        "materials": [_named(plain, "mean", material)],
-        "textures": [{"source": 0, "sampler": 0}],
-        "samplers": [{**({"magFilter": 9729, "minFilter": 9987} if plain else {}), "wrapS": 33071, "wrapT": 33071}],
-        "images": [image],
-    }
-
-
-def _named(plain: bool, name: str, entry: dict[str, Any]) -> dict[str, Any]:
-    """The entry with its name, which a packed file leaves out."""
-    return {"name": name} | entry if plain else entry
+    return write_root(scene, version, extension, drawn, buffer)
 
 
 def _by_gain_per_byte(
@@ -368,14 +326,8 @@ def _picture(picture: PicturePayload, place: str) -> dict[str, Any]:
         made["count"] = picture.count
     if picture.affine is not None:
         scale, zero = picture.affine.scale, picture.affine.zero
-        made |= {"scale": _affine_numbers(scale, picture.count), "zero": _affine_numbers(zero, picture.count)}
+        made |= {"scale": affine_numbers(scale, picture.count), "zero": affine_numbers(zero, picture.count)}
     return made | codec_entry(picture.codec, place)
-
-
-def _affine_numbers(numbers: NDArray[np.float64], count: int) -> list[float]:
-    """The numbers of `count` textures; of one, where all have the same."""
-    each = numbers.reshape(count, -1)
-    return shortest_decimals(each[:1] if (each == each[0]).all() else each)
 
 
 def _residual(residual: Residual, buffer: Buffer) -> dict[str, Any]:

@@ -19,7 +19,6 @@ from eigenfield.coding.pictures.pictures_10bit import (
     PICTURE_BITS,
     PIXEL_FORMAT,
     decoder_errors,
-    frame_of,
     samples_of,
 )
 from eigenfield.coding.video.av1 import Planes, encode_units

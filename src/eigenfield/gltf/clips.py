@@ -1,0 +1,206 @@
+"""A clip whose groups are coded: each is decoded when it is asked for, and a frame when it is taken."""
+
+from __future__ import annotations
+
+import hashlib
+import threading
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.coding import limits
+from eigenfield.coding.codecs import CODECS
+from eigenfield.coding.pictures.quantise import mean_values
+from eigenfield.coding.video.film import decode_film
+from eigenfield.coding.video.film_layout import pictures_of
+from eigenfield.core.appearance import Appearance, Basis, Plane
+from eigenfield.core.clip import Clip, Frame, Group, Timeline
+from eigenfield.core.errors import FormatError
+from eigenfield.core.films import CodedGroup, FilmLayout, FilmPart
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.payloads import Payload, Payloads, mesh_key, weights_key
+from eigenfield.core.proxy import Proxy
+from eigenfield.core.rig import Rig
+from eigenfield.gltf.group import read_group
+from eigenfield.gltf.source import ByteSource, HeldBytes
+
+
+@dataclass(frozen=True, eq=False)
+class StoredGroup:
+    """A group as it lies in a file.
+
+    Attributes:
+        digest: SHA-256 of its bytes, hexadecimal; None: not known, and not checked.
+    """
+
+    data: ByteSource
+    frames: int
+    digest: str | None = None
+
+
+def coded_clip(
+    rig: Rig,
+    timeline: Timeline,
+    layout: FilmLayout,
+    groups: Sequence[ByteSource | bytes],
+    lengths: Sequence[int],
+    *,
+    to_rgb: NDArray[np.float32] | None,
+    settings: Mapping[str, Any],
+    scores: Mapping[str, Any],
+    generator: str,
+    payloads: Payloads | None = None,
+) -> Clip:
+    """A clip of coded groups.
+
+    Args:
+        groups: Bytes of each (`group.group_bytes`).
+        lengths: Frames of each.
+        payloads: What the rig's cameras were coded to, under their key.
+    """
+    sources = [HeldBytes(one) if isinstance(one, bytes) else one for one in groups]
+    stored = [StoredGroup(source, frames) for source, frames in zip(sources, lengths, strict=True)]
+    made = CodedGroups(layout, stored, rig, to_rgb, payloads or Payloads())
+    return Clip(rig, timeline, made, settings, scores, generator)
+
+
+@dataclass(frozen=True, eq=False)
+class CodedGroups:
+    """The groups of a clip as they are coded. The one that was decoded last is kept.
+
+    Attributes:
+        payloads: Of what is the same in all groups.
+    """
+
+    layout: FilmLayout
+    stored: Sequence[StoredGroup]
+    rig: Rig
+    to_rgb: NDArray[np.float32] | None
+    payloads: Payloads
+    _kept: dict[int, Group] = field(default_factory=dict, init=False, repr=False)
+
+    @property
+    def lengths(self) -> Sequence[int]:
+        """Frames of each group."""
+        return [one.frames for one in self.stored]
+
+    def group(self, index: int) -> Group:
+        """A group, of which the first frame is decoded. FormatError: see `coded`; `film-*`, `coded-*`, `weights-*`."""
+        kept = self._kept.get(index)
+        if kept is None:
+            kept = self._decode(index)
+            self._kept.clear()
+            self._kept[index] = kept
+        return kept
+
+    def coded(self, index: int) -> CodedGroup:
+        """A group as it is coded, its streams not decoded. FormatError `group-damaged`, `truncated`."""
+        one, where = self.stored[index], group_place(index)
+        data = bytes(one.data.read(0, one.data.size))
+        if one.digest is not None and hashlib.sha256(data).hexdigest() != one.digest:
+            message, remedy = "the group's bytes are not those that were written", "copy or download the file again"
+            raise FormatError("group-damaged", message, where=where, remedy=remedy)
+        coded = read_group(data, self.layout, where)
+        if len(coded.units) != one.frames:
+            message = f"a group of {len(coded.units)} frames, {one.frames} are announced"
+            raise FormatError("group-damaged", message, where=where)
+        return coded
+
+    def _decode(self, index: int) -> Group:
+        coded, where = self.coded(index), group_place(index)
+        mesh: Mesh = CODECS[coded.mesh.codec].decode(coded.mesh.data, where)
+        if not len(mesh.faces):
+            raise FormatError("coded-damaged", "a mesh without faces", where=where)
+        frames = CodedFrames(coded, self.layout, where)
+        first, planes, payloads = frames[0], [], self.payloads | {mesh_key(mesh): [coded.mesh]}
+        parts = zip(first.means, first.textures, coded.bases, coded.weights, strict=True)
+        for mean, own, affines, streams in parts:
+            bases = []
+            for textures, affine, stream in zip(own, affines, streams, strict=True):
+                count, _, _, channels = textures.shape
+                weights = self._weights(stream, count, where)
+                scale, zero = (one.reshape(count, channels).astype(np.float32) for one in (affine.scale, affine.zero))
+                bases.append(Basis(textures, scale, zero, weights))
+                payloads |= {weights_key(weights): [stream]}
+            planes.append(Plane(mean, tuple(bases)))
+        return Group(Proxy(mesh), Appearance(tuple(planes), self.to_rgb), frames, payloads)
+
+    def _weights(self, stream: Payload, count: int, where: str) -> NDArray[np.float32]:
+        weights: NDArray[np.float32] = CODECS[stream.codec].decode(stream.data, where)
+        rows = len(self.rig.encoded)
+        if weights.shape != (rows, count):
+            found = "x".join(map(str, weights.shape))
+            message = f"{found} weights, {rows} observations x {count} textures expected"
+            raise FormatError("weights-count", message, where=where)
+        return weights
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_kept": {}}
+
+
+def group_place(index: int) -> str:
+    """The place of a group in the JSON, for errors."""
+    return f"/extensions/{limits.EXTENSION}/timeline/groups/{index}"
+
+
+class CodedFrames(Sequence[Frame]):
+    """The frames of a group. One behind the last that was taken costs one picture of each film, one before it costs all
+    from the first on.
+    """
+
+    def __init__(self, coded: CodedGroup, layout: FilmLayout, where: str) -> None:
+        self._coded, self._layout, self._where = coded, layout, where
+        self._lock = threading.Lock()
+        self._films = self._pictures()
+        self._next, self._last = 0, Frame((), ())
+
+    def __len__(self) -> int:
+        return len(self._coded.units)
+
+    def __getitem__(self, number: int) -> Frame:  # type: ignore[override]  # there are no slices of it
+        """FormatError `film-*`."""
+        number = range(len(self))[number]
+        with self._lock:
+            if number == self._next - 1:
+                return self._last
+            if number < self._next:
+                self._films, self._next = self._pictures(), 0
+            try:
+                pictures = self._skip(number - self._next)
+            except FormatError:
+                self._films, self._next = self._pictures(), 0
+                raise
+            self._next, self._last = number + 1, self._frame(pictures)
+            return self._last
+
+    def _skip(self, count: int) -> tuple[NDArray[np.uint16], ...]:
+        """The pictures behind the next `count`."""
+        for _ in range(count):
+            next(self._films)
+        return next(self._films)
+
+    def _pictures(self) -> Iterator[tuple[NDArray[np.uint16], ...]]:
+        """A picture of each film, frame after frame."""
+        units = zip(*self._coded.units, strict=True)
+        films = [
+            decode_film(own, size, f"{self._where}, film {film}")
+            for film, (own, size) in enumerate(zip(units, self._layout.sizes, strict=True))
+        ]
+        return zip(*films, strict=True)
+
+    def _frame(self, pictures: Sequence[NDArray[np.uint16]]) -> Frame:
+        means, textures = [], []
+        for plane, affine in zip(self._layout.planes, self._coded.means, strict=True):
+            mean = pictures_of(plane.mean, pictures[plane.mean.film])
+            means.append(mean_values(np.moveaxis(mean, 0, -1), affine))
+            textures.append(tuple(_texture_codes(part, pictures[part.film], plane.channels) for part in plane.bases))
+        return Frame(tuple(means), tuple(textures))
+
+
+def _texture_codes(part: FilmPart, picture: NDArray[np.uint16], channels: int) -> NDArray[np.uint16]:
+    """(N, H, W, C) of a basis."""
+    codes = pictures_of(part, picture)
+    return np.ascontiguousarray(codes.reshape(-1, channels, *part.size).transpose(0, 2, 3, 1))

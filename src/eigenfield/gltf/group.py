@@ -1,0 +1,145 @@
+"""A group of frames as bytes (`group-1`): a deflated JSON head, then its streams one behind the other.
+
+First come the mesh and the weights, then frame by frame a unit of each film. A group that is still arriving can be
+shown as far as it is there.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from itertools import accumulate, chain, pairwise
+from typing import Any
+
+from eigenfield.coding import limits
+from eigenfield.coding.codecs import CODECS
+from eigenfield.core.errors import FormatError
+from eigenfield.core.films import CodedGroup, FilmLayout
+from eigenfield.core.payloads import Affine, Payload
+from eigenfield.gltf import strict_json
+from eigenfield.gltf.coded_pictures import affine_numbers
+from eigenfield.gltf.container import json_bytes
+from eigenfield.gltf.deflate import deflate, inflate
+from eigenfield.gltf.layout_planes import read_affine
+from eigenfield.gltf.source import ByteSource, HeldBytes
+from eigenfield.gltf.strict_json import Value, quote
+
+HEAD = struct.Struct("<I")  # bytes of the deflated JSON, which follows
+WEIGHTS_CODEC = "weights-1"
+
+
+@dataclass(frozen=True, eq=False)
+class GroupHead:
+    """What a group says of its streams.
+
+    Attributes:
+        first: The first byte of the streams.
+        mesh: Codec and length.
+        weights: Lengths, of each basis of each plane.
+        frames: Lengths: for each frame the unit of each film.
+    """
+
+    first: int
+    mesh: tuple[str, int]
+    weights: tuple[tuple[int, ...], ...]
+    means: tuple[Affine, ...]
+    bases: tuple[tuple[Affine, ...], ...]
+    frames: tuple[tuple[int, ...], ...]
+
+    @property
+    def lengths(self) -> list[int]:
+        """Of all streams, in their order."""
+        return [self.mesh[1], *chain.from_iterable(self.weights), *chain.from_iterable(self.frames)]
+
+
+def group_bytes(group: CodedGroup) -> bytes:
+    """The bytes of a group, the same each time."""
+    assert all(weights.codec == WEIGHTS_CODEC for plane in group.weights for weights in plane)
+    head = {
+        "mesh": {"codec": group.mesh.codec, "length": len(group.mesh.data)},
+        "weights": [[len(weights.data) for weights in plane] for plane in group.weights],
+        "means": [_affine(mean, len(mean.scale)) for mean in group.means],
+        "bases": [
+            [_affine(basis, len(mean.scale)) for basis in plane]
+            for mean, plane in zip(group.means, group.bases, strict=True)
+        ],
+        "frames": [list(map(len, units)) for units in group.units],
+    }
+    text = deflate(json_bytes(head).rstrip(b" "))
+    weights = [weights.data for plane in group.weights for weights in plane]
+    return b"".join([HEAD.pack(len(text)), text, group.mesh.data, *weights, *chain.from_iterable(group.units)])
+
+
+def _affine(affine: Affine, channels: int) -> dict[str, Any]:
+    """The numbers of each channel of each texture; of one texture, where all have the same."""
+    count = len(affine.scale) // channels
+    return {"scale": affine_numbers(affine.scale, count), "zero": affine_numbers(affine.zero, count)}
+
+
+def read_group(data: bytes, layout: FilmLayout, where: str) -> CodedGroup:
+    """The group of these bytes, its streams not decoded. FormatError `group-damaged`."""
+    head = read_head(HeldBytes(data), layout, where)
+    ends = accumulate(head.lengths, initial=head.first)
+    streams = (data[start:end] for start, end in pairwise(ends))
+    return CodedGroup(
+        mesh=Payload(head.mesh[0], next(streams)),
+        weights=tuple(tuple(Payload(WEIGHTS_CODEC, next(streams)) for _ in plane) for plane in head.weights),
+        means=head.means,
+        bases=head.bases,
+        units=tuple(tuple(next(streams) for _ in units) for units in head.frames),
+    )
+
+
+def read_head(group: ByteSource, layout: FilmLayout, where: str) -> GroupHead:
+    """The head of a group, of which nothing else is read. FormatError `group-damaged`: it is not as specified, or the
+    streams do not end where the group does."""
+    try:
+        if group.size < HEAD.size:
+            raise FormatError("group-damaged", f"{group.size} bytes have no length")
+        first = HEAD.size + HEAD.unpack(group.read(0, HEAD.size))[0]
+        if first > group.size:
+            raise FormatError("group-damaged", f"the head ends at byte {first} of {group.size}")
+        text = inflate(group.read(HEAD.size, first), limits.MAX_GROUP_JSON, "the head")
+        if len(text) > limits.MAX_GROUP_JSON:
+            raise FormatError("group-damaged", f"a head of more than {limits.MAX_GROUP_JSON} bytes")
+        head = _head_of(Value(strict_json.parse(text), "/"), first, layout)
+    except FormatError as error:
+        raise FormatError("group-damaged", f"the group cannot be read: {error.message}", where=where) from error
+    end = head.first + sum(head.lengths)
+    if end != group.size:
+        message = f"the group's streams end at byte {end}, not at {group.size}"
+        raise FormatError("group-damaged", message, where=where)
+    return head
+
+
+def _head_of(entry: Value, first: int, layout: FilmLayout) -> GroupHead:
+    codec, planes = entry["mesh"]["codec"].text(), len(layout.planes)
+    if codec not in CODECS or CODECS[codec].kind != "mesh":
+        entry["mesh"]["codec"].fail("codec-unknown", f"no codec of a mesh is called {quote(codec)} here")
+    weights, means, bases = (list(entry[key].items(planes, planes)) for key in ("weights", "means", "bases"))
+    films, frames = len(layout.sizes), entry["frames"].items(limits.MAX_GROUP_FRAMES, 1)
+    return GroupHead(
+        first=first,
+        mesh=(codec, _length(entry["mesh"]["length"])),
+        weights=tuple(
+            tuple(map(_length, own.items(len(plane.bases), len(plane.bases))))
+            for own, plane in zip(weights, layout.planes, strict=True)
+        ),
+        means=tuple(_read_affine(own, plane.channels, 1) for own, plane in zip(means, layout.planes, strict=True)),
+        bases=tuple(
+            tuple(
+                _read_affine(one, plane.channels, len(part.at) // plane.channels)
+                for one, part in zip(own.items(len(plane.bases), len(plane.bases)), plane.bases, strict=True)
+            )
+            for own, plane in zip(bases, layout.planes, strict=True)
+        ),
+        frames=tuple(tuple(map(_length, units.items(films, films))) for units in frames),
+    )
+
+
+def _length(entry: Value) -> int:
+    return entry.integer(1, limits.MAX_GROUP)
+
+
+def _read_affine(entry: Value, channels: int, count: int) -> Affine:
+    return Affine(*(read_affine(entry[key], channels, count) for key in ("scale", "zero")))

@@ -1,0 +1,147 @@
+"""Clip to GLB: what viewers without a decoder of ours show, cameras, then the groups as they are."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import accumulate
+from pathlib import Path
+from typing import Any
+
+from eigenfield.coding import limits
+from eigenfield.coding.codecs import CODECS
+from eigenfield.core.clip import Clip
+from eigenfield.core.errors import OptionError, OutputError
+from eigenfield.core.films import FilmPart, FilmPlane
+from eigenfield.core.scene import Scene
+from eigenfield.gltf import strict_json
+from eigenfield.gltf.buffer import Buffer
+from eigenfield.gltf.cached import cached_payloads
+from eigenfield.gltf.clips import CodedGroups, StoredGroup
+from eigenfield.gltf.coded_pictures import shown_mean
+from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, GROUPS_CHUNK, Glb, glb_blocks, json_bytes
+from eigenfield.gltf.fallback import make_fallback
+from eigenfield.gltf.findings import Findings
+from eigenfield.gltf.layout import TIMELINE, unpacked_document
+from eigenfield.gltf.layout_timeline import GROUP_ALIGNMENT
+from eigenfield.gltf.read_clip import read_clip_layout
+from eigenfield.gltf.source import ByteRange, HeldBytes
+from eigenfield.gltf.streams import FEATURES, minor
+from eigenfield.gltf.writable import check_writable
+from eigenfield.gltf.write_geometry import write_cameras, write_view_plane
+from eigenfield.gltf.write_root import write_drawn, write_rest, write_root
+
+FILM_CODEC = "film-1"
+
+
+@dataclass(frozen=True, eq=False)
+class _GroupsChunk:
+    """The chunk of groups with its head, each at a multiple of GROUP_ALIGNMENT."""
+
+    groups: Sequence[StoredGroup]
+
+    @property
+    def offsets(self) -> list[int]:
+        """Of each group, and last the length of all."""
+        return list(accumulate((_aligned(one.data.size) for one in self.groups), initial=0))
+
+    @property
+    def size(self) -> int:
+        return CHUNK.size + self.offsets[-1]
+
+    def pieces(self) -> Iterator[memoryview]:
+        yield memoryview(CHUNK.pack(self.size - CHUNK.size, GROUPS_CHUNK))
+        for one in self.groups:
+            yield from ByteRange(one.data, 0, one.data.size).pieces()
+            yield memoryview(bytes(_aligned(one.data.size) - one.data.size))
+
+
+def clip_blocks(clip: Clip, path: Path | None) -> Iterable[bytes | memoryview]:
+    """The pieces of a clip's file; bytes of groups are copied.
+
+    Raises:
+        OptionError: `clip-groups`: its groups are not coded.
+        OutputError: `file-too-large`, `scene-limit`.
+        FormatError: A group cannot be read, or the clip is inconsistent in itself.
+    """
+    groups = clip.groups
+    if not isinstance(groups, CodedGroups):
+        message, remedy = "only a clip whose groups are coded can be written", "take it from `encode` or `load_clip`"
+        raise OptionError("clip-groups", message, path=path, remedy=remedy)
+    scene = replace(clip.scene(clip.timeline.first), scores=clip.scores)
+    check_writable(scene, path)
+    chunk = _GroupsChunk(groups.stored)
+    text, binary = _head(clip, groups, scene, chunk)
+    if len(text) > limits.MAX_JSON:
+        message = f"{len(text)} bytes of JSON, {limits.MAX_JSON} are allowed"
+        raise OutputError("scene-limit", message, path=path, remedy="store less in it")
+    blocks = glb_blocks(text, binary, path, chunk)
+    _check_readable(text, binary, chunk.offsets[-1])
+    return blocks
+
+
+def _aligned(size: int) -> int:
+    return -(-size // GROUP_ALIGNMENT) * GROUP_ALIGNMENT
+
+
+def _check_readable(text: bytes, binary: bytes, length: int) -> None:
+    """Check that `load_clip` takes what is written. FormatError, that of `load_clip`."""
+    source = HeldBytes(binary)
+    chunks = {BINARY_CHUNK: ByteRange(source, 0, len(binary)), GROUPS_CHUNK: ByteRange(source, 0, length)}
+    written = Glb(strict_json.parse(text, "byte 20"), source, chunks)
+    read_clip_layout(unpacked_document(written), Findings(strict=True))
+
+
+def _head(clip: Clip, groups: CodedGroups, scene: Scene, chunk: _GroupsChunk) -> tuple[bytes, bytes]:
+    """The JSON and the binary chunk; scene: of the first frame, which other viewers are shown."""
+    poses = cached_payloads(scene).one("cameras")
+    buffer = Buffer(packed=None if poses is None else [])
+    shown = make_fallback(scene, shown_mean(scene), groups.stored[0].data.size)
+    drawn = {} if shown is None else write_drawn(scene, *shown, buffer, True)
+    cameras = write_cameras(scene, buffer, poses)
+    view_plane = write_view_plane(scene, buffer, poses is not None)
+    needs = {
+        FILM_CODEC, TIMELINE, *(CODECS[codec].needs for _, codec in buffer.codecs),
+        *(name for name, needed in (
+            ("namePattern", "pattern" in cameras), ("noFallback", not drawn), ("toRGB", groups.to_rgb is not None),
+        ) if needed),
+    }  # fmt: skip
+    extension = {
+        "needs": sorted(needs),
+        "planes": [_plane(plane) for plane in groups.layout.planes],
+        **write_rest(scene, cameras, view_plane),
+        TIMELINE: _timeline(clip, groups, chunk),
+    }
+    version = max((FEATURES[need] for need in needs), key=minor)
+    return json_bytes(write_root(scene, version, extension, drawn, buffer)), b"".join(buffer.parts)
+
+
+def _plane(plane: FilmPlane) -> dict[str, Any]:
+    return {"channels": plane.channels, "mean": _part(plane.mean), "bases": [_part(basis) for basis in plane.bases]}
+
+
+def _part(part: FilmPart) -> dict[str, Any]:
+    size, places = [part.size[1], part.size[0]], [[column, row] for row, column in part.at]
+    return {"size": size, "film": part.film, "at": places}
+
+
+def _timeline(clip: Clip, groups: CodedGroups, chunk: _GroupsChunk) -> dict[str, Any]:
+    timeline = clip.timeline
+    return {
+        "rate": [timeline.rate.numerator, timeline.rate.denominator],
+        "first": timeline.first,
+        "frames": timeline.frames,
+        "films": [{"codec": FILM_CODEC, "size": [columns, rows]} for rows, columns in groups.layout.sizes],
+        "groups": [
+            {"frames": one.frames, "offset": offset, "length": one.data.size, "sha256": one.digest or _digest(one)}
+            for one, offset in zip(groups.stored, chunk.offsets, strict=False)
+        ],
+    }
+
+
+def _digest(group: StoredGroup) -> str:
+    digest = hashlib.sha256()
+    for piece in ByteRange(group.data, 0, group.data.size).pieces():
+        digest.update(piece)
+    return digest.hexdigest()

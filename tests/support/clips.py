@@ -1,0 +1,123 @@
+"""Small clips whose frame n shows n, for the tests of files and of the web viewer.
+
+The upper half of the mean has n as black and white blocks, the lowest bit on the left. Below, the atlas has a column
+for each eigen texture, and of frame n the texture n modulo their number alone is not zero, there and nowhere else: that
+column is brighter in cameras of high numbers and darker in those of low ones.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.coding.codecs import encoder
+from eigenfield.coding.video.film import encode_film
+from eigenfield.coding.video.film_layout import EMPTY_CODE, MEANS, TEXTURES, PlaneSizes, film_layout, join_parts
+from eigenfield.core.clip import Clip, Timeline
+from eigenfield.core.films import CodedGroup, FilmLayout
+from eigenfield.core.payloads import Affine, Payload
+from eigenfield.core.proxy import Proxy
+from eigenfield.encoding.geometry.coded import coded_cameras, coded_mesh
+from eigenfield.gltf import coded_clip, save
+from eigenfield.gltf.group import group_bytes
+from support.scenes import bumpy_square, tiny_scene
+
+BITS = 8  # of a frame's number
+TEXTURES_COUNT = 4
+LUMA, CHROMA, BASIS = (128, 128), (64, 64), (128, 128)
+TO_RGB = np.array([[1, 0, 1.5748], [1, -0.187324, -0.468124], [1, 1.8556, 0]], np.float32)
+BLACK, WHITE, GREY, CONTRAST = 40, 980, 512, 600  # codes
+TEXTURE_SCALE = 0.5 / CONTRAST  # a weight of 1 is half of the range
+
+
+def numbered_clip(
+    lengths: Sequence[int] = (5, 7), rate: Fraction = Fraction(10), cameras: int = 4, first: float = 0.0, crf: int = 8
+) -> Clip:
+    """Luma of `LUMA` with textures, and flat chroma without, in groups of so many frames."""
+    plain = tiny_scene(cameras=cameras)
+    surface = coded_mesh(Proxy(bumpy_square()), plain.rig.cameras, plain.rig.reference)
+    views = coded_cameras(plain.rig.cameras, surface.value.mesh, None)
+    rig = replace(plain.rig, cameras=views.value)
+    (mesh,) = next(iter(surface.payloads.values()))
+    layout = film_layout([PlaneSizes(1, LUMA, ((BASIS, TEXTURES_COUNT),)), PlaneSizes(2, CHROMA, ())])
+    starts = np.cumsum([0, *lengths])
+    groups = [
+        group_bytes(numbered_group(layout, mesh, range(start, start + count), cameras, crf))
+        for start, count in zip(starts[:-1].tolist(), lengths, strict=True)
+    ]
+    timeline = Timeline(rate, int(starts[-1]), first)
+    return coded_clip(
+        rig, timeline, layout, groups, list(lengths),
+        to_rgb=TO_RGB, settings={"clip": {"group": 0.5}}, scores={}, generator="eigenfield test",
+        payloads=views.payloads,
+    )  # fmt: skip
+
+
+def numbered_group(layout: FilmLayout, mesh: Payload, numbers: range, cameras: int, crf: int) -> CodedGroup:
+    """The group of the frames with these numbers."""
+    own = np.tile(np.linspace(-1, 1, cameras, dtype=np.float32)[:, None], (1, TEXTURES_COUNT))
+    stream, _ = encoder("weights-1")(own, 0.01)
+    chroma = np.full((2, *CHROMA), EMPTY_CODE, np.uint16)
+    frames = [(join_parts(layout, MEANS, [mean_of(n)[None], chroma]) for n in numbers)]
+    frames += [(join_parts(layout, TEXTURES, [textures_of(n)]) for n in numbers)]
+    films = [encode_film(own, size, crf, 8) for own, size in zip(frames, layout.sizes, strict=True)]
+    zeros, ones = np.full(TEXTURES_COUNT, float(EMPTY_CODE)), np.full(TEXTURES_COUNT, TEXTURE_SCALE)
+    return CodedGroup(
+        mesh=mesh,
+        weights=((Payload("weights-1", stream),), ()),
+        means=(Affine(np.array([1 / 1023]), np.zeros(1)), Affine(np.full(2, 1 / 1023), np.full(2, float(EMPTY_CODE)))),
+        bases=((Affine(ones, zeros),), ()),
+        units=tuple(zip(*films, strict=True)),
+    )
+
+
+def mean_of(number: int) -> NDArray[np.uint16]:
+    """(rows, columns) codes of luma."""
+    rows, columns = LUMA
+    codes = np.full(LUMA, GREY, np.uint16)
+    for bit in range(BITS):
+        codes[: rows // 2, block(bit, columns)] = WHITE if number >> bit & 1 else BLACK
+    return codes
+
+
+def textures_of(number: int) -> NDArray[np.uint16]:
+    """(TEXTURES_COUNT, rows, columns) codes of luma."""
+    rows, columns = BASIS
+    codes = np.full((TEXTURES_COUNT, *BASIS), EMPTY_CODE, np.uint16)
+    index, wide = number % TEXTURES_COUNT, columns // TEXTURES_COUNT
+    codes[index, rows // 2 :, index * wide : (index + 1) * wide] = EMPTY_CODE + CONTRAST
+    return codes
+
+
+def block(bit: int, columns: int) -> slice:
+    return slice(bit * columns // BITS, (bit + 1) * columns // BITS)
+
+
+def shown_number(luma: NDArray[np.float32]) -> int:
+    """The number that the upper half of a mean shows; luma: (rows, columns) in 0..1."""
+    rows, columns = luma.shape
+    middle = luma[rows // 8 : 3 * rows // 8]
+    return sum(int(middle[:, block(bit, columns)].mean() > 0.5) << bit for bit in range(BITS))
+
+
+def shown_texture(textures: NDArray[np.uint16]) -> int:
+    """Which of (N, rows, columns) codes is not zero."""
+    (index,) = np.flatnonzero((textures > EMPTY_CODE + CONTRAST // 2).mean(axis=(1, 2)) > 0.02)
+    return int(index)
+
+
+def write(folder: Path) -> None:
+    """Write clip.glb, numbered frames in groups of 5, 7, 1 and 12, and clip.json, what they are."""
+    lengths = (5, 7, 1, 12)
+    clip = numbered_clip(lengths)
+    clip_facts = {
+        "groups": list(lengths), "rate": [10, 1], "bits": BITS, "textures": TEXTURES_COUNT, "luma": list(LUMA),
+    }  # fmt: skip
+    save(clip, folder / "clip.glb", overwrite=True)
+    (folder / "clip.json").write_text(json.dumps(clip_facts), encoding="utf-8")
