@@ -23,6 +23,7 @@ from eigenfield.cli.draft import Window, draft_lines, draft_of
 from eigenfield.cli.field_options import field_options, from_fields
 from eigenfield.cli.leave_out import leave_out, leave_out_option
 from eigenfield.cli.progress import StepProgress, duration_range, progress_bars
+from eigenfield.core.errors import OptionError
 from eigenfield.core.open_options import OpenOptions
 from eigenfield.core.shell import shell_word
 from eigenfield.encoding import EncodeOptions
@@ -31,6 +32,7 @@ from eigenfield.reconstruction import SurfaceOptions
 
 if TYPE_CHECKING:
     from eigenfield.capture import Capture, LightField
+    from eigenfield.core.clip import Clip
     from eigenfield.core.progress import Progress
     from eigenfield.core.scene import Scene
 
@@ -56,6 +58,7 @@ GROUPS = {  # of options in the help, those of every day first; the empty one ha
     "What the capture is": (
         "format", "pattern", "frame", "walk_frames", "masks", "reference", "metres_per_unit",
     ),
+    "Clips": ("clip", "offset", "rate", "group"),
     "Quality and size": (
         "quality", "target_psnr", "target_ssim", "hold_out", "blind", "density", "atlas", "harmonise", "residual",
         "fallback",
@@ -99,6 +102,7 @@ Examples:
   eigenfield encode photos/ --target-size 300kB -o small.glb
   eigenfield encode photos/ --hold-out every:5 -o scene.glb
   eigenfield encode photos/ --residual 70 -o archive.glb
+  eigenfield encode footage/ --clip 0:2s --proxy mesh.ply -o clip.glb
   eigenfield encode photos/ --proxy mesh.obj --fit none --uv-ssim 0.98 -o paper.glb""",
 )
 @capture_argument()
@@ -183,6 +187,13 @@ def command(
     if proxy is not None:
         refuse_no_mesh(proxy)
     options = from_fields(EncodeOptions, settings)
+    if place.clip is not None:
+        refuse_for_clips({"draft": draft, "view": look, "blind": blind, "without": without})
+        surface_to_make(
+            options, from_fields(SurfaceOptions, settings), False, True, {"workers": workers, "cluster": cluster}
+        )
+        encode_clip(capture, proxy, place, options, work or whole.with_suffix(".work"), output, overwrite, quiet)
+        return
     projected = options.resolved().fit == "none"
     surface = surface_to_make(
         options,
@@ -226,6 +237,57 @@ def command(
         if look:
             window.show(output)
             window.wait()
+
+
+def refuse_for_clips(given: dict[str, Any]) -> None:
+    """Raise OptionError `clip-option` for an option that is for one instant."""
+    for name, value in given.items():
+        if value:
+            remedy = "leave it out, or encode one instant without --clip"
+            raise OptionError("clip-option", f"--{name} is for scenes of one instant", remedy=remedy)
+
+
+def encode_clip(
+    capture: Path,
+    proxy: Path | None,
+    place: OpenOptions,
+    options: EncodeOptions,
+    work: Path,
+    output: Path,
+    overwrite: bool,
+    quiet: bool,
+) -> None:
+    """Footage in, a clip out."""
+    from eigenfield.capture.footage import Footage
+    from eigenfield.encoding import encode_footage
+    from eigenfield.encoding.clip.encode import refuse_no_proxy, refuse_still_options
+    from eigenfield.gltf import save
+
+    started = time.monotonic()
+    refuse_still_options(options)
+    refuse_no_proxy(proxy)
+    with progress_bars(quiet) as progress:
+        footage = open_for_work(capture, place, work, quiet)
+        assert isinstance(footage, Footage)
+        note(f"{len(footage.names)} cameras, {len(footage)} frames at {float(footage.timeline.rate):g} a second", quiet)
+        note("Ctrl-C stops it; the same command goes on after the last finished frame", quiet)
+        clip = encode_footage(footage, proxy, options, work=work, progress=progress)
+        save(clip, output, overwrite=overwrite, progress=progress)
+    log.info("%.0f s", time.monotonic() - started)
+    click.echo("\n".join(clip_lines(output, clip)))
+
+
+def clip_lines(output: Path, clip: Clip) -> list[str]:
+    """How small a clip is, and the command that comes next."""
+    from eigenfield.runtime.objects import address_of
+
+    size, seconds = output.stat().st_size, clip.timeline.frames / float(clip.timeline.rate)
+    frames = clip.timeline.frames
+    return [
+        f"{output}: {size / 1e3:,.0f} kB, {frames} frames of {size / frames / 1e3:.1f} kB, "
+        f"{8 * size / seconds / 1e6:.2f} Mbit/s",
+        f"look around in it: eigenfield view {shell_word(address_of(output))}",
+    ]
 
 
 def default_output(capture: Path) -> Path:

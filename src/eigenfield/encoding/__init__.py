@@ -19,13 +19,15 @@ from eigenfield.runtime.objects import find_objects, refuse_objects
 
 if TYPE_CHECKING:
     from eigenfield.capture import Capture
+    from eigenfield.capture.footage import Footage
+    from eigenfield.core.clip import Clip
     from eigenfield.core.mesh import Mesh
     from eigenfield.core.observations import CalibratedObservations
     from eigenfield.core.proxy import Proxy
     from eigenfield.core.scene import Scene
     from eigenfield.runtime.tasks import Workers
 
-__all__ = ["EncodeOptions", "SurfaceOptions", "Target", "encode"]
+__all__ = ["EncodeOptions", "SurfaceOptions", "Target", "encode", "encode_footage"]
 
 log = logging.getLogger("eigenfield.encode")
 
@@ -125,3 +127,37 @@ def encode(
     stored = read_scene(encode_scene(scene, **resolved.coding, progress=progress))
     stored = replace(stored, payloads=stored.payloads.without("preview"))
     return with_residual(stored, capture, resolved.residual, progress)
+
+
+@checked
+@takes_options(EncodeOptions)
+def encode_footage(
+    footage: Footage,
+    proxy: str | os.PathLike[str] | Mesh | None = None,
+    options: EncodeOptions | None = None,
+    *,
+    work: str | os.PathLike[str] | None = None,
+    progress: Progress | None = notebook_progress,
+    **changes: Any,
+) -> Clip:
+    """Encode footage on a proxy mesh that stands still, as `eigenfield encode --clip` does.
+
+    Args:
+        footage: Of cameras that are known.
+        proxy: A triangle mesh in the world of the cameras, or its file.
+        options: What is asked for; None for the defaults. Those that are for one instant are refused.
+        work: Folder that keeps finished stages, so that the same call goes on from there. None: a temporary one.
+        progress: Reports each pass by frames; by default bars in a notebook. None: nothing is reported.
+        changes: Fields of `EncodeOptions` by name, in place of those of `options`.
+
+    Raises:
+        OptionError: `clip-proxy`, there is no proxy; `clip-cameras`, the cameras are not known; `clip-option`, an
+            option is for one instant; `group-unknown`.
+        CaptureError, ProxyError, OutputError: Each names the file and the remedy.
+    """
+    from eigenfield.encoding.clip.encode import encode_clip
+
+    refuse_unknown(changes, OPTION_NAMES, "encode")
+    options = replace(options or EncodeOptions(), **changes)
+    folder = None if work is None or find_objects(work) else Path(work)
+    return encode_clip(footage, proxy, options, folder, progress)

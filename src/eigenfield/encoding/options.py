@@ -166,6 +166,10 @@ class EncodeOptions(Options):
         "(good), or nothing (none).  [default: small]",
         choices=("small", "good", "none"),
     )
+    group: str | None = option(
+        "Of a clip: how long what is decoded by itself lasts, in seconds (1.5s) or frames (30).  [default: 1s]",
+        metavar="LENGTH",
+    )
     keep_maps: str | os.PathLike[str] | None = option(
         "Also write every texture map and its visibility as PNG.", metavar="DIR"
     )

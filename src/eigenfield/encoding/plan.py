@@ -82,26 +82,18 @@ class EncodePlan:
         camera = self.views.rig.cameras[self.views.rig.reference]
         return float(np.sqrt(np.prod(self.atlas))) * texels_per_pixel(self.mesh, camera)
 
-    def scene(
-        self,
-        planes: tuple[Plane, ...],
-        own: Mapping[str, Any],
-        *,
-        payloads: Payloads | None = None,
-        colours: NDArray[np.float32] | None = None,
-        to_rgb: NDArray[np.float32] | None = None,
-    ) -> Scene:
-        """The scene with these planes.
+    def settings(self, textures: int, own: Mapping[str, Any]) -> dict[str, Any]:
+        """What a file says about how it was made.
 
         Args:
-            planes: As in `Scene`, with a row of weights for each encoded camera.
+            textures: Eigen textures of the plane that has most.
             own: Settings that record how the planes were made.
         """
         views, rig = self.views, self.views.rig
         sizes = [rig.cameras[index].width * rig.cameras[index].height for index in views.taken_by]
         used = np.flatnonzero(np.isin(cameras_of(views.capture), rig.encoded)).tolist()
-        settings = {
-            "textures": max(sum(basis.count for basis in one.bases) for one in planes),
+        return {
+            "textures": textures,
             "atlas": list(self.atlas),
             "density": round(self.density, 4),
             "holdOut": self.options.hold_out,
@@ -117,11 +109,28 @@ class EncodePlan:
                 "pixels": sum(sizes),
             },
         }
+
+    def scene(
+        self,
+        planes: tuple[Plane, ...],
+        own: Mapping[str, Any],
+        *,
+        payloads: Payloads | None = None,
+        colours: NDArray[np.float32] | None = None,
+        to_rgb: NDArray[np.float32] | None = None,
+    ) -> Scene:
+        """The scene with these planes.
+
+        Args:
+            planes: As in `Scene`, with a row of weights for each encoded camera.
+            own: Settings that record how the planes were made.
+        """
+        textures = max(sum(basis.count for basis in one.bases) for one in planes)
         made = Scene(
             proxy=replace(self.proxy, lattice=None),
-            rig=rig,
+            rig=self.views.rig,
             appearance=Appearance(planes=planes, colours=colours, to_rgb=to_rgb),
-            settings=settings,
+            settings=self.settings(textures, own),
             generator=f"eigenfield {__version__}",
             payloads=self.payloads | (payloads or {}),
         )

@@ -94,7 +94,7 @@ def code_mean(
         unit = 1 / MAX_CODE if top <= 1 else math.ceil(top / MAX_CODE * 1e6) / 1e6
         affine = Affine(np.full(mean.shape[2], unit), np.zeros(mean.shape[2]))
     else:  # differences of colours, to both sides of 0
-        unit = _unit(float(mean.min()), float(mean.max()))
+        unit = code_unit(float(mean.min()), float(mean.max()))
         affine = Affine(np.full(mean.shape[2], unit), np.full(mean.shape[2], float(ZERO_CODE)))
     codes = np.rint(mean / affine.scale + affine.zero).clip(0, MAX_CODE).astype(np.uint16)
     data = coder(_stack_channels(codes[None]), crf_of(step / float(affine.scale[0])))
@@ -129,7 +129,7 @@ def code_basis(basis: Basis, step: float, coder: Coder) -> CodedBasis:
 
     def code(first: int) -> PicturePayload:
         part = slice(first, first + each)
-        unit = _unit(float(values[part].min()), float(values[part].max()))
+        unit = code_unit(float(values[part].min()), float(values[part].max()))
         codes = np.rint(values[part] / np.float32(unit) + ZERO_CODE).clip(0, MAX_CODE).astype(np.uint16)
         data = coder(_stack_channels(codes), crf_of(step / unit))
         stored[part], scale[part] = _split_channels(decode_10bit(data, False, "textures"), codes.shape), unit
@@ -167,7 +167,7 @@ def coded_plane(
     return Coded(Plane(values, tuple(coded.basis for coded in bases)), payloads)
 
 
-def _unit(low: float, high: float) -> float:
+def code_unit(low: float, high: float) -> float:
     """What a code stands for, so that low..high have codes; of few digits."""
     return math.ceil(max(CODE_MIN_UNIT, -low / ZERO_CODE, high / (MAX_CODE - ZERO_CODE)) * 1e6) / 1e6
 

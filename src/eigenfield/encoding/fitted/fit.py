@@ -70,6 +70,11 @@ class PlaneSettings:
     local: int = 0
     scattered: bool = False
 
+    def grey_model(self) -> PlaneModel:
+        """Where a fit begins: one grey, without components."""
+        grey = np.full((len(self.matrix), *self.mean), 0.5, np.float32) * self.matrix.sum(axis=1)[:, None, None]
+        return PlaneModel(self.matrix, grey.astype(np.float32), self.grid, [])
+
 
 @dataclass(frozen=True)
 class Turns:
@@ -149,8 +154,7 @@ def fit_plane(
         CaptureError: `nothing-seen`, no camera covers a pixel.
     """
     fitted, channels = pixels.fitted, len(settings.matrix)
-    grey = np.full((channels, *settings.mean), 0.5, np.float32) * settings.matrix.sum(axis=1)[:, None, None]
-    model = PlaneModel(settings.matrix, grey.astype(np.float32), settings.grid, [])
+    model = settings.grey_model()
     tick = _ticker(progress, f"fit {name}", 3 + 2 * turns.rounds)
     scales = measure_scales(fitted, model)
     if not scales.mean.any():
@@ -234,7 +238,9 @@ def code_plane(
     if bases:
         fit_weights(pixels.weighed, model, FIT_WEIGHT_ITERATIONS)
         for number, block in enumerate(model.blocks):
-            stream, block.weights = encoder(WEIGHTS_CODEC)(block.weights, _weight_steps(block, scales), grid)
+            stream, block.weights = encoder(WEIGHTS_CODEC)(
+                block.weights, weight_steps(texture_squares(block, scales), scales), grid
+            )
             bases[number] = with_weights(bases[number], block.weights, Payload(WEIGHTS_CODEC, stream))
     tick()
     equations = residual(pixels.fitted, model, MEAN_WANTED, fit.composer)
@@ -291,11 +297,19 @@ def fit_mean(data: FitData, model: PlaneModel, scales: Scales, iterations: int =
     return MeanAlone(equations.squares, equations.pixels, model.channels, total)
 
 
-def _weight_steps(block: Block, scales: Scales) -> NDArray[np.float32]:
-    """(n,) steps so that a weight's error moves all pictures alike: in inverse proportion to what its component draws,
-    the root mean square over a picture's pixels."""
+def texture_squares(block: Block, scales: Scales) -> NDArray[np.float64]:
+    """(n,) the sum of squares that each component of weight 1 draws, over all pictures."""
     share = scales.coarse[block.window]
-    squares = np.einsum("nchw,nchw,hw->n", block.textures, block.textures, share, dtype=np.float64)
+    return np.asarray(np.einsum("nchw,nchw,hw->n", block.textures, block.textures, share, dtype=np.float64))
+
+
+def weight_steps(squares: NDArray[np.float64], scales: Scales) -> NDArray[np.float32]:
+    """(n,) steps so that a weight's error moves all pictures alike: in inverse proportion to what its component draws,
+    the root mean square over a picture's pixels.
+
+    Args:
+        squares: Of `texture_squares`; of several frames their mean.
+    """
     drawn = np.sqrt(squares / max(float(scales.coarse.sum()), 1e-12))
     return np.clip(WEIGHT_QUANTISER_STEP / np.maximum(drawn, 1e-9), 1e-3, WEIGHT_MAX_QUANTISER_STEP).astype(np.float32)
 

@@ -145,11 +145,36 @@ def open_fit_data(
         CaptureError: A photograph cannot be read.
         OutputError: `disk-full`.
     """
+    with (
+        open_camera_footprints(cameras, proxy, atlas, work, reference) as footprints,
+        open_on_footprints(cameras, observations, footprints, work, progress, colours) as data,
+    ):
+        yield data
+
+
+@contextlib.contextmanager
+def open_camera_footprints(
+    cameras: Sequence[Camera], proxy: Proxy, atlas: tuple[int, int], work: Path | None = None, reference: int = 0
+) -> Iterator[Footprints]:
+    """The footprints of `open_fit_data`, which frames of a clip on one proxy share."""
+    surface = make_surface(proxy.mesh, *atlas)
+    detail = median_footprint(surface, cameras[reference])
+    with open_footprints(surface, cameras, detail, proxy.sheets, work) as footprints:
+        yield footprints
+
+
+@contextlib.contextmanager
+def open_on_footprints(
+    cameras: Sequence[Camera],
+    observations: Observations,
+    footprints: Footprints,
+    work: Path | None = None,
+    progress: Progress | None = None,
+    colours: NDArray[np.float32] | None = None,
+) -> Iterator[FitData]:
+    """As `open_fit_data`, of cameras whose footprints are there already."""
     with _open_observations(cameras, observations, colours, work, progress) as decoded:
-        surface = make_surface(proxy.mesh, *atlas)
-        detail = median_footprint(surface, cameras[reference])
-        with open_footprints(surface, cameras, detail, proxy.sheets, work) as footprints:
-            yield FitData(decoded, footprints)
+        yield FitData(decoded, footprints)
 
 
 @contextlib.contextmanager
@@ -201,13 +226,20 @@ def open_on_proxy(
 
 
 @contextlib.contextmanager
-def open_subsampled(data: FitData, step: int, work: Path | None = None) -> Iterator[FitData]:
-    """Every `step`-th pixel each way, from a corner that changes with the camera; step 1: the data themselves."""
+def open_subsampled(
+    data: FitData, step: int, work: Path | None = None, made: Footprints | None = None
+) -> Iterator[FitData]:
+    """Every `step`-th pixel each way, from a corner that changes with the camera; step 1: the data themselves.
+
+    Args:
+        made: The footprints of these pixels, where they are there already.
+    """
     if step == 1:
         yield data
         return
     given = data.observations
-    with subsampled_footprints(data.footprints, step, work) as footprints:
+    thinned = subsampled_footprints(data.footprints, step, work) if made is None else contextlib.nullcontext(made)
+    with thinned as footprints:
         shapes = tuple(footprints.shapes[given.camera_of(index)] for index in range(len(data)))
         offsets = offsets_of([h * w for h, w in shapes])
         with (

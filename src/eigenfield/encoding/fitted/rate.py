@@ -50,8 +50,7 @@ def code_block_rd(block: Block, grid: tuple[int, int], scales: Scales, rate: Rat
     The block's rectangle is part of `grid` (rows, columns).
     """
     step = rate.texture_step * _coarsening(scales)
-    coded = code_basis(_basis_of(block, grid), step, rate.trial or rate.coder)
-    errors, sizes = _effects(coded, block, scales)
+    coded, errors, sizes = code_on_trial(block, grid, scales, rate)
     count = int(np.argmin(np.cumsum([0.0, *(errors + lambda_ * sizes)])))  # of the strongest
     log.debug("%d of %d components coded", count, block.count)
     ends = list(accumulate((picture.count for picture in coded.pictures), initial=0))
@@ -59,6 +58,16 @@ def code_block_rd(block: Block, grid: tuple[int, int], scales: Scales, rate: Rat
         return first_pictures(coded, ends.index(count))
     few = replace(block, textures=block.textures[:count], weights=np.ascontiguousarray(block.weights[:, :count]))
     return code_basis(_basis_of(few, grid), step, rate.coder)
+
+
+def code_on_trial(
+    block: Block, grid: tuple[int, int], scales: Scales, rate: Rate
+) -> tuple[CodedBasis, NDArray[np.float64], NDArray[np.float64]]:
+    """All components of a block coded; how each changes the squared error over all cameras, and its bytes with those of
+    its weights."""
+    step = rate.texture_step * _coarsening(scales)
+    coded = code_basis(_basis_of(block, grid), step, rate.trial or rate.coder)
+    return coded, *_effects(coded, block, scales)
 
 
 def _coarsening(scales: Scales) -> float:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from eigenfield.encoding.fitted.footprints import Footprint
 from eigenfield.encoding.fitted.kernels import SHARE_ONE, add_laplacian, adjoint, next_direction, take_step
-from eigenfield.encoding.fitted.model import MEAN_ALONE_GRID, AtlasComposer, PlaneModel
+from eigenfield.encoding.fitted.model import MEAN_ALONE_GRID, AtlasComposer, Block, PlaneModel
 from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.encoding.fitted.passes import PASS_TASKS, NormalEquations, Textures, render_and_backproject
 from eigenfield.encoding.fitted.products import combine, one_blas_thread, weighted_gram
@@ -312,18 +312,36 @@ def whiten(model: PlaneModel, scales: Scales) -> None:
     for block in model.blocks:
         if not block.count:
             continue
-        weights = block.weights.astype(np.float64)
-        rows = len(weights)
-        q, r = np.linalg.qr(weights)
         flat = block.textures.reshape(block.count, -1)
-        share = np.tile(np.sqrt(scales.coarse[block.window]).reshape(-1), model.channels)
-        gram = weighted_gram(flat, share)
-        _, rotation = np.linalg.eigh(r @ gram @ r.T)
-        rotation = rotation[:, ::-1]
+        rotation, weights = whitening(block.weights, texture_gram(block, scales))
         textures = np.empty_like(flat)
-        combine((rotation.T @ r / np.sqrt(rows)).astype(np.float32), flat, textures)
+        combine(rotation.astype(np.float32), flat, textures)
         low, high = textures.min(axis=1), textures.max(axis=1)
         signs = np.where(-low > high, -1.0, 1.0)  # of the largest
         textures *= signs[:, None].astype(np.float32)
         block.textures = textures.reshape(-1, *block.textures.shape[1:])
-        block.weights = np.ascontiguousarray((q @ rotation * signs * np.sqrt(rows)).astype(np.float32))
+        block.weights = np.ascontiguousarray((weights * signs).astype(np.float32))
+
+
+@one_blas_thread
+def texture_gram(block: Block, scales: Scales) -> NDArray[np.float64]:
+    """(n, n) scalar products of a block's textures in the pictures. Those of frames that share weights are added."""
+    share = np.tile(np.sqrt(scales.coarse[block.window]).reshape(-1), block.textures.shape[1])
+    return weighted_gram(block.textures.reshape(block.count, -1), share)
+
+
+@one_blas_thread
+def whitening(
+    weights: NDArray[np.float32], gram: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """A matrix (n, n) by which textures are multiplied, and the weights (No, n) that go with what becomes of them:
+    uncorrelated and of mean square 1, with textures that are orthogonal, the strongest first.
+
+    Args:
+        weights: (No, n).
+        gram: Of `texture_gram`, before.
+    """
+    q, r = np.linalg.qr(weights.astype(np.float64))
+    _, rotation = np.linalg.eigh(r @ gram @ r.T)
+    rotation = rotation[:, ::-1]
+    return rotation.T @ r / np.sqrt(len(weights)), q @ rotation * np.sqrt(len(weights))

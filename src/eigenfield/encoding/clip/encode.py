@@ -1,0 +1,199 @@
+"""Footage of a rig and a proxy in, a clip out: the whole way on one page."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from eigenfield.core.clip import Clip
+from eigenfield.core.errors import OptionError, one_line
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.progress import Progress, begin_step
+from eigenfield.core.proxy import Proxy
+from eigenfield.core.version import __version__
+from eigenfield.encoding.clip.closed_loop import code_group, texture_counts
+from eigenfield.encoding.clip.frames import GroupFrames, load_arrays, save_arrays
+from eigenfield.encoding.clip.open_loop import fit_group
+from eigenfield.encoding.clip.plan import open_clip_plan
+from eigenfield.encoding.fitted.colour import to_rgb
+from eigenfield.encoding.options import PRESETS, EncodeOptions, resolved_value
+from eigenfield.encoding.plan import EncodePlan
+from eigenfield.encoding.prepare import plan_encoding
+from eigenfield.gltf.clips import coded_clip
+from eigenfield.gltf.group import group_bytes
+from eigenfield.imaging.metrics import to_codes
+from eigenfield.proxy import refuse_no_mesh
+from eigenfield.runtime.parallel import even_pieces, parallel_map
+from eigenfield.runtime.stages import SCENE_ROOMS, Stages, stage_key
+
+if TYPE_CHECKING:
+    from eigenfield.capture.footage import Footage
+
+DEFAULT_GROUP = "1s"
+GROUP_PATTERN = re.compile(r"(\d{1,9})|(\d{1,9}(?:\.\d*)?|\.\d+)s")  # frames, or seconds
+GROUP_LIMITS = 1, 1024  # frames
+GROUP_FILE = "group.bin"
+STILL_OPTIONS = (  # that have no meaning for clips
+    "uv_ssim", "align", "max_angle", "codec", "keep_maps", "residual", "target", "harmonise",
+)  # fmt: skip
+
+
+def encode_clip(
+    footage: Footage,
+    proxy: str | os.PathLike[str] | Mesh | Proxy | None,
+    asked: EncodeOptions,
+    work: Path | None = None,
+    progress: Progress | None = None,
+) -> Clip:
+    """A clip on one still proxy: its frames share the weights of their group (equation 6, summed over its frames).
+
+    Args:
+        proxy: Opaque. None is refused: nothing estimates the surface of a clip yet.
+        asked: Options; those that clips have no use for are refused.
+        work: Folder that keeps finished stages; None: nothing is kept.
+
+    Raises:
+        OptionError: `clip-proxy`, `clip-cameras`, `clip-option`, `group-unknown`.
+        CaptureError, ProxyError, OutputError: As `encode`.
+    """
+    refuse_still_options(asked)
+    proxy = _checked_proxy(footage, proxy)
+    length = group_length(asked.group or DEFAULT_GROUP, footage.timeline.rate)
+    plan = plan_encoding(footage.instant(len(footage) // 2), proxy, asked, work, progress)
+    identity = stage_key([_footage_digest(footage), asked, _plan_digest(plan)], SCENE_ROOMS)
+    spans = even_pieces(len(footage), -(-len(footage) // length))
+    begin_step(progress, "fit")
+    with Stages(None if work is None else work / "clip") as stages, open_clip_plan(plan, work) as clip:
+        made: list[_MadeGroup] = []
+        for number, span in enumerate(spans):
+            clip = clip if not made else clip.with_textures(made[0].counts)
+            title = f"group {number + 1} of {len(spans)}"
+            key = stage_key([identity, *span, made[0].counts if made else None], SCENE_ROOMS)
+            frames = GroupFrames(clip, footage.instant, range(*span), stages, key, title, progress)
+            made.append(_make_group(frames, number, made[0].counts if made else None))
+        layout = clip.layout(made[0].counts)
+    return coded_clip(
+        plan.views.rig,
+        footage.timeline,
+        layout,
+        [one.data for one in made],
+        [last - first for first, last in spans],
+        to_rgb=to_rgb(),
+        settings=_settings(plan, made, asked),
+        scores={},
+        generator=f"eigenfield {__version__}",
+        payloads=plan.payloads,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _MadeGroup:
+    """A group as it lies in a file.
+
+    Attributes:
+        counts: Eigen textures of each plane.
+        psnr: dB of each frame's luma, before its mean was coded.
+    """
+
+    data: bytes
+    counts: tuple[int, ...]
+    psnr: tuple[float, ...]
+
+
+def _make_group(frames: GroupFrames, number: int, counts: tuple[int, ...] | None) -> _MadeGroup:
+    """A group, made or taken up from an earlier run.
+
+    Args:
+        counts: Eigen textures of each plane; None: as many as pay in this group.
+    """
+    clip = frames.clip
+
+    def build(folder: Path) -> None:
+        opened = fit_group(frames, PRESETS[resolved_value(clip.plan.options.preset)].rounds)
+        kept = texture_counts(clip, opened) if counts is None else counts
+        coded, psnr = code_group(frames, opened, clip.layout(kept))
+        (folder / GROUP_FILE).write_bytes(group_bytes(coded))
+        save_arrays(folder, {"counts": np.array(kept), "psnr": np.array(psnr)})
+
+    folder = frames.stages.run(f"group-{number:04d}", frames.identity, build)
+    frames.clear()
+    found = load_arrays(folder)
+    return _MadeGroup(
+        (folder / GROUP_FILE).read_bytes(), tuple(found["counts"].tolist()), tuple(found["psnr"].tolist())
+    )
+
+
+def group_length(text: str, rate: Fraction) -> int:
+    """Frames of a group, from seconds (1.5s) or frames (30). OptionError `group-unknown`."""
+    match = GROUP_PATTERN.fullmatch(text.strip())
+    if match is not None:
+        frames = int(match[1]) if match[1] else round(float(match[2]) * rate)
+        if GROUP_LIMITS[0] <= frames <= GROUP_LIMITS[1]:
+            return frames
+    remedy = f"say seconds (1s) or frames (30), {GROUP_LIMITS[0]} to {GROUP_LIMITS[1]} frames"
+    raise OptionError("group-unknown", f"--group {one_line(text[:40])} is no length of a group", remedy=remedy)
+
+
+def refuse_still_options(asked: EncodeOptions) -> None:
+    """Raise OptionError `clip-option` for what has no meaning for clips, or has none yet."""
+    given = [name for name in STILL_OPTIONS if getattr(asked, name) not in (None, False, "none")]
+    if given or asked.fit == "none":
+        name = f"--{given[0].replace('_', '-')}" if given else "--fit none"
+        remedy = "leave it out, or encode one instant without --clip"
+        raise OptionError("clip-option", f"{name} is for scenes of one instant", remedy=remedy)
+
+
+def refuse_no_proxy(proxy: object) -> None:
+    """Raise OptionError `clip-proxy` where no mesh is given."""
+    if proxy is None:
+        remedy = "make one of an instant (`eigenfield proxy`), and give it as --proxy"
+        raise OptionError("clip-proxy", "a clip is encoded on a mesh that is given", remedy=remedy)
+
+
+def _checked_proxy(
+    footage: Footage, proxy: str | os.PathLike[str] | Mesh | Proxy | None
+) -> str | os.PathLike[str] | Mesh | Proxy:
+    """The proxy, where it is one for clips and its cameras are known."""
+    refuse_no_proxy(proxy)
+    assert proxy is not None
+    if footage.cameras is None:
+        remedy = "calibrate an instant (`eigenfield calibrate`), and give the result as --calibration"
+        raise OptionError("clip-cameras", "the cameras of this footage are not known", remedy=remedy)
+    if isinstance(proxy, str | os.PathLike):
+        refuse_no_mesh(Path(proxy))
+    elif isinstance(proxy, Proxy) and proxy.sheets is not None:
+        raise OptionError("clip-proxy", "a clip is encoded on one opaque surface, not on sheets", remedy="give a mesh")
+    return proxy
+
+
+def _footage_digest(footage: Footage) -> list[Any]:
+    """What stands for footage: its clock, its bytes, and the pixels of three instants."""
+    digest = hashlib.sha256()
+    for number in (0, len(footage) // 2, len(footage) - 1):
+        instant = footage.instant(number)
+        for codes in parallel_map(lambda index, of=instant: to_codes(of.photograph(index).pixels), range(len(instant))):
+            digest.update(codes.data)
+    return [list(footage.names), str(footage.timeline), footage.bytes, digest.hexdigest()]
+
+
+def _plan_digest(plan: EncodePlan) -> list[Any]:
+    """What stands for mesh and cameras as they are coded, and the atlas."""
+    streams = sorted(hashlib.sha256(one.data).hexdigest() for found in plan.payloads.values() for one in found)
+    return [streams, plan.atlas]
+
+
+def _settings(plan: EncodePlan, made: Sequence[_MadeGroup], asked: EncodeOptions) -> dict[str, Any]:
+    """What the file says about how it was made."""
+    counts, options = made[0].counts, plan.options
+    psnr = [round(value, 2) for one in made for value in one.psnr]
+    own = {"fit": options.fit, "clip": {"group": asked.group or DEFAULT_GROUP, "quality": options.quality,
+                                        "textures": list(counts), "psnr": psnr}}  # fmt: skip
+    return plan.settings(max(counts), own)

@@ -1,0 +1,127 @@
+"""Passes over the frames of a group. What a pass makes of a frame is a finished stage: a run that is stopped loses one
+frame of one pass at most, and memory has one frame at a time."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.core.progress import Progress, track
+from eigenfield.encoding.clip.plan import ClipPlan
+from eigenfield.runtime.stages import SCENE_ROOMS, Stages, stage_key
+
+ARRAYS_FILE = "frame.npz"
+
+Arrays = Mapping[str, NDArray[Any]]
+
+
+@dataclass(frozen=True, eq=False)
+class FramePass:
+    """What a pass has made of each frame of a group.
+
+    Attributes:
+        key: Digest of all that it depends on.
+        folders: Of the frames, in order.
+    """
+
+    key: str
+    folders: tuple[Path, ...]
+
+    def __iter__(self) -> Iterator[Arrays]:
+        """The arrays of each frame, one frame in memory at a time."""
+        for folder in self.folders:
+            yield load_arrays(folder)
+
+    def each(self, name: str) -> Iterator[NDArray[Any]]:
+        """One array of each frame; no other is read."""
+        for folder in self.folders:
+            with np.load(folder / ARRAYS_FILE) as found:
+                yield found[name]
+
+    def total(self, name: str) -> NDArray[Any]:
+        """The sum of an array over all frames."""
+        return np.asarray(sum(self.each(name)))
+
+
+@dataclass(frozen=True, eq=False)
+class GroupFrames:
+    """The frames of a group, and where their stages are kept.
+
+    Attributes:
+        instant: The photographs of all cameras at a frame of the clip.
+        numbers: Of the frames, in the clip.
+        identity: What all passes depend on.
+        title: Of the group, for reports of progress.
+        made: Folders of passes, which `clear` removes.
+    """
+
+    clip: ClipPlan
+    instant: Callable[[int], Any]
+    numbers: range
+    stages: Stages
+    identity: str
+    title: str
+    progress: Progress | None = None
+    made: list[Path] = field(default_factory=list)
+
+    def __len__(self) -> int:
+        return len(self.numbers)
+
+    def run(
+        self, name: str, make: Callable[..., Arrays], given: Iterable[Any] | None = None, after: FramePass | None = None
+    ) -> FramePass:
+        """A pass over all frames.
+
+        Args:
+            name: Of the pass, each once in a group.
+            make: From a frame's pixels, and what is given for it, to the arrays that are kept.
+            given: Something for each frame; None: nothing.
+            after: The pass before it.
+        """
+        key = stage_key([self.identity, name, None if after is None else after.key], SCENE_ROOMS)
+        inputs = ((one,) for one in given) if given is not None else (() for _ in self.numbers)
+        folders = []
+        steps = zip(self.numbers, inputs, strict=True)
+        for number, one in track(steps, f"{self.title}: {name}", len(self), self.progress):
+
+            def build(folder: Path, number: int = number, one: tuple[Any, ...] = one) -> None:
+                with self.clip.open_frame(self.instant(number)) as pixels:
+                    save_arrays(folder, make(pixels, *one))
+
+            folders.append(self.stages.run(f"{name}-{number:05d}", key, build))
+        self.made.extend(folders)
+        return FramePass(key, tuple(folders))
+
+    def keeper(self, name: str, after: FramePass) -> Callable[[Callable[[Path], None]], Path]:
+        """A function that makes a finished stage of the whole group by one that writes its files, or finds it."""
+
+        def keep(write: Callable[[Path], None]) -> Path:
+            number = f"{self.numbers.start:05d}"
+            folder = self.stages.run(f"{name}-{number}", stage_key([after.key, name], SCENE_ROOMS), write)
+            self.made.append(folder)
+            return folder
+
+        return keep
+
+    def clear(self) -> None:
+        """Remove what the passes kept, once the group is whole."""
+        for folder in self.made:
+            shutil.rmtree(folder, ignore_errors=True)
+        self.made.clear()
+
+
+def save_arrays(folder: Path, arrays: Arrays) -> None:
+    """Arrays as a file of a stage."""
+    np.savez(folder / ARRAYS_FILE, **dict(arrays))
+
+
+def load_arrays(folder: Path) -> Arrays:
+    """The arrays of a finished stage."""
+    with np.load(folder / ARRAYS_FILE) as found:
+        return dict(found)

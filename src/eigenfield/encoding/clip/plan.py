@@ -1,0 +1,178 @@
+"""What is decided once for all frames of a clip: cameras, mesh, atlas, how dense each plane is, and footprints."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from eigenfield.coding.video.film_layout import PlaneSizes, film_layout
+from eigenfield.core.camera import Camera
+from eigenfield.core.films import FilmLayout
+from eigenfield.core.observations import CalibratedObservations, Observations, select_cameras
+from eigenfield.encoding.fitted.fit import PlaneSettings
+from eigenfield.encoding.fitted.footprints import Footprints, offsets_of, subsampled_footprints
+from eigenfield.encoding.fitted.model import AtlasComposer, Rectangle, make_composer
+from eigenfield.encoding.fitted.observations import (
+    DecodedObservations,
+    FitData,
+    open_camera_footprints,
+    open_on_footprints,
+    open_subsampled,
+    with_robust_weights,
+)
+from eigenfield.encoding.fitted.planes import PLANE_PRESETS, PlanePreset, fitted_textures, step_of
+from eigenfield.encoding.fitted.rate import Rate
+from eigenfield.encoding.fitted.solve import Scales, measure_scales
+from eigenfield.encoding.options import SUBSAMPLE_MIN_OBSERVATIONS, resolved_value
+from eigenfield.encoding.plan import EncodePlan, component_count
+from eigenfield.encoding.views import nothing_seen_error
+
+MAX_TEXTURES = 12  # of luma, unless more are asked for: players sum all of them for each frame
+THINNED_STEP = 2  # pixels, each way, to one that weights are fitted to: all frames of a group have a part in them
+
+
+@dataclass(frozen=True, eq=False)
+class ClipPlane:
+    """One plane of all frames.
+
+    Attributes:
+        scales: Of frames without masks.
+    """
+
+    preset: PlanePreset
+    settings: PlaneSettings
+    rate: Rate
+    scales: Scales
+    composer: AtlasComposer
+
+    @property
+    def rectangle(self) -> Rectangle:
+        """All of the components' grid."""
+        rows, columns = self.settings.grid
+        return 0, rows, 0, columns
+
+    def scales_of(self, data: FitData) -> Scales:
+        """Of a frame."""
+        return self.scales if data.observations.masks is None else _scales(data, self.settings)
+
+
+@dataclass(frozen=True, eq=False)
+class FramePixels:
+    """The photographs of a frame.
+
+    Attributes:
+        every: All their pixels.
+        thinned: Every THINNED_STEP-th.
+        few: As in `ClipPlan`.
+    """
+
+    every: FitData
+    thinned: FitData
+    few: bool
+    work: Path | None
+
+    def fitted(self, plane: ClipPlane) -> FitData:
+        """What mean and textures of a plane are fitted to."""
+        return self.thinned if plane.preset.subsampled and not self.few else self.every
+
+    def weighed(self, data: FitData, variance: float | None) -> contextlib.AbstractContextManager[FitData]:
+        """The data, whose pixels count for less where few cameras see them and they are off by far more than a
+        variance, once a residual is drawn with it."""
+        robust = self.few and variance is not None
+        return with_robust_weights(data, self.work) if robust else contextlib.nullcontext(data)
+
+
+@dataclass(frozen=True, eq=False)
+class ClipPlan:
+    """A plan of one instant, and what all frames share.
+
+    Attributes:
+        few: Whether there are so few cameras that pixels that are far off count for less (`with_robust_weights`).
+        thinned: The footprints of every THINNED_STEP-th pixel.
+        work: Folder for scratch files.
+    """
+
+    plan: EncodePlan
+    planes: tuple[ClipPlane, ...]
+    few: bool
+    footprints: Footprints
+    thinned: Footprints
+    work: Path | None
+
+    @property
+    def cameras(self) -> Sequence[Camera]:
+        """Those that are encoded."""
+        return self.plan.views.rig.encoded_cameras
+
+    def observations(self, instant: CalibratedObservations) -> Observations:
+        """The photographs of the encoded cameras at an instant."""
+        return select_cameras(instant, self.plan.views.rig.encoded.tolist())
+
+    def with_textures(self, counts: Sequence[int]) -> ClipPlan:
+        """The same with so many eigen textures of each plane."""
+        pairs = zip(self.planes, counts, strict=True)
+        planes = tuple(replace(one, settings=replace(one.settings, textures=count)) for one, count in pairs)
+        return replace(self, planes=planes)
+
+    def layout(self, counts: Sequence[int]) -> FilmLayout:
+        """Where so many eigen textures of each plane, and its mean, lie in films. OptionError `film-size`."""
+        pairs = zip((one.settings for one in self.planes), counts, strict=True)
+        return film_layout([PlaneSizes(len(one.matrix), one.mean, ((one.grid, count),)) for one, count in pairs])
+
+    @contextlib.contextmanager
+    def open_frame(self, instant: CalibratedObservations) -> Iterator[FramePixels]:
+        """The photographs of an instant, decoded."""
+        with (
+            open_on_footprints(self.cameras, self.observations(instant), self.footprints, self.work) as data,
+            open_subsampled(data, THINNED_STEP, self.work, self.thinned) as some,
+        ):
+            yield FramePixels(data, some, self.few, self.work)
+
+
+@contextlib.contextmanager
+def open_clip_plan(plan: EncodePlan, work: Path | None = None) -> Iterator[ClipPlan]:
+    """The plan of a clip.
+
+    Args:
+        plan: For a fit, of one of the clip's instants.
+
+    Raises:
+        CaptureError: `nothing-seen`, no camera covers a pixel.
+    """
+    views, options, size = plan.views, plan.options, (plan.atlas[1], plan.atlas[0])
+    cameras, count = views.rig.encoded_cameras, len(views.rig.encoded)
+    asked = min(fitted_textures(count), MAX_TEXTURES) if options.textures is None else options.textures
+    textures, step = component_count(asked, count), step_of(resolved_value(options.quality))
+    with (
+        open_camera_footprints(cameras, plan.proxy, size, work, views.rig.encoded_reference) as footprints,
+        subsampled_footprints(footprints, THINNED_STEP, work) as thinned,
+    ):
+        whole = _without_photographs(cameras, footprints)
+
+        def plane_of(preset: PlanePreset) -> ClipPlane:
+            settings = preset.settings(size, plan.density, textures, views.scattered)
+            settings = replace(settings, textures=max(1, min(settings.textures, count - 1)), local=0)
+            composer = make_composer(footprints.surface, settings.grey_model())
+            return ClipPlane(preset, settings, preset.rate(step), _scales(whole, settings), composer)
+
+        planes = tuple(map(plane_of, PLANE_PRESETS))
+        if not planes[0].scales.mean.any():
+            raise nothing_seen_error()
+        yield ClipPlan(plan, planes, count < SUBSAMPLE_MIN_OBSERVATIONS, footprints, thinned, work)
+
+
+def _without_photographs(cameras: Sequence[Camera], footprints: Footprints) -> FitData:
+    """A frame of which all pixels count and none is known."""
+    shapes = footprints.shapes
+    offsets = offsets_of([h * w for h, w in shapes])
+    none = DecodedObservations(np.arange(len(cameras)), shapes, np.zeros((0, 3), np.uint8), offsets)
+    return FitData(none, footprints)
+
+
+def _scales(data: FitData, settings: PlaneSettings) -> Scales:
+    scales = measure_scales(data, settings.grey_model())
+    return scales.for_scattered_cameras() if settings.scattered else scales
