@@ -631,6 +631,47 @@ def batches() -> str:
     )  # fmt: skip
 
 
+def clips() -> str:
+    """Clips beside streams of their cameras (benchmarks/video.py)."""
+    captures, source = newest("video")
+    parts = [
+        "## Clips beside AV1 streams of their cameras\n\nEvery byte of the `.glb` counts. Streams are SVT-AV1's, 10 bits,"
+        " 4:2:0, of the encoded cameras: one a camera with a key picture where our groups begin (*keys*) or with one in"
+        " all (*one key*), or one through all cameras and frames (*joint*), each with its preset. *Stills* are some of"
+        " the frames encoded by themselves, their bytes scaled up to all. Percentages compare bytes at equal luma PSNR:"
+        " with a minus our file is smaller; – means that the peer was not measured at that quality. In brackets stands"
+        " what the streams with keys have at our bytes; their held-out views are a lumigraph on our mesh. *Flicker* is in"
+        " pixels whose photographs stand still, in grey levels, and *step* the largest between groups.\n"
+    ]
+    for name, one in captures.items():
+        height, width = one["size"]
+        curves = {**one["peers"], "stills": one["stills"]}
+        anchor = next((curve for peer, curve in one["peers"].items() if peer.startswith("keys")), [])
+        rows = [_clip_row(point, one["frames"], curves, anchor) for point in one["ours"]]
+        peers = [peer.replace("one-key", "one key").replace("-", ", preset ") for peer in curves]
+        head = ["quality", "kB a frame", "RGB / luma dB", "held out, luma", "flicker", "step, dB", *peers]
+        parts.append(
+            f"`{name}`: {one['cameras']} cameras of {width}x{height} and {one['held_out']} held out, {one['frames']}"
+            f" frames in groups of {', '.join(map(str, dict.fromkeys(one['groups'])))}.\n\n{table(head, rows)}"
+        )
+    return "\n".join([*parts, source]) + "\n"
+
+
+def _clip_row(
+    point: Mapping[str, Any], frames: int, curves: Mapping[str, Any], anchor: Sequence[Mapping[str, Any]]
+) -> list[str]:
+    def beside(of: Callable[[Mapping[str, Any]], float | None]) -> str:
+        own, theirs = of(point), rates.value_at(anchor, point["bytes"], of)
+        return decimals(own) + ("" if own is None or theirs is None else f" ({theirs:.2f})")
+
+    border = point["border"] or {}
+    return [
+        str(point["parameter"]), f"{point['bytes'] / 1e3 / frames:.2f}", both(point),
+        beside(rates.held_out_luma), beside(rates.flicker), decimals(border.get("step")),
+        *(_saved(point, {"points": curve} if curve else None, "psnr_luma") for curve in curves.values()),
+    ]  # fmt: skip
+
+
 def single() -> str:
     """Tables of figures that were measured once, by hand: each run of single.json is one table."""
     parts = [
@@ -658,6 +699,7 @@ def main() -> None:
         README: five(),
         BENCHMARKS: fitted()
         + between_cameras()
+        + clips()
         + "## The paper's way (`--fit none`)\n\n"
         + quality()
         + reconstruction()

@@ -9,9 +9,9 @@ part in clips, streams and stills; of `panoptic`, which is no array, none is.
 
 Ours is one file a quality: encoded, saved, read and drawn again. A peer is a way of `evidence.simulcast` with a preset
 of SVT-AV1 behind it: one stream a camera with a key picture where our groups begin (`keys`), one stream a camera with
-one key (`one-key`), and one stream through all cameras and frames (`joint`). Their held-out views are drawn from decoded
-streams as a lumigraph on our mesh. `--stills N` encodes N of the frames by themselves at the same qualities. What is
-done stays in OUT, and a run that was stopped goes on while the code is the same.
+one key (`one-key`), and one stream through all cameras and frames (`joint`). Their held-out views are drawn from the
+decoded streams as a lumigraph on our mesh. `--stills N` encodes N of the frames by themselves at the same qualities.
+What is done stays in OUT, and a run that was stopped goes on while the code is the same.
 """
 
 from __future__ import annotations
@@ -27,12 +27,14 @@ from typing import Any
 
 import eigenfield as ef
 import measure
+from eigenfield.capture.opening_footage import open_footage
 from eigenfield.core.clip import Clip
 from eigenfield.core.spread import spread_indices
-from eigenfield.evaluation.clip import Instants, evaluate_clip
+from eigenfield.encoding import EncodeOptions, encode_footage
+from eigenfield.evaluation.clip import evaluate_clip
 from eigenfield.evaluation.strip import write_strip
-from eigenfield.gltf import parts
-from evidence import moving_light, prepared, rates, simulcast
+from eigenfield.gltf import load_clip, parts
+from evidence import moving_light, rates, simulcast
 from evidence.runner import kept
 from evidence.simulcast import Taken
 
@@ -95,15 +97,13 @@ def source_of(name: str, out: Path, size: int, grid: int, frames: int) -> Source
     raise SystemExit(f"no clip is called {name}: name light, cloth or panoptic")
 
 
-def of_clip(
-    source: Source, work: Path, qualities: Sequence[int], peers: Sequence[str], stills: int
-) -> dict[str, Any]:
+def of_clip(source: Source, work: Path, qualities: Sequence[int], peers: Sequence[str], stills: int) -> dict[str, Any]:
     """All curves of one clip."""
     work.mkdir(parents=True, exist_ok=True)
-    footage = ef.open(source.folder, clip="all")
+    footage = open_footage(source.folder)
     proxy = source.proxy or proxy_of(footage, work)
     points = [our_point(source, footage, proxy, work, quality) for quality in qualities]
-    clip = ef.load_clip(work / f"clip-{qualities[-1]}.glb")
+    clip = load_clip(work / f"clip-{qualities[-1]}.glb")
     starts = [0, *accumulate(clip.groups.lengths)][:-1]
     taken = simulcast.take(footage, clip.scene(float(clip.timeline.times[0])), clip.timeline, starts)
     curves = {peer: peer_curve(taken, peer) for peer in peers}
@@ -132,10 +132,11 @@ def our_point(source: Source, footage: Any, proxy: Path, work: Path, quality: in
     """A file of a quality, read and measured again."""
     path = work / f"clip-{quality}.glb"
     began = time.perf_counter()
-    clip = ef.encode(footage, proxy, quality=quality, hold_out=source.hold_out, work=work / "stages")
+    options = EncodeOptions(quality=quality, hold_out=source.hold_out)
+    clip = encode_footage(footage, proxy, options, work=work / f"stages-{quality}", progress=None)
     ef.save(clip, path, overwrite=True)
     seconds = time.perf_counter() - began
-    figures = evaluate_clip(ef.load_clip(path), footage, path=path)
+    figures = evaluate_clip(load_clip(path), footage, path=path)
     write_strip(figures, work / f"plots-{quality}", overwrite=True)
     point = {
         "parameter": quality, "bytes": path.stat().st_size, "encode_seconds": round(seconds, 1),
@@ -187,12 +188,10 @@ def peer_curve(taken: Taken, peer: str) -> list[dict[str, Any]]:
 def line(point: dict[str, Any]) -> str:
     """A point in words."""
     words = [f"{point['bytes'] / 1000:.1f} kB, {point['psnr_luma']:.2f} dB luma, {point['psnr']:.2f} RGB"]
-    if point.get("held_out"):
-        words.append(f"held out {point['held_out']['psnr_luma']:.2f}")
-    if point.get("flicker") and point["flicker"]["still"] is not None:
-        words.append(f"flicker {point['flicker']['still']:.2f} levels")
-    if point.get("flicker") and point["flicker"]["moving_ssim"] is not None:
-        words.append(f"SSIM of changes {point['flicker']['moving_ssim']:.3f}")
+    if (between := rates.held_out_luma(point)) is not None:
+        words.append(f"held out {between:.2f}")
+    if (levels := rates.flicker(point)) is not None:
+        words.append(f"flicker {levels:.2f} levels, SSIM of changes {point['flicker']['moving_ssim']:.3f}")
     if point.get("border"):
         words.append(f"step {point['border']['step']:.2f} dB")
     return ", ".join(words)
@@ -208,24 +207,11 @@ def table(found: dict[str, Any]) -> str:
             theirs = rates.bytes_at(curve, point["psnr_luma"], "psnr_luma")
             ratio = "not reached" if theirs is None else f"{point['bytes'] / theirs:.3f} of {theirs / 1000:.1f} kB"
             words = [f"{name}, quality {point['parameter']}, {point['psnr_luma']:.2f} dB: {ratio}"]
-            for what, value in at_bytes(curve, point["bytes"]).items():
-                words.append(f"{what} at equal bytes {value:.3f}")
+            for what, of in (("held out", rates.held_out_luma), ("flicker", rates.flicker)):
+                value = rates.value_at(curve, point["bytes"], of)
+                words += [] if value is None else [f"{what} at equal bytes {value:.3f}"]
             lines.append("; ".join(words))
     return "\n".join(lines)
-
-
-def at_bytes(curve: Sequence[dict[str, Any]], size: float) -> dict[str, float]:
-    """Held-out luma and flicker of a curve at some bytes, between its points; nothing beyond its ends."""
-    values = {
-        "held out": [(point["bytes"], (point.get("held_out") or {}).get("psnr_luma")) for point in curve],
-        "flicker": [(point["bytes"], (point.get("flicker") or {}).get("still")) for point in curve],
-    }
-    found = {}
-    for what, pairs in values.items():
-        known = sorted((some, value) for some, value in pairs if value is not None)
-        if known and known[0][0] <= size <= known[-1][0]:
-            found[what] = rates.between_points(known, size)
-    return found
 
 
 if __name__ == "__main__":

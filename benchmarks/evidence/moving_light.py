@@ -51,7 +51,7 @@ def draw_clip(folder: Path, rows: int = 5, columns: int = 5, size: int = 320, fr
     names = [f"cam_{index // columns}_{index % columns}" for index in range(len(cameras))]
     for name in names:
         (folder / name).mkdir(parents=True, exist_ok=True)
-    write_ply(build_geometry().mesh, folder / PROXY)
+    write_ply(build_geometry().mesh, folder / PROXY, overwrite=True)
     look_at = moving_look(min(DEMO_TEXELS_PER_PIXEL * size, DEMO_MAX_ATLAS_TEXELS))
     for frame in range(frames):
         wanted = [(folder / name / f"{frame:06d}.png", camera) for name, camera in zip(names, cameras, strict=True)]

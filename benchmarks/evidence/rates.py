@@ -5,7 +5,7 @@ A point is a dict with "bytes" and the figures of `point`; a curve is a sequence
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -79,6 +79,33 @@ def bytes_at(points: Sequence[Point], quality: float, key: str = "psnr") -> floa
     if len(x) == 0 or not x[0] <= quality <= x[-1]:
         return None
     return float(np.exp(y[0] if len(x) == 1 else PchipInterpolator(x, y)(quality)))
+
+
+def value_at(points: Sequence[Point], size: float, value: Callable[[Point], float | None]) -> float | None:
+    """A figure of a curve at some bytes, on the line over log bytes between its points; None beyond its ends.
+
+    Args:
+        points: In any order.
+        size: Bytes.
+        value: The figure of a point; one that has none is left out.
+    """
+    known = sorted((float(point["bytes"]), found) for point in points if (found := value(point)) is not None)
+    if not known or not known[0][0] <= size <= known[-1][0]:
+        return None
+    sizes, values = zip(*known, strict=True)
+    return float(np.interp(np.log(size), np.log(sizes), values))
+
+
+def held_out_luma(point: Point) -> float | None:
+    """dB of views between cameras; None where there are none."""
+    held_out = point.get("held_out")
+    return None if held_out is None else held_out["psnr_luma"]
+
+
+def flicker(point: Point) -> float | None:
+    """Grey levels in still pixels."""
+    found = point.get("flicker")
+    return None if found is None else found["still"]
 
 
 Curve = tuple[NDArray[np.float64], NDArray[np.float64]]

@@ -10,6 +10,7 @@ import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -115,8 +116,7 @@ def streams(taken: Taken, way: str, crf: int, preset: int) -> Iterator[Coded]:
     frames = taken.timeline.frames
     starts = [*taken.starts, frames] if way == "keys" else [0, frames]
     for name in taken.encoded:
-        parts = [code(taken.pictures[name][start:stop], crf, preset)
-                 for start, stop in zip(starts[:-1], starts[1:], strict=True)]  # fmt: skip
+        parts = [code(taken.pictures[name][start:stop], crf, preset) for start, stop in pairwise(starts)]
         yield name, sum(size for size, _ in parts), [picture for _, some in parts for picture in some]
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from eigenfield.cli.capture_options import capture_argument, capture_options
+from eigenfield.cli.clip_figures import evaluate_clip_file, refuse_for_clips
 from eigenfield.cli.common import (
     PATH,
     chosen_workers,
@@ -19,6 +20,7 @@ from eigenfield.cli.common import (
     worker_options,
 )
 from eigenfield.cli.progress import progress_bars
+from eigenfield.core.errors import OptionError
 from eigenfield.core.open_options import OpenOptions
 
 Column = tuple[str, str, str]  # key, heading, format
@@ -41,7 +43,8 @@ Examples:
   eigenfield evaluate scene.glb capture/
   eigenfield evaluate scene.glb photos/ --calibration refined.json --curve --plots plots/
   eigenfield evaluate scene.glb capture/ --flip --json > figures.json
-  eigenfield evaluate scene.glb capture/ --store --exclude-circles ball.json"""
+  eigenfield evaluate scene.glb capture/ --store --exclude-circles ball.json
+  eigenfield evaluate clip.glb footage/ --every 5 --plots plots/"""
 )
 @click.argument("scene", type=PATH)
 @capture_argument()
@@ -94,6 +97,12 @@ Examples:
     show_default=True,
     help="Pack every texture map as PNG for the ratio to them, or 16 and scale up, or none.",
 )
+@click.option(
+    "--every",
+    type=int,
+    metavar="N",
+    help="Of a clip: measure each N-th frame, and those at the borders of groups.  [default: all frames]",
+)
 @click.option("--flip", is_flag=True, help="Measure FLIP too: what an eye sees of the difference (0 is best).")
 @worker_options
 @common_options
@@ -106,26 +115,37 @@ def command(
     overwrite: bool,
     store: bool,
     exclude_circles: Path | None,
+    every: int | None,
     quiet: bool,
     workers: int | None,
     cluster: str | None,
     **settings: Any,
 ) -> None:
-    """Measure the file SCENE against the photographs of CAPTURE, matched by name.
+    """Measure the file SCENE against the photographs of CAPTURE, matched by name. A clip is measured frame by frame.
 
     `eigenfield help measures` defines every figure. Where the file has a residual, captured views are measured without
     it and with it; held-out ones have none. With --json all figures go to standard output, otherwise a table does.
     """  # fmt: skip
     from eigenfield.capture import open_any, with_scene_cameras
+    from eigenfield.core.clip import Clip
     from eigenfield.evaluation import evaluate, read_circles, stored_scores
-    from eigenfield.gltf import load, store_scores
+    from eigenfield.gltf import store_scores
+    from eigenfield.gltf.read import load_any
     from eigenfield.runtime.files import refuse_existing
 
+    loaded = load_any(scene)
+    if isinstance(loaded, Clip):
+        stills = {"curve": settings.pop("curve") != "none", "store": store, "exclude-circles": exclude_circles,
+                  "workers": workers, "cluster": cluster, "png-maps": settings.pop("png_maps") != "all"}  # fmt: skip
+        refuse_for_clips(stills)
+        evaluate_clip_file(loaded, scene, capture, place, plots, overwrite, as_json, quiet, every or 1, settings)
+        return
+    if every is not None:
+        raise OptionError("clip-option", "--every is for clips", remedy="leave it out")
     if plots is not None:
         from eigenfield.evaluation.plots import refuse_existing_plots
 
         refuse_existing_plots(plots, overwrite)
-    loaded = load(scene)
     if store:
         refuse_existing(scene, overwrite=True)  # fails now, not after the work, where the folder cannot be written to
     light_field = with_scene_cameras(loaded, open_any(capture, place))

@@ -195,8 +195,10 @@ def figures_of(
     """
     moving = {name: flicker.figures for name, flicker in flickers.items()}
     names = list(dict.fromkeys(name for _, name, _ in rows))
-    kinds = {"encoded": [name for name in names if name not in held_out],
-             "held_out": [name for name in names if name in held_out]}
+    kinds = {
+        "encoded": [name for name in names if name not in held_out],
+        "held_out": [name for name in names if name in held_out],
+    }
     of_kind = {kind: [row for row in rows if row[1] in some] for kind, some in kinds.items()}
     over_time = {kind: _over_time(some) for kind, some in of_kind.items()}
     pooled = {kind: [moving[name] for name in some if name in moving] for kind, some in kinds.items()}

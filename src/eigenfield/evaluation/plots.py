@@ -44,12 +44,16 @@ PLOT_ERROR_GAIN = 5  # of the errors in the contact sheet
 
 
 def refuse_existing_plots(folder: Path, overwrite: bool) -> None:
-    """Check before any work that no plot would be replaced. OutputError `output-exists`, `not-a-folder` or
-    `output-address`."""
+    """Check before any work that no plot would be replaced. OutputError as `refuse_existing_pictures`."""
+    refuse_existing_pictures(folder, PLOT_FILES, overwrite)
+
+
+def refuse_existing_pictures(folder: Path, names: Sequence[str], overwrite: bool) -> None:
+    """OutputError `output-exists`, `not-a-folder` or `output-address` where pictures cannot go into a folder."""
     refuse_objects(folder)
     if folder.exists() and not folder.is_dir():
         raise OutputError("not-a-folder", "is a file", path=folder, remedy="name a folder for --plots")
-    for name in PLOT_FILES:
+    for name in names:
         if (folder / name).exists() and not overwrite:
             raise OutputError(
                 "output-exists", "exists already", path=folder / name, remedy="use --overwrite or another folder"

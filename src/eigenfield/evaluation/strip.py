@@ -9,11 +9,25 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from eigenfield.evaluation.plots import PLOT_BLUE, PLOT_GREY, PLOT_ORANGE, new_figure, png_bytes, style_axes
+from eigenfield.evaluation.plots import (
+    PLOT_BLUE,
+    PLOT_GREY,
+    PLOT_ORANGE,
+    new_figure,
+    png_bytes,
+    refuse_existing_pictures,
+    style_axes,
+)
 from eigenfield.runtime.files import output_errors, write_bytes
 
 STRIP_FILE = "over-time.png"
 STRIP_KINDS = (("encoded", "encoded", PLOT_BLUE), ("held_out", "held out", PLOT_ORANGE))
+
+
+def refuse_existing_strip(folder: Path, overwrite: bool) -> None:
+    """Check before any work that no chart would be replaced. OutputError `output-exists`, `not-a-folder` or
+    `output-address`."""
+    refuse_existing_pictures(folder, (STRIP_FILE,), overwrite)
 
 
 def write_strip(scores: Mapping[str, Any], folder: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
