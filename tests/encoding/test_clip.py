@@ -1,0 +1,182 @@
+"""Clips: groups of frames that share their weights, coded as films, decode to what the photographs show."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+import eigenfield as ef
+from eigenfield.core.clip import Timeline
+from eigenfield.core.errors import OptionError
+from eigenfield.encoding import EncodeOptions, encode_footage
+from eigenfield.encoding.clip.encode import group_length
+from eigenfield.gltf import load_clip, save, validate
+from eigenfield.imaging.metrics import psnr, to_codes
+from eigenfield.rendering import Renderer, camera_weights, draw_texture
+from support.captures import backdrop, shaded_texture
+from support.observations import CalibratedInMemory, InMemory
+from support.scenes import row_grid
+
+CAMERAS, MESH = row_grid(9, 64, 56), backdrop()
+
+
+@dataclass(frozen=True, eq=False)
+class FootageInMemory:
+    """Footage whose instants are in memory, in place of `capture.footage.Footage`.
+
+    Attributes:
+        asked: Numbers of the instants that were asked for, in order.
+    """
+
+    frames: list[CalibratedInMemory]
+    asked: list[int]
+    rate: Fraction = Fraction(4)
+
+    def __len__(self):
+        return len(self.frames)
+
+    @property
+    def timeline(self):
+        return Timeline(self.rate, len(self.frames))
+
+    @property
+    def names(self):
+        return self.frames[0].names
+
+    @property
+    def cameras(self):
+        return self.frames[0].cameras
+
+    @property
+    def bytes(self):
+        return 0
+
+    def instant(self, number):
+        self.asked.append(number)
+        return self.frames[number]
+
+
+def photographs(level: float) -> CalibratedInMemory:
+    """What nine cameras see under a light of so much strength."""
+    drawn = [draw_texture(MESH, shaded_texture(i, 9), camera, samples=2).image for i, camera in enumerate(CAMERAS)]
+    return CalibratedInMemory(InMemory([np.clip(one * level, 0, 1).astype(np.float32) for one in drawn]), CAMERAS)
+
+
+def footage(*levels: float) -> FootageInMemory:
+    made = {level: photographs(level) for level in set(levels)}
+    return FootageInMemory([made[level] for level in levels], [])
+
+
+def measured(scene, instant) -> float:
+    """dB, the mean over cameras."""
+    found = []
+    for index in range(len(instant)):
+        drawn = Renderer(scene).draw(scene.rig.cameras[index], camera_weights(scene, index))
+        found.append(psnr(drawn.image, to_codes(instant.photograph(index).pixels), drawn.covered))
+    return float(np.mean(found))
+
+
+OPTIONS = EncodeOptions(quality=90)
+
+
+@pytest.fixture(scope="module")
+def lit(tmp_path_factory):
+    """Six frames in groups of three, the light changes within the first group; and the folder of finished stages."""
+    seen, work = footage(1.0, 1.0, 0.7, 0.7, 0.7, 0.7), tmp_path_factory.mktemp("work")
+    return seen, encode_footage(seen, MESH, OPTIONS, group="3", work=work), work
+
+
+def test_each_frame_shows_its_own_photographs(lit):
+    seen, clip, _ = lit
+    assert list(clip.groups.lengths) == [3, 3] and clip.timeline == seen.timeline
+    still = ef.encode(seen.frames[0], MESH, OPTIONS)
+    good = measured(still, seen.frames[0])
+    for number, instant in enumerate(seen.frames):
+        scene = clip.scene(float(clip.timeline.times[number]))
+        assert measured(scene, instant) > good - 1.5
+    wrong = measured(clip.scene(0.0), seen.frames[-1])
+    assert wrong < good - 5
+
+
+def test_a_frame_that_is_repeated_takes_next_to_nothing(lit):
+    _, clip, _ = lit
+    sizes = [[sum(map(len, frame)) for frame in clip.groups.coded(index).units] for index in range(2)]
+    assert sum(sizes[1][1:]) < sizes[1][0] / 20
+    assert sum(sizes[0][1:]) > 3 * sum(sizes[1][1:])
+
+
+def test_a_clip_is_saved_and_loaded(lit, tmp_path):
+    seen, clip, _ = lit
+    save(clip, tmp_path / "clip.glb")
+    assert validate(tmp_path / "clip.glb") == []
+    loaded = load_clip(tmp_path / "clip.glb")
+    assert loaded.timeline == clip.timeline and loaded.settings["clip"]["group"] == "3"
+    for number in (0, 5):
+        time = float(clip.timeline.times[number])
+        drawn = [Renderer(one.scene(time)).draw(CAMERAS[4], camera_weights(one.scene(time), 4)) for one in (clip, loaded)]
+        np.testing.assert_array_equal(drawn[0].image, drawn[1].image)
+
+
+def test_finished_groups_are_taken_up_and_nothing_else_is_kept(lit):
+    seen, clip, work = lit
+    assert sorted(one.name[:10] for one in (work / "clip").iterdir()) == ["group-0000", "group-0001"]
+    again = replace(seen, asked=[])
+    made = encode_footage(again, MESH, OPTIONS, group="3", work=work)
+    assert [bytes(one.data.read(0, one.data.size)) for one in made.groups.stored] == [
+        bytes(one.data.read(0, one.data.size)) for one in clip.groups.stored
+    ]
+    assert again.asked == [3, 0, 3, 5]  # the mesh by the middle one, and what tells this footage from another
+
+
+def test_a_run_that_was_stopped_goes_on_after_the_last_finished_frame(tmp_path):
+    seen = footage(1.0, 0.7)
+    whole = encode_footage(seen, MESH, OPTIONS)
+
+    class Stopped(Exception):
+        pass
+
+    def stop(stage, done, total):
+        if stage.endswith("textures-0") and done == 1:
+            raise Stopped
+
+    with pytest.raises(Stopped):
+        encode_footage(seen, MESH, OPTIONS, work=tmp_path, progress=stop)
+    names = sorted(one.name[:16] for one in (tmp_path / "clip").iterdir())
+    assert [name.rsplit("-", 1)[0] for name in names][:2] == ["mean-00000", "mean-00001"] and len(names) == 3
+    seen.asked.clear()
+    made = encode_footage(seen, MESH, OPTIONS, work=tmp_path)
+    stages = seen.asked[4:]
+    assert stages == [1, 0, 1, 0, 1, 0, 1]  # of textures-0 the second alone, then three passes over both
+    assert made.groups.coded(0).units == whole.groups.coded(0).units
+
+
+@pytest.mark.parametrize(
+    ("given", "code"),
+    [
+        ({"residual": 40}, "clip-option"),
+        ({"harmonise": "gain"}, "clip-option"),
+        ({"fit": "none"}, "clip-option"),
+        ({"target": ef.Target(psnr=30)}, "clip-option"),
+        ({"group": "a while"}, "group-unknown"),
+        ({"group": "0"}, "group-unknown"),
+        ({"group": "1000s"}, "group-unknown"),
+    ],
+)
+def test_options_without_a_meaning_for_clips_are_refused_by_name(given, code):
+    with pytest.raises(OptionError) as error:
+        encode_footage(footage(1.0), MESH, **given)
+    assert error.value.code == code and next(iter(given)).replace("_", "-") in str(error.value)
+
+
+def test_a_clip_needs_a_mesh():
+    with pytest.raises(OptionError) as error:
+        encode_footage(footage(1.0))
+    assert error.value.code == "clip-proxy" and "eigenfield proxy" in str(error.value)
+
+
+@pytest.mark.parametrize(("text", "frames"), [("1s", 30), ("0.5s", 15), ("12", 12), (" 2s ", 60), ("0.04s", 1)])
+def test_the_length_of_a_group(text, frames):
+    assert group_length(text, Fraction(30)) == frames
