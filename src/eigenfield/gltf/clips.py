@@ -27,6 +27,8 @@ from eigenfield.core.rig import Rig
 from eigenfield.gltf.group import read_group
 from eigenfield.gltf.source import ByteSource, HeldBytes
 
+_AGAIN = "copy or download the file again"
+
 
 @dataclass(frozen=True, eq=False)
 class StoredGroup:
@@ -100,9 +102,12 @@ class CodedGroups:
         """A group as it is coded, its streams not decoded. FormatError `group-damaged`, `truncated`."""
         one, where = self.stored[index], group_place(index)
         data = bytes(one.data.read(0, one.data.size))
+        if len(data) < one.data.size:
+            message, remedy = f"the file ends after {len(data)} of the group's {one.data.size} bytes", _AGAIN
+            raise FormatError("truncated", message, where=where, remedy=remedy)
         if one.digest is not None and hashlib.sha256(data).hexdigest() != one.digest:
-            message, remedy = "the group's bytes are not those that were written", "copy or download the file again"
-            raise FormatError("group-damaged", message, where=where, remedy=remedy)
+            message = "the group's bytes are not those that were written"
+            raise FormatError("group-damaged", message, where=where, remedy=_AGAIN)
         coded = read_group(data, self.layout, where)
         if len(coded.units) != one.frames:
             message = f"a group of {len(coded.units)} frames, {one.frames} are announced"

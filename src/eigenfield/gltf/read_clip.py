@@ -78,6 +78,21 @@ def read_clip_layout(document: Document, findings: Findings) -> ClipLayout | Non
     return ClipLayout(**vars(around), timeline=timeline, films=films, groups=groups, first=chunk.first)
 
 
+def check_clip(document: Document, findings: Findings) -> bool:
+    """Check a clip as a whole, and decode it frame by frame; whether the file holds one."""
+    layout = read_clip_layout(document, findings)
+    if layout is None or None in (layout.cameras, layout.view_plane, layout.triangles, layout.reference, layout.films):
+        return layout is not None
+    groups = _groups_of(layout, document.glb.source)
+    for index in range(len(groups.stored)):
+        with findings.part():
+            for _ in groups.group(index).frames:
+                pass
+        if any(finding.code == "truncated" for finding in findings.found):
+            break  # nor are those behind it there
+    return True
+
+
 def clip_layout_of(data: ByteSource) -> tuple[Document, ClipLayout]:
     """Container and checked layout of a clip's file. FormatError."""
     document = open_document(data)
@@ -114,8 +129,15 @@ def read_clip(data: ByteSource) -> Clip:
 
 
 def _clip_of(layout: ClipLayout, place: ByteSource | Path) -> Clip:
-    assert layout.timeline is not None and layout.films is not None and layout.cameras is not None
+    assert layout.timeline is not None
+    groups = _groups_of(layout, place)
+    return Clip(layout.rig, layout.timeline, groups, layout.settings, layout.scores, layout.generator)
+
+
+def _groups_of(layout: ClipLayout, place: ByteSource | Path) -> CodedGroups:
+    """The groups, none of which is read. place: the file, or its path where it is opened for each read."""
     given = layout.cameras
+    assert layout.films is not None and given is not None
     payloads = Payloads() if given.payload is None else Payloads({cameras_key(given.cameras): [given.payload]})
     stored = []
     for entry in layout.groups or ():
@@ -123,5 +145,4 @@ def _clip_of(layout: ClipLayout, place: ByteSource | Path) -> Clip:
         last = first + entry.length
         data = StoredBytes(place, first, last) if isinstance(place, Path) else ByteRange(place, first, last)
         stored.append(StoredGroup(data, entry.frames, entry.digest))
-    groups = CodedGroups(layout.films, stored, layout.rig, layout.to_rgb, payloads)
-    return Clip(layout.rig, layout.timeline, groups, layout.settings, layout.scores, layout.generator)
+    return CodedGroups(layout.films, stored, layout.rig, layout.to_rgb, payloads)
