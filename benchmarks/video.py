@@ -1,11 +1,12 @@
 """Clips beside AV1 streams of their cameras and beside our own stills, in one run, every byte counted.
 
     EIGENFIELD_DATA=captures python benchmarks/video.py [CLIP...] [--out out/video] [--size N] [--grid N] [--frames N]
-        [--qualities 60,75,88,94] [--peers keys-6,one-key-6,keys-2,joint-6] [--stills N] [--store]
+        [--group 1s] [--qualities 60,75,88,94] [--peers keys-6,one-key-6,keys-2,joint-6] [--stills N] [--store]
 
 CLIP: `light`, the demo's scene with still geometry and moving light, drawn on the first run and kept; `cloth` and
-`panoptic`, of EIGENFIELD_DATA. --size, --grid and --frames are of `light`. Every fifth camera is held out, and takes no
-part in clips, streams and stills; of `panoptic`, which is no array, none is.
+`panoptic`, of EIGENFIELD_DATA; `tarot`, 20 of its photographs at half size again and again with fresh noise. --size and
+--grid are of `light`, --frames of `light` and `tarot`. Every fifth camera is held out, and takes no part in clips,
+streams and stills; of `panoptic`, which is no array, none is.
 
 Ours is one file a quality: encoded, saved, read and drawn again. A peer is a way of `evidence.simulcast` with a preset
 of SVT-AV1 behind it: one stream a camera with a key picture where our groups begin (`keys`), one stream a camera with
@@ -18,7 +19,7 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import accumulate
@@ -27,14 +28,15 @@ from typing import Any
 
 import eigenfield as ef
 import measure
-from eigenfield.capture.opening_footage import open_footage
+from eigenfield.capture import Footage, open_capture, open_footage
 from eigenfield.core.clip import Clip
 from eigenfield.core.spread import spread_indices
 from eigenfield.encoding import EncodeOptions, encode_footage
 from eigenfield.evaluation.clip import evaluate_clip
 from eigenfield.evaluation.strip import write_strip
 from eigenfield.gltf import load_clip, parts
-from evidence import moving_light, rates, simulcast
+from evidence import captures, moving_light, rates, simulcast
+from evidence.repeated import repeat
 from evidence.runner import kept
 from evidence.simulcast import Taken
 
@@ -66,6 +68,7 @@ def main() -> None:
     parser.add_argument("--size", type=int, default=320)
     parser.add_argument("--grid", type=int, default=5)
     parser.add_argument("--frames", type=int, default=60)
+    parser.add_argument("--group", default="1s", help="as of encode")
     parser.add_argument("--qualities", default=QUALITIES)
     parser.add_argument("--peers", default=PEERS)
     parser.add_argument("--stills", type=int, default=3)
@@ -77,9 +80,8 @@ def main() -> None:
         source = source_of(name, out, options.size, options.grid, options.frames)
         qualities = [int(quality) for quality in options.qualities.split(",")]
         peers = [peer for peer in options.peers.split(",") if peer]
-        make = partial(of_clip, source, out / source.name, qualities, peers, options.stills)
-        asked = f"{options.qualities} {options.peers} {options.stills}"
-        figures[source.name] = kept(out / source.name / "figures.json", Path(__file__), make, asked)
+        work = out / source.name
+        figures[source.name] = of_clip(source, work, options.group, qualities, peers, options.stills)
         print(f"\n{source.name}\n{table(figures[source.name])}", flush=True)
     if options.store:
         print(measure.store("video", {"captures": figures}))
@@ -94,31 +96,44 @@ def source_of(name: str, out: Path, size: int, grid: int, frames: int) -> Source
     if name in ("cloth", "panoptic"):
         folder = measure.data() / {"cloth": "clip_cloth_5x4", "panoptic": "panoptic_arc_10"}[name]
         return Source(name, folder, hold_out=None if name == "panoptic" else "every:5")
-    raise SystemExit(f"no clip is called {name}: name light, cloth or panoptic")
+    if name == "tarot":
+        known = captures.named("tarot-5x4", out)
+        whole = f"tarot-{frames}"
+        capture = open_capture(known.folder, calibration=known.calibration).reduced(2)
+        return Source(whole, repeat(capture, out / "clips" / whole, frames), known.proxy)
+    raise SystemExit(f"no clip is called {name}: name light, tarot, cloth or panoptic")
 
 
-def of_clip(source: Source, work: Path, qualities: Sequence[int], peers: Sequence[str], stills: int) -> dict[str, Any]:
-    """All curves of one clip."""
+def of_clip(
+    source: Source, work: Path, group: str, qualities: Sequence[int], peers: Sequence[str], stills: int
+) -> dict[str, Any]:
+    """All curves of one clip, each part kept when it is done."""
     work.mkdir(parents=True, exist_ok=True)
     footage = open_footage(source.folder)
     proxy = source.proxy or proxy_of(footage, work)
-    points = [our_point(source, footage, proxy, work, quality) for quality in qualities]
+
+    def part(name: str, make: Callable[[], dict[str, Any]], more: str = "") -> dict[str, Any]:
+        return kept(work / "parts" / f"{name}.json", Path(__file__), make, f"{group} {more}")
+
+    points = [part(f"clip-{quality}", partial(our_point, source, footage, proxy, work, group, quality))
+              for quality in qualities]  # fmt: skip
     clip = load_clip(work / f"clip-{qualities[-1]}.glb")
     starts = [0, *accumulate(clip.groups.lengths)][:-1]
     taken = simulcast.take(footage, clip.scene(float(clip.timeline.times[0])), clip.timeline, starts)
-    curves = {peer: peer_curve(taken, peer) for peer in peers}
+    curves = {peer: part(peer, partial(peer_curve, taken, peer))["points"] for peer in peers}
+    frames = [int(frame) for frame in spread_indices(clip.timeline.frames, stills)] if stills else []
+    singles = [part(f"stills-{quality}", partial(our_stills, source, footage, proxy, work, clip, quality, frames),
+                    str(frames)) for quality in qualities if frames]  # fmt: skip
     return {
         "cameras": len(taken.encoded), "held_out": len(taken.held_out), "frames": clip.timeline.frames,
         "rate": float(clip.timeline.rate), "groups": list(clip.groups.lengths),
         "size": list(next(iter(taken.pictures.values()))[0].shape[:2]),
-        "ours": points,
-        "peers": curves,
-        "stills": our_stills(source, footage, proxy, work, clip, qualities, stills) if stills else [],
+        "ours": points, "peers": curves, "stills": singles,
         "bd": {peer: {key: rates.bd_rate(curve, points, key) for key in KEYS} for peer, curve in curves.items()},
     }  # fmt: skip
 
 
-def proxy_of(footage: Any, work: Path) -> Path:
+def proxy_of(footage: Footage, work: Path) -> Path:
     """The surface of the first frame, kept."""
     path = work / "proxy.glb"
     if not path.exists():
@@ -128,15 +143,17 @@ def proxy_of(footage: Any, work: Path) -> Path:
     return path
 
 
-def our_point(source: Source, footage: Any, proxy: Path, work: Path, quality: int) -> dict[str, Any]:
+def our_point(source: Source, footage: Footage, proxy: Path, work: Path, group: str, quality: int) -> dict[str, Any]:
     """A file of a quality, read and measured again."""
     path = work / f"clip-{quality}.glb"
     began = time.perf_counter()
-    options = EncodeOptions(quality=quality, hold_out=source.hold_out)
-    clip = encode_footage(footage, proxy, options, work=work / f"stages-{quality}", progress=None)
+    options = EncodeOptions(quality=quality, hold_out=source.hold_out, group=group)
+    stages = work / f"stages-{quality}"
+    stages.mkdir(exist_ok=True)
+    clip = encode_footage(footage, proxy, options, work=stages, progress=None)
     ef.save(clip, path, overwrite=True)
     seconds = time.perf_counter() - began
-    figures = evaluate_clip(load_clip(path), footage, path=path)
+    figures = evaluate_clip(path, footage, progress=None)
     write_strip(figures, work / f"plots-{quality}", overwrite=True)
     point = {
         "parameter": quality, "bytes": path.stat().st_size, "encode_seconds": round(seconds, 1),
@@ -147,33 +164,28 @@ def our_point(source: Source, footage: Any, proxy: Path, work: Path, quality: in
 
 
 def our_stills(
-    source: Source, footage: Any, proxy: Path, work: Path, clip: Clip, qualities: Sequence[int], count: int
-) -> list[dict[str, Any]]:
+    source: Source, footage: Footage, proxy: Path, work: Path, clip: Clip, quality: int, frames: Sequence[int]
+) -> dict[str, Any]:
     """Some frames encoded by themselves; bytes are scaled up to all frames."""
-    points = []
-    chosen = [int(frame) for frame in spread_indices(clip.timeline.frames, count)]
-    for quality in qualities:
-        sizes, figures, seconds = [], [], 0.0
-        for frame in chosen:
-            path = work / f"still-{quality}-{frame}.glb"
-            capture = footage.instant(footage.timeline.frame_at(float(clip.timeline.times[frame])))
-            began = time.perf_counter()
-            scene = ef.encode(capture, proxy, quality=quality, hold_out=source.hold_out)
-            scene.save(path, overwrite=True)
-            seconds += time.perf_counter() - began
-            sizes.append(path.stat().st_size)
-            figures.append(ef.evaluate(path, capture, png_maps="none")["image"]["encoded"])
-        point = {
-            "parameter": quality, "bytes": round(sum(sizes) / count * clip.timeline.frames), "frames": chosen,
-            "encode_seconds": round(seconds / count, 1),
-            **{key: sum(one[key] for one in figures) / count for key in KEYS},
-        }  # fmt: skip
-        print(f"{source.name}: stills of quality {quality}: {line(point)}", flush=True)
-        points.append(point)
-    return points
+    sizes, figures, seconds = [], [], 0.0
+    for frame in frames:
+        path = work / f"still-{quality}-{frame}.glb"
+        capture = footage.instant(footage.timeline.frame_at(float(clip.timeline.times[frame])))
+        began = time.perf_counter()
+        ef.encode(capture, proxy, quality=quality, hold_out=source.hold_out, progress=None).save(path, overwrite=True)
+        seconds += time.perf_counter() - began
+        sizes.append(path.stat().st_size)
+        figures.append(ef.evaluate(path, capture, png_maps="none", progress=None)["image"]["encoded"])
+    point = {
+        "parameter": quality, "bytes": round(sum(sizes) / len(frames) * clip.timeline.frames), "frames": list(frames),
+        "encode_seconds": round(seconds / len(frames), 1),
+        **{key: sum(one[key] for one in figures) / len(frames) for key in KEYS},
+    }  # fmt: skip
+    print(f"{source.name}: stills of quality {quality}: {line(point)}", flush=True)
+    return point
 
 
-def peer_curve(taken: Taken, peer: str) -> list[dict[str, Any]]:
+def peer_curve(taken: Taken, peer: str) -> dict[str, Any]:
     """A way of `simulcast` and a preset, joined by a hyphen, at all rates."""
     way, _, preset = peer.rpartition("-")
     between = [int(frame) for frame in spread_indices(taken.timeline.frames, BETWEEN)]
@@ -182,7 +194,7 @@ def peer_curve(taken: Taken, peer: str) -> list[dict[str, Any]]:
         coded = simulcast.streams(taken, way, crf, int(preset))
         points.append({"parameter": crf, **simulcast.point(taken, coded, between)})
         print(f"{peer}, crf {crf}: {line(points[-1])}", flush=True)
-    return points
+    return {"points": points}
 
 
 def line(point: dict[str, Any]) -> str:

@@ -7,7 +7,7 @@ fro across floor, wall and objects. What it has not reached stands still. The cl
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import cv2
@@ -17,6 +17,7 @@ from scipy.ndimage import distance_transform_edt
 
 from eigenfield.capture.lightfield import LightField, View
 from eigenfield.capture.writers.transforms import transforms_document
+from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.demo.cameras import array_cameras
 from eigenfield.demo.capture import DEMO_MAX_ATLAS_TEXELS, DEMO_TEXELS_PER_PIXEL, Look, bake_look, draw_view
@@ -58,7 +59,13 @@ def draw_clip(folder: Path, rows: int = 5, columns: int = 5, size: int = 320, fr
         wanted = [(path, camera) for path, camera in wanted if not path.exists()]
         if wanted:
             look = look_at(frame / frames)
-            parallel_map(lambda one, look=look: _write(one[0], draw_view(one[1], look)), wanted)
+            parallel_map(lambda one, look=look: write_picture(one[0], draw_view(one[1], look)), wanted)
+    write_timed(folder, names, cameras, frames)
+    return folder
+
+
+def write_timed(folder: Path, names: Sequence[str], cameras: Sequence[Camera], frames: int) -> None:
+    """transforms.json of a clip whose frames lie in the cameras' folders as NNNNNN.png, each with its time."""
     views = tuple(View(name, folder / name / "000000.png", camera) for name, camera in zip(names, cameras, strict=True))
     document = transforms_document(LightField(folder, views, (), "transforms"), folder, None)
     document["fps"] = RATE
@@ -68,7 +75,6 @@ def draw_clip(folder: Path, rows: int = 5, columns: int = 5, size: int = 320, fr
         for frame in range(frames)
     ]
     (folder / TRANSFORMS).write_text(json.dumps(document), encoding="utf-8")
-    return folder
 
 
 def moving_look(side: int) -> Callable[[float], Look]:
@@ -125,7 +131,8 @@ def _texel_places(mesh: Mesh, side: int) -> NDArray[np.float32]:
     return np.ascontiguousarray(places[tuple(nearest)])
 
 
-def _write(path: Path, picture: NDArray[np.uint8]) -> None:
+def write_picture(path: Path, picture: NDArray[np.uint8]) -> None:
+    """A PNG of (H, W, 3) R, G, B, whole or not at all."""
     part = path.with_suffix(".part.png")
     if not cv2.imwrite(str(part), picture[..., ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 3]):
         raise OSError(f"{part} cannot be written")

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from eigenfield.encoding import EncodeOptions as EncodeOptions
     from eigenfield.encoding import Target as Target
     from eigenfield.evaluation import evaluate as evaluate
+    from eigenfield.evaluation import evaluate_clip as evaluate_clip
     from eigenfield.gltf import save as save
     from eigenfield.gltf import validate as validate
     from eigenfield.reconstruction import SurfaceOptions as SurfaceOptions
@@ -81,6 +82,7 @@ _HOME = {  # a room, or a name in a room where that is another
     "calibrate": "calibration",
     "encode": "api",
     "evaluate": "evaluation",
+    "evaluate_clip": "evaluation",
     "export": "viewer.exports",
     "load": "api",
     "open": "capture:open_path",

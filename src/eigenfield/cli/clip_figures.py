@@ -41,7 +41,7 @@ def evaluate_clip_file(
     settings: Mapping[str, Any],
 ) -> None:
     """Measure a clip that was read from `path`, and say what was found."""
-    from eigenfield.capture.opening_footage import open_footage
+    from eigenfield.capture import open_footage
     from eigenfield.evaluation import evaluate_clip
 
     if plots is not None:

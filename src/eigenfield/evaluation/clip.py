@@ -13,7 +13,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from eigenfield.capture import Capture, LightField, match_photographs, with_scene_cameras
+from eigenfield.capture import Capture, LightField, match_photographs, open_footage, with_scene_cameras
 from eigenfield.core.arguments import checked
 from eigenfield.core.clip import Clip, Timeline
 from eigenfield.core.errors import OptionError
@@ -23,7 +23,7 @@ from eigenfield.core.scene import Scene
 from eigenfield.evaluation.flicker import Flicker, StillPixels, border_step, pool_flicker
 from eigenfield.evaluation.image import HIGHER_IS_WORSE, ImageScores, covered_pixels, measure_picture
 from eigenfield.evaluation.session import Session
-from eigenfield.gltf import parts
+from eigenfield.gltf import load_clip, parts
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.rendering import Renderer
 from eigenfield.runtime.parallel import parallel_map
@@ -103,8 +103,8 @@ class ClipSession:
 
 @checked
 def evaluate_clip(
-    clip: Clip,
-    footage: Instants,
+    clip: Clip | str | os.PathLike[str],
+    footage: Instants | str | os.PathLike[str],
     *,
     path: str | os.PathLike[str] | None = None,
     every: int = 1,
@@ -133,6 +133,11 @@ def evaluate_clip(
         OptionError: `every`, `textures` or `settings-unknown`; `time`, the footage ends before the clip.
     """
     started = time.monotonic()
+    if not isinstance(clip, Clip):
+        path = clip if path is None else path
+        clip = load_clip(clip)
+    if isinstance(footage, str | os.PathLike):
+        footage = open_footage(Path(footage))
     session = _start(clip, footage, textures, filter, weights, flip)
     frames, starts = measured_frames(clip, every)
     still = {index: StillPixels() for index in session.views}

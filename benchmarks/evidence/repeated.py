@@ -1,0 +1,40 @@
+"""A still capture as a clip in which nothing moves: its photographs again and again, each time with fresh noise."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from eigenfield.capture import LightField
+from eigenfield.runtime.parallel import parallel_map
+from evidence.moving_light import TRANSFORMS, write_picture, write_timed
+
+SIGMA_LEVELS = 2.0  # grey levels of the noise
+SEED = 20190916
+
+
+def repeat(capture: LightField, folder: Path, frames: int = 60) -> Path:
+    """The clip's folder, made where it is not there yet: `CAMERA/NNNNNN.png` and transforms.json with times.
+
+    Args:
+        capture: Photographs with cameras; lenses are removed.
+        folder: For the clip.
+        frames: How often.
+    """
+    if (folder / TRANSFORMS).exists():
+        return folder
+    names = [Path(name).stem for name in capture.names]
+
+    def write(index: int) -> None:
+        place = folder / names[index]
+        place.mkdir(parents=True, exist_ok=True)
+        levels = capture.photograph(index).pixels * np.float32(255)
+        random = np.random.default_rng([SEED, index])
+        for frame in range(frames):
+            noisy = levels + random.normal(0, SIGMA_LEVELS, levels.shape).astype(np.float32)
+            write_picture(place / f"{frame:06d}.png", np.clip(np.rint(noisy), 0, 255).astype(np.uint8))
+
+    parallel_map(write, range(len(capture)))
+    write_timed(folder, names, capture.cameras, frames)
+    return folder
