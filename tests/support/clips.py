@@ -24,7 +24,7 @@ from eigenfield.core.films import CodedGroup, FilmLayout
 from eigenfield.core.payloads import Affine, Payload
 from eigenfield.core.proxy import Proxy
 from eigenfield.encoding.geometry.coded import coded_cameras, coded_mesh
-from eigenfield.gltf import coded_clip, save
+from eigenfield.gltf import coded_clip, load_clip, save
 from eigenfield.gltf.group import group_bytes
 from support.scenes import bumpy_square, tiny_scene
 
@@ -110,6 +110,13 @@ def shown_texture(textures: NDArray[np.uint16]) -> int:
     """Which of (N, rows, columns) codes is not zero."""
     (index,) = np.flatnonzero((textures > EMPTY_CODE + CONTRAST // 2).mean(axis=(1, 2)) > 0.02)
     return int(index)
+
+
+def read_all(path: Path) -> None:
+    """Decode every frame of a clip's file."""
+    clip = load_clip(path)
+    for time in clip.timeline.times:
+        clip.scene(time)
 
 
 def write(folder: Path) -> None:

@@ -81,8 +81,11 @@ def read_clip_layout(document: Document, findings: Findings) -> ClipLayout | Non
 def check_clip(document: Document, findings: Findings) -> bool:
     """Check a clip as a whole, and decode it frame by frame; whether the file holds one."""
     layout = read_clip_layout(document, findings)
-    if layout is None or None in (layout.cameras, layout.view_plane, layout.triangles, layout.reference, layout.films):
-        return layout is not None
+    if layout is None:
+        return False
+    parts = layout.cameras, layout.view_plane, layout.triangles, layout.reference, layout.films, layout.groups
+    if any(part is None for part in parts):
+        return True
     groups = _groups_of(layout, document.glb.source)
     for index in range(len(groups.stored)):
         with findings.part():
