@@ -45,8 +45,7 @@ class StoredGroup:
 
     def name_in_errors(self) -> contextlib.AbstractContextManager[None]:
         """Put the name of its file into every FormatError."""
-        stored = isinstance(self.data, StoredBytes)
-        return name_file_in_errors(self.data.path) if stored else contextlib.nullcontext()
+        return name_file_in_errors(self.data.path) if isinstance(self.data, StoredBytes) else contextlib.nullcontext()
 
 
 def coded_clip(
