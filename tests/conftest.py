@@ -21,17 +21,19 @@ for number in STOP_SIGNALS:
 @pytest.fixture(scope="session", autouse=True)
 def every_file_keeps_to_the_schema():
     """Whatever a test writes as a .glb has its JSON checked; files that a test damages afterwards are not."""
-    from eigenfield.gltf import write
+    from eigenfield.gltf import write, write_clip
     from support.schema import check_file
 
-    check_readable = write.check_readable
+    def checking(check_readable):
+        def checked(text: bytes, binary: bytes, *groups: int) -> None:
+            check_readable(text, binary, *groups)
+            check_file(text, binary)
 
-    def checked(text: bytes, binary: bytes) -> None:
-        check_readable(text, binary)
-        check_file(text, binary)
+        return checked
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(write, "check_readable", checked)
+        for module in (write, write_clip):
+            patch.setattr(module, "check_readable", checking(module.check_readable))
         yield
 
 

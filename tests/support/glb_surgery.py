@@ -33,21 +33,32 @@ def split(data: bytes) -> tuple[dict[str, Any], bytes]:
 
 def split_packed(data: bytes) -> tuple[dict[str, Any], bytes]:
     """JSON and binary chunk as they are."""
-    length = struct.unpack_from("<I", data, 12)[0]
-    return json.loads(data[20 : 20 + length]), data[20 + length + 8 :]
+    first = binary_start(data)
+    return json.loads(data[20 : first - 8]), data[first : first + struct.unpack_from("<I", data, first - 8)[0]]
 
 
-def join(gltf: Any, binary: bytes) -> bytes:
-    """A GLB of any JSON value (NaN too) and binary chunk."""
-    return join_text(json.dumps(gltf).encode(), binary)
+def binary_start(data: bytes) -> int:
+    """The first byte of the binary chunk's data."""
+    return 20 + struct.unpack_from("<I", data, 12)[0] + 8
 
 
-def join_text(text: bytes, binary: bytes) -> bytes:
+def behind(data: bytes) -> bytes:
+    """The chunks behind the binary one."""
+    first = binary_start(data)
+    return data[first + struct.unpack_from("<I", data, first - 8)[0] :]
+
+
+def join(gltf: Any, binary: bytes, behind: bytes = b"") -> bytes:
+    """A GLB of any JSON value (NaN too), binary chunk and chunks behind it."""
+    return join_text(json.dumps(gltf).encode(), binary, behind)
+
+
+def join_text(text: bytes, binary: bytes, behind: bytes = b"") -> bytes:
     text += b" " * (-len(text) % 4)
     binary += bytes(-len(binary) % 4)
-    size = 12 + 8 + len(text) + 8 + len(binary)
+    size = 12 + 8 + len(text) + 8 + len(binary) + len(behind)
     chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary
-    return struct.pack("<4sII", b"glTF", 2, size) + chunks
+    return struct.pack("<4sII", b"glTF", 2, size) + chunks + behind
 
 
 def changed(data: bytes, change: Callable[[dict[str, Any], dict[str, Any], bytearray], None]) -> bytes:
@@ -55,7 +66,7 @@ def changed(data: bytes, change: Callable[[dict[str, Any], dict[str, Any], bytea
     gltf, binary = split(data)
     body = bytearray(binary)
     change(gltf, gltf["extensions"][EXTENSION], body)
-    return join(gltf, bytes(body))
+    return join(gltf, bytes(body), behind(data))
 
 
 def view_end(gltf: dict[str, Any], index: int) -> int:
@@ -70,13 +81,13 @@ def view_of(gltf: dict[str, Any], accessor: int) -> tuple[int, int]:
     return view["byteOffset"], view["byteOffset"] + view["byteLength"]
 
 
-def outcome(path: Path, data: bytes) -> str | None:
-    """The code with which `load` refuses `data`, None if it takes it; `validate` must agree, no other error escape."""
+def outcome(path: Path, data: bytes, read: Callable[[Path], object] = scene_format.load) -> str | None:
+    """The code with which `read` refuses `data`, None if it takes it; `validate` must agree, no other error escape."""
     path.write_bytes(data)
     findings = scene_format.validate(path)
     errors = [finding for finding in findings if finding.severity == "error"]
     try:
-        scene_format.load(path)
+        read(path)
     except FormatError as error:
         assert error.path == str(path) and error.where and str(error).startswith(str(path))
         assert "\n" not in str(error)

@@ -40,6 +40,7 @@ MAX_GROUP_FRAMES = 1_024
 MAX_GROUP = 2**30  # bytes
 MAX_GROUP_JSON = 2**22  # bytes of a group's head, inflated
 MAX_RATE = 1_000  # frames a second, and at least its reciprocal
+MAX_RATE_TERM = 2**31 - 1  # of the fraction that a rate is
 MAX_TIME = 10**9  # seconds
 MAX_FILMS = 4
 MAX_FILM_SIDE = 8_192

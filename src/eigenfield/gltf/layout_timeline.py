@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -17,7 +18,7 @@ from eigenfield.gltf.layout_planes import read_size
 from eigenfield.gltf.strict_json import Value, quote
 
 GROUP_ALIGNMENT = 4  # of a group's first byte
-DIGEST_CHARACTERS = 64  # of SHA-256, hexadecimal
+_DIGEST = re.compile("[0-9a-f]{64}")  # SHA-256
 
 
 @dataclass(frozen=True)
@@ -92,7 +93,7 @@ def _read_part(entry: Value, channels: int, sizes: list[Size], taken: list[NDArr
 
 def read_timeline(entry: Value) -> Timeline:
     """When frames are shown. FormatError `timeline-rate`, `json-*`."""
-    numerator, denominator = (item.integer(1, 2**31) for item in entry["rate"].items(2, 2))
+    numerator, denominator = (item.integer(1, limits.MAX_RATE_TERM) for item in entry["rate"].items(2, 2))
     rate = Fraction(numerator, denominator)
     if not 1 / limits.MAX_RATE <= rate <= limits.MAX_RATE:
         entry["rate"].fail(
@@ -121,8 +122,10 @@ def read_groups(entry: Value, frames: int, available: int) -> tuple[GroupEntry, 
             item["frames"].integer(1, limits.MAX_GROUP_FRAMES),
             item["offset"].integer(0, limits.MAX_FILE),
             item["length"].integer(1, limits.MAX_GROUP),
-            item["sha256"].text(DIGEST_CHARACTERS),
+            item["sha256"].text(),
         )
+        if not _DIGEST.fullmatch(group.digest):
+            item["sha256"].fail("json-value", "64 hexadecimal digits expected")
         if group.offset < end or group.offset % GROUP_ALIGNMENT:
             message = f"begins at byte {group.offset}; a multiple of {GROUP_ALIGNMENT} from {end} on is expected"
             item.fail("group-range", message)

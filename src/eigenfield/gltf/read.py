@@ -6,12 +6,11 @@ import contextlib
 import logging
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from eigenfield.coding import limits
-from eigenfield.coding.pictures.pictures_8bit import check_preview
 from eigenfield.coding.pictures.quantise import mean_values, spread_precision
 from eigenfield.core.appearance import Appearance, Basis, Plane
 from eigenfield.core.arguments import checked
@@ -30,15 +29,14 @@ from eigenfield.core.payloads import (
 )
 from eigenfield.core.proxy import Proxy, Sheets
 from eigenfield.core.scene import Scene
+from eigenfield.gltf.check_root import check_other_viewers
 from eigenfield.gltf.document import Document
 from eigenfield.gltf.findings import Finding, Findings
-from eigenfield.gltf.layout import FileLayout, open_document, read_layout
-from eigenfield.gltf.layout_geometry import read_mesh
+from eigenfield.gltf.layout import FileLayout, find_extension, is_clip, open_document, read_layout
 from eigenfield.gltf.layout_planes import BasisLayout, PlaneLayout, read_image
 from eigenfield.gltf.layout_residual import residual_frames
-from eigenfield.gltf.read_clip import holds_clip, load_clip, read_clip
-from eigenfield.gltf.source import ByteSource, name_file_in_errors, open_source, read_file
-from eigenfield.gltf.streams import streams
+from eigenfield.gltf.read_clip import check_clip, holds_clip, load_clip, read_clip, stores_clip
+from eigenfield.gltf.source import ByteSource, HeldBytes, name_file_in_errors, open_source, read_file
 from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger("eigenfield.format")
@@ -79,9 +77,7 @@ def load(path: str | os.PathLike[str], time: float | None = None) -> Scene:
 
 def load_any(path: str | os.PathLike[str]) -> Scene | Clip:
     """What a file holds, as `load` or `load_clip` read it."""
-    with name_file_in_errors(path), open_source(Path(path)) as source:
-        clip = holds_clip(source)
-    return load_clip(path) if clip else load(path)
+    return load_clip(path) if stores_clip(path) else load(path)
 
 
 def as_scene(scene: Scene | str | os.PathLike[str]) -> Scene:
@@ -96,9 +92,13 @@ def read_scene(data: bytes | ByteSource) -> Scene:
 
 def outline(path: str | os.PathLike[str]) -> tuple[Scene, bytes]:
     """A scene without its planes and sheets, and the bytes of its file: checked as `load` does, but no picture is
-    decoded."""
+    decoded. Of a clip it is the first frame."""
     with name_file_in_errors(path):
         data = read_file(Path(path))
+        if holds_clip(HeldBytes(data)):
+            clip = read_clip(HeldBytes(data))
+            scene = clip.scene(clip.timeline.first)
+            return replace(scene, appearance=Appearance((), scene.appearance.to_rgb), scores=clip.scores), data
         return _scene_of(data, pictures=False), data
 
 
@@ -197,21 +197,29 @@ def _decode_basis(basis: BasisLayout, channels: int) -> Coded[Basis]:
 def validate(path: str | os.PathLike[str]) -> list[Finding]:
     """Every finding in a file, in the order of the file's parts; an empty list for a file as specified.
 
-    It reads and decodes everything that `load` would, one picture at a time, and checks what `load` does not need: the
-    picture and the nodes for other viewers, buffer views without use. The content of a file never raises.
+    It reads and decodes everything that `load` would, one picture at a time, of a clip each frame of each group. It
+    checks what `load` does not need, too: the picture and the nodes for other viewers, buffer views without use. The
+    content of a file never raises.
     """
     findings = Findings(strict=False)
     with findings.part(), name_file_in_errors(path), open_source(Path(path)) as source:
         document = open_document(source)
-        layout = read_layout(document, findings)
-        if layout is not None:
-            _check_pictures(layout, findings)
-            _check_residual(layout, findings)
-            if document.root.has("meshes"):
-                _check_preview(document, findings)
-                _check_bounds(document, layout, findings)
-            _check_use(document, findings)
+        if is_clip(find_extension(document)):
+            found = check_clip(document, findings)
+        else:
+            found = _check_scene(document, findings)
+        if found:
+            check_other_viewers(document, findings)
     return findings.found
+
+
+def _check_scene(document: Document, findings: Findings) -> bool:
+    """Check a scene as a whole; whether the file holds one."""
+    layout = read_layout(document, findings)
+    if layout is not None:
+        _check_pictures(layout, findings)
+        _check_residual(layout, findings)
+    return layout is not None
 
 
 def _check_pictures(layout: FileLayout, findings: Findings) -> None:
@@ -231,53 +239,3 @@ def _check_residual(layout: FileLayout, findings: Findings) -> None:
         with findings.part():
             for _ in residual_frames(layout.residual):
                 pass
-
-
-def _check_preview(document: Document, findings: Findings) -> None:
-    """Check the preview, which viewers without our extension show: images[0] in the proxy's unlit material."""
-    with findings.part():
-        image = read_image(document, 3)
-        if image.mime not in ("image/png", "image/jpeg"):
-            findings.note("warning", "preview-type", image.where, f"{image.mime} is not glTF's PNG or JPEG")
-        elif image.width * image.height * 3 <= limits.MAX_DECODED:
-            check_preview(image.data, image.mime, image.where)
-    with findings.part():
-        primitive = document.root["meshes"].at(0)["primitives"].at(0)
-        material = document.root["materials"].at(primitive["material"].integer(0, 2**31))
-        texture = material["pbrMetallicRoughness"]["baseColorTexture"]["index"].integer(0, 2**31)
-        source = document.root["textures"].at(texture)["source"]
-        if source.integer(0, 2**31) != 0:
-            findings.note("warning", "preview-material", source.where, "the proxy's material does not show images[0]")
-
-
-def _check_bounds(document: Document, layout: FileLayout, findings: Findings) -> None:
-    """glTF wants the bounds of POSITION to be exact: viewers place their camera by them."""
-    if layout.mesh is None:
-        return
-    with findings.part():
-        position = document.root["meshes"].at(0)["primitives"].at(0)["attributes"]["POSITION"]
-        accessor = document.root["accessors"].at(position.integer(0, 2**31))
-        shown = read_mesh(document).vertices  # of a coded mesh the coarse one
-        for key, found in (("min", shown.min(axis=0)), ("max", shown.max(axis=0))):
-            stated = np.array([item.number() for item in accessor[key].items(3, 3)], np.float32)
-            if not np.array_equal(stated, found):
-                findings.note("warning", "mesh-bounds", f"{accessor.where}/{key}", "is not the bound of the vertices")
-
-
-def _check_use(document: Document, findings: Findings) -> None:
-    """Buffer views that nothing names: bytes without use."""
-    extension = document.root["extensions"][limits.EXTENSION]
-    used = {reference.value for _, reference in streams(extension) if isinstance(reference.value, int)}
-    todo = [document.glb.json]
-    while todo:
-        item = todo.pop()
-        if isinstance(item, dict):
-            if isinstance(item.get("bufferView"), int):
-                used.add(item["bufferView"])
-            todo.extend(item.values())
-        elif isinstance(item, list):
-            todo.extend(item)
-    with findings.part():
-        for view in document.root["bufferViews"].items(limits.MAX_VIEWS):
-            if int(view.where.rpartition("/")[2]) not in used:
-                findings.note("information", "view-unused", view.where, "no one names these bytes")

@@ -12,10 +12,11 @@ from eigenfield.core.clip import Clip, Timeline
 from eigenfield.core.errors import FormatError
 from eigenfield.core.films import FilmLayout
 from eigenfield.core.payloads import Payloads, cameras_key
-from eigenfield.gltf.clips import CodedGroups, StoredGroup
+from eigenfield.gltf.clips import CodedGroups, StoredGroup, group_place
 from eigenfield.gltf.container import GROUPS_CHUNK
 from eigenfield.gltf.document import Document
 from eigenfield.gltf.findings import Findings
+from eigenfield.gltf.group import GroupHead, read_head
 from eigenfield.gltf.layout import (
     Surroundings,
     check_container,
@@ -78,6 +79,40 @@ def read_clip_layout(document: Document, findings: Findings) -> ClipLayout | Non
     return ClipLayout(**vars(around), timeline=timeline, films=films, groups=groups, first=chunk.first)
 
 
+def check_clip(document: Document, findings: Findings) -> bool:
+    """Check a clip as a whole, and decode it frame by frame; whether the file holds one."""
+    layout = read_clip_layout(document, findings)
+    if layout is None:
+        return False
+    parts = layout.cameras, layout.view_plane, layout.triangles, layout.reference, layout.films, layout.groups
+    if any(part is None for part in parts):
+        return True
+    groups = _groups_of(layout, document.glb.source)
+    for index in range(len(groups.stored)):
+        with findings.part():
+            for _ in groups.group(index).frames:
+                pass
+        if any(finding.code == "truncated" for finding in findings.found):
+            break  # nor are those behind it there
+    return True
+
+
+def read_heads(layout: ClipLayout, source: ByteSource) -> list[GroupHead]:
+    """The heads of the groups that are whole in a file. FormatError `group-damaged`; `group-missing`: none is whole."""
+    assert layout.films is not None and layout.groups is not None
+    heads = []
+    for index, entry in enumerate(layout.groups):
+        first = layout.first + entry.offset
+        group = ByteRange(source, first, first + entry.length)
+        if group.last > source.size:
+            break
+        heads.append(read_head(group, layout.films, group_place(index)))
+    if not heads:
+        remedy = "copy or download it again"
+        raise FormatError("group-missing", "the file ends within its first group", where=group_place(0), remedy=remedy)
+    return heads
+
+
 def clip_layout_of(data: ByteSource) -> tuple[Document, ClipLayout]:
     """Container and checked layout of a clip's file. FormatError."""
     document = open_document(data)
@@ -108,14 +143,27 @@ def holds_clip(data: ByteSource) -> bool:
     return is_clip(find_extension(open_document(data)))
 
 
+def stores_clip(path: str | os.PathLike[str]) -> bool:
+    """As `holds_clip`, of a file."""
+    with name_file_in_errors(path), open_source(Path(path)) as source:
+        return holds_clip(source)
+
+
 def read_clip(data: ByteSource) -> Clip:
     """The clip in a file of these bytes, which are read as long as it is used."""
     return _clip_of(clip_layout_of(data)[1], data)
 
 
 def _clip_of(layout: ClipLayout, place: ByteSource | Path) -> Clip:
-    assert layout.timeline is not None and layout.films is not None and layout.cameras is not None
+    assert layout.timeline is not None
+    groups = _groups_of(layout, place)
+    return Clip(layout.rig, layout.timeline, groups, layout.settings, layout.scores, layout.generator)
+
+
+def _groups_of(layout: ClipLayout, place: ByteSource | Path) -> CodedGroups:
+    """The groups, none of which is read. place: the file, or its path where it is opened for each read."""
     given = layout.cameras
+    assert layout.films is not None and given is not None
     payloads = Payloads() if given.payload is None else Payloads({cameras_key(given.cameras): [given.payload]})
     stored = []
     for entry in layout.groups or ():
@@ -123,5 +171,4 @@ def _clip_of(layout: ClipLayout, place: ByteSource | Path) -> Clip:
         last = first + entry.length
         data = StoredBytes(place, first, last) if isinstance(place, Path) else ByteRange(place, first, last)
         stored.append(StoredGroup(data, entry.frames, entry.digest))
-    groups = CodedGroups(layout.films, stored, layout.rig, layout.to_rgb, payloads)
-    return Clip(layout.rig, layout.timeline, groups, layout.settings, layout.scores, layout.generator)
+    return CodedGroups(layout.films, stored, layout.rig, layout.to_rgb, payloads)

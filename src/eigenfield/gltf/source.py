@@ -139,7 +139,7 @@ def name_file_in_errors(path: str | os.PathLike[str]) -> Iterator[None]:
 class StoredBytes:
     """The bytes [first, last) of a file on disk, which is open only while they are read.
 
-    Reading raises FormatError as `open_source` does; `truncated`: the file ends before them.
+    Reading raises FormatError as `open_source` does.
     """
 
     path: Path
@@ -153,8 +153,6 @@ class StoredBytes:
     def read(self, first: int, last: int) -> memoryview:
         """As of `ByteSource`."""
         with name_file_in_errors(self.path), open_source(self.path) as source:
-            if source.size < self.last:
-                raise truncation_error(source.size, self.last)
             return source.read(self.first + first, min(self.first + last, self.last))
 
 

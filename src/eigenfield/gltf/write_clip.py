@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate
 from pathlib import Path
@@ -77,7 +77,7 @@ def clip_blocks(clip: Clip, path: Path | None) -> Iterable[bytes | memoryview]:
         message = f"{len(text)} bytes of JSON, {limits.MAX_JSON} are allowed"
         raise OutputError("scene-limit", message, path=path, remedy="store less in it")
     blocks = glb_blocks(text, binary, path, chunk)
-    _check_readable(text, binary, chunk.offsets[-1])
+    check_readable(text, binary, chunk.offsets[-1])
     return blocks
 
 
@@ -85,7 +85,7 @@ def _aligned(size: int) -> int:
     return -(-size // GROUP_ALIGNMENT) * GROUP_ALIGNMENT
 
 
-def _check_readable(text: bytes, binary: bytes, length: int) -> None:
+def check_readable(text: bytes, binary: bytes, length: int) -> None:
     """Check that `load_clip` takes what is written. FormatError, that of `load_clip`."""
     source = HeldBytes(binary)
     chunks = {BINARY_CHUNK: ByteRange(source, 0, len(binary)), GROUPS_CHUNK: ByteRange(source, 0, length)}
@@ -101,20 +101,29 @@ def _head(clip: Clip, groups: CodedGroups, scene: Scene, chunk: _GroupsChunk) ->
     drawn = {} if shown is None else write_drawn(scene, *shown, buffer, True)
     cameras = write_cameras(scene, buffer, poses)
     view_plane = write_view_plane(scene, buffer, poses is not None)
-    needs = {
-        FILM_CODEC, TIMELINE, *(CODECS[codec].needs for _, codec in buffer.codecs),
-        *(name for name, needed in (
-            ("namePattern", "pattern" in cameras), ("noFallback", not drawn), ("toRGB", groups.to_rgb is not None),
-        ) if needed),
-    }  # fmt: skip
+    needs = _needs(groups, {codec for _, codec in buffer.codecs}, cameras, bool(drawn))
     extension = {
-        "needs": sorted(needs),
+        "needs": needs,
         "planes": [_plane(plane) for plane in groups.layout.planes],
         **write_rest(scene, cameras, view_plane),
         TIMELINE: _timeline(clip, groups, chunk),
     }
     version = max((FEATURES[need] for need in needs), key=minor)
     return json_bytes(write_root(scene, version, extension, drawn, buffer)), b"".join(buffer.parts)
+
+
+def _needs(groups: CodedGroups, codecs: Iterable[str], cameras: Mapping[str, Any], fallback: bool) -> list[str]:
+    """The features that a reader must know to draw this clip; codecs: of streams beside those of groups."""
+    coded = groups.coded(0)
+    named = {FILM_CODEC, coded.mesh.codec, *(weights.codec for plane in coded.weights for weights in plane), *codecs}
+    found = {
+        TIMELINE: True,
+        "namePattern": "pattern" in cameras,
+        "noFallback": not fallback,
+        "toRGB": groups.to_rgb is not None,
+    }
+    own = {CODECS[codec].needs for codec in named}
+    return sorted({name for name, needed in found.items() if needed} | {need for need in own if need is not None})
 
 
 def _plane(plane: FilmPlane) -> dict[str, Any]:

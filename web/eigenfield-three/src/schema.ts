@@ -25,6 +25,8 @@ export interface SceneJson {
   reference: number;
   /** Photographs of the encoded cameras minus what is drawn of them. */
   residual?: ResidualJson;
+  /** When the frames of a clip are shown, the films that their textures lie in, and their groups. */
+  timeline?: TimelineJson;
   /** How the scene was made. Free form, but for the keys named here. */
   settings?: JsonObject;
   /** What the scene's pictures were measured at. Free form. */
@@ -52,6 +54,7 @@ export type Feature =
   | "codedNames"
   | "codedTriangles"
   | "codedWeights"
+  | "film-1"
   | "mesh-2"
   | "namePattern"
   | "noFallback"
@@ -61,6 +64,7 @@ export type Feature =
   | "sharedPicture"
   | "sheets"
   | "stacks"
+  | "timeline"
   | "toRGB";
 
 /** Codecs of a mesh. */
@@ -80,6 +84,9 @@ export type WeightsCodec = "weights-1";
 
 /** Codecs of pictures. */
 export type PictureCodec = "av1-10bit-1" | "av1-10bit-2" | "avif" | "webp" | "png" | "jpeg";
+
+/** Codecs of films. */
+export type FilmCodec = "film-1";
 
 /** Codecs of a residual. */
 export type VideoCodec = "video-1";
@@ -118,7 +125,7 @@ export interface OpacityJson {
 export interface PlaneJson {
   /** Channels of the mean and of each texture. */
   channels: number;
-  /** The picture of a mean. */
+  /** The picture of a mean, or where it lies in a film. */
   mean?: MeanJson;
   /** Summed onto the mean, one after the other. */
   bases: BasisJson[];
@@ -128,12 +135,16 @@ export interface PlaneJson {
 export interface BasisJson {
   /** Width and height in texels. */
   size: [number, number];
+  /** Number of a film. */
+  film?: number;
+  /** Column and row in the film of each channel of each texture, by rank. */
+  at?: ([number, number])[];
   /** Texels of the whole atlas at this basis's density. */
   grid?: [number, number];
   /** Column and row of the grid at which the textures begin. */
   corner?: [number, number];
   /** Pictures of eigen textures, by rank. */
-  textures: TextureJson[];
+  textures?: TextureJson[];
   /** What each entry of `textures` says unless it says otherwise. */
   picture?: TextureJson;
   /** Accessor: one number for each encoded camera and texture, row by row. */
@@ -168,14 +179,18 @@ export interface TextureJson {
   zero?: number[];
 }
 
-/** The picture of a mean. */
+/** The picture of a mean, or where it lies in a film. */
 export interface MeanJson {
   /** Index of a buffer view. */
-  bufferView: number;
+  bufferView?: number;
+  /** Number of a film. */
+  film?: number;
+  /** Column and row in the film of each channel of each texture, by rank. */
+  at?: ([number, number])[];
   /** Codecs of pictures. */
   codec?: PictureCodec;
   /** Type of a picture. */
-  mimeType: MimeType;
+  mimeType?: MimeType;
   /** Width and height in texels. */
   size: [number, number];
   /** Bits of a sample. */
@@ -309,4 +324,68 @@ export interface ResidualJson {
   scale: [number, number];
   /** Whether the surface is drawn with smooth edges. */
   smooth?: boolean;
+}
+
+/** When the frames of a clip are shown, the films that their textures lie in, and their groups. */
+export interface TimelineJson {
+  /** Frames a second, a fraction of two whole numbers. */
+  rate: [number, number];
+  /** When the first frame is shown, in seconds. */
+  first?: number;
+  /** Frames of all groups. */
+  frames: number;
+  /** Films, which are the same in all groups. */
+  films: FilmJson[];
+  /** Groups in the order of time. */
+  groups: GroupJson[];
+}
+
+/** A grey video in which textures lie side by side. */
+export interface FilmJson {
+  /** Codecs of films. */
+  codec: FilmCodec;
+  /** Width and height in pixels. */
+  size: [number, number];
+}
+
+/** Frames that are decoded by themselves, and their bytes in the chunk of groups. */
+export interface GroupJson {
+  /** Frames in it. */
+  frames: number;
+  /** Its first byte in the chunk. */
+  offset: number;
+  /** Its bytes. */
+  length: number;
+  /** Digest of its bytes. */
+  sha256: string;
+}
+
+/** The JSON at the beginning of a group: lengths of its streams, and what its codes stand for. */
+export interface GroupHeadJson {
+  /** The proxy of a group, coded. */
+  mesh: GroupMeshJson;
+  /** Bytes of the coded weights of each basis of each plane. */
+  weights: number[][];
+  /** What the codes of the mean of each plane stand for. */
+  means: AffineJson[];
+  /** What the codes of each basis of each plane stand for. */
+  bases: AffineJson[][];
+  /** For each frame the bytes of each film's unit. */
+  frames: number[][];
+}
+
+/** The proxy of a group, coded. */
+export interface GroupMeshJson {
+  /** Codecs of a mesh. */
+  codec: MeshCodec;
+  /** Bytes of a stream. */
+  length: number;
+}
+
+/** value = (code - zero) * scale. */
+export interface AffineJson {
+  /** One number for each channel of each texture, or one for each channel. */
+  scale: number[];
+  /** One number for each channel of each texture, or one for each channel. */
+  zero: number[];
 }
