@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from eigenfield.batches import BatchResult as BatchResult
     from eigenfield.batches import batch as batch
     from eigenfield.calibration import calibrate as calibrate
+    from eigenfield.capture import Footage as Footage
     from eigenfield.capture import LightField as LightField
     from eigenfield.capture import PhotoSet as PhotoSet
     from eigenfield.capture import opening as _opening
@@ -52,7 +53,7 @@ if TYPE_CHECKING:
     from eigenfield.viewer import view as view
     from eigenfield.viewer.exports import export as export
 
-    open = _opening.open_any
+    open = _opening.open_path
 
 _HOME = {  # a room, or a name in a room where that is another
     "BatchResult": "batches",
@@ -61,6 +62,7 @@ _HOME = {  # a room, or a name in a room where that is another
     "EigenfieldError": "core.errors",
     "EncodeOptions": "encoding",
     "EncodedScene": "api",
+    "Footage": "capture",
     "FormatError": "core.errors",
     "LightField": "capture",
     "Mesh": "core.mesh",
@@ -81,7 +83,7 @@ _HOME = {  # a room, or a name in a room where that is another
     "evaluate": "evaluation",
     "export": "viewer.exports",
     "load": "api",
-    "open": "capture:open_any",
+    "open": "capture:open_path",
     "reconstruct": "reconstruction.whole",
     "render": "rendering",
     "render_many": "rendering",

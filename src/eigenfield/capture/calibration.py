@@ -104,6 +104,7 @@ class Entry:
         bounds: Nearest and farthest depth of the scene from this camera, where the calibration states them.
         stored: The program that wrote the entry works on pixels as they are stored. Otherwise the camera is of the
             photograph that its EXIF orientation turns upright. Sizes that fit one of the two alone decide first.
+        time: When the photograph was taken, seconds; None where the calibration does not state it.
     """
 
     file: str
@@ -115,6 +116,7 @@ class Entry:
     mask: str | None = None
     bounds: tuple[float, float] | None = None
     stored: bool = False
+    time: float | None = None
 
     def camera(self, width: int, height: int, path: Path) -> Camera:
         """The camera at the calibration's own size; CaptureError naming `path`, the calibration, if it cannot be."""
@@ -144,6 +146,7 @@ class Calibration:
     Attributes:
         entries: One for each camera that can be used.
         errors: One for each entry that cannot be used.
+        rate: Frames a second of entries that state a time; None where the calibration does not state it.
     """
 
     path: Path
@@ -151,6 +154,7 @@ class Calibration:
     entries: tuple[Entry, ...]
     errors: tuple[CaptureError, ...] = ()
     problems: tuple[str, ...] = ()
+    rate: float | None = None
 
 
 def read_each(read: Callable[[T], Entry], items: Iterable[T]) -> tuple[tuple[Entry, ...], tuple[CaptureError, ...]]:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.capture.layout import GridLayout
-from eigenfield.capture.photographs.decoded import PhotographSource, decode_with_mask, size_on_disk
+from eigenfield.capture.photographs.decoded import PhotographSource, PixelSource, decode_with_mask, size_on_disk
 from eigenfield.capture.photographs.kinds import is_linear
 from eigenfield.capture.photographs.lens import Lens, remove_lens
 from eigenfield.capture.photographs.read import read_header
@@ -73,6 +73,7 @@ class View:
     bounds: tuple[float, float] | None = None
     exposure: float | None = None
     reduction: int = 1
+    picture: PixelSource | None = None
 
     __repr__ = brief_repr
 

@@ -30,12 +30,21 @@ CORNER_MAX_PIXELS, CORNER_MAX_FRACTION = 1.5, 0.02
 PINHOLE_MAX_ANGLE_DEGREES = 170.0  # of view, without a fisheye lens
 
 
-def pair_photographs(read: Calibration, root: Path, *, apart: bool, masks: Path | None, strict: bool) -> LightField:
+def pair_photographs(
+    read: Calibration,
+    root: Path,
+    *,
+    apart: bool,
+    masks: Path | None,
+    strict: bool,
+    fewest: int = LIGHT_FIELD_MIN_VIEWS,
+) -> LightField:
     """The light field of a calibration with the photographs below `root`.
 
     Args:
         apart: The calibration was named apart from the photographs (`PhotographFinder`).
         masks: A folder of masks; None for none.
+        fewest: Photographs that are needed.
 
     Raises:
         CaptureError: As `open_capture` does.
@@ -51,7 +60,7 @@ def pair_photographs(read: Calibration, root: Path, *, apart: bool, masks: Path 
     errors += bad
     views, missing = with_masks(views, masks, root, strict)
     # a camera of a model that is not read costs its own views alone, as long as others make a light field
-    grave = [error for error in errors if error.code != "camera-model" or len(views) < LIGHT_FIELD_MIN_VIEWS]
+    grave = [error for error in errors if error.code != "camera-model" or len(views) < fewest]
     if strict and grave:
         raise grave[0]
     copies = find_duplicates([view.path for view in views])
@@ -64,11 +73,10 @@ def pair_photographs(read: Calibration, root: Path, *, apart: bool, masks: Path 
         *missing,
         *map(str, errors),
     ]
-    if strict and len(views) < LIGHT_FIELD_MIN_VIEWS:
+    if strict and len(views) < fewest:
         raise CaptureError(
             "too-few",
-            f"{len(views)} photographs with a camera, of {len(read.entries)} calibration entries; "
-            f"{LIGHT_FIELD_MIN_VIEWS} are needed",
+            f"{len(views)} photographs with a camera, of {len(read.entries)} calibration entries; {fewest} are needed",
             path=root,
             remedy="check that the photographs lie where the calibration says, or name it with --calibration",
         )

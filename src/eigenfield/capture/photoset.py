@@ -8,7 +8,7 @@ from pathlib import Path
 
 from eigenfield.capture.layout import GridLayout
 from eigenfield.capture.lightfield import LightField, StillCapture, View
-from eigenfield.capture.photographs.decoded import PhotographSource, decode_with_mask
+from eigenfield.capture.photographs.decoded import PhotographSource, PixelSource, decode_with_mask
 from eigenfield.capture.photographs.kinds import is_linear
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.core.brief import brief_repr
@@ -34,6 +34,7 @@ class Shot:
     upright: bool = True
     exposure: float | None = None
     reduction: int = 1
+    picture: PixelSource | None = None
 
     @staticmethod
     def of(view: View) -> Shot:
@@ -42,6 +43,7 @@ class Shot:
         return Shot(
             view.name, view.path, camera.width, camera.height,
             mask=view.mask, upright=view.upright, exposure=view.exposure, reduction=view.reduction,
+            picture=view.picture,
         )  # fmt: skip
 
     @property
@@ -135,6 +137,7 @@ class PhotoSet(StillCapture):
                 shot.upright,
                 exposure=shot.exposure,
                 reduction=shot.reduction,
+                picture=shot.picture,
             )
             for shot, camera, lens in zip(self.shots, cameras, lenses, strict=True)
         )

@@ -289,7 +289,8 @@ def _next_commands(report: dict[str, Any], capture: Path, place: OpenOptions, pr
     given: dict[str, Any] = {**vars(replace(place, also=None)), "grid": grid, "strict": None, "proxy": proxy}
     said = [
         f"--{name.replace('_', '-')} {shell_word(value) if isinstance(value, Path) else shlex.quote(str(value))}"
-        for name, value in given.items()
+        for name, values in given.items()
+        for value in (values if isinstance(values, tuple) else (values,))
         if value is not None
     ]
     folders = [capture, *map(Path, place.also or ())]

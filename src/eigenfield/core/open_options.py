@@ -10,6 +10,8 @@ from typing import ClassVar
 from eigenfield.core.errors import OptionError
 from eigenfield.core.fields import Options, document_options, option
 
+RATE_MAX = 1000  # frames a second
+
 
 @document_options
 @dataclass(frozen=True, kw_only=True)
@@ -42,6 +44,18 @@ class OpenOptions(Options):
     walk_frames: int | None = option(
         "Frames to take of the video of a walk.  [default: by how far the camera goes]", metavar="N"
     )
+    clip: str | None = option(
+        "Read footage: frames FIRST:END[:STEP] of videos or of folders of pictures, in frames (30:90) or seconds "
+        "(1s:2.5s); alone, all that the cameras have in common.",
+        metavar="A:B[:STEP]",
+        bare=":",
+    )
+    offset: Sequence[str] = option(
+        "Footage: the camera NAME films so many FRAMES before the others begin; once for each camera.",
+        (),
+        metavar="NAME=FRAMES",
+    )
+    rate: float | None = option("Footage: frames a second; for pictures, which do not state it.", metavar="FPS")
     also: Sequence[str | os.PathLike[str]] | None = option(
         "Further folders with photographs of the same capture, which has no calibration then.", offered=False
     )
@@ -58,5 +72,8 @@ class OpenOptions(Options):
         self.check_types()
         if self.grid is not None and min(self.grid) < 1:
             raise OptionError("grid-unknown", f"{self.grid} is no grid", remedy="say rows and columns, both at least 1")
+        if self.rate is not None and not 0 < self.rate <= RATE_MAX:
+            raise OptionError("rate-unknown", f"--rate {self.rate:g} is none", remedy=f"say up to {RATE_MAX}")
+        object.__setattr__(self, "offset", tuple(self.offset))
         as_tuple = None if self.grid is None else (int(self.grid[0]), int(self.grid[1]))
         object.__setattr__(self, "grid", as_tuple)

@@ -14,6 +14,13 @@ from eigenfield.capture.photographs.read import decode, decode_mask
 from eigenfield.core.errors import CaptureError
 
 
+class PixelSource(Protocol):
+    """Pixels that are not simply those of a file: of a film, or of a frame that stands in for another."""
+
+    def decode(self) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
+        """(H, W, 3) sRGB-coded pixels of 0..1, and (H, W) how far they count; None where all do."""
+
+
 class PhotographSource(Protocol):
     """What a photograph is read from, whether or not its camera is known: a `View` or a `Shot`.
 
@@ -25,6 +32,7 @@ class PhotographSource(Protocol):
         upright: Whether the photograph's EXIF orientation is applied on reading.
         exposure: Factor of linear values before the sRGB curve; None where the file's values are coded.
         reduction: A pixel is the mean of this many by this many pixels of the file.
+        picture: What gives the pixels; None: the file.
     """
 
     @property
@@ -41,6 +49,8 @@ class PhotographSource(Protocol):
     def exposure(self) -> float | None: ...
     @property
     def reduction(self) -> int: ...
+    @property
+    def picture(self) -> PixelSource | None: ...
 
 
 def decode_with_mask(
@@ -57,7 +67,10 @@ def decode_with_mask(
     Raises:
         CaptureError: As `LightField.photograph` does.
     """
-    pixels, alpha = decode(source.path, source.upright, source.exposure)
+    if source.picture is None:
+        pixels, alpha = decode(source.path, source.upright, source.exposure)
+    else:
+        pixels, alpha = source.picture.decode()
     stored = pixels.shape[1], pixels.shape[0]
     if (stored[0] // source.reduction, stored[1] // source.reduction) != (width, height):
         was = f"{width * source.reduction}x{height * source.reduction}"

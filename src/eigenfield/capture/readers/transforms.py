@@ -96,7 +96,7 @@ def read_transforms(path: Path) -> Calibration:
         return _make_entry(frame, own, undo)
 
     entries, errors = read_each(make, enumerate(frames))
-    return Calibration(path, "transforms", entries, errors)
+    return Calibration(path, "transforms", entries, errors, rate=_finite(top.get("fps")))
 
 
 def _read_splits(folder: Path) -> Calibration:
@@ -198,6 +198,12 @@ def _as_float(value: float) -> float:
         return math.inf
 
 
+def _finite(value: Any) -> float | None:
+    """A number as it is; None for what is none: other programs write dates there."""
+    number = _as_float(value) if _is_number(value) else math.inf
+    return number if math.isfinite(number) else None
+
+
 def _make_entry(frame: _Frame, own: Any, undo: Similarity) -> Entry:
     if not isinstance(own, dict):
         raise frame.error("frame-not-object", f"{frame.label} is not an object", "mend or remove it")
@@ -216,7 +222,8 @@ def _make_entry(frame: _Frame, own: Any, undo: Similarity) -> Entry:
         centre = rotation.T @ (pose[:, 3] / scale - shift)
     mask = mask and mask.replace("\\", "/")
     stored = frame.get(TRANSFORMS_TURNED_KEY) is not True
-    return Entry(file.replace("\\", "/"), frame.label, intrinsics, axes, centre, lens, mask, stored=stored)
+    file = file.replace("\\", "/")
+    return Entry(file, frame.label, intrinsics, axes, centre, lens, mask, stored=stored, time=_finite(own.get("time")))
 
 
 def _read_applied_transform(top: Mapping[str, Any], path: Path) -> Similarity:

@@ -1,0 +1,293 @@
+"""Footage: its forms, its clock, and what is wrong with some."""
+
+from __future__ import annotations
+
+import json
+import pickle
+import shutil
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from eigenfield.capture import open_any, open_path
+from eigenfield.capture.lightfield import LightField
+from eigenfield.capture.photoset import PhotoSet
+from eigenfield.capture.readers.video import decode_video
+from eigenfield.capture.tracks import open_film
+from eigenfield.core.errors import OptionError
+from support.filmed import calibration, folder_a_camera, folder_an_instant, opened, picture, pose, seen, timed
+from support.named import refused, write_video
+
+
+def all_seen(footage):
+    return [seen(footage, number) for number in range(len(footage))]
+
+
+def whole(cameras, frames):
+    return [[(camera, frame, True) for camera in range(cameras)] for frame in frames]
+
+
+def footage_refused(code, path, **options):
+    return refused(code, path, call=lambda *given, **more: open_path(*given, **{"clip": ":", **more}), **options)
+
+
+# forms
+
+
+@pytest.mark.parametrize("write", [folder_a_camera, folder_an_instant])
+def test_folders_of_pictures_without_cameras(tmp_path, write):
+    footage = opened(write(tmp_path), rate=25)
+    assert footage.names == ("cam_0", "cam_1", "cam_2") and footage.cameras is None
+    assert footage.timeline.rate == 25 and len(footage) == 5 and not footage.held.any() and not footage.problems
+    assert isinstance(footage.instant(0), PhotoSet) and all_seen(footage) == whole(3, range(5))
+    assert "--rate" in opened(tmp_path).problems[0]
+
+
+def test_entries_with_a_time_are_frames_of_cameras(tmp_path):
+    footage = opened(timed(tmp_path))
+    assert footage.names == ("cam_0", "cam_1", "cam_2") and footage.timeline.rate == 25 and not footage.problems
+    assert isinstance(footage.instant(0), LightField) and all_seen(footage) == whole(3, range(5))
+    assert [camera.centre[0] for camera in footage.cameras] == [pytest.approx(0.1 * c) for c in range(3)]
+    assert np.array_equal(footage.instant(3).cameras[2].K, footage.cameras[2].K)
+    assert opened(timed(tmp_path, fps=50.0)).timeline.rate == 50  # a frame is there at every other instant
+
+
+def test_folders_with_a_calibration_beside_them_or_elsewhere(tmp_path):
+    folder_a_camera(tmp_path / "take", first=4711)
+    files = {c: [(f"cam_{c}/000000.png", None)] for c in range(3)}
+    elsewhere = calibration(tmp_path / "rig.json", files)
+    footage = opened(tmp_path / "take", calibration=elsewhere)
+    assert [camera.centre[0] for camera in footage.cameras] == [pytest.approx(0.1 * c) for c in range(3)]
+    assert all_seen(footage) == whole(3, range(5))
+    shutil.copy(elsewhere, tmp_path / "take" / "transforms.json")
+    assert all_seen(opened(tmp_path / "take")) == whole(3, range(5))
+    footage = opened(tmp_path / "take", calibration=timed(tmp_path / "other") / "transforms.json")
+    assert footage.cameras is not None and all_seen(footage) == whole(3, range(5))
+
+
+def test_a_zip_of_footage(tmp_path):
+    timed(tmp_path / "take")
+    shutil.make_archive(str(tmp_path / "take"), "zip", tmp_path / "take")
+    assert all_seen(opened(tmp_path / "take.zip")) == whole(3, range(5))
+
+
+def test_names_that_do_not_say_what_is_a_camera_are_said_so(tmp_path):
+    for folder in range(3):
+        for number in range(4):
+            picture(tmp_path / f"{folder}" / f"{number}.png", folder, number)
+    footage = opened(tmp_path, rate=30)
+    assert len(footage) == 4 and len(footage.names) == 3 and "do not say" in footage.problems[0]
+
+
+def test_folders_beside_the_cameras_are_none(tmp_path):
+    folder_a_camera(tmp_path)
+    picture(tmp_path / "masks" / "cam_0.png", 0, 0)
+    picture(tmp_path / "images_2" / "0.png", 0, 0)
+    assert opened(tmp_path).names == ("cam_0", "cam_1", "cam_2")
+
+
+# videos
+
+
+def rig(folder: Path, frames=(12, 12, 12), rates=(10, 10, 10)):
+    """Videos, a calibration, and the pictures in them."""
+    truth = [
+        write_video(folder / f"cam_{i}.mp4", *kind, camera=i) for i, kind in enumerate(zip(frames, rates, strict=True))
+    ]
+    entries = [{"file_path": f"cam_{i}.mp4", "transform_matrix": pose(i)} for i in range(len(frames))]
+    document = {"fl_x": 60.0, "w": 64, "h": 48, "frames": entries}
+    (folder / "transforms.json").write_text(json.dumps(document), encoding="utf-8")
+    return truth
+
+
+def frame_of(photograph, truth) -> int:
+    distances = [np.abs(photograph.pixels * 255 - picture).mean() for picture in truth]
+    assert min(distances) < 1.5
+    return int(np.argmin(distances))
+
+
+def test_videos_in_any_order_of_instants(tmp_path):
+    truth = rig(tmp_path)
+    footage = opened(tmp_path)
+    assert footage.names == ("cam_0", "cam_1", "cam_2") and footage.timeline.rate == 10 and len(footage) == 12
+    for number in (0, 1, 2, 11, 5, 6, 0, 7):
+        instant = footage.instant(number)
+        assert [frame_of(instant.photograph(c), truth[c]) for c in range(3)] == [number] * 3
+    assert [frame_of(x.photograph(1), truth[1]) for x in footage.instants(3, 7)] == [3, 4, 5, 6]
+    footage.close()
+    again = pickle.loads(pickle.dumps(footage))
+    assert frame_of(again.instant(9).photograph(0), truth[0]) == 9
+    still = open_any(tmp_path, frame=4)
+    assert np.array_equal(still.photograph(2).pixels, footage.instant(4).photograph(2).pixels)
+    assert np.array_equal(still.cameras[2].t, footage.cameras[2].t)
+
+
+def test_no_frame_becomes_a_file(tmp_path):
+    rig(tmp_path)
+    before = sorted(tmp_path.rglob("*"))
+    footage = opened(tmp_path, work=tmp_path / "work")
+    assert footage.instant(3).photograph(0).pixels.shape == (48, 64, 3)
+    assert sorted(tmp_path.rglob("*")) == before
+    assert footage.instant(3).views[0].path == tmp_path / "cam_0.mp4" and footage.bytes > 0
+
+
+def test_videos_of_another_length_and_rate(tmp_path):
+    truth = rig(tmp_path, (12, 24, 9), (10, 20, 10))
+    footage = opened(tmp_path)
+    assert len(footage) == 9 and footage.timeline.rate == 10
+    assert any("rate" in line and "cam_1" in line for line in footage.problems)
+    assert any("cam_2" in line and "0 to 8" in line for line in footage.problems)
+    instant = footage.instant(4)
+    assert [frame_of(instant.photograph(c), truth[c]) for c in range(3)] == [4, 8, 4]
+
+
+def test_a_camera_that_stops_is_masked_out(tmp_path):
+    truth = rig(tmp_path, (12, 12, 5))
+    footage = opened(tmp_path, ":12")
+    assert len(footage) == 12 and any("cam_2 0 to 4" in line for line in footage.problems)
+    last = footage.instant(10).photograph(2)
+    assert frame_of(last, truth[2]) == 4 and last.mask is not None and not last.mask.any()
+    assert footage.instant(10).photograph(0).mask is None
+    assert footage.held.sum() == 7
+
+
+# ranges and offsets
+
+
+@pytest.mark.parametrize(
+    ("clip", "frames"),
+    [("1:3", [1, 2]), ("2:", [2, 3, 4]), (":2", [0, 1]), ("::2", [0, 2, 4]), ("0.04s:0.12s", [1, 2]), ("", range(5))],
+)
+def test_a_range_of_frames(tmp_path, clip, frames):
+    footage = opened(timed(tmp_path), clip)
+    assert all_seen(footage) == whole(3, frames)
+    assert footage.timeline.first == pytest.approx(frames[0] / 25)
+    part = footage.part(1, 2)
+    assert len(part) == 1 and seen(part, 0) == seen(footage, 1) and part.timeline.first == footage.timeline.times[1]
+
+
+def test_a_step_makes_the_rate_lower(tmp_path):
+    footage = opened(timed(tmp_path), "0:5:2")
+    assert footage.timeline.rate == Fraction(25, 2) and list(footage.timeline.times) == pytest.approx([0, 0.08, 0.16])
+
+
+def test_offsets(tmp_path):
+    footage = opened(folder_a_camera(tmp_path), offset=["cam_1=2"])
+    assert all_seen(footage) == [[(0, f, True), (1, f + 2, True), (2, f, True)] for f in range(3)]
+    footage = opened(tmp_path, offset=["cam_1=-1"])
+    assert all_seen(footage) == [[(0, f, True), (1, f - 1, True), (2, f, True)] for f in range(1, 5)]
+    error = footage_refused("footage-range", tmp_path, offset=["cam_2=9"])
+    assert "cam_2 -9 to -5" in str(error) and "offset" in str(error)
+
+
+@pytest.mark.parametrize("clip", ["5", "a:b", "1s", "3:4:0", "-1:4", "1:2:3:4", "1e3s:"])
+def test_ranges_that_are_none(tmp_path, clip):
+    with pytest.raises(OptionError, match="is no range"):
+        opened(folder_a_camera(tmp_path), clip)
+
+
+@pytest.mark.parametrize("clip", ["9:", "3:3", "4:2", "0:6", "2s:3s"])
+def test_ranges_that_leave_nothing(tmp_path, clip):
+    assert footage_refused("clip-range", folder_a_camera(tmp_path), clip=clip).code == "clip-range"
+
+
+@pytest.mark.parametrize("offset", [["cam_9=1"], ["cam_1"], ["cam_1=x"], ["cam_1=1", "cam_1=2"]])
+def test_offsets_that_are_none(tmp_path, offset):
+    footage_refused("offset-unknown", folder_a_camera(tmp_path), offset=offset)
+
+
+def test_options_of_footage_alone(tmp_path):
+    timed(tmp_path)
+    refused("clip-unused", tmp_path, offset=["cam_1=1"])
+    refused("clip-unused", tmp_path, rate=5.0)
+    footage_refused("clip-options", tmp_path, frame=3)
+    with pytest.raises(OptionError, match="rate"):
+        opened(tmp_path, rate=0)
+
+
+# gaps
+
+
+def test_a_hole_is_held_and_masked_out(tmp_path):
+    folder_a_camera(tmp_path, frames=9)
+    for number in (3, 4, 5):
+        (tmp_path / "cam_1" / f"{number:06d}.png").unlink()
+    footage = opened(tmp_path)
+    assert [seen(footage, number)[1] for number in range(2, 7)] == [
+        (1, 2, True), (1, 2, False), (1, 2, False), (1, 2, False), (1, 6, True),
+    ]  # fmt: skip
+    assert any("cam_1 (3)" in line for line in footage.problems)
+    (tmp_path / "cam_1" / "000006.png").unlink()
+    error = footage_refused("footage-hole", tmp_path)
+    assert "cam_1" in str(error)
+    assert len(opened(tmp_path, ":5")) == 5
+
+
+def test_pictures_numbered_by_tens(tmp_path):
+    for camera in range(3):
+        for frame in range(4):
+            picture(tmp_path / f"cam_{camera}" / f"f{100 + 10 * frame}.png", camera, frame)
+    footage = opened(tmp_path)
+    assert all_seen(footage) == whole(3, range(4)) and any("by 10" in line for line in footage.problems)
+
+
+# what is wrong with some
+
+
+def test_one_frame_and_one_camera(tmp_path):
+    assert len(opened(timed(tmp_path / "short", frames=2), ":1")) == 1
+    folder_a_camera(tmp_path / "two", cameras=2)
+    assert "calibration" in str(footage_refused("too-few", tmp_path / "two"))
+    files = {c: [(f"cam_{c}.png", None)] for c in range(2)}
+    assert len(opened(tmp_path / "two", calibration=calibration(tmp_path / "rig.json", files)).names) == 2
+    write_video(tmp_path / "one" / "a.mp4", 3)
+    footage_refused("too-few", tmp_path / "one" / "a.mp4")
+    footage_refused("footage-missing", tmp_path / "one")
+    (tmp_path / "none").mkdir()
+    footage_refused("footage-missing", tmp_path / "none")
+
+
+def test_cameras_that_move_are_no_footage(tmp_path):
+    files = {f: [(f"cam_0/{f:06d}.png", f / 10)] for f in range(5)}
+    folder_a_camera(tmp_path, cameras=1)
+    calibration(tmp_path / "transforms.json", files)
+    footage_refused("footage-moving", tmp_path)
+
+
+def test_a_picture_of_another_size_is_named(tmp_path):
+    timed(tmp_path)
+    picture(tmp_path / "cam_1" / "000003.png", 1, 3, (10, 10))
+    with pytest.raises(Exception, match=r"000003\.png.*10x10"):
+        opened(tmp_path).instant(3).photograph(1)
+    picture(tmp_path / "cam_1" / "000000.png", 1, 3, (10, 10))
+    error = footage_refused("image-size", tmp_path)
+    assert "000000.png" in str(error)
+
+
+def test_videos_that_are_damaged(tmp_path):
+    rig(tmp_path)
+    whole_video = (tmp_path / "cam_1.mp4").read_bytes()
+    (tmp_path / "cam_1.mp4").write_bytes(whole_video[:300])
+    assert "cam_1.mp4" in str(footage_refused("video-unreadable", tmp_path))
+    (tmp_path / "cam_1.mp4").write_bytes(b"")
+    footage_refused("video-unreadable", tmp_path)
+
+
+def test_a_video_that_is_cut_short_ends_sooner(tmp_path):
+    truth = [write_video(tmp_path / f"cam_{i}.mkv", 12, camera=i) for i in range(3)]
+    data = (tmp_path / "cam_1.mkv").read_bytes()
+    (tmp_path / "cam_1.mkv").write_bytes(data[: len(data) * 8 // 10])
+    footage = opened(tmp_path)
+    assert 3 < len(footage) < 12 and any("cam_1" in line for line in footage.problems)
+    for number in range(len(footage)):
+        photograph = footage.instant(number).photograph(1)
+        assert (photograph.mask is not None and not photograph.mask.any()) or frame_of(photograph, truth[1]) == number
+
+
+def test_the_key_frames_of_a_video_are_known(tmp_path):
+    write_video(tmp_path / "a.mp4", 23)
+    film, shown = open_film(tmp_path / "a.mp4"), list(decode_video(tmp_path / "a.mp4"))
+    assert film.keys == tuple(number for number, one in enumerate(shown) if one.frame.key_frame) and len(film.keys) > 2
+    assert list(film.seconds) == [pytest.approx(one.frame.time) for one in shown]
