@@ -15,10 +15,12 @@ from jsonschema import Draft202012Validator
 from eigenfield.coding import limits
 from eigenfield.coding.codecs import CODECS
 from eigenfield.core.scene import Residual
-from eigenfield.gltf import encode_scene, layout
+from eigenfield.gltf import encode_scene, layout, load
 from eigenfield.gltf.fallback import with_fallback
 from eigenfield.gltf.streams import FEATURES, OTHER_FEATURES
+from eigenfield.gltf.write_clip import clip_blocks
 from support import schema
+from support.clips import numbered_clip, read_all
 from support.coded_scenes import coded_scene, precise_scene
 from support.glb_surgery import DOCUMENT, changed, ours, outcome
 from support.scenes import tiny_scene
@@ -45,6 +47,7 @@ def files(good):
     made |= {name: encode_scene(coded_scene(name)) for name, codec in CODECS.items() if codec.kind == "weights"}
     made["precise"] = encode_scene(precise_scene())
     made["residual"] = encode_scene(replace(coded, residual=video))
+    made["clip"] = b"".join(clip_blocks(numbered_clip(), None))
     return made
 
 
@@ -198,7 +201,33 @@ WRONG = [
     ("residual", ("residual", "full"), 1),
     ("residual", ("residual", "smooth"), "yes"),
     ("residual", ("residual", "order"), [0, 1]),
+    ("clip", ("timeline",), []),
+    ("clip", ("timeline", "rate"), [30]),
+    ("clip", ("timeline", "rate"), [0, 1]),
+    ("clip", ("timeline", "rate"), [2**31, 1]),
+    ("clip", ("timeline", "first"), 1e10),
+    ("clip", ("timeline", "frames"), 0),
+    ("clip", ("timeline", "frames"), 2**20 + 1),
+    ("clip", ("timeline", "films"), []),
+    ("clip", ("timeline", "films", 0, "codec"), MISSING),
+    ("clip", ("timeline", "films", 0, "codec"), "video-1"),
+    ("clip", ("timeline", "films", 0, "size"), [192, 100]),
+    ("clip", ("timeline", "films", 1, "size"), [8256, 64]),
+    ("clip", ("timeline", "groups"), []),
+    ("clip", ("timeline", "groups", 0, "frames"), 1025),
+    ("clip", ("timeline", "groups", 0, "offset"), 2),
+    ("clip", ("timeline", "groups", 1, "length"), 0),
+    ("clip", ("timeline", "groups", 1, "sha256"), "00"),
+    ("clip", ("timeline", "groups", 1, "sha256"), MISSING),
+    ("clip", ("planes", 0, "mean"), MISSING),
+    ("clip", ("planes", 0, "mean", "film"), MISSING),
+    ("clip", ("planes", 0, "mean", "film"), 4),
+    ("clip", ("planes", 0, "mean", "at"), []),
+    ("clip", ("planes", 0, "mean", "at"), [[8, 0]]),
+    ("clip", (*BASIS, "at"), MISSING),
+    ("clip", (*BASIS, "size"), MISSING),
 ]
+READ = {"clip": read_all}  # of the others it is `load`
 
 
 @pytest.mark.parametrize(("kind", "keys", "value"), WRONG)
@@ -212,7 +241,7 @@ def test_wrong_values_are_refused(tmp_path, files, kind, keys, value):
 
     data = changed(files[kind], change)
     assert violation(extension_of(data)) is not None
-    assert outcome(tmp_path / "a.glb", data) is not None
+    assert outcome(tmp_path / "a.glb", data, READ.get(kind, load)) is not None
 
 
 def test_what_excludes_each_other_is_refused(files):
@@ -254,6 +283,15 @@ def test_limits_are_those_of_the_code():
         "MAX_NAME": DEFINITIONS["text"]["maxLength"],
         "MAX_GAIN": properties["toRGB"]["items"]["maximum"],
         "MAX_NUMBER": DEFINITIONS["number"]["maximum"],
+        "MAX_GROUPS": DEFINITIONS["timeline"]["properties"]["groups"]["maxItems"],
+        "MAX_FRAMES": DEFINITIONS["timeline"]["properties"]["frames"]["maximum"],
+        "MAX_FILMS": DEFINITIONS["timeline"]["properties"]["films"]["maxItems"],
+        "MAX_RATE_TERM": DEFINITIONS["timeline"]["properties"]["rate"]["items"]["maximum"],
+        "MAX_TIME": DEFINITIONS["timeline"]["properties"]["first"]["maximum"],
+        "MAX_GROUP_FRAMES": DEFINITIONS["group"]["properties"]["frames"]["maximum"],
+        "MAX_FILE": DEFINITIONS["group"]["properties"]["offset"]["maximum"],
+        "MAX_GROUP": DEFINITIONS["group"]["properties"]["length"]["maximum"],
+        "MAX_FILM_SIDE": DEFINITIONS["film"]["properties"]["size"]["items"]["maximum"],
     }
     assert found == {name: getattr(limits, name) for name in found}
     assert DEFINITIONS["bufferView"]["maximum"] == DEFINITIONS["accessor"]["maximum"] == limits.MAX_VIEWS - 1
@@ -289,22 +327,27 @@ def keys_of(name: str) -> set[str]:
 
 
 def test_the_document_names_the_same_keys():
-    stream = {"codec"}  # said once, of all streams
+    stream, in_film = {"codec"}, {"film", "at"}  # said once, of all streams; of all textures of a clip
     assert tables("key") == {
         "The root extension": set(SCHEMA["properties"]),
         "packed": {"packed"},
         "stream": keys_of("codedMesh"),
         "sheets": keys_of("sheets"),
         "plane": keys_of("plane"),
-        "basis": keys_of("basis"),
-        "picture": (keys_of("mean") | keys_of("texture")) - stream,
+        "basis": keys_of("basis") - in_film,
+        "picture": (keys_of("mean") | keys_of("texture")) - stream - in_film,
         "cameras": keys_of("cameras"),
         "pattern": keys_of("pattern"),
         "view plane": keys_of("viewPlane"),
         "residual": keys_of("residual") - stream,
+        "timeline": keys_of("timeline"),
+        "film": keys_of("film"),
+        "textures in films": in_film,
+        "group": keys_of("group"),
     }
+    assert tables("field") == {"the bytes of a group": keys_of("groupHead")}
     text = DOCUMENT.read_text(encoding="utf-8")
-    inner = [keys_of(name) for name in ("precision", "opacity", "patternPart", "codedNames")]
+    inner = [keys_of(name) for name in ("precision", "opacity", "patternPart", "codedNames", "groupMesh", "affine")]
     assert {key for keys in inner for key in keys if f"`{key}`" not in text and f'"{key}"' not in text} == set()
 
 

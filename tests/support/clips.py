@@ -7,6 +7,7 @@ column is brighter in cameras of high numbers and darker in those of low ones.
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Sequence
 from dataclasses import replace
@@ -24,8 +25,9 @@ from eigenfield.core.films import CodedGroup, FilmLayout
 from eigenfield.core.payloads import Affine, Payload
 from eigenfield.core.proxy import Proxy
 from eigenfield.encoding.geometry.coded import coded_cameras, coded_mesh
-from eigenfield.gltf import coded_clip, save
+from eigenfield.gltf import coded_clip, load_clip, save
 from eigenfield.gltf.group import group_bytes
+from support import glb_surgery
 from support.scenes import bumpy_square, tiny_scene
 
 BITS = 8  # of a frame's number
@@ -110,6 +112,30 @@ def shown_texture(textures: NDArray[np.uint16]) -> int:
     """Which of (N, rows, columns) codes is not zero."""
     (index,) = np.flatnonzero((textures > EMPTY_CODE + CONTRAST // 2).mean(axis=(1, 2)) > 0.02)
     return int(index)
+
+
+def groups_of(data: bytes) -> list[bytes]:
+    """The bytes of each group of a clip's file."""
+    timeline = glb_surgery.split(data)[0]["extensions"][glb_surgery.EXTENSION]["timeline"]
+    chunk = glb_surgery.behind(data)[8:]
+    return [chunk[one["offset"] : one["offset"] + one["length"]] for one in timeline["groups"]]
+
+
+def with_groups(data: bytes, groups: Sequence[bytes]) -> bytes:
+    """A clip's file with other groups in the place of its own, whose digests and places are right."""
+    gltf, binary = glb_surgery.split(data)
+    chunk = b""
+    for entry, group in zip(gltf["extensions"][glb_surgery.EXTENSION]["timeline"]["groups"], groups, strict=True):
+        entry |= {"offset": len(chunk), "length": len(group), "sha256": hashlib.sha256(group).hexdigest()}
+        chunk += group + bytes(-len(group) % 4)
+    return glb_surgery.join(gltf, binary, glb_surgery.chunk(b"EFTL", chunk))
+
+
+def read_all(path: Path) -> None:
+    """Decode every frame of a clip's file."""
+    clip = load_clip(path)
+    for time in clip.timeline.times:
+        clip.scene(time)
 
 
 def write(folder: Path) -> None:

@@ -10,13 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from eigenfield.cli.clip_facts import clip_facts, clip_lines, film_plane_facts
 from eigenfield.cli.common import PATH, common_options, echo_json, first_names
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from eigenfield.gltf.layout import FileLayout
+    from eigenfield.core.mesh import Mesh
+    from eigenfield.gltf.layout import Surroundings
     from eigenfield.gltf.layout_planes import PlaneLayout
     from eigenfield.gltf.layout_sheets import SheetsLayout
 
@@ -31,41 +33,60 @@ AXES_TEXT = (
     epilog="""\b
 Examples:
   eigenfield info scene.glb
+  eigenfield info clip.glb
   eigenfield info --json scene.glb"""
 )
 @click.argument("file", type=PATH)
 @click.option("--json", "as_json", is_flag=True, help="Everything, as JSON: cameras, settings, scores.")
 @common_options
 def command(file: Path, as_json: bool, quiet: bool) -> None:
-    """Show what a scene FILE holds: bytes by part, cameras, textures, settings and scores."""
-    from eigenfield.gltf import describe
+    """Show what the FILE of a scene or a clip holds: bytes by part, cameras, textures, settings and scores."""
+    from eigenfield.gltf import stores_clip
 
-    layout, parts = describe(file)
-    facts = _facts(layout, parts)
+    facts = _clip_facts(file) if stores_clip(file) else _scene_facts(file)
     if as_json:
         echo_json({"file": str(file), **facts})
         return
-    click.echo(f"{file}: {parts['total']:,} bytes, format {layout.version}, by {json.dumps(layout.generator)}")
+    total = facts["bytes"]["total"]
+    click.echo(f"{file}: {total:,} bytes, format {facts['format']}, by {json.dumps(facts['generator'])}")
     for line in text_lines(facts):
         click.echo(line)
 
 
-def _facts(layout: FileLayout, parts: dict[str, int]) -> dict[str, Any]:
-    cameras, mesh, plane = layout.cameras, layout.mesh, layout.view_plane
-    assert cameras is not None and mesh is not None and plane is not None and layout.reference is not None
+def _scene_facts(file: Path) -> dict[str, Any]:
+    from eigenfield.gltf import describe
+
+    layout, parts = describe(file)
+    assert layout.mesh is not None
+    sheets = None if layout.sheets is None else _sheet_facts(layout.sheets)
+    return _facts(layout, parts, [_plane_facts(plane) for plane in layout.planes or ()], layout.mesh, sheets)
+
+
+def _clip_facts(file: Path) -> dict[str, Any]:
+    from eigenfield.gltf import describe_clip, load_clip
+
+    layout, heads, parts = describe_clip(file)
+    assert layout.films is not None
+    mesh = load_clip(file).groups.group(0).proxy.mesh
+    facts = _facts(layout, parts, [film_plane_facts(plane) for plane in layout.films.planes], mesh, None)
+    return {**facts, "clip": clip_facts(layout, heads)}
+
+
+def _facts(
+    layout: Surroundings, parts: dict[str, int], planes: list[dict[str, Any]], mesh: Mesh,
+    sheets: dict[str, Any] | None,
+) -> dict[str, Any]:  # fmt: skip
+    cameras, plane = layout.cameras, layout.view_plane
+    assert cameras is not None and plane is not None and layout.reference is not None
     held_out = [name for name, held in zip(cameras.names, cameras.held_out, strict=True) if held]
     sizes = Counter((camera.width, camera.height) for camera in cameras.cameras)
     return {
         "format": layout.version,
         "generator": layout.generator,
         "bytes": parts,
-        "textures": max((basis.count for plane in layout.planes or () for basis in plane.bases), default=0),
-        "planes": [_plane_facts(entry) for entry in layout.planes or ()],
-        "proxy": {
-            "vertices": len(mesh.vertices),
-            "triangles": len(mesh.faces),
-            "sheets": None if layout.sheets is None else _sheet_facts(layout.sheets),
-        },
+        "textures": max((basis["textures"] for entry in planes for basis in entry["bases"]), default=0),
+        "planes": planes,
+        "proxy": {"vertices": len(mesh.vertices), "triangles": len(mesh.faces), "sheets": sheets},
         "cameras": {
             "count": len(cameras.names),
             "encoded": cameras.encoded,
@@ -128,6 +149,7 @@ def text_lines(facts: dict[str, Any]) -> list[str]:
     total = facts["bytes"]["total"]
     shares = ((name, count) for name, count in facts["bytes"].items() if count and name != "total")
     lines = [f"bytes         {', '.join(f'{name} {count:,} ({count / total:.0%})' for name, count in shares)}"]
+    lines += clip_lines(facts["clip"]) if "clip" in facts else []
     cameras, proxy = facts["cameras"], facts["proxy"]
     sizes = [f"{entry['count']} of {_size(entry['size'])}" for entry in cameras["sizes"]]
     lines.append(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import threading
 from collections.abc import Iterator, Mapping, Sequence
@@ -25,7 +26,7 @@ from eigenfield.core.payloads import Payload, Payloads, mesh_key, weights_key
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
 from eigenfield.gltf.group import read_group
-from eigenfield.gltf.source import ByteSource, HeldBytes
+from eigenfield.gltf.source import ByteSource, HeldBytes, StoredBytes, name_file_in_errors
 
 _AGAIN = "copy or download the file again"
 
@@ -41,6 +42,10 @@ class StoredGroup:
     data: ByteSource
     frames: int
     digest: str | None = None
+
+    def name_in_errors(self) -> contextlib.AbstractContextManager[None]:
+        """Put the name of its file into every FormatError."""
+        return name_file_in_errors(self.data.path) if isinstance(self.data, StoredBytes) else contextlib.nullcontext()
 
 
 def coded_clip(
@@ -93,7 +98,8 @@ class CodedGroups:
         """A group, of which the first frame is decoded. FormatError: see `coded`; `film-*`, `coded-*`, `weights-*`."""
         kept = self._kept.get(index)
         if kept is None:
-            kept = self._decode(index)
+            with self.stored[index].name_in_errors():
+                kept = self._decode(index)
             self._kept.clear()
             self._kept[index] = kept
         return kept
@@ -119,7 +125,7 @@ class CodedGroups:
         mesh: Mesh = CODECS[coded.mesh.codec].decode(coded.mesh.data, where)
         if not len(mesh.faces):
             raise FormatError("coded-damaged", "a mesh without faces", where=where)
-        frames = CodedFrames(coded, self.layout, where)
+        frames = CodedFrames(coded, self.layout, where, self.stored[index])
         first, planes, payloads = frames[0], [], self.payloads | {mesh_key(mesh): [coded.mesh]}
         parts = zip(first.means, first.textures, coded.bases, coded.weights, strict=True)
         for mean, own, affines, streams in parts:
@@ -156,8 +162,8 @@ class CodedFrames(Sequence[Frame]):
     from the first on.
     """
 
-    def __init__(self, coded: CodedGroup, layout: FilmLayout, where: str) -> None:
-        self._coded, self._layout, self._where = coded, layout, where
+    def __init__(self, coded: CodedGroup, layout: FilmLayout, where: str, stored: StoredGroup) -> None:
+        self._coded, self._layout, self._where, self._stored = coded, layout, where, stored
         self._lock = threading.Lock()
         self._films = self._pictures()
         self._next, self._last = 0, Frame((), ())
@@ -168,7 +174,7 @@ class CodedFrames(Sequence[Frame]):
     def __getitem__(self, number: int) -> Frame:  # type: ignore[override]  # there are no slices of it
         """FormatError `film-*`."""
         number = range(len(self))[number]
-        with self._lock:
+        with self._lock, self._stored.name_in_errors():
             if number == self._next - 1:
                 return self._last
             if number < self._next:

@@ -14,9 +14,11 @@ from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError
 from eigenfield.gltf.container import BINARY_CHUNK, JSON_CHUNK, Glb, file_head, glb_blocks, json_bytes, parse_glb
 from eigenfield.gltf.document import Document
+from eigenfield.gltf.group import GroupHead
 from eigenfield.gltf.layout import FileLayout, find_extension, unpacked_document
 from eigenfield.gltf.packed import is_packed, repack
 from eigenfield.gltf.read import layout_of, read_scene
+from eigenfield.gltf.read_clip import ClipLayout, clip_layout_of, read_heads, stores_clip
 from eigenfield.gltf.source import name_file_in_errors, open_source
 from eigenfield.gltf.streams import streams
 from eigenfield.gltf.strict_json import Value
@@ -36,12 +38,33 @@ def describe(path: str | os.PathLike[str]) -> tuple[FileLayout, dict[str, int]]:
 def parts(path: str | os.PathLike[str]) -> dict[str, int]:
     """Bytes by part: total, mean, textures, weights, mesh, opacity, residual, other; the last seven sum to the first.
 
+    Of a clip they are those of all groups that are whole.
+
     mean: the means, and the picture for other viewers (`images[0]`).
     mesh: positions, texture coordinates, indices; a coded one, and the coarse one for other viewers.
     opacity: of sheets; 0 where there is none.
     residual: of captured views; 0 where there is none.
     other: JSON, calibration, triangles, headers and padding."""
-    return describe(path)[1]
+    return describe_clip(path)[2] if stores_clip(path) else describe(path)[1]
+
+
+def describe_clip(path: str | os.PathLike[str]) -> tuple[ClipLayout, list[GroupHead], dict[str, int]]:
+    """The checked layout of a clip's file, the heads of its groups that are whole, and its bytes by part (see `parts`).
+    FormatError as `load_clip`."""
+    with name_file_in_errors(path), open_source(Path(path)) as source:
+        document, layout = clip_layout_of(source)
+        heads = read_heads(layout, source)
+        made = _parts(document)
+        assert layout.films is not None
+        means = {plane.mean.film for plane in layout.films.planes}
+        for head in heads:
+            made["mesh"] += head.mesh[1]
+            made["weights"] += sum(map(sum, head.weights))
+            for units in head.frames:
+                for film, length in enumerate(units):
+                    made["mean" if film in means else "textures"] += length
+        made["other"] = made["total"] - sum(made[name] for name in PARTS)
+        return layout, heads, made
 
 
 def _parts(document: Document) -> dict[str, int]:

@@ -6,6 +6,7 @@ import contextlib
 import logging
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -34,8 +35,8 @@ from eigenfield.gltf.findings import Finding, Findings
 from eigenfield.gltf.layout import FileLayout, find_extension, is_clip, open_document, read_layout
 from eigenfield.gltf.layout_planes import BasisLayout, PlaneLayout, read_image
 from eigenfield.gltf.layout_residual import residual_frames
-from eigenfield.gltf.read_clip import check_clip, holds_clip, load_clip, read_clip
-from eigenfield.gltf.source import ByteSource, name_file_in_errors, open_source, read_file
+from eigenfield.gltf.read_clip import check_clip, holds_clip, load_clip, read_clip, stores_clip
+from eigenfield.gltf.source import ByteSource, HeldBytes, name_file_in_errors, open_source, read_file
 from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger("eigenfield.format")
@@ -76,9 +77,7 @@ def load(path: str | os.PathLike[str], time: float | None = None) -> Scene:
 
 def load_any(path: str | os.PathLike[str]) -> Scene | Clip:
     """What a file holds, as `load` or `load_clip` read it."""
-    with name_file_in_errors(path), open_source(Path(path)) as source:
-        clip = holds_clip(source)
-    return load_clip(path) if clip else load(path)
+    return load_clip(path) if stores_clip(path) else load(path)
 
 
 def as_scene(scene: Scene | str | os.PathLike[str]) -> Scene:
@@ -93,9 +92,13 @@ def read_scene(data: bytes | ByteSource) -> Scene:
 
 def outline(path: str | os.PathLike[str]) -> tuple[Scene, bytes]:
     """A scene without its planes and sheets, and the bytes of its file: checked as `load` does, but no picture is
-    decoded."""
+    decoded. Of a clip it is the first frame."""
     with name_file_in_errors(path):
         data = read_file(Path(path))
+        if holds_clip(HeldBytes(data)):
+            clip = read_clip(HeldBytes(data))
+            scene = clip.scene(clip.timeline.first)
+            return replace(scene, appearance=Appearance((), scene.appearance.to_rgb), scores=clip.scores), data
         return _scene_of(data, pictures=False), data
 
 

@@ -12,10 +12,11 @@ from eigenfield.core.clip import Clip, Timeline
 from eigenfield.core.errors import FormatError
 from eigenfield.core.films import FilmLayout
 from eigenfield.core.payloads import Payloads, cameras_key
-from eigenfield.gltf.clips import CodedGroups, StoredGroup
+from eigenfield.gltf.clips import CodedGroups, StoredGroup, group_place
 from eigenfield.gltf.container import GROUPS_CHUNK
 from eigenfield.gltf.document import Document
 from eigenfield.gltf.findings import Findings
+from eigenfield.gltf.group import GroupHead, read_head
 from eigenfield.gltf.layout import (
     Surroundings,
     check_container,
@@ -81,8 +82,11 @@ def read_clip_layout(document: Document, findings: Findings) -> ClipLayout | Non
 def check_clip(document: Document, findings: Findings) -> bool:
     """Check a clip as a whole, and decode it frame by frame; whether the file holds one."""
     layout = read_clip_layout(document, findings)
-    if layout is None or None in (layout.cameras, layout.view_plane, layout.triangles, layout.reference, layout.films):
-        return layout is not None
+    if layout is None:
+        return False
+    parts = layout.cameras, layout.view_plane, layout.triangles, layout.reference, layout.films, layout.groups
+    if any(part is None for part in parts):
+        return True
     groups = _groups_of(layout, document.glb.source)
     for index in range(len(groups.stored)):
         with findings.part():
@@ -91,6 +95,22 @@ def check_clip(document: Document, findings: Findings) -> bool:
         if any(finding.code == "truncated" for finding in findings.found):
             break  # nor are those behind it there
     return True
+
+
+def read_heads(layout: ClipLayout, source: ByteSource) -> list[GroupHead]:
+    """The heads of the groups that are whole in a file. FormatError `group-damaged`; `group-missing`: none is whole."""
+    assert layout.films is not None and layout.groups is not None
+    heads = []
+    for index, entry in enumerate(layout.groups):
+        first = layout.first + entry.offset
+        group = ByteRange(source, first, first + entry.length)
+        if group.last > source.size:
+            break
+        heads.append(read_head(group, layout.films, group_place(index)))
+    if not heads:
+        remedy = "copy or download it again"
+        raise FormatError("group-missing", "the file ends within its first group", where=group_place(0), remedy=remedy)
+    return heads
 
 
 def clip_layout_of(data: ByteSource) -> tuple[Document, ClipLayout]:
@@ -121,6 +141,12 @@ def load_clip(path: str | os.PathLike[str]) -> Clip:
 def holds_clip(data: ByteSource) -> bool:
     """Whether a file of these bytes is a clip. FormatError, it is neither a clip nor a scene."""
     return is_clip(find_extension(open_document(data)))
+
+
+def stores_clip(path: str | os.PathLike[str]) -> bool:
+    """As `holds_clip`, of a file."""
+    with name_file_in_errors(path), open_source(Path(path)) as source:
+        return holds_clip(source)
 
 
 def read_clip(data: ByteSource) -> Clip:
