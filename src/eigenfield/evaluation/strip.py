@@ -61,6 +61,6 @@ def strip_figure(scores: Mapping[str, Any]) -> Figure:
     axes.set_ylabel("PSNR in dB, covered pixels")
     axes.set_title("lines are means over cameras, bands reach from the worst to the best", fontsize=10.5, loc="left")
     if axes.get_legend_handles_labels()[0]:
-        axes.legend(loc="best", frameon=False)
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False)
     style_axes(axes)
     return figure
