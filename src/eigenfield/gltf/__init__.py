@@ -11,5 +11,6 @@ from eigenfield.gltf.write import encode_scene, refuse_output, save
 
 __all__ = [
     "Finding", "as_scene", "coded_clip", "describe", "describe_clip", "encode_scene", "load", "load_any", "load_clip",
-    "outline", "parts", "read_scene", "refuse_output", "save", "store_scores", "stores_clip", "validate", "without_residual",
+    "outline", "parts", "read_scene", "refuse_output", "save", "store_scores", "stores_clip", "validate",
+    "without_residual",
 ]  # fmt: skip

@@ -115,11 +115,12 @@ def _write_app(
     refuse_folder(output, overwrite)
     samples = []
     for scene in scenes:
-        held = isinstance(scene, Scene | Clip)
-        loaded = scene if held else load_any(scene)
-        data = encode_scene(loaded) if held else Path(scene).read_bytes()
+        if isinstance(scene, Scene | Clip):
+            name, loaded, data = "scene", scene, encode_scene(scene)
+        else:
+            name, loaded, data = Path(scene).stem, load_any(scene), Path(scene).read_bytes()
         shown = as_scene(loaded, loaded.timeline.first if isinstance(loaded, Clip) else None)
-        samples.append(Sample("scene" if held else Path(scene).stem, without_residual(data), draw_thumbnail(shown)))
+        samples.append(Sample(name, without_residual(data), draw_thumbnail(shown)))
     write_app(samples, output, overwrite=overwrite, progress=progress, **options)
     offered = f", with {', '.join(sample.name for sample in samples)} to choose from" if samples else ""
     return output, f"a page that opens files{offered}; put it on a web server"
