@@ -16,7 +16,7 @@ import numpy as np
 import plots
 from evidence import rates
 from evidence.between import TITLES
-from measure import latest, runs
+from measure import RESULTS, latest, runs
 
 Captures = dict[str, dict[str, Any]]
 
@@ -632,7 +632,9 @@ def batches() -> str:
 
 
 def clips() -> str:
-    """Clips beside streams of their cameras (benchmarks/video.py)."""
+    """Clips beside streams of their cameras (benchmarks/video.py); nothing before they are measured."""
+    if not (RESULTS / "video.json").exists():
+        return ""
     captures, source = newest("video")
     parts = [
         "## Clips beside AV1 streams of their cameras\n\nEvery byte of the `.glb` counts. Streams are SVT-AV1's, 10 bits,"

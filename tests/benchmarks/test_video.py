@@ -46,7 +46,10 @@ def test_a_clip_of_another_name_is_refused(tmp_path):
         video.source_of("elephant", tmp_path, 32, 3, 4)
 
 
-def test_the_table_has_a_row_a_quality_and_a_column_a_peer(monkeypatch):
+def test_the_table_has_a_row_a_quality_and_a_column_a_peer(monkeypatch, tmp_path):
+    monkeypatch.setattr(tables, "RESULTS", tmp_path)
+    assert tables.clips() == ""  # nothing is measured yet
+    (tmp_path / "video.json").write_text("{}")
     clip = {
         "cameras": 20, "held_out": 5, "frames": 50, "rate": 30.0, "groups": [30, 30], "size": [320, 480],
         "ours": points(1)[1:3], "peers": {"keys-6": points(2), "one-key-6": points(100)}, "stills": points(20),
