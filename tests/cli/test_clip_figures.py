@@ -4,12 +4,19 @@ from __future__ import annotations
 
 import json
 
+import cv2
 import pytest
+from jsonschema import Draft202012Validator
 
 from eigenfield.cli.clip_figures import clip_table, refuse_for_clips
 from eigenfield.core.errors import OptionError
 from eigenfield.evaluation import evaluate_clip
+from eigenfield.gltf import load_clip, save
+from eigenfield.imaging.metrics import PSNR_MAX_DECIBELS
+from support import printed
+from support.clips import numbered_clip
 from support.moving_clips import tiny_clip, write_footage
+from support.redrawn import drawn, frame
 
 
 @pytest.fixture(scope="module")
@@ -46,3 +53,33 @@ def test_options_of_one_instant_are_refused_by_name():
         refuse_for_clips({"curve": False, "store": True})
     assert error.value.code == "clip-option"
     assert "--store" in str(error.value)
+
+
+def test_the_json_keeps_to_its_schema(figures):
+    Draft202012Validator.check_schema(printed.schema("evaluate-clip"))
+    assert printed.violation("evaluate-clip", figures) is None
+    assert "new" in str(printed.violation("evaluate-clip", figures | {"new": 1}))
+
+
+def test_a_file_is_measured_against_a_folder(run, tmp_path):
+    save(numbered_clip((2, 2)), tmp_path / "clip.glb")
+    clip, entries = load_clip(tmp_path / "clip.glb"), []
+    for number, time in enumerate(clip.timeline.times.tolist()):
+        scene = clip.scene(time)
+        for index, (name, camera) in enumerate(zip(scene.rig.names, scene.rig.cameras, strict=True)):
+            path = tmp_path / "f" / name / f"{number:04d}.png"
+            path.parent.mkdir(parents=True, exist_ok=True)
+            cv2.imwrite(str(path), drawn(scene, index)[..., ::-1])
+            entries.append(frame(name, camera) | {"file_path": f"{name}/{number:04d}.png", "time": time})
+    (tmp_path / "f" / "transforms.json").write_text(json.dumps({"fps": 10, "frames": entries}))
+    given = "evaluate", tmp_path / "clip.glb", tmp_path / "f"
+    figures = json.loads(run(*given, "--json", "--flip", "--plots", tmp_path / "plots", "-q").out)
+    assert figures["image"]["encoded"]["psnr"] == PSNR_MAX_DECIBELS
+    assert figures["image"]["encoded"]["flip"] == 0
+    assert figures["bytes"]["total"] == (tmp_path / "clip.glb").stat().st_size
+    assert (tmp_path / "plots" / "over-time.png").exists()
+    again = run(*given, "--plots", tmp_path / "plots")
+    assert again.code != 0 and "exists already" in again.err
+    assert "--curve" in run(*given, "--curve").err
+    few = run(*given, "--every", "3", "-q")
+    assert "4 of 4 frames" in few.out  # 0 and 3, and both sides of the border

@@ -47,4 +47,6 @@ def violation(verb: str, report: Any) -> str | None:
 def check_printed(words: tuple[object, ...], ran: Ran) -> None:
     """Assert that what a call has printed keeps to the schema, where it was asked for JSON and did not refuse."""
     if "--json" in words and words[0] in VERBS and (ran.code == 0 or ran.out):
-        assert violation(str(words[0]), json.loads(ran.out)) is None
+        report, verb = json.loads(ran.out), str(words[0])
+        of_clip = isinstance(report, dict) and report.get("schema") == "eigenfield.evaluate-clip/1"
+        assert violation("evaluate-clip" if of_clip else verb, report) is None
