@@ -648,7 +648,8 @@ def clips() -> str:
     for name, one in captures.items():
         height, width = one["size"]
         curves = {**one["peers"], "stills": one["stills"]}
-        anchor = next((curve for peer, curve in one["peers"].items() if peer.startswith("keys")), [])
+        with_keys: list[Any] = [curve for peer, curve in one["peers"].items() if peer.startswith("keys")]
+        anchor = with_keys[0] if with_keys else []
         rows = [_clip_row(point, one["frames"], curves, anchor) for point in one["ours"]]
         peers = [peer.replace("one-key", "one key").replace("-", ", preset ") for peer in curves]
         head = ["quality", "kB a frame", "RGB / luma dB", "held out, luma", "flicker", "step, dB", *peers]

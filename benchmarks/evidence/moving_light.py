@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 import cv2
@@ -59,9 +60,13 @@ def draw_clip(folder: Path, rows: int = 5, columns: int = 5, size: int = 320, fr
         wanted = [(path, camera) for path, camera in wanted if not path.exists()]
         if wanted:
             look = look_at(frame / frames)
-            parallel_map(lambda one, look=look: write_picture(one[0], draw_view(one[1], look)), wanted)
+            parallel_map(partial(_draw, look), wanted)
     write_timed(folder, names, cameras, frames)
     return folder
+
+
+def _draw(look: Look, one: tuple[Path, Camera]) -> None:
+    write_picture(one[0], draw_view(one[1], look))
 
 
 def write_timed(folder: Path, names: Sequence[str], cameras: Sequence[Camera], frames: int) -> None:

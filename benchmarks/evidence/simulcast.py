@@ -91,7 +91,7 @@ def take(footage: Instants, scene: Scene, timeline: Timeline, starts: Sequence[i
     for moment in timeline.times:
         capture = with_scene_cameras(scene, footage.instant(footage.timeline.frame_at(float(moment))))
         views = match_photographs(scene, capture)
-        photographs = parallel_map(lambda index, views=views, of=capture: of.photograph(views[index]), list(views))
+        photographs = parallel_map(capture.photograph, list(views.values()))
         for index, photograph in zip(views, photographs, strict=True):
             pictures[names[index]].append(to_codes(photograph.pixels))
             if photograph.mask is not None:
