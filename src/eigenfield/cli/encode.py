@@ -54,7 +54,7 @@ GROUPS = {  # of options in the help, those of every day first; the empty one ha
     "Common options": ("output", "draft", "look", "preset", "target_size", "proxy", "calibration", "grid", "without",
                        "overwrite"),
     "What the capture is": (
-        "format", "pattern", "frame", "walk_frames", "masks", "reference", "metres_per_unit",
+        "format", "pattern", "frame", "walk_frames", "clip", "offset", "rate", "masks", "reference", "metres_per_unit",
     ),
     "Quality and size": (
         "quality", "target_psnr", "target_ssim", "hold_out", "blind", "density", "atlas", "harmonise", "residual",
