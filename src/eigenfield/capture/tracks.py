@@ -103,6 +103,9 @@ class _Held:
         pixels, _ = decode(self.path, self.upright, self.exposure)
         return pixels, _hidden(pixels)
 
+    def identity(self) -> list[int]:
+        return [-1]
+
 
 def _hidden(pixels: NDArray[np.float32]) -> NDArray[np.float32]:
     """A mask that hides a picture."""
@@ -142,6 +145,9 @@ class _FilmFrame:
         rgb, damaged = self.film.read(self.index)
         pixels = rgb.astype(np.float32) / np.float32(255)
         return pixels, _hidden(pixels) if self.held or damaged else None
+
+    def identity(self) -> list[int]:
+        return [-1 if self.held else self.index]
 
 
 @dataclass(eq=False)
