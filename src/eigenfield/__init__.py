@@ -17,9 +17,11 @@ from typing import TYPE_CHECKING, Any
 from eigenfield.core.version import __version__
 
 if TYPE_CHECKING:
+    from eigenfield.api import EncodedClip as EncodedClip
     from eigenfield.api import EncodedScene as EncodedScene
     from eigenfield.api import encode as encode
     from eigenfield.api import load as load
+    from eigenfield.api import load_clip as load_clip
     from eigenfield.batches import BatchResult as BatchResult
     from eigenfield.batches import batch as batch
     from eigenfield.calibration import calibrate as calibrate
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from eigenfield.capture import PhotoSet as PhotoSet
     from eigenfield.capture import opening as _opening
     from eigenfield.core.camera import Camera as Camera
+    from eigenfield.core.clip import Clip as Clip
     from eigenfield.core.errors import CaptureError as CaptureError
     from eigenfield.core.errors import EigenfieldError as EigenfieldError
     from eigenfield.core.errors import FormatError as FormatError
@@ -59,8 +62,10 @@ _HOME = {  # a room, or a name in a room where that is another
     "BatchResult": "batches",
     "Camera": "core.camera",
     "CaptureError": "core.errors",
+    "Clip": "core.clip",
     "EigenfieldError": "core.errors",
     "EncodeOptions": "encoding",
+    "EncodedClip": "api",
     "EncodedScene": "api",
     "Footage": "capture",
     "FormatError": "core.errors",
@@ -83,6 +88,7 @@ _HOME = {  # a room, or a name in a room where that is another
     "evaluate": "evaluation",
     "export": "viewer.exports",
     "load": "api",
+    "load_clip": "api",
     "open": "capture:open_path",
     "reconstruct": "reconstruction.whole",
     "render": "rendering",

@@ -1,13 +1,15 @@
-"""What `import eigenfield` adds to the rooms: a scene that saves and draws itself, and the functions that return one.
+"""What `import eigenfield` adds to the rooms: a scene and a clip that save and draw themselves, and the functions that
+return one.
 
-`core.Scene` is data, and knows nothing of files and renderers, which lie above it. What is convenient to have as a
-method stands here, above them all: each method is the function of the same name.
+`core.Scene` and `core.Clip` are data, and know nothing of files and renderers, which lie above them. What is convenient
+to have as a method stands here, above all rooms: each method is the function of the same name.
 """
 
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
 from typing import ParamSpec
 
@@ -15,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield import encoding, gltf, rendering
+from eigenfield.core.clip import Clip
 from eigenfield.core.scene import Scene
 from eigenfield.encoding.geometry.exchange import with_mesh
 
@@ -46,13 +49,53 @@ class EncodedScene(Scene):
         return scene_html(self)
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class EncodedClip(Clip):
+    """A clip as `load_clip` returns it, which saves and draws itself.
+
+    It is a function from time to scenes. A group of frames is read and decoded when one of them is asked for.
+    """
+
+    render = rendering.render
+    render_many = rendering.render_many
+    save = gltf.save
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """(n,) seconds of the frames."""
+        return self.timeline.times
+
+    def scene(self, time: float) -> EncodedScene:
+        """The frame nearest to a time in seconds. OptionError `time`, outside the clip."""
+        return _encoded_scene(super().scene(time))
+
+    def scenes(self, first: float | None = None, last: float | None = None) -> Iterator[EncodedScene]:
+        """The frames from one time to another, both in seconds, one after the other; by default all."""
+        times = self.times
+        ends = [times[index] if time is None else time for index, time in ((0, first), (-1, last))]
+        start, stop = map(self.timeline.frame_at, ends)
+        return map(self.scene, times[start : stop + 1])
+
+
+def _encoded_scene(scene: Scene) -> EncodedScene:
+    return EncodedScene(**{one.name: getattr(scene, one.name) for one in fields(scene) if one.init})
+
+
 def _returning_encoded_scene(function: Callable[P, Scene]) -> Callable[P, EncodedScene]:
     @functools.wraps(function)
     def call(*args: P.args, **named: P.kwargs) -> EncodedScene:
-        made = function(*args, **named)
-        return EncodedScene(**{one.name: getattr(made, one.name) for one in fields(made) if one.init})
+        return _encoded_scene(function(*args, **named))
 
     return call
+
+
+def _encoded_clip(clip: Clip) -> EncodedClip:
+    return EncodedClip(**{one.name: getattr(clip, one.name) for one in fields(clip)})
+
+
+@functools.wraps(gltf.load_clip)
+def load_clip(path: str | os.PathLike[str]) -> EncodedClip:
+    return _encoded_clip(gltf.load_clip(path))
 
 
 encode = _returning_encoded_scene(encoding.encode)

@@ -3,13 +3,39 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from fractions import Fraction
+from pathlib import Path
 
 import click
 
 from eigenfield.cli.common import pair_of_numbers, together
+from eigenfield.core.errors import OptionError
 
 DEFAULT_FPS = "30"
+
+
+@dataclass(frozen=True)
+class ClipTime:
+    """A time in a clip: seconds, or the number of a frame."""
+
+    seconds: float = 0.0
+    frame: int | None = None
+
+    def in_clip(self, path: Path) -> float:
+        """The seconds in a file's clip. OptionError `time`: it has no such frame, or is of one instant."""
+        from eigenfield.gltf import load_clip, stores_clip
+
+        if not stores_clip(path):
+            remedy = "leave --time out"
+            raise OptionError("time", "is a scene of one instant, and has no other time", path=path, remedy=remedy)
+        if self.frame is None:
+            return self.seconds
+        timeline = load_clip(path).timeline
+        if self.frame >= timeline.frames:
+            remedy = f"name one from 0 to {timeline.frames - 1}, or seconds as 1.25s"
+            raise OptionError("time", f"the clip has no frame {self.frame}", path=path, remedy=remedy)
+        return float(timeline.times[self.frame])
 
 
 def parse_place(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[float, float] | None:
@@ -21,6 +47,15 @@ def parse_place(context: click.Context, parameter: click.Parameter, value: str |
     except ValueError:
         raise click.BadParameter("two numbers from -1 to 1 with a comma between them: 0.3,-0.2") from None
     return x, y
+
+
+def _parse_time(context: click.Context, parameter: click.Parameter, value: str | None) -> ClipTime | None:
+    found = None if value is None else re.fullmatch(r"(\d{1,9})|(-?\d{0,9}\.?\d{1,9})s", value.strip())
+    if value is not None and found is None:
+        raise click.BadParameter("seconds as 1.25s, or the number of a frame: 37")
+    if found is None:
+        return None
+    return ClipTime(frame=int(found[1])) if found[1] else ClipTime(seconds=float(found[2]))
 
 
 def _parse_colour(context: click.Context, parameter: click.Parameter, value: str) -> tuple[float, ...] | None:
@@ -64,6 +99,9 @@ flight_options = together(
     click.option("--fps", callback=_parse_rate, default=DEFAULT_FPS, show_default=True, metavar="F",
                  help="Pictures a second."),
 )  # fmt: skip
+time_option = click.option(
+    "--time", callback=_parse_time, metavar="TIME", help="Of a clip: seconds (1.25s), or the number of a frame (37)."
+)
 residual_option = click.option(
     "--residual",
     is_flag=True,

@@ -9,7 +9,7 @@ import click
 from click.core import ParameterSource
 
 from eigenfield.cli.common import PATH, common_options, note, pair_of_numbers
-from eigenfield.cli.drawing import flight_options, parse_place, picture_options, residual_option
+from eigenfield.cli.drawing import ClipTime, flight_options, parse_place, picture_options, residual_option, time_option
 from eigenfield.cli.progress import progress_bars
 
 
@@ -23,6 +23,7 @@ Examples:
   eigenfield export scene.glb -o 'frames/%04d.png' --background transparent
   eigenfield export scene.glb -o plain.glb --as glb
   eigenfield export scene.glb -o plain.glb --at 0.5,0 --image webp --draco
+  eigenfield export clip.glb -o still.html --time 1.25s
   eigenfield export scene.glb -o mesh.obj
   eigenfield export scene.glb -o textures --as obj
   eigenfield export scene.glb -o maps --as maps
@@ -72,15 +73,17 @@ Examples:
     metavar="0..1",
     help="Part of the array's width that the views span (quilt).",
 )
+@time_option
 @flight_options
 @picture_options
 @residual_option
 @click.option("--overwrite", is_flag=True, help="Replace existing files, and folders that an export wrote.")
 @common_options
 def command(
-    scenes: tuple[Path, ...], output: Path, kind: str | None, overwrite: bool, quiet: bool, **options: Any
-) -> None:
-    """Write SCENE for other programs.
+    scenes: tuple[Path, ...], output: Path, kind: str | None, time: ClipTime | None, overwrite: bool, quiet: bool,
+    **options: Any,
+) -> None:  # fmt: skip
+    """Write SCENE, or the frame of a clip at --time, for other programs.
 
     \b
     html    one page with viewer and scene, which opens by double click, and its poster, a .jpg
@@ -96,7 +99,11 @@ def command(
     from eigenfield.viewer.exports import export
 
     source = click.get_current_context().get_parameter_source
-    given = {name: value for name, value in options.items() if source(name) is ParameterSource.COMMANDLINE}
+    given: dict[str, Any] = {
+        name: value for name, value in options.items() if source(name) is ParameterSource.COMMANDLINE
+    }
+    if time is not None and len(scenes) == 1:
+        given["time"] = time.in_clip(scenes[0])
     with progress_bars(quiet) as progress:
         made, what = export(scenes, output, kind, overwrite=overwrite, progress=progress, **given)
     note(f"wrote {made}: {what}", quiet)

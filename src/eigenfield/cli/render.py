@@ -9,7 +9,14 @@ from typing import Any
 import click
 
 from eigenfield.cli.common import PATH, common_options, note
-from eigenfield.cli.drawing import flight_options, parse_place, picture_options, residual_option
+from eigenfield.cli.drawing import (
+    ClipTime,
+    flight_options,
+    parse_place,
+    picture_options,
+    residual_option,
+    time_option,
+)
 from eigenfield.cli.progress import progress_bars
 from eigenfield.core.errors import OptionError
 
@@ -21,6 +28,7 @@ Examples:
   eigenfield render scene.glb --at 0.3,-0.2 --resolution 1024x768 -o view.png
   eigenfield render scene.glb --camera out_08_08.jpg --background transparent -o view.png
   eigenfield render archive.glb --camera out_08_08.jpg --residual -o view.png
+  eigenfield render clip.glb --time 1.25s --at 0.3,-0.2 -o view.png
   eigenfield render scene.glb --path circle --frames 240 -o around.mp4
   eigenfield render scene.glb --path grid --frames 25 -o 'frames/%04d.png'"""
 )
@@ -35,18 +43,20 @@ Examples:
 )
 @click.option("--at", callback=parse_place, metavar="X,Y", help="Viewpoint in the array: 0,0 its middle, ±1 its edges.")
 @click.option("--camera", metavar="NAME", help="A captured camera.  [default: the reference camera]")
+@time_option
 @flight_options
 @picture_options
 @residual_option
 @click.option("--overwrite", is_flag=True, help="Replace existing files.")
 @common_options
 def command(
-    scene: Path, output: Path, at: tuple[float, float] | None, camera: str | None, path: str | None,
-    frames: int | None, fps: Fraction, residual: bool, overwrite: bool, quiet: bool, **picture: Any,
+    scene: Path, output: Path, at: tuple[float, float] | None, camera: str | None, time: ClipTime | None,
+    path: str | None, frames: int | None, fps: Fraction, residual: bool, overwrite: bool, quiet: bool, **picture: Any,
 ) -> None:  # fmt: skip
     """Draw SCENE: one picture, or a fly-through.
 
-    The picture is that of a viewpoint in the array (--at), of a captured camera (--camera), or a path's.
+    The picture is that of a viewpoint in the array (--at), of a captured camera (--camera), or a path's. Of a clip
+    --time names the frame.
     """
     from eigenfield.runtime.files import is_numbered, refuse_existing, write_bytes
 
@@ -65,16 +75,17 @@ def command(
     from eigenfield.rendering import FLIGHT_FRAMES, RenderJob, camera_index, path_points, viewpoint, viewpoint_colour
     from eigenfield.rendering.render_jobs import png, refuse_flight, write_flight
 
+    seconds = None if time is None else time.in_clip(scene)
     if path is not None:
         points = path_points(path, FLIGHT_FRAMES if frames is None else frames)
         refuse_flight(output, len(points), overwrite)
-        job = RenderJob(load(scene), **picture)
+        job = RenderJob(load(scene, seconds), **picture)
         with progress_bars(quiet) as progress:
             write_flight(job, points, output, fps, overwrite=overwrite, progress=progress)
         note(f"wrote {output}: {len(points)} pictures", quiet)
         return
     refuse_existing(output, overwrite)
-    job = RenderJob(load(scene), **picture)
+    job = RenderJob(load(scene, seconds), **picture)
     if residual:
         index = job.scene.rig.reference if camera is None else camera_index(job.scene, camera)
         data = png(captured_pixels(job, index, difference_of(job.scene, index)))

@@ -80,9 +80,16 @@ def load_any(path: str | os.PathLike[str]) -> Scene | Clip:
     return load_clip(path) if stores_clip(path) else load(path)
 
 
-def as_scene(scene: Scene | str | os.PathLike[str]) -> Scene:
-    """The scene itself, or what `load` reads from its file, with its errors."""
-    return scene if isinstance(scene, Scene) else load(scene)
+def as_scene(scene: Scene | Clip | str | os.PathLike[str], time: float | None = None) -> Scene:
+    """The scene itself, the frame of a clip at a time in seconds, or what `load` reads from a file, with its errors.
+    OptionError `time`: a clip without a time."""
+    if isinstance(scene, Clip):
+        if time is None:
+            times = scene.timeline.times
+            remedy = f"give {times[0]:g} to {times[-1]:g} seconds"
+            raise OptionError("time", "a clip is drawn at a time, and none is given", remedy=remedy)
+        return scene.scene(time)
+    return scene if isinstance(scene, Scene) else load(scene, time)
 
 
 def read_scene(data: bytes | ByteSource) -> Scene:

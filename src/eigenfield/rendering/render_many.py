@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from eigenfield.core.arguments import checked
 from eigenfield.core.camera import Camera
+from eigenfield.core.clip import Clip
 from eigenfield.core.errors import OptionError
 from eigenfield.core.notebook import notebook_progress
 from eigenfield.core.progress import Progress, track
@@ -28,10 +29,11 @@ View = tuple[tuple[Camera, ViewWeights], NDArray[np.float32] | None]
 
 @checked
 def render_many(
-    scene: Scene | str | os.PathLike[str],
+    scene: Scene | Clip | str | os.PathLike[str],
     *,
     at: Sequence[tuple[float, float]] | None = None,
     cameras: Sequence[str] | None = None,
+    time: float | None = None,
     resolution: tuple[int, int] | None = None,
     weights: str = "delaunay",
     filter: str = "bicubic",
@@ -49,9 +51,10 @@ def render_many(
             frames.append(picture.to_uint8())
 
     Args:
-        scene: The scene, or its file.
+        scene: The scene or the clip, or its file.
         at: (n, 2) view-plane coordinates: an array, or a sequence of pairs.
         cameras: Names of capture cameras.
+        time: Seconds, of a clip, of which the nearest frame is drawn.
         resolution: (width, height), and the next five: as of `render`.
         weights: `delaunay`, `nearest3` or `bilinear`.
         filter: `bilinear` or `bicubic`.
@@ -63,7 +66,7 @@ def render_many(
     Raises:
         OptionError, FormatError: As `render`.
     """
-    found = as_scene(scene)
+    found = as_scene(scene, time)
     if at is not None and cameras is not None:
         raise OptionError("viewpoint", "places and cameras were both given", remedy="give one of them")
     names = found.names if cameras is None else cameras

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from eigenfield.core.arguments import checked
 from eigenfield.core.camera import Camera
 from eigenfield.core.camera_names import named_camera
+from eigenfield.core.clip import Clip
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.scene import Scene
@@ -167,10 +168,11 @@ def renderer_of(scene: Scene) -> Renderer:
 
 @checked
 def render(
-    scene: Scene | str | os.PathLike[str],
+    scene: Scene | Clip | str | os.PathLike[str],
     *,
     at: tuple[float, float] | None = None,
     camera: str | None = None,
+    time: float | None = None,
     resolution: tuple[int, int] | None = None,
     weights: str = "delaunay",
     filter: str = "bicubic",
@@ -184,9 +186,10 @@ def render(
     those around it by the same weights as the textures. May be called from several threads.
 
     Args:
-        scene: The scene, or its file, which is read at every call.
+        scene: The scene or the clip, or its file, which is read at every call.
         at: View-plane coordinates: X right, Y up, ±1 at the array's edges.
         camera: Name of a capture camera.
+        time: Seconds, of a clip, of which the nearest frame is drawn.
         resolution: (width, height). Default: the camera's own.
         weights: `delaunay`, `nearest3` or `bilinear`.
         filter: `bilinear` or `bicubic` (Catmull-Rom).
@@ -197,10 +200,10 @@ def render(
 
     Raises:
         OptionError: `unknown-camera`, `viewpoint`, `weights-mode`, `no-grid`, `resolution`, `filter`,
-            `background`, `textures`, `samples`.
+            `background`, `textures`, `samples`, `time`.
         FormatError: The file is no scene.
     """
-    found = as_scene(scene)
+    found = as_scene(scene, time)
     view, mix = viewpoint(found, at=at, camera=camera, weights=weights)
     if resolution is not None:
         view = at_resolution(view, resolution)

@@ -13,11 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.arguments import checked
+from eigenfield.core.clip import Clip
 from eigenfield.core.errors import OptionError
 from eigenfield.core.notebook import notebook_progress
 from eigenfield.core.progress import Progress
 from eigenfield.core.scene import Scene, check_scale
-from eigenfield.gltf import as_scene, encode_scene, without_residual
+from eigenfield.gltf import as_scene, encode_scene, load_any, without_residual
 from eigenfield.rendering import FLIGHT_FRAMES, RenderJob, path_points
 from eigenfield.rendering.render_jobs import refuse_flight, write_flight
 from eigenfield.runtime.files import is_numbered, refuse_existing
@@ -51,10 +52,11 @@ FLIGHT_DEFAULT_PATH, FLIGHT_FPS = "circle", 30
 
 @checked
 def export(
-    scene: Scene | str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
+    scene: Scene | Clip | str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
     output: str | os.PathLike[str],
     kind: str | None = None,
     *,
+    time: float | None = None,
     overwrite: bool = False,
     progress: Progress | None = notebook_progress,
     **options: Any,
@@ -62,10 +64,11 @@ def export(
     """Write a scene for other programs, as `eigenfield export` does.
 
     Args:
-        scene: The scene, or its file; for "app" the files of as many scenes as it offers, or none.
+        scene: The scene or the clip, or its file; for "app" the files of as many scenes as it offers, or none.
         output: A file or a folder.
         kind: "html", "mp4", "png" (single pictures), "glb", "obj", "maps", "quilt", "colmap" or "app"; None: by
             the output's name.
+        time: Seconds, of a clip, of which the nearest frame is exported.
         overwrite: Whether existing files, and folders that an export wrote, are replaced.
         progress: Reports each picture; by default a bar in a notebook.
         options: Of the kind (`OPTIONS`): fields of `RenderJob` for pictures; `path` and `frames` (`path_points`) and
@@ -84,7 +87,9 @@ def export(
     output = Path(output)
     chosen = _chosen_kind(output, kind, is_numbered(output))
     _check(chosen, output, options)
-    scenes = [scene] if isinstance(scene, Scene | str | os.PathLike) else list(scene)
+    scenes = [scene] if isinstance(scene, Scene | Clip | str | os.PathLike) else list(scene)
+    if chosen == "app" and time is not None:
+        raise OptionError("unused-option", "--time is not for app", remedy="leave it out")
     if chosen == "app":
         return _write_app(scenes, output, overwrite, progress, **options)
     if len(scenes) != 1:
@@ -95,24 +100,27 @@ def export(
         points = path_points(options.get("path", FLIGHT_DEFAULT_PATH), options.get("frames", FLIGHT_FRAMES))
     files = guests_files(output) if chosen == "html" and not options.get("laboratory") else [output]
     _refuse(chosen, obj_files(output) if _is_obj(output) else files, points, overwrite)
-    if chosen == "glb" and not isinstance(scene, Scene) and output.exists() and output.samefile(scene):
+    if chosen == "glb" and not isinstance(scene, Scene | Clip) and output.exists() and output.samefile(scene):
         raise OptionError("output-kind", f"{output} is the scene itself", remedy="name another file")
-    job = RenderJob(as_scene(scene), **{name: value for name, value in options.items() if name in PICTURE_OPTIONS})
+    drawn = {name: value for name, value in options.items() if name in PICTURE_OPTIONS}
+    job = RenderJob(as_scene(scene, time), **drawn)
     return _write(chosen, job, points, output, options, overwrite, progress)
 
 
 def _write_app(
-    scenes: Sequence[Scene | str | os.PathLike[str]], output: Path, overwrite: bool, progress: Progress | None,
-    **options: Any,
+    scenes: Sequence[Scene | Clip | str | os.PathLike[str]], output: Path, overwrite: bool,
+    progress: Progress | None, **options: Any,
 ) -> tuple[Path, str]:  # fmt: skip
     """Write the page that opens files, with its samples; where, and what was written."""
     refuse_folder(output, overwrite)
     samples = []
     for scene in scenes:
-        name = "scene" if isinstance(scene, Scene) else Path(scene).stem
-        loaded = as_scene(scene)
-        data = encode_scene(scene) if isinstance(scene, Scene) else Path(scene).read_bytes()
-        samples.append(Sample(name, without_residual(data), draw_thumbnail(loaded)))
+        if isinstance(scene, Scene | Clip):
+            name, loaded, data = "scene", scene, encode_scene(scene)
+        else:
+            name, loaded, data = Path(scene).stem, load_any(scene), Path(scene).read_bytes()
+        shown = as_scene(loaded, loaded.timeline.first if isinstance(loaded, Clip) else None)
+        samples.append(Sample(name, without_residual(data), draw_thumbnail(shown)))
     write_app(samples, output, overwrite=overwrite, progress=progress, **options)
     offered = f", with {', '.join(sample.name for sample in samples)} to choose from" if samples else ""
     return output, f"a page that opens files{offered}; put it on a web server"
