@@ -29,10 +29,7 @@ def encoded(clip: Path, output: Path, workers: int | None = None, cluster: str |
     """A batch's figures, and its files by name."""
     began = time.perf_counter()
     options: dict[str, Any] = {"proxy": str(clip.parent / "demo" / "proxy.ply"), "preset": "small"}
-    cameras = clip.parent / "demo" / "transforms.json"
-    result = ef.batch(
-        clip, output, instants=True, cameras=cameras, progress=None, workers=workers, cluster=cluster, **options
-    )
+    result = ef.batch(clip, output, progress=None, workers=workers, cluster=cluster, **options)
     seconds = time.perf_counter() - began
     if result.failed:
         raise SystemExit(f"{result.failed[0]['name']}: {result.failed[0]['error']}")
@@ -52,7 +49,9 @@ def main() -> None:
         root = Path(folder)
         draw_demo_capture(root / "demo", rows=ROWS, columns=ROWS, size=SIZE)
         for number in range(asked.instants):
-            shutil.copytree(root / "demo" / "images", root / "clip" / f"t{number:03d}")
+            capture = root / "clip" / f"t{number:03d}"
+            shutil.copytree(root / "demo" / "images", capture / "images")
+            shutil.copy(root / "demo" / "transforms.json", capture)
         shutil.copytree(root / "clip" / "t000", root / "warm" / "t")
         encoded(root / "warm", root / "warm-scenes")  # kernels are compiled
         found = {"one_process": encoded(root / "clip", root / "one")}

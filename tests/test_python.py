@@ -274,7 +274,7 @@ def test_a_notebook_shows_progress_unless_told_otherwise(nine, monkeypatch):
         ("load", [tiny_scene()], {}, "path of load is a Scene; give a path"),
         ("save", [3, "a.glb"], {}, "scene of save is 3"),
         ("open", [None], {}, "path of open_path"),
-        ("open", ["a"], {"grid": "3x3"}, "grid of open_any is '3x3'; give (a whole number, a whole number) or None"),
+        ("open", ["a"], {"grid": "3x3"}, "grid of open_path is '3x3'; give (a whole number, a whole number) or None"),
         ("evaluate", [None, "a"], {}, "scene of evaluate"),
         ("reconstruct", ["photos"], {}, "capture of reconstruct is 'photos'"),
         ("set_threads", ["all"], {}, "count of set_threads is 'all'"),

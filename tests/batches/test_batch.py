@@ -113,34 +113,6 @@ def test_the_bytes_are_the_same_wherever_they_are_made(listed, tmp_path, way):
     assert there.failed[0]["error"] == here.failed[0]["error"] and there.failed[0]["worker"]
 
 
-def test_instants_share_the_cameras_of_the_first(capture, tmp_path):
-    clip = tmp_path / "clip"
-    for number in (1, 2, 10):
-        shutil.copytree(capture / "images", clip / f"t{number}")
-    shutil.copy(capture / "transforms.json", tmp_path)
-    options = {"fit": "none", "textures": 2, "atlas": 64, "proxy": str(capture / "proxy.ply")}
-    result = ef.batch(
-        clip, tmp_path / "out", instants=True, cameras=tmp_path / "transforms.json", progress=None, **options
-    )
-    assert [record["name"] for record in result.records] == ["t1", "t2", "t10"] and not result.failed
-    scenes = [ef.load(result.folder / one["folder"] / one["scene"]) for one in result.records]
-    known = {camera.t.tobytes() for camera in ef.open(capture).cameras}
-    assert all(len(scene.rig.cameras) == len(known) for scene in scenes)
-    assert 'type="range" min="0" max="2"' in result.page.read_text("utf-8")
-
-
-@pytest.mark.slow
-def test_instants_without_cameras_have_them_found_once(tmp_path):
-    draw_demo_capture(tmp_path / "jar", rows=5, columns=5, size=128)
-    for number in range(2):
-        shutil.copytree(tmp_path / "jar" / "images", tmp_path / "clip" / f"t{number}")
-    result = ef.batch(tmp_path / "clip", instants=True, workers=2, progress=None, preset="small", surface="relief")
-    assert not result.failed and len(list(result.folder.glob("cameras-*/calibration/transforms.json"))) == 1
-    first, second = (ef.load(result.folder / one["folder"] / one["scene"]) for one in result.records)
-    pairs = zip(first.rig.cameras, second.rig.cameras, strict=True)
-    assert all((a.R == b.R).all() and (a.t == b.t).all() for a, b in pairs)
-
-
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -324,14 +296,12 @@ def test_what_a_page_shows_is_text():
         "psnr": 30.0, "held_out_psnr": None, "between_psnr_luma": 24.56, "warnings": ['"'],
     }  # fmt: skip
     failed = {"name": "c", "error": "<script>"}
-    assert "views between at least 24.6 dB of luma" in sheet_html("sizes", [record], instants=False)
+    assert "views between at least 24.6 dB of luma" in sheet_html("sizes", [record])
     dense = {**record, "between_psnr_luma": None, "between_psnr": 31.24}
-    assert "views between about 31.2 dB" in sheet_html("sizes", [dense], instants=False)
-    for instants in (False, True):
-        page = sheet_html("<i>", [record, failed], instants)
-        assert "<b></b>" not in page and "<i>" not in page and "&lt;script&gt;" in page
-        assert "scenes/a%20b-1/x.html" in page
-    assert (Path(executor.__file__).parents[1] / "batches/templates/player.js").exists()
+    assert "views between about 31.2 dB" in sheet_html("sizes", [dense])
+    page = sheet_html("<i>", [record, failed])
+    assert "<b></b>" not in page and "<i>" not in page and "&lt;script&gt;" in page
+    assert "scenes/a%20b-1/x.html" in page
 
 
 @pytest.fixture(params=["processes", "cluster"])

@@ -17,14 +17,12 @@ from typing import Any
 from eigenfield.batches.jobs import CaptureJob
 from eigenfield.capture import Capture, open_any
 from eigenfield.capture.identity import capture_identity
-from eigenfield.capture.writers.save import save_calibration
 from eigenfield.encoding import encode
 from eigenfield.encoding.cost import expected_cost
 from eigenfield.encoding.views import check_selection
 from eigenfield.evaluation import evaluate, stored_scores
 from eigenfield.gltf import load, save, store_scores
 from eigenfield.proxy import refuse_no_mesh
-from eigenfield.reconstruction.whole import reconstruct
 from eigenfield.runtime.objects import DONE, find_objects, own_copies
 from eigenfield.runtime.parallel import threads
 from eigenfield.runtime.stages import Stages, stage_key
@@ -33,7 +31,6 @@ from eigenfield.viewer.exports import write_guests_page
 
 SCENES_FOLDER, WORK_FOLDER, LOGS_FOLDER = "scenes", "work", "logs"
 RECORD_FILE = "record.json"
-CALIBRATION_FILE = "transforms.json"
 
 
 @own_copies()
@@ -92,29 +89,6 @@ def encode_capture(job: CaptureJob, output: Path, key: str) -> dict[str, Any]:
     place = Stages(output / SCENES_FOLDER).run(job.name, key, build)
     found: dict[str, Any] = json.loads((place / RECORD_FILE).read_text(encoding="utf-8"))
     return found
-
-
-@own_copies()
-def find_cameras(job: CaptureJob, output: Path) -> Path:
-    """The cameras of a capture, found or as they are given, as a calibration that others use too.
-
-    Raises:
-        EigenfieldError: Of any step.
-    """
-    capture = _opened(job, output)
-    surface = job.surface
-    key = stage_key(["cameras", _inputs(job, capture), installed()])
-
-    def build(folder: Path) -> None:
-        light_field = capture.light_field
-        if surface is not None:
-            layers = surface.layers if surface.surface == "layers" else 1  # trials tell nothing about cameras
-            made = reconstruct(capture, surface, layers=layers, work=output / WORK_FOLDER / job.name, progress=None)
-            light_field = made.light_field
-        assert light_field is not None
-        save_calibration(light_field, folder / "calibration")
-
-    return output / Stages(output).run("cameras", key, build).name / "calibration" / CALIBRATION_FILE
 
 
 def _opened(job: CaptureJob, output: Path) -> Capture:

@@ -57,12 +57,6 @@ class CaptureJob:
         named = [self.place.calibration, self.place.masks, *(self.place.also or ())]
         return [self.path, *(os.fspath(path) for path in named if path is not None)]
 
-    def with_cameras(self, calibration: Path) -> CaptureJob:
-        """The same with cameras from a calibration, which stay as they are."""
-        place = replace(self.place, calibration=str(calibration))
-        surface = None if self.surface is None else replace(self.surface, refine=False)
-        return replace(self, place=place, surface=surface)
-
 
 def read_jobs(source: Path | Sequence[Path], shared: Mapping[str, Any]) -> list[CaptureJob]:
     """The captures of a batch, whose names differ.

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from eigenfield.batches.capture import LOGS_FOLDER, encode_capture, find_cameras, look_at
+from eigenfield.batches.capture import LOGS_FOLDER, encode_capture, look_at
 from eigenfield.batches.jobs import CaptureJob, read_jobs
 from eigenfield.batches.sheet import sheet_html
 from eigenfield.batches.table import TABLE_WRITERS
@@ -62,8 +62,6 @@ def batch(
     *,
     workers: int | None = None,
     cluster: str | None = None,
-    instants: bool = False,
-    cameras: str | os.PathLike[str] | None = None,
     progress: Progress | None = notebook_progress,
     **options: Any,
 ) -> BatchResult:
@@ -77,9 +75,6 @@ def batch(
         output: Folder to write, or an address. Default: `source` with "-scenes", beside it.
         workers: Processes of this machine; with a cluster as of `open_executor`. None: this process.
         cluster: Address of a Dask scheduler, "slurm" or "ssh:HOST,HOST".
-        instants: Whether the captures are instants of one rig: cameras are found in the first, and the page steps
-            through them.
-        cameras: A calibration of the rig, for instants; entries find their photographs by name.
         progress: Reports each capture; by default a bar in a notebook.
         options: Of all captures, by the names that `encode` and `open_any` have.
 
@@ -90,8 +85,6 @@ def batch(
     """
     given = Path(source) if isinstance(source, str | os.PathLike) else [Path(one) for one in source]
     jobs = read_jobs(given, options)
-    if cameras is not None and not instants:
-        raise OptionError("cameras", "cameras are given for instants only", remedy="say --instants too")
     folder = _output(given, output)
     records: dict[int, dict[str, Any]] = {}
     taken_up = 0
@@ -102,9 +95,6 @@ def batch(
         for place in {_shared_place(job.path) for job in jobs}:
             refuse_unseen(pool, place)
         try:
-            if instants:
-                found = absolute_place(cameras) if cameras is not None else _cameras(pool, jobs[0], folder)
-                jobs = [job.with_cameras(found) for job in jobs]
             bar = _Bar(len(jobs), progress)
             looks = _looked(pool, jobs, folder, records, bar)
             taken_up = sum("error" not in record for record in records.values())
@@ -112,7 +102,7 @@ def batch(
         finally:
             ordered = tuple(records[number] for number in sorted(records))
             if ordered:
-                _write(folder, ordered, instants, len(jobs) - len(ordered))
+                _write(folder, ordered, len(jobs) - len(ordered))
     return BatchResult(folder, ordered, taken_up)
 
 
@@ -175,11 +165,6 @@ class _Bar:
             self._progress("captures", self._done, self._total)
 
 
-def _cameras(pool: Workers, first: CaptureJob, folder: Path) -> Path:
-    found: Path = pool.submit(find_cameras, first, folder).result()
-    return found
-
-
 def _looked(
     pool: Workers, jobs: Sequence[CaptureJob], folder: Path, records: dict[int, dict[str, Any]], bar: _Bar
 ) -> dict[int, dict[str, Any]]:
@@ -238,8 +223,8 @@ def _failure(job: CaptureJob, error: BaseException, folder: Path) -> dict[str, A
     }  # fmt: skip
 
 
-def _write(folder: Path, records: Sequence[dict[str, Any]], instants: bool, missing: int) -> None:
+def _write(folder: Path, records: Sequence[dict[str, Any]], missing: int) -> None:
     for name, text in TABLE_WRITERS.items():
         write_bytes(folder / name, text(records).encode("utf-8"), overwrite=True)
-    page = sheet_html(folder.name, records, instants, missing)
+    page = sheet_html(folder.name, records, missing)
     write_bytes(folder / PAGE_FILE, page.encode("utf-8"), overwrite=True)

@@ -1,4 +1,4 @@
-"""The page of a batch: a contact sheet of its scenes, or its instants with a slider.
+"""The page of a batch: a contact sheet of its scenes.
 
 It needs no server and nothing else than what lies beside it: posters, and the pages of the scenes.
 """
@@ -11,23 +11,20 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from eigenfield.viewer.page import json_for_html
-
 TEMPLATES = Path(__file__).parent / "templates"
 
 
-def sheet_html(title: str, records: Sequence[Mapping[str, Any]], instants: bool, missing: int = 0) -> str:
+def sheet_html(title: str, records: Sequence[Mapping[str, Any]], missing: int = 0) -> str:
     """The page.
 
     Args:
         missing: How many captures are neither finished nor have failed.
     """
     finished = [record for record in records if "error" not in record]
-    body = _player(finished) if instants and finished else f'<ul class="sheet">{"".join(map(_card, finished))}</ul>'
+    cards = "".join(map(_card, finished))
     failed = [f"<li><b>{_text(one['name'])}</b> {_text(one['error'])}</li>" for one in records if "error" in one]
     failures = f'<h2>Failed</h2><ul class="failed">{"".join(failed)}</ul>' if failed else ""
-    word = "instant" if instants else "scene"
-    left = f" {_counted(missing, word)} to come: the same command goes on." if missing else ""
+    left = f" {_counted(missing, 'scene')} to come: the same command goes on." if missing else ""
     style = (TEMPLATES / "sheet.css").read_text(encoding="utf-8")
     size = sum(record["bytes"] for record in finished)
     return f"""<!doctype html>
@@ -41,9 +38,9 @@ def sheet_html(title: str, records: Sequence[Mapping[str, Any]], instants: bool,
 {style}</style>
 </head>
 <body>
-<header><h1>{_text(title)}</h1><p>{_counted(len(finished), word)}, {_size(size)}.{left}
+<header><h1>{_text(title)}</h1><p>{_counted(len(finished), "scene")}, {_size(size)}.{left}
 All figures: <a href="table.csv">CSV</a>, <a href="table.json">JSON</a>, <a href="table.md">Markdown</a>.</p></header>
-<main>{body}{failures}</main>
+<main><ul class="sheet">{cards}</ul>{failures}</main>
 </body>
 </html>
 """
@@ -67,22 +64,6 @@ def _card(record: Mapping[str, Any]) -> str:
         f"<b>{name}</b></a><p>{', '.join(figures)}"
         f'<a href="{_address(record, "scene")}" download aria-label="{name}.glb">.glb</a></p>{warned}</li>'
     )
-
-
-def _player(records: Sequence[Mapping[str, Any]]) -> str:
-    listed = [
-        {"name": record["name"], "page": _address(record, "page"), "poster": _address(record, "poster")}
-        for record in records
-    ]
-    script = (TEMPLATES / "player.js").read_text(encoding="utf-8")
-    return f"""<div class="player"><div class="stage"><img alt="" src="{listed[0]["poster"]}"></div>
-<div class="bar"><button type="button" aria-label="Play">▶</button>
-<input type="range" min="0" max="{len(listed) - 1}" value="0" aria-label="Instant">
-<output></output></div>
-<p>Arrow keys step, space plays. Where it stands still, the instant opens: drag to look around.</p></div>
-<script type="application/json" id="instants">{json_for_html(listed)}</script>
-<script>
-{script}</script>"""
 
 
 def _address(record: Mapping[str, Any], key: str) -> str:

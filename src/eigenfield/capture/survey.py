@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.capture.lightfield import LightField
+from eigenfield.capture.photographs.kinds import VIDEO_EXTENSIONS
 from eigenfield.capture.photographs.read import read_header
 from eigenfield.capture.photoset import Capture
 from eigenfield.core.camera import Camera
@@ -111,6 +112,9 @@ def file_kinds(capture: Capture) -> list[tuple[str, int, bool, int]]:
     """(format, bits a channel, alpha, number of photographs), the most frequent first."""
     kinds: Counter[tuple[str, int, bool]] = Counter()
     for source in capture.sources:
+        if source.path.name.lower().endswith(VIDEO_EXTENSIONS):
+            kinds["video", 8, False] += 1  # as they are decoded
+            continue
         header = read_header(source.path)
         kinds[header.format, header.depth, header.alpha] += 1
     return [(*kind, count) for kind, count in sorted(kinds.items(), key=lambda item: (-item[1], item[0]))]

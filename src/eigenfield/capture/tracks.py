@@ -16,6 +16,7 @@ from typing import Any, Protocol, TypeVar
 
 import av
 import av.error
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -58,6 +59,9 @@ class Track(Protocol):
             held: The frame stands in for one that is missing, so that it is masked out.
         """
 
+    def small(self, index: int, side: int) -> NDArray[np.float32] | None:
+        """(h, w) a frame in grey, of 0..1, its longer side not above `side`; None where it is damaged."""
+
 
 @dataclass(frozen=True, eq=False)
 class PictureTrack:
@@ -79,6 +83,12 @@ class PictureTrack:
         file = self.files[index]
         picture = _Held(file, source.upright, source.exposure) if held else None
         return replace(source, name=self.name, path=file, picture=picture)
+
+    def small(self, index: int, side: int) -> NDArray[np.float32]:
+        pixels, _ = decode(self.files[index])
+        scale = min(1.0, side / max(pixels.shape[:2]))
+        width, height = (max(1, round(length * scale)) for length in pixels.shape[1::-1])
+        return np.asarray(cv2.resize(pixels, (width, height), interpolation=cv2.INTER_AREA).mean(axis=-1), np.float32)
 
 
 @dataclass(frozen=True)
@@ -117,6 +127,9 @@ class VideoTrack:
 
     def at(self, source: S, index: int, held: bool) -> S:
         return replace(source, name=self.name, path=self.film.path, picture=_FilmFrame(self.film, index, held))
+
+    def small(self, index: int, side: int) -> NDArray[np.float32] | None:
+        return self.film.read_small(index, side)
 
 
 @dataclass(frozen=True)
@@ -169,20 +182,28 @@ class Film:
         """
         with self._gate:
             if self._kept is None or self._kept[0] != index:
-                shown = self._decode(index)
-                damaged = shown.damaged or _stamp(shown) != self.stamps[index]
+                shown, damaged = self._decode(index)
                 if damaged:
                     log.warning("%s: frame %d is damaged, and masked out", self.path, index)
                 self._kept = index, to_rgb(shown), damaged
             return self._kept[1], self._kept[2]
+
+    def read_small(self, index: int, side: int) -> NDArray[np.float32] | None:
+        """A frame in grey, of 0..1, its longer side not above `side`, not turned; None where it is damaged."""
+        with self._gate:
+            (frame, *_), damaged = self._decode(index)
+            scale = min(1.0, side / max(frame.width, frame.height))
+            width, height = (max(1, round(length * scale)) for length in (frame.width, frame.height))
+            grey = frame.reformat(width, height, format="gray", interpolation="AREA").to_ndarray()
+            return None if damaged else grey.astype(np.float32) / np.float32(255)
 
     def close(self) -> None:
         """Let go of the decoder; the next `read` opens another."""
         with self._gate:
             self._frames = self._shown = self._kept = None
 
-    def _decode(self, index: int) -> Shown:
-        """The frame of a number; the next one that there is where it cannot be decoded."""
+    def _decode(self, index: int) -> tuple[Shown, bool]:
+        """The frame of a number, or the next one that there is, and whether it is damaged."""
         key = self.keys[bisect_right(self.keys, index) - 1]
         here = None if self._shown is None else bisect_left(self.stamps, _stamp(self._shown))
         if here is None or here > index or here + FILM_MAX_SKIP < key:
@@ -199,7 +220,7 @@ class Film:
                 path=self.path,
                 remedy="copy it again, or end the --clip before",
             )
-        return self._shown
+        return self._shown, self._shown.damaged or _stamp(self._shown) != self.stamps[index]
 
     def _open(self, time: int | float) -> None:
         self._frames = decode_video(self.path, time)

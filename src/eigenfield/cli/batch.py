@@ -24,8 +24,7 @@ Examples:
   eigenfield batch captures/ --workers 2
   eigenfield batch s3://lab/captures -o s3://lab/scenes
   eigenfield batch captures/ --cluster tcp://head:8786
-  eigenfield batch captures/ --cluster ssh:anna,bert
-  eigenfield batch clip/ --instants --cameras rig/transforms.json"""
+  eigenfield batch captures/ --cluster ssh:anna,bert"""
 )
 @click.argument("source", type=PATH, nargs=-1, required=True, metavar="CAPTURES")
 @click.option(
@@ -37,18 +36,12 @@ Examples:
     metavar="ADDRESS",
     help="Workers on other machines: a Dask scheduler's address, slurm, or ssh:HOST,HOST (the extra cluster).",
 )
-@click.option(
-    "--instants", is_flag=True, help="The captures are instants of one rig: its cameras are found once, in the first."
-)
-@click.option(
-    "--cameras", type=PATH, metavar="FILE", help="The rig's calibration, for --instants; it finds photographs by name."
-)
 @field_options(EncodeOptions, atlas=parse_atlas, target_size=parse_target_size)
 @surface_options("surface", "layers", *BY_HAND)
 @common_options
 def command(
-    source: tuple[Path, ...], output: Path | None, workers: int | None, cluster: str | None, instants: bool,
-    cameras: Path | None, quiet: bool, **options: Any,
+    source: tuple[Path, ...], output: Path | None, workers: int | None, cluster: str | None, quiet: bool,
+    **options: Any,
 ) -> None:  # fmt: skip
     """Encode and measure many captures: a folder of them, their paths, or a .toml that lists them.
 
@@ -65,10 +58,7 @@ def command(
     given = source[0] if len(source) == 1 else list(source)
     try:
         with progress_bars(quiet) as progress:
-            done = batch(
-                given, output, workers=workers, cluster=cluster, instants=instants, cameras=cameras, progress=progress,
-                **shared,
-            )  # fmt: skip
+            done = batch(given, output, workers=workers, cluster=cluster, progress=progress, **shared)
     except KeyboardInterrupt:
         note("the same command goes on with what is missing", quiet)
         raise

@@ -46,6 +46,7 @@ Examples:
   eigenfield inspect photos/ --calibration refined.json --json
   eigenfield inspect frames/ --grid 17x17
   eigenfield inspect videos/ --frame 2.5s
+  eigenfield inspect videos/ --clip 1s:3s
   eigenfield inspect capture/ --proxy mesh.ply --overlay overlay.png""",
 )
 @capture_argument()
@@ -87,10 +88,14 @@ def command(
 
     from eigenfield.calibration import measure_neighbours
     from eigenfield.calibration.harm import find_harmful, look_at
-    from eigenfield.capture import open_any
+    from eigenfield.capture import Footage, open_path
+    from eigenfield.capture.clip_range import parse_offsets
     from eigenfield.capture.survey import decode_all
+    from eigenfield.cli.inspect_footage import describe_footage
 
-    opened = open_any(capture, place, strict=False)
+    found = open_path(capture, place, strict=False)
+    footage = found if isinstance(found, Footage) else None
+    opened = replace(found.instant(0), problems=found.problems) if isinstance(found, Footage) else found
     if proxy is not None and opened.light_field is None:
         raise OptionError(
             "proxy-needs-cameras",
@@ -108,10 +113,13 @@ def command(
         sound = [i for i, one in enumerate(opened.sources) if not broken & {str(one.path), str(one.mask)}]
         pairs = measure_neighbours(opened, sound, progress)
         harms = find_harmful(opened, looks, progress)
+        filmed = None if footage is None else describe_footage(footage, progress)
     refusal = _refusal(capture, place, opened, damaged, proxy)
     report = describe(opened, damaged)
     if not place.also and capture.exists() and not _lies_in(opened.root, capture):  # unpacked into another folder
         report["root"] = str(capture)
+    if footage is not None:
+        report |= {"footage": filmed, "bytes": footage.bytes}
     report["refused"] = None if refusal is None else _error(refusal)
     report["harmful"] = [
         {"photograph": opened.names[harm.index], "kind": harm.kind, "reason": harm.reason} for harm in harms
@@ -132,7 +140,7 @@ def command(
     if as_json:
         echo_json(report)
     else:
-        click.echo("\n".join(report_lines(report)))
+        click.echo("\n".join(report_lines(report, parse_offsets(place.offset))))
     if refusal is not None:
         click.get_current_context().exit(2)
 
@@ -141,13 +149,13 @@ def _refusal(
     capture: Path, place: OpenOptions, opened: Capture, damaged: Sequence[CaptureError], proxy: Path | None
 ) -> CaptureError | None:
     """The error with which `encode` would end before any long work; None where it would run."""
-    from eigenfield.capture import open_any
+    from eigenfield.capture import open_path
     from eigenfield.capture.survey import refuse_one_place
     from eigenfield.core.errors import CaptureError
 
     try:
         if opened.problems or len(opened) < 3:
-            open_any(capture, place)
+            open_path(capture, place)
         if proxy is None:
             refuse_one_place(opened)
     except CaptureError as error:
@@ -210,6 +218,7 @@ def describe(capture: Capture, damaged: list[CaptureError]) -> dict[str, Any]:
         "harmful": [],
         "neighbours": None,
         "verdict": None,
+        "footage": None,
     }
 
 
@@ -359,8 +368,14 @@ def _proxy(
     }
 
 
-def report_lines(report: dict[str, Any]) -> list[str]:
-    """The report as lines for people."""
+def report_lines(report: dict[str, Any], offsets: Mapping[str, int] | None = None) -> list[str]:
+    """The report as lines for people.
+
+    Args:
+        offsets: Of the cameras of footage, as they were given.
+    """
+    from eigenfield.cli.inspect_footage import footage_lines
+
     sizes = ", ".join(f"{s['width']}x{s['height']} ({s['views']})" for s in report["sizes"])
     files = ", ".join(
         f"{f['format']} {f['depth']} bit{' with alpha' if f['alpha'] else ''} ({f['views']})" for f in report["files"]
@@ -378,6 +393,8 @@ def report_lines(report: dict[str, Any]) -> list[str]:
         f"  focal      {_focal_text(report['photographs'])}" if bare else lenses,
         f"  masks      {report['masks']} files",
     ]
+    if report["footage"] is not None:
+        lines += footage_lines(report["footage"], offsets or {})
     if report["layout"] is not None:
         lines += _layout_lines(report["layout"], bare > 0)
     if report["array"] is not None:

@@ -1,0 +1,95 @@
+"""What `eigenfield inspect --clip` says of footage, beside what it says of its first instant."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from eigenfield.core.errors import one_line
+
+if TYPE_CHECKING:
+    from eigenfield.capture import Footage
+    from eigenfield.core.progress import Progress
+
+DRIFT_MIN_STOPS = 0.3
+STILL_LEAST, STILL_MOST = 0.1, 0.995  # shares of pixels
+
+
+def describe_footage(footage: Footage, progress: Progress | None) -> dict[str, Any]:
+    """The key `footage` of the report; `docs/capture-formats.md` says what is in it."""
+    from eigenfield.capture.footage_survey import find_lags, watch
+
+    watched = watch(footage, progress)
+    lags = find_lags([one.energy for one in watched])
+    timeline = footage.timeline
+    return {
+        "frames": timeline.frames,
+        "rate": [timeline.rate.numerator, timeline.rate.denominator],
+        "first": timeline.first,
+        "seconds": float(timeline.frames / timeline.rate),
+        "looked_at": len(watched[0].energy) + 1,
+        "still": sum(one.still for one in watched) / len(watched),
+        "cameras": [
+            {
+                "name": track.name,
+                "frames": len(track.times),
+                "held": int(held.sum()),
+                "damaged": one.damaged,
+                "offset": lag.frames if lag.known else None,
+                "correlation": lag.correlation,
+                "stops": one.stops,
+                "still": one.still,
+            }
+            for track, held, one, lag in zip(footage.tracks, footage.held, watched, lags, strict=True)
+        ],
+    }
+
+
+def footage_lines(footage: dict[str, Any], offsets: Mapping[str, int]) -> list[str]:
+    """Lines for people about the key `footage`.
+
+    Args:
+        offsets: That are taken already.
+    """
+    cameras, rate = footage["cameras"], footage["rate"][0] / footage["rate"][1]
+    lines = [
+        f"  footage    {len(cameras)} cameras, {footage['frames']} frames at {rate:.4g} a second from "
+        f"{footage['first']:.4g} s on: {footage['seconds']:.4g} s"
+    ]
+    if footage["looked_at"] < footage["frames"]:
+        lines.append(f"             the first {footage['looked_at']} frames are looked at")
+    if missing := _named(cameras, "held", "{}"):
+        lines.append(f"  missing    frames, in whose place the one before is held and masked out: {missing}")
+    if damaged := _named(cameras, "damaged", "{}"):
+        lines.append(f"  damaged    frames, which are masked out: {damaged}")
+    lines += _step_lines(cameras, offsets)
+    drifting = [camera for camera in cameras if camera["stops"] > DRIFT_MIN_STOPS]
+    most = max(camera["stops"] for camera in cameras)
+    drift = f"changes by up to {most:.2f} stops over time"
+    if drifting:
+        drift += f", in {_named(drifting, 'stops', '{:.2f}')}: fix exposure and white balance, or the light flickers"
+    return [*lines, f"  light      {drift}", f"  still      {_still_text(footage['still'])}"]
+
+
+def _step_lines(cameras: list[dict[str, Any]], offsets: Mapping[str, int]) -> list[str]:
+    known = [camera for camera in cameras if camera["offset"] is not None]
+    late = {camera["name"]: camera["offset"] for camera in known if camera["offset"]}
+    if not known:
+        return ["  in step    not told: too little moves, or for too short a time"]
+    if not late:
+        return [f"  in step    {len(known)} of {len(cameras)} cameras, as far as the scene's motion tells"]
+    words = " ".join(f"--offset {one_line(name)}={frames + offsets.get(name, 0)}" for name, frames in late.items())
+    return [f"  in step    {len(late)} of {len(cameras)} cameras seem not to be: try {words}"]
+
+
+def _still_text(share: float) -> str:
+    text = f"{share:.0%} of the pixels"
+    if share < STILL_LEAST:
+        return f"{text}: everything moves, or the light flickers; a clip takes far more bytes then"
+    return f"{text}: nothing moves; a scene of one instant shows as much" if share > STILL_MOST else text
+
+
+def _named(cameras: list[dict[str, Any]], key: str, form: str) -> str:
+    from eigenfield.capture.messages import list_names
+
+    return list_names([f"{camera['name']} ({form.format(camera[key])})" for camera in cameras if camera[key]])
