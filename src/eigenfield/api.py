@@ -11,13 +11,15 @@ import functools
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
-from typing import ParamSpec
+from typing import Any, ParamSpec, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield import encoding, gltf, rendering
+from eigenfield.capture import Capture, Footage
 from eigenfield.core.clip import Clip
+from eigenfield.core.observations import CalibratedObservations
 from eigenfield.core.scene import Scene
 from eigenfield.encoding.geometry.exchange import with_mesh
 
@@ -98,5 +100,25 @@ def load_clip(path: str | os.PathLike[str]) -> EncodedClip:
     return _encoded_clip(gltf.load_clip(path))
 
 
-encode = _returning_encoded_scene(encoding.encode)
+_encode_scene = _returning_encoded_scene(encoding.encode)
+
+
+@overload
+def encode(capture: Footage, *args: Any, **named: Any) -> EncodedClip: ...
+
+
+@overload
+def encode(
+    capture: str | os.PathLike[str] | Capture | CalibratedObservations, *args: Any, **named: Any
+) -> EncodedScene: ...
+
+
+@functools.wraps(encoding.encode)
+def encode(*args: Any, **named: Any) -> EncodedScene | EncodedClip:
+    if isinstance(args[0] if args else named.get("capture"), Footage):
+        footage = args[0] if args else named.pop("capture")
+        return _encoded_clip(encoding.encode_footage(footage, *args[1:], **named))
+    return _encode_scene(*args, **named)
+
+
 load = _returning_encoded_scene(gltf.load)

@@ -109,14 +109,16 @@ def test_a_frame_that_is_repeated_takes_next_to_nothing(lit):
 
 
 def test_a_clip_is_saved_and_loaded(lit, tmp_path):
-    seen, clip, _ = lit
+    _, clip, _ = lit
     save(clip, tmp_path / "clip.glb")
     assert validate(tmp_path / "clip.glb") == []
     loaded = load_clip(tmp_path / "clip.glb")
     assert loaded.timeline == clip.timeline and loaded.settings["clip"]["group"] == "3"
     for number in (0, 5):
         time = float(clip.timeline.times[number])
-        drawn = [Renderer(one.scene(time)).draw(CAMERAS[4], camera_weights(one.scene(time), 4)) for one in (clip, loaded)]
+        drawn = [
+            Renderer(one.scene(time)).draw(CAMERAS[4], camera_weights(one.scene(time), 4)) for one in (clip, loaded)
+        ]
         np.testing.assert_array_equal(drawn[0].image, drawn[1].image)
 
 
@@ -135,14 +137,14 @@ def test_a_run_that_was_stopped_goes_on_after_the_last_finished_frame(tmp_path):
     seen = footage(1.0, 0.7)
     whole = encode_footage(seen, MESH, OPTIONS)
 
-    class Stopped(Exception):
+    class StoppedError(Exception):
         pass
 
     def stop(stage, done, total):
         if stage.endswith("textures-0") and done == 1:
-            raise Stopped
+            raise StoppedError
 
-    with pytest.raises(Stopped):
+    with pytest.raises(StoppedError):
         encode_footage(seen, MESH, OPTIONS, work=tmp_path, progress=stop)
     names = sorted(one.name[:16] for one in (tmp_path / "clip").iterdir())
     assert [name.rsplit("-", 1)[0] for name in names][:2] == ["mean-00000", "mean-00001"] and len(names) == 3

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import re
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -187,6 +188,8 @@ def command(
     if proxy is not None:
         refuse_no_mesh(proxy)
     options = from_fields(EncodeOptions, settings)
+    if place.clip is None and options.group is not None:
+        raise OptionError("group-unused", "--group is about clips", remedy="say --clip, or leave it out")
     if place.clip is not None:
         refuse_for_clips({"draft": draft, "view": look, "blind": blind, "without": without})
         surface_to_make(
@@ -258,7 +261,7 @@ def encode_clip(
     quiet: bool,
 ) -> None:
     """Footage in, a clip out."""
-    from eigenfield.capture.footage import Footage
+    from eigenfield.capture import open_footage
     from eigenfield.encoding import encode_footage
     from eigenfield.encoding.clip.encode import refuse_no_proxy, refuse_still_options
     from eigenfield.gltf import save
@@ -267,8 +270,8 @@ def encode_clip(
     refuse_still_options(options)
     refuse_no_proxy(proxy)
     with progress_bars(quiet) as progress:
-        footage = open_for_work(capture, place, work, quiet)
-        assert isinstance(footage, Footage)
+        footage = open_footage(capture, options=replace(place, work=work / "frames"))
+        note_all(footage.problems, quiet)
         note(f"{len(footage.names)} cameras, {len(footage)} frames at {float(footage.timeline.rate):g} a second", quiet)
         note("Ctrl-C stops it; the same command goes on after the last finished frame", quiet)
         clip = encode_footage(footage, proxy, options, work=work, progress=progress)
