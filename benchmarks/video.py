@@ -139,7 +139,7 @@ def proxy_of(footage: Footage, work: Path) -> Path:
     if not path.exists():
         from eigenfield.proxy import write_mesh
 
-        write_mesh(ef.reconstruct(footage.instant(0), surface="opaque").proxy.mesh, path)
+        write_mesh(ef.reconstruct(footage.instant(0), layers=1, progress=None).proxy.mesh, path)
     return path
 
 
