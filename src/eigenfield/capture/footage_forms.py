@@ -15,17 +15,15 @@ from pathlib import Path, PurePosixPath
 import numpy as np
 
 from eigenfield.capture.calibration import Calibration, Entry
+from eigenfield.capture.film import RATE_DEFAULT, RATE_TOLERANCE, as_rate, open_film
 from eigenfield.capture.locate import IMAGES_FOLDER, PhotographFinder, photographs_in
 from eigenfield.capture.messages import Note, count_phrase, list_names, natural_key
 from eigenfield.capture.readers.video import videos_of
-from eigenfield.capture.tracks import Film, PictureTrack, Track, VideoTrack, open_film
+from eigenfield.capture.tracks import PictureTrack, Track, VideoTrack
 from eigenfield.core.errors import CaptureError
+from eigenfield.core.open_options import RATE_MAX
 from eigenfield.runtime.parallel import parallel_map
 
-RATE_DEFAULT = Fraction(30)  # of pictures that do not state one
-RATE_MAX = 1000
-RATE_MAX_DENOMINATOR = 1001
-RATE_TOLERANCE = 0.003  # by which the rate of a camera's frames may differ from the one that its file states
 FORM_MIN_CAMERAS = 2
 CAMERA_WORDS = ("cam", "camera", "view", "cameras", "kamera", "c", "v")
 INSTANT_WORDS = ("frame", "time", "instant", "frames", "t", "f")
@@ -67,8 +65,9 @@ def _of_videos(videos: Sequence[Path], rate: float | None) -> Found:
     films = parallel_map(open_film, videos)
     times = Counter(path.stem for path in videos)
     names = [path.stem if times[path.stem] == 1 else path.name for path in videos]
-    rates = [_rate_of(film) for film in films]
-    clock = min(rates) if rate is None else _as_rate(rate)
+    rates = [film.rate for film in films]
+    slowest = [one for one in rates if one / min(rates) - 1 <= RATE_TOLERANCE]
+    clock = Counter(slowest).most_common(1)[0][0] if rate is None else as_rate(rate)
     problems = []
     other = [name for name, one in zip(names, rates, strict=True) if abs(one / clock - 1) > RATE_TOLERANCE]
     if other and rate is None:
@@ -78,22 +77,6 @@ def _of_videos(videos: Sequence[Path], rate: float | None) -> Found:
         )
     tracks = [VideoTrack(*known, known[1].seconds * float(clock)) for known in zip(names, films, strict=True)]
     return Found(tuple(tracks), clock, tuple(problems))
-
-
-def _rate_of(film: Film) -> Fraction:
-    """Frames a second: as the file states it, if its frames come so; else the mean of what they do."""
-    span = film.seconds[-1] - film.seconds[0]
-    if span <= 0:
-        return film.rate or RATE_DEFAULT
-    mean = (len(film.stamps) - 1) / span
-    if film.rate and abs(mean / film.rate - 1) <= RATE_TOLERANCE:
-        return film.rate
-    middle = 1 / np.median(np.diff(film.seconds))  # of one with holes
-    return _as_rate(float(middle if abs(middle / mean - 1) < 1 else mean))
-
-
-def _as_rate(rate: float) -> Fraction:
-    return Fraction(min(rate, RATE_MAX)).limit_denominator(RATE_MAX_DENOMINATOR)
 
 
 # folders of pictures
@@ -150,7 +133,7 @@ def _of_numbers(frames: dict[str, dict[int, Path]], rate: float | None, lines: l
         order = sorted(frames[name])
         times = (np.array(order, np.float64) - numbers[0]) / step
         tracks.append(PictureTrack(name, tuple(frames[name][number] for number in order), times))
-    return Found(tuple(tracks), RATE_DEFAULT if rate is None else _as_rate(rate), tuple(lines))
+    return Found(tuple(tracks), RATE_DEFAULT if rate is None else as_rate(rate), tuple(lines))
 
 
 def _number(name: str) -> int | None:
@@ -244,7 +227,7 @@ def of_entries(read: Calibration, root: Path, *, apart: bool, rate: float | None
         )
     stated = rate if rate is not None else read.rate
     times = sorted({entry.time for entry in read.entries if entry.time is not None})
-    clock = _as_rate(1 / float(np.median(np.diff(times))) if stated is None or not 0 < stated <= RATE_MAX else stated)
+    clock = as_rate(1 / float(np.median(np.diff(times))) if stated is None or not 0 < stated <= RATE_MAX else stated)
     finder = PhotographFinder(root, read.path if read.path.is_dir() else read.path.parent, apart)
     tracks, lost = [], []
     for entry, group in zip(single.entries, groups, strict=True):
