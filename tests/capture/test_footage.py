@@ -17,7 +17,20 @@ from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.photoset import PhotoSet
 from eigenfield.capture.readers.video import decode_video
 from eigenfield.core.errors import CaptureError, OptionError
-from support.filmed import calibration, folder_a_camera, folder_an_instant, opened, picture, pose, seen, timed, video
+from eigenfield.imaging.png import png_bytes
+from support.filmed import (
+    HEIGHT,
+    WIDTH,
+    calibration,
+    folder_a_camera,
+    folder_an_instant,
+    opened,
+    picture,
+    pose,
+    seen,
+    timed,
+    video,
+)
 from support.named import refused, write_video
 
 
@@ -65,6 +78,39 @@ def test_folders_with_a_calibration_beside_them_or_elsewhere(tmp_path):
     assert all_seen(opened(tmp_path / "take")) == whole(3, range(5))
     footage = opened(tmp_path / "take", calibration=timed(tmp_path / "other") / "transforms.json")
     assert footage.cameras is not None and all_seen(footage) == whole(3, range(5))
+
+
+def test_masks(tmp_path):
+    timed(tmp_path)
+    document = json.loads((tmp_path / "transforms.json").read_text("utf-8"))
+    for frame in document["frames"]:
+        if frame["file_path"] == "cam_1/000002.png":
+            frame["mask_path"] = "masks/second.png"
+    picture(tmp_path / "masks" / "second.png", 0, 0).write_bytes(black_half())
+    (tmp_path / "transforms.json").write_text(json.dumps(document), encoding="utf-8")
+    footage = opened(tmp_path)
+    counts = [[footage.instant(n).photograph(c).mask for c in range(3)] for n in (1, 2)]
+    assert [[mask is None for mask in row] for row in counts] == [[True] * 3, [True, False, True]]
+    assert counts[1][1].mean() == 0.5
+    picture(tmp_path / "static" / "cam_2.png", 0, 0).write_bytes(black_half())
+    footage = opened(tmp_path, masks=tmp_path / "static")
+    assert [footage.instant(4).photograph(c).mask is None for c in range(3)] == [True, True, False]
+
+
+def black_half() -> bytes:
+    mask = np.zeros((HEIGHT, WIDTH), np.uint8)
+    mask[:, : WIDTH // 2] = 255
+    return png_bytes(mask[..., None])
+
+
+def test_a_calibration_of_other_cameras_is_named(tmp_path):
+    folder_a_camera(tmp_path / "take")
+    rig = calibration(tmp_path / "rig.json", {c: [(f"left_{c}.png", None)] for c in range(3)})
+    error = footage_refused("too-few", tmp_path / "take", calibration=rig)
+    assert "cam_0" in str(error) and "left_0.png" in str(error)
+    rig = calibration(tmp_path / "rig.json", {c: [(f"cam_{c + 1}.png", None)] for c in range(3)})
+    footage = opened(tmp_path / "take", calibration=rig)
+    assert footage.names == ("cam_1", "cam_2") and any("cam_3.png" in line for line in footage.problems)
 
 
 def test_a_zip_of_footage(tmp_path):

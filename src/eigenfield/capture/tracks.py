@@ -54,11 +54,16 @@ class Track(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class PictureTrack:
-    """A camera whose frames are pictures in files."""
+    """A camera whose frames are pictures in files.
+
+    Attributes:
+        masks: Of each, where a calibration names masks of frames; empty otherwise.
+    """
 
     name: str
     files: tuple[Path, ...]
     times: NDArray[np.float64]
+    masks: tuple[Path | None, ...] = ()
 
     @property
     def path(self) -> Path:
@@ -71,7 +76,8 @@ class PictureTrack:
     def at(self, source: S, index: int, held: bool) -> S:
         file = self.files[index]
         picture = _Held(file, source.upright, source.exposure) if held else None
-        return replace(source, name=self.name, path=file, picture=picture)
+        mask = self.masks[index] if self.masks and not held else source.mask
+        return replace(source, name=self.name, path=file, mask=mask, picture=picture)
 
     def small(self, index: int, side: int) -> NDArray[np.float32]:
         pixels, _ = decode(self.files[index])
