@@ -124,7 +124,7 @@ def test_a_loaded_scene_has_its_parts_at_hand(small, tmp_path):
         scene.texture("nobody")
     for again in (small, replace(scene, scores={}), pickle.loads(pickle.dumps(scene)), scene.with_mesh(scene.mesh)):
         assert type(again) is ef.EncodedScene and again.mean.shape == (64, 64, 3)
-    assert inspect.signature(ef.load).parameters.keys() == {"path"} and "Read a scene" in ef.load.__doc__
+    assert inspect.signature(ef.load).parameters.keys() == {"path", "time"} and "Read a scene" in ef.load.__doc__
 
 
 def test_a_path_stands_for_a_scene(nine, small, tmp_path):
@@ -267,8 +267,8 @@ def test_a_notebook_shows_progress_unless_told_otherwise(nine, monkeypatch):
 @pytest.mark.parametrize(
     ("name", "arguments", "named", "says"),
     [
-        ("render", [3], {}, "scene of render is 3; give a Scene or a path"),
-        ("render_many", [None], {}, "scene of render_many is None; give a Scene or a path"),
+        ("render", [3], {}, "scene of render is 3; give a Scene or a Clip or a path"),
+        ("render_many", [None], {}, "scene of render_many is None; give a Scene or a Clip or a path"),
         ("render", [None], {"ressolution": 3}, "unexpected keyword argument 'ressolution'"),
         ("load", [3], {}, "path of load is 3; give a path"),
         ("load", [tiny_scene()], {}, "path of load is a Scene; give a path"),
@@ -310,7 +310,8 @@ def test_a_wrong_argument_is_named(name, arguments, named, says):
 
 @pytest.mark.parametrize("named", [{"at": "x"}, {"at": (0, 0, 0)}, {"at": (5, 5)}, {"at": (np.nan, 0)},
                                    {"resolution": "big"}, {"resolution": (0, 5)}, {"samples": 1.5},
-                                   {"textures": True}, {"background": "red"}, {"weights": 3}, {"time": 7}])  # fmt: skip
+                                   {"textures": True}, {"background": "red"}, {"weights": 3},
+                                   {"time": "soon"}])  # fmt: skip
 def test_a_wrong_view_is_an_option_error(named):
     error(ef.render, tiny_scene(), **named)
 

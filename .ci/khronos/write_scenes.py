@@ -11,6 +11,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
 from eigenfield.core.proxy import Proxy
 from eigenfield.gltf import save
 from eigenfield.viewer.exports import write_glb
+from support.clips import numbered_clip
 from support.coded_scenes import coded_scene
 from support.scenes import bumpy_square, tiny_scene
 from support.soft_scenes import coded_soft_scene, soft_scene
@@ -20,7 +21,7 @@ SHAPES = [(3, 3), (1, 2), (6, 2), (3, 0)]  # channels, eigen textures
 
 def main(folder: Path) -> None:
     """Write every combination, one mesh that needs long indices, scenes of which everything is coded or that have
-    sheets, and exports for other viewers."""
+    sheets, exports for other viewers, and a clip."""
     folder.mkdir(parents=True, exist_ok=True)
     for codec in ("png", "webp", "avif"):
         for channels, textures in SHAPES:
@@ -36,6 +37,7 @@ def main(folder: Path) -> None:
     for image, draco in (("png", False), ("jpeg", True), ("webp", False)):
         write_glb(coded_scene(), folder / f"plain-{image}.glb", at=(0.5, 0), image=image, draco=draco, overwrite=True)
     write_glb(soft_scene(), folder / "plain-sheets.glb", overwrite=True)
+    save(numbered_clip(), folder / "clip.glb", overwrite=True)
 
 
 if __name__ == "__main__":

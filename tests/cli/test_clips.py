@@ -95,6 +95,8 @@ def test_export_writes_one_frame(clip, run, tmp_path):
     names = sorted(path.name for path in (tmp_path / "maps").iterdir() if path.suffix == ".png")
     first = np.atleast_3d(np.asarray(Image.open(tmp_path / "maps" / names[0])))
     assert len(names) == 4 and shown_number(first[..., 0].astype(np.float32) / 255) == 9
+    made, what = ef.export([clip], tmp_path / "app", "app")
+    assert made.is_dir() and "with clip to choose from" in what
     with pytest.raises(OptionError, match="time is not for app"):
         ef.export([clip], tmp_path / "app", "app", time=0.5)
 

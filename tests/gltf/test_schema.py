@@ -18,7 +18,6 @@ from eigenfield.core.scene import Residual
 from eigenfield.gltf import encode_scene, layout, load
 from eigenfield.gltf.fallback import with_fallback
 from eigenfield.gltf.streams import FEATURES, OTHER_FEATURES
-from eigenfield.gltf.write_clip import clip_blocks
 from support import schema
 from support.clips import numbered_clip, read_all
 from support.coded_scenes import coded_scene, precise_scene
@@ -47,7 +46,7 @@ def files(good):
     made |= {name: encode_scene(coded_scene(name)) for name, codec in CODECS.items() if codec.kind == "weights"}
     made["precise"] = encode_scene(precise_scene())
     made["residual"] = encode_scene(replace(coded, residual=video))
-    made["clip"] = b"".join(clip_blocks(numbered_clip(), None))
+    made["clip"] = encode_scene(numbered_clip())
     return made
 
 

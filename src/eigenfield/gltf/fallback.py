@@ -26,7 +26,7 @@ from eigenfield.gltf.accessors import DTYPES
 from eigenfield.gltf.coarse import coarse_mesh
 from eigenfield.gltf.write_geometry import index_type
 
-SceneT = TypeVar("SceneT", Scene, Clip)
+SceneT = TypeVar("SceneT", bound=Scene | Clip)
 
 MAX_AXIS_ANGLE_DEGREES = 25.0  # between a camera's axis and the mean axis, of cameras that look one way
 MAX_MARGIN_FRACTION = 0.12  # by which the view is widened, of the reference camera's side

@@ -98,7 +98,7 @@ def save(
         made = with_fallback(made, fallback)
     if isinstance(made, Clip):
         _refuse_coding(codec, quality, path)
-        blocks, anew = clip_blocks(made, path), {}
+        blocks, anew = clip_blocks(made, path), dict[str, tuple[int, int]]()
     else:
         blocks, anew = _blocks(made, codec, quality, progress, path)
     with atomic_writer(path, overwrite=overwrite) as file:
@@ -131,9 +131,11 @@ def refuse_output(path: Path, overwrite: bool) -> None:
 
 
 def encode_scene(
-    scene: Scene, *, codec: str | None = None, quality: int | None = None, progress: Progress | None = None
+    scene: Scene | Clip, *, codec: str | None = None, quality: int | None = None, progress: Progress | None = None
 ) -> bytes:
     """The whole .glb in memory; options and errors as `save`. The same bytes at any number of threads."""
+    if isinstance(scene, Clip):
+        return b"".join(clip_blocks(scene, None))
     return b"".join(_blocks(scene, codec, quality, progress, None)[0])
 
 

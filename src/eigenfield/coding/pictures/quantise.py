@@ -63,7 +63,7 @@ def mean_codes(mean: NDArray[np.float32], keep: bool = False) -> tuple[NDArray[n
     return np.rint(mean / affine.scale + affine.zero).clip(0, 255).astype(np.uint8), affine
 
 
-def mean_values(codes: NDArray[np.uint8], affine: Affine | None) -> NDArray[np.float32]:
+def mean_values(codes: NDArray[np.uint8] | NDArray[np.uint16], affine: Affine | None) -> NDArray[np.float32]:
     """(H, W, C) codes of a mean back to float32 numbers."""
     if affine is None:
         return codes.astype(np.float32) / np.float32(255)

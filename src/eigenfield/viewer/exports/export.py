@@ -18,7 +18,7 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.notebook import notebook_progress
 from eigenfield.core.progress import Progress
 from eigenfield.core.scene import Scene, check_scale
-from eigenfield.gltf import as_scene, encode_scene, without_residual
+from eigenfield.gltf import as_scene, encode_scene, load_any, without_residual
 from eigenfield.rendering import FLIGHT_FRAMES, RenderJob, path_points
 from eigenfield.rendering.render_jobs import refuse_flight, write_flight
 from eigenfield.runtime.files import is_numbered, refuse_existing
@@ -108,17 +108,19 @@ def export(
 
 
 def _write_app(
-    scenes: Sequence[Scene | str | os.PathLike[str]], output: Path, overwrite: bool, progress: Progress | None,
-    **options: Any,
+    scenes: Sequence[Scene | Clip | str | os.PathLike[str]], output: Path, overwrite: bool,
+    progress: Progress | None, **options: Any,
 ) -> tuple[Path, str]:  # fmt: skip
     """Write the page that opens files, with its samples; where, and what was written."""
     refuse_folder(output, overwrite)
     samples = []
     for scene in scenes:
-        name = "scene" if isinstance(scene, Scene) else Path(scene).stem
-        loaded = as_scene(scene)
-        data = encode_scene(scene) if isinstance(scene, Scene) else Path(scene).read_bytes()
-        samples.append(Sample(name, without_residual(data), draw_thumbnail(loaded)))
+        if isinstance(scene, Scene | Clip):
+            name, loaded, data = "scene", scene, encode_scene(scene)
+        else:
+            name, loaded, data = Path(scene).stem, load_any(scene), Path(scene).read_bytes()
+        shown = as_scene(loaded, loaded.timeline.first if isinstance(loaded, Clip) else None)
+        samples.append(Sample(name, without_residual(data), draw_thumbnail(shown)))
     write_app(samples, output, overwrite=overwrite, progress=progress, **options)
     offered = f", with {', '.join(sample.name for sample in samples)} to choose from" if samples else ""
     return output, f"a page that opens files{offered}; put it on a web server"
