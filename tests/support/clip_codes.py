@@ -12,6 +12,9 @@ import json
 import sys
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from eigenfield.coding.video.film import decode_film
 from eigenfield.gltf import load_clip
 from eigenfield.gltf.clips import CodedGroups
@@ -26,9 +29,12 @@ def digests(path: Path) -> list[list[str]]:
         units = zip(*groups.coded(index).units, strict=True)
         sizes = groups.layout.sizes
         films = [decode_film(own, size, "the film") for own, size in zip(units, sizes, strict=True)]
-        for frame in zip(*films, strict=True):
-            listed.append([hashlib.sha256(codes.astype("<u2").tobytes()).hexdigest() for codes in frame])
+        listed += [[_digest(codes) for codes in frame] for frame in zip(*films, strict=True)]
     return listed
+
+
+def _digest(codes: NDArray[np.uint16]) -> str:
+    return hashlib.sha256(codes.astype("<u2").tobytes()).hexdigest()
 
 
 if __name__ == "__main__":
