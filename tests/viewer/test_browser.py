@@ -16,7 +16,7 @@ from support.browsers import CHROMIUM, OTHERS, lacks
 WEB = Path(__file__).parents[2] / "web"
 FILES = sorted((WEB / "tests").glob("*.test.mjs"))
 # what needs no browser, and what of web/node_modules it needs
-PLAIN = {"structure": None, "languages": None, "coding": "vite", "field": "vite"}
+PLAIN = {"structure": None, "languages": None, "clip": "vite", "coding": "vite", "field": "vite"}
 
 
 def missing(path: Path) -> str | None:

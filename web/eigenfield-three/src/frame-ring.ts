@@ -1,6 +1,7 @@
 // A few frames of a clip, decoded ahead of the one that is shown. Places in time are positions: the number of a frame,
 // and after each turn of a clip that is played in a loop as many more as it has frames. So no two frames share one.
 
+import { SceneError } from "./errors.js";
 import { codesOf } from "./film-codes.js";
 import type { FilmDecoder } from "./film-decoder.js";
 import type { Group, Groups } from "./groups.js";
@@ -26,8 +27,8 @@ interface Slot {
 export interface RingUser {
   /** A frame is there. */
   ready(): void;
-  /** A group cannot be decoded. */
-  failed(reason: unknown, group: number): void;
+  /** A group cannot be decoded, and is left out; null: none can. */
+  failed(reason: unknown, group: number | null): void;
 }
 
 export class FrameRing {
@@ -42,6 +43,8 @@ export class FrameRing {
   private from = 1; // position: what comes before it is decoded, and not kept; the first frame is there
   private next = 0; // position of the unit that is given to the decoders next
   private given: Group | null = null; // of the unit given last
+  private fed = 0; // index of the group that is given or opened
+  private readonly broken = new Set<number>(); // groups that cannot be decoded
   private newest = -1; // position of the last frame that came
   private turn = 0;
   private feeding = false;
@@ -71,9 +74,15 @@ export class FrameRing {
     return Math.max(this.newest, this.from) + AHEAD / 2;
   }
 
-  /** From now on frames from a position on are wanted. */
-  seek(position: number): void {
+  /** Whether no frame up to a position is to come. */
+  isOver(position: number): boolean {
+    return this.newest >= position && ![...this.slots.keys()].some((at) => at <= position);
+  }
+
+  /** From now on frames from a position on are wanted. False: its group cannot be decoded. */
+  seek(position: number): boolean {
     const group = groupOf(this.timeline, this.numberOf(position));
+    if (this.broken.has(group)) return false;
     const start = position - this.numberOf(position) + (this.timeline.groups[group]?.first ?? 0);
     const whole = this.slots.has(position) && ![...this.skipped].some((at) => at > position);
     if (this.given === null || this.next <= start || (position < this.next && !whole)) {
@@ -83,6 +92,7 @@ export class FrameRing {
     this.wanted = this.from = position;
     for (const [at, slot] of this.slots) if (at < position) this.forget(at, slot);
     this.feed();
+    return true;
   }
 
   /** The newest frame up to a position, unless that is shown already. What comes before it is let go, and after the next
@@ -146,6 +156,11 @@ export class FrameRing {
     while (this.hasRoom) {
       const [{ turn }, position, number] = [this, this.next, this.numberOf(this.next)];
       const index = groupOf(this.timeline, number);
+      if (this.broken.has(index)) {
+        this.pass(index, position);
+        continue;
+      }
+      this.fed = index;
       const group = this.given?.index === index ? this.given : await this.groups.open(index);
       const within = number - group.first;
       const units = group.units[within] ?? [];
@@ -185,18 +200,37 @@ export class FrameRing {
   }
 
   private fail(reason: unknown): void {
-    const group = groupOf(this.timeline, this.numberOf(this.next));
-    this.stop();
-    this.next = Infinity; // until something else is sought
-    this.user.failed(reason, group);
+    const ofTheFile = reason instanceof SceneError && (reason.code === "damaged" || reason.code === "truncated");
+    if (!ofTheFile) {
+      this.stop();
+      this.next = Infinity; // until something else is sought
+      return this.user.failed(reason, null);
+    }
+    this.halt();
+    for (const [at, slot] of this.slots) if (slot.films.includes(null)) this.forget(at, slot);
+    this.broken.add(this.fed);
+    this.user.failed(reason, this.fed);
+    this.feed();
+  }
+
+  /** Goes on behind a group that cannot be decoded, from one of its positions. */
+  private pass(index: number, position: number): void {
+    const { first, frames } = this.timeline.groups[index]!;
+    this.next = position - this.numberOf(position) + first + frames;
+    this.newest = this.next - 1;
   }
 
   private stop(): void {
-    this.turn += 1;
+    this.halt();
     this.newest = -1;
+    for (const [at, slot] of this.slots) this.forget(at, slot);
+  }
+
+  /** What is on its way is thrown away. */
+  private halt(): void {
+    this.turn += 1;
     this.given = null;
     this.skipped.clear();
-    for (const [at, slot] of this.slots) this.forget(at, slot);
     for (const decoder of this.decoders) decoder.reset();
   }
 

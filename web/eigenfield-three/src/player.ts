@@ -1,9 +1,8 @@
 // A clip's clock: which frame is due, and when another one is shown.
 
 import { EventDispatcher } from "three";
-import { SceneError } from "./errors.js";
 import type { ClipFrame, FrameRing, RingUser } from "./frame-ring.js";
-import { frameAt, timeOf, type Timeline } from "./timeline.js";
+import { frameAt, groupOf, timeOf, type Timeline } from "./timeline.js";
 
 const LONGEST = 0.25; // seconds: after a pause of the page the clock goes on by no more
 
@@ -38,7 +37,6 @@ export class Player extends EventDispatcher<PlayerEvents> {
   private following: number | null = null; // what is sought after that
   private waiters: (() => void)[] = [];
   private asked: number | null = null; // for a frame of the page
-  private readonly broken = new Set<number>(); // groups
   private disposed = false;
 
   /** Made with a field. `makeRing`: of the clip's frames. */
@@ -157,7 +155,7 @@ export class Player extends EventDispatcher<PlayerEvents> {
     if (this.goal === null) this.clock = this.advanced(seconds);
     const frame = this.ring.take(this.goal ?? Math.floor(this.clock));
     if (frame) this.show(frame);
-    if (this.goal === null && !this.loop && this.shown.position >= this.end) this.pause();
+    if (this.goal === null && !this.loop && this.clock >= this.end && this.ring.isOver(this.end)) this.pause();
   }
 
   dispose(): void {
@@ -196,8 +194,8 @@ export class Player extends EventDispatcher<PlayerEvents> {
       this.clock = position;
       return this.settle();
     }
-    this.goal = position;
-    this.ring.seek(position);
+    this.goal = this.ring.seek(position) ? position : null;
+    if (this.goal === null) return this.settle(); // it cannot be decoded, which has been said
     this.dispatchEvent({ type: "change" });
     this.wake();
   }
@@ -230,23 +228,14 @@ export class Player extends EventDispatcher<PlayerEvents> {
     });
   }
 
-  /** A group that cannot be decoded is left out. */
-  private fail(reason: unknown, group: number): void {
+  /** A group that cannot be decoded is left out: the frame before it stays. */
+  private fail(reason: unknown, group: number | null): void {
     if (this.disposed) return;
-    this.broken.add(group);
-    this.goal = this.following = null;
     this.user.failed(reason);
-    const { groups } = this.timeline;
-    const ofTheFile = reason instanceof SceneError && ["damaged", "truncated"].includes(reason.code);
-    const next = this.plays && ofTheFile ? this.nextWhole(group) : null;
-    if (next === null) this.pause();
-    else void this.toFrame(groups[next]?.first ?? 0);
-    if (next === null) this.settle();
-  }
-
-  private nextWhole(group: number): number | null {
-    const { length } = this.timeline.groups;
-    const others = Array.from({ length: length - 1 }, (_, i) => (group + 1 + i) % length);
-    return others.find((index) => !this.broken.has(index) && (this.loop || index > group)) ?? null;
+    if (group === null) this.pause();
+    const sought = this.goal !== null && groupOf(this.timeline, this.goal % this.frames);
+    if (sought === false || (group !== null && sought !== group)) return;
+    this.goal = this.following = null;
+    this.settle();
   }
 }

@@ -3543,7 +3543,6 @@ var Ws = .25, Gs = class extends f {
 	following = null;
 	waiters = [];
 	asked = null;
-	broken = /* @__PURE__ */ new Set();
 	disposed = !1;
 	constructor(e, t, n) {
 		super(), this.timeline = e, this.user = n, this.rate = e.rate, this.frames = e.frames, this.first = e.first, this.duration = e.frames / e.rate, this.shown = {
@@ -3611,7 +3610,7 @@ var Ws = .25, Gs = class extends f {
 		if (this.last = this.plays && this.goal === null ? e : null, this.goal === null && !this.plays) return;
 		this.goal === null && (this.clock = this.advanced(t));
 		let n = this.ring.take(this.goal ?? Math.floor(this.clock));
-		n && this.show(n), this.goal === null && !this.loop && this.shown.position >= this.end && this.pause();
+		n && this.show(n), this.goal === null && !this.loop && this.clock >= this.end && this.ring.isOver(this.end) && this.pause();
 	}
 	dispose() {
 		this.disposed = !0, this.plays = !1, this.ring.dispose(), this.settle();
@@ -3632,7 +3631,8 @@ var Ws = .25, Gs = class extends f {
 	}
 	begin(e) {
 		if (this.following = null, e === this.shown.position) return this.goal = null, this.clock = e, this.settle();
-		this.goal = e, this.ring.seek(e), this.dispatchEvent({ type: "change" }), this.wake();
+		if (this.goal = this.ring.seek(e) ? e : null, this.goal === null) return this.settle();
+		this.dispatchEvent({ type: "change" }), this.wake();
 	}
 	show(e) {
 		let { position: t, number: n } = e;
@@ -3652,13 +3652,9 @@ var Ws = .25, Gs = class extends f {
 	}
 	fail(e, t) {
 		if (this.disposed) return;
-		this.broken.add(t), this.goal = this.following = null, this.user.failed(e);
-		let { groups: n } = this.timeline, r = e instanceof j && ["damaged", "truncated"].includes(e.code), i = this.plays && r ? this.nextWhole(t) : null;
-		i === null ? this.pause() : this.toFrame(n[i]?.first ?? 0), i === null && this.settle();
-	}
-	nextWhole(e) {
-		let { length: t } = this.timeline.groups;
-		return Array.from({ length: t - 1 }, (n, r) => (e + 1 + r) % t).find((t) => !this.broken.has(t) && (this.loop || t > e)) ?? null;
+		this.user.failed(e), t === null && this.pause();
+		let n = this.goal !== null && ki(this.timeline, this.goal % this.frames);
+		n === !1 || t !== null && n !== t || (this.goal = this.following = null, this.settle());
 	}
 }, Ks = 256;
 function qs(e, t, n) {
@@ -4537,6 +4533,8 @@ var kc = class {
 	from = 1;
 	next = 0;
 	given = null;
+	fed = 0;
+	broken = /* @__PURE__ */ new Set();
 	newest = -1;
 	turn = 0;
 	feeding = !1;
@@ -4553,11 +4551,16 @@ var kc = class {
 	get reach() {
 		return Math.max(this.newest, this.from) + Ac / 2;
 	}
+	isOver(e) {
+		return this.newest >= e && ![...this.slots.keys()].some((t) => t <= e);
+	}
 	seek(e) {
-		let t = ki(this.timeline, this.numberOf(e)), n = e - this.numberOf(e) + (this.timeline.groups[t]?.first ?? 0), r = this.slots.has(e) && ![...this.skipped].some((t) => t > e);
+		let t = ki(this.timeline, this.numberOf(e));
+		if (this.broken.has(t)) return !1;
+		let n = e - this.numberOf(e) + (this.timeline.groups[t]?.first ?? 0), r = this.slots.has(e) && ![...this.skipped].some((t) => t > e);
 		(this.given === null || this.next <= n || e < this.next && !r) && (this.stop(), this.next = n), this.wanted = this.from = e;
 		for (let [t, n] of this.slots) t < e && this.forget(t, n);
-		this.feed();
+		return this.feed(), !0;
 	}
 	take(e) {
 		this.wanted = e;
@@ -4600,7 +4603,13 @@ var kc = class {
 				this,
 				this.next,
 				this.numberOf(this.next)
-			], r = ki(this.timeline, n), i = this.given?.index === r ? this.given : await this.groups.open(r), a = n - i.first, o = i.units[a] ?? [];
+			], r = ki(this.timeline, n);
+			if (this.broken.has(r)) {
+				this.pass(r, t);
+				continue;
+			}
+			this.fed = r;
+			let i = this.given?.index === r ? this.given : await this.groups.open(r), a = n - i.first, o = i.units[a] ?? [];
 			if (a === 0 && await Promise.all(this.decoders.map((e, t) => e.start(o[t]))), e !== this.turn || (this.given = i, this.next = t + 1, this.decoders.forEach((e, n) => e.decode(o[n], t, a === 0)), a === i.frames - 1 && await Promise.all(this.decoders.map((e) => e.flush())), e !== this.turn)) return;
 		}
 	}
@@ -4623,12 +4632,21 @@ var kc = class {
 		return this.slots.set(e, n), n;
 	}
 	fail(e) {
-		let t = ki(this.timeline, this.numberOf(this.next));
-		this.stop(), this.next = Infinity, this.user.failed(e, t);
+		if (!(e instanceof j && (e.code === "damaged" || e.code === "truncated"))) return this.stop(), this.next = Infinity, this.user.failed(e, null);
+		this.halt();
+		for (let [e, t] of this.slots) t.films.includes(null) && this.forget(e, t);
+		this.broken.add(this.fed), this.user.failed(e, this.fed), this.feed();
+	}
+	pass(e, t) {
+		let { first: n, frames: r } = this.timeline.groups[e];
+		this.next = t - this.numberOf(t) + n + r, this.newest = this.next - 1;
 	}
 	stop() {
-		this.turn += 1, this.newest = -1, this.given = null, this.skipped.clear();
+		this.halt(), this.newest = -1;
 		for (let [e, t] of this.slots) this.forget(e, t);
+	}
+	halt() {
+		this.turn += 1, this.given = null, this.skipped.clear();
 		for (let e of this.decoders) e.reset();
 	}
 	forget(e, { films: t }) {
