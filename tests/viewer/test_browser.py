@@ -10,13 +10,13 @@ from pathlib import Path
 
 import pytest
 
-from support import coded_scenes, composed, patched, pinholes, sheet_scenes, viewer_scenes
+from support import clips, coded_scenes, composed, patched, pinholes, sheet_scenes, viewer_scenes
 from support.browsers import CHROMIUM, OTHERS, lacks
 
 WEB = Path(__file__).parents[2] / "web"
 FILES = sorted((WEB / "tests").glob("*.test.mjs"))
 # what needs no browser, and what of web/node_modules it needs
-PLAIN = {"structure": None, "languages": None, "coding": "vite", "field": "vite"}
+PLAIN = {"structure": None, "languages": None, "clip": "vite", "coding": "vite", "field": "vite"}
 
 
 def missing(path: Path) -> str | None:
@@ -48,6 +48,7 @@ def cases(plain: bool):
 def folder(tmp_path_factory):
     made = tmp_path_factory.mktemp("viewer")
     viewer_scenes.write(made)
+    clips.write(made)
     composed.write(made)
     coded_scenes.write(made)
     sheet_scenes.write(made)

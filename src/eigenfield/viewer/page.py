@@ -130,6 +130,7 @@ def write_page(
     title: str | None = None,
     metres_per_unit: float | None = None,
     at: tuple[float, float] | None = None,
+    glb: bytes | None = None,
     overwrite: bool = False,
 ) -> None:
     """Write a page that opens by double click and needs no network: viewer and scene in one file.
@@ -140,6 +141,7 @@ def write_page(
         title: Of the page. Default: `page_title`.
         metres_per_unit: Metres in one unit of the capture, for headsets.
         at: The first view, on the view plane. Default: the reference camera's.
+        glb: The file that the page holds, of a clip whose first frame the scene is. Default: the scene's own.
 
     Raises:
         OptionError: `viewpoint`: `at` is outside the array.
@@ -148,7 +150,7 @@ def write_page(
     refuse_existing(output, overwrite)
     if at is not None:
         viewpoint(scene, at=at)  # refuses what is outside
-    glb = encode_scene(replace(scene, residual=None))
+    glb = encode_scene(replace(scene, residual=None)) if glb is None else glb
     title = page_title(output) if title is None else title
     data = single_file(glb, title=title, metres_per_unit=metres_per_unit, start=at)
     write_bytes(output, data, overwrite=overwrite)

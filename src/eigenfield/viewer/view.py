@@ -10,9 +10,10 @@ from typing import Any
 
 from eigenfield.capture import LightField, PhotoSet, match_photographs, open_any, with_scene_cameras
 from eigenfield.core.arguments import checked
+from eigenfield.core.clip import Clip
 from eigenfield.core.errors import FormatError, OptionError
 from eigenfield.core.scene import Scene, check_scale
-from eigenfield.gltf import encode_scene, outline, without_residual
+from eigenfield.gltf import encode_scene, outline, stores_clip, without_residual
 from eigenfield.viewer.manifest import make_manifest
 from eigenfield.viewer.photographs import Photographs
 from eigenfield.viewer.server import LOOPBACK, Server
@@ -22,7 +23,7 @@ log = logging.getLogger("eigenfield.viewer")
 
 @checked
 def view(
-    scene: Scene | str | os.PathLike[str],
+    scene: Scene | Clip | str | os.PathLike[str],
     capture: str | os.PathLike[str] | LightField | PhotoSet | None = None,
     *,
     host: str = LOOPBACK,
@@ -37,8 +38,9 @@ def view(
             input("Enter ends it")
 
     Args:
-        scene: The scene, or its file; a plain glTF file is shown as it is.
-        capture: Its photographs, which are shown beside it: their folder, or what `open_any` returns.
+        scene: The scene or the clip, or its file; a plain glTF file is shown as it is.
+        capture: Photographs of the scene, not of a clip, which are shown beside it: their folder, or what `open_any`
+            returns.
         host: Name or address to listen on; any other than this machine's own lets the network see the scene.
         port: To listen on; 0: one that is free.
         browser: Whether a browser is opened; `address` of the result is where the page is.
@@ -46,19 +48,20 @@ def view(
         place: Arguments of `open_any` for the path of a capture.
 
     Raises:
-        OptionError: `host-unknown`, `port-busy`, `port-refused`, `metres`, `no-capture`; as `open_any`.
+        OptionError: `host-unknown`, `port-busy`, `port-refused`, `metres`, `no-capture`, `clip-photographs`; as
+            `open_any`.
         FormatError: The file is no scene.
         CaptureError: The photographs cannot be read, none belongs to the scene (`no-photographs`), or one does not have
             its camera's size (`photograph-size`).
     """
     check_scale(metres_per_unit)
     given = {name: value for name, value in place.items() if value is not None}
-    name = "scene.glb" if isinstance(scene, Scene) else Path(scene).name
+    name = "scene.glb" if isinstance(scene, Scene | Clip) else Path(scene).name
     photographs = None
     try:
-        loaded, data = (scene, encode_scene(scene)) if isinstance(scene, Scene) else outline(scene)
+        loaded, data = (scene, encode_scene(scene)) if isinstance(scene, Scene | Clip) else outline(scene)
     except FormatError as error:
-        if error.code != "not-a-scene" or capture is not None or isinstance(scene, Scene):
+        if error.code != "not-a-scene" or capture is not None or isinstance(scene, Scene | Clip):
             raise
         log.warning("%s has no eigen textures: it is shown as the plain glTF file that it is", scene)
         data = Path(scene).read_bytes()
@@ -68,6 +71,9 @@ def view(
             message = f"--{next(iter(given)).replace('_', '-')} is for a capture, and no folder of one is named"
             raise OptionError("no-capture", message, remedy="name it behind the scene")
         if capture is not None:
+            if isinstance(loaded, Clip) or (isinstance(scene, str | os.PathLike) and stores_clip(scene)):
+                message = "a clip has no photographs beside it: they would be of one instant"
+                raise OptionError("clip-photographs", message, path=name, remedy="leave the capture out")
             photographs = _photographs(loaded, capture, given)
     server = Server(make_manifest(data, name, photographs, metres_per_unit), host, port)
     server.start()

@@ -5,7 +5,7 @@ import { damaged } from "./errors.js";
 const SEQUENCE_HEADER = 1; // type of a unit
 const LAST_LEVEL_WITHOUT_TIER = 7;
 
-interface SequenceHeader {
+export interface SequenceHeader {
   level: number;
   tier: number;
   width: number;
@@ -41,7 +41,7 @@ export function asAvif(bytes: ArrayBuffer, where: string): ArrayBuffer {
 }
 
 /** The sequence header at the beginning: AV1, section 5.5.1. */
-function readSequenceHeader(bytes: Uint8Array, where: string): SequenceHeader {
+export function readSequenceHeader(bytes: Uint8Array, where: string): SequenceHeader {
   const header = bytes[0] ?? 0;
   const start = 8 * (1 + ((header >> 2) & 1) + ((header >> 1) & 1)); // its length has one byte, if any
   let at = start;

@@ -4,6 +4,7 @@
 import { asAvif } from "./av1-picture.js";
 import { decodeCameras, inflateCameras, type CodedCameras } from "./camera-decoder.js";
 import { SceneError } from "./errors.js";
+import { FilmDecoder } from "./film-decoder.js";
 import type { Value } from "./json.js";
 import * as limits from "./limits.js";
 import { decodeMesh, decodeOldMesh, type DecodedMesh } from "./mesh-decoder.js";
@@ -23,6 +24,7 @@ interface Decoders {
   triangles: (bytes: Uint8Array, where: string) => CodedTriangles;
   weights: (bytes: Uint8Array, where: string) => CodedWeights;
   picture: PictureDecoder;
+  film: (...given: ConstructorParameters<typeof FilmDecoder>) => FilmDecoder;
 }
 
 interface Names {
@@ -32,6 +34,7 @@ interface Names {
   triangles: schema.TrianglesCodec;
   weights: schema.WeightsCodec;
   picture: schema.PictureCodec;
+  film: schema.FilmCodec;
 }
 
 export type Kind = keyof Decoders;
@@ -66,6 +69,12 @@ export const CODECS: { readonly [K in Kind as Names[K]]: Codec<K> } = {
   "names-1": { kind: "names", decode: decodeNames, needs: "codedNames", limits: ["MAX_NAMES", "MAX_CAMERAS"] },
   "triangles-1": { kind: "triangles", decode: decodeTriangles, needs: "codedTriangles", limits: ["MAX_CAMERAS"] },
   "weights-1": { kind: "weights", decode: decodeWeights, needs: "codedWeights", limits: ["MAX_WEIGHTS"] },
+  "film-1": {
+    kind: "film",
+    decode: (...given) => new FilmDecoder(...given),
+    needs: "film-1",
+    limits: ["MAX_FILM_SIDE", "MAX_FILM_PIXELS"],
+  },
   png: eightBits("image/png"),
   webp: eightBits("image/webp"),
   avif: eightBits("image/avif"),
@@ -81,7 +90,7 @@ export const CODECS: { readonly [K in Kind as Names[K]]: Codec<K> } = {
 };
 
 /** The codec of a stream that names none; that of a picture follows from its type. */
-export const USUAL: { readonly [K in Exclude<Kind, "picture">]: Names[K] } = {
+export const USUAL: { readonly [K in Exclude<Kind, "film" | "picture">]: Names[K] } = {
   mesh: "mesh-1",
   cameras: "cameras-1",
   names: "names-1",

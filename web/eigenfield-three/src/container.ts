@@ -1,4 +1,4 @@
-// The GLB container, read as it arrives: header, JSON, then the place of the binary chunk.
+// The GLB container, read as it arrives: header, JSON, then the places of the chunks behind it.
 
 import type { Arrival } from "./arrival.js";
 import { SceneError, damaged } from "./errors.js";
@@ -8,6 +8,7 @@ import * as limits from "./limits.js";
 const GLTF = 0x46546c67;
 const JSON_CHUNK = 0x4e4f534a;
 const BINARY_CHUNK = 0x004e4942;
+const GROUPS_CHUNK = 0x4c544645; // "EFTL": the groups of a clip
 
 export interface Container {
   length: number; // of the file, as its header says
@@ -15,6 +16,8 @@ export interface Container {
   json: Json;
   /** Where the content of the binary chunk begins; rejects if there is none. */
   binary(): Promise<number>;
+  /** The same of the chunk of groups. */
+  groups(): Promise<number>;
 }
 
 /** Reads header and JSON. Raises SceneError: `not-glb`, `version`, `truncated`, `damaged`. */
@@ -37,19 +40,26 @@ export async function openContainer(arrival: Arrival): Promise<Container> {
   if (size > limits.MAX_JSON) throw damaged("12", `${size} bytes of JSON`);
   if (20 + size > length) throw damaged("12", "a chunk longer than the file");
   const text = decodeText(await arrival.read(20, 20 + size));
-  return { length, text, json: parseJson(text, "20"), binary: () => binaryStart(arrival, 20 + size, length) };
+  const start = (kind: number, name: string) => (): Promise<number> => chunkStart(arrival, 20 + size, length, kind, name);
+  return {
+    length,
+    text,
+    json: parseJson(text, "20"),
+    binary: start(BINARY_CHUNK, "binary chunk"),
+    groups: start(GROUPS_CHUNK, "chunk of groups"),
+  };
 }
 
-async function binaryStart(arrival: Arrival, from: number, length: number): Promise<number> {
+async function chunkStart(arrival: Arrival, from: number, length: number, kind: number, name: string): Promise<number> {
   let at = from;
   for (let chunk = 1; chunk < limits.MAX_CHUNKS && at + 8 <= length; chunk++) {
     const head = new DataView(await arrival.read(at, at + 8));
     const size = head.getUint32(0, true);
     if (at + 8 + size > length) throw damaged(String(at), "a chunk longer than the file");
-    if (head.getUint32(4, true) === BINARY_CHUNK) return at + 8;
+    if (head.getUint32(4, true) === kind) return at + 8;
     at += 8 + size;
   }
-  throw damaged(String(from), "no binary chunk");
+  throw damaged(String(from), `no ${name}`);
 }
 
 function decodeText(bytes: ArrayBuffer): string {

@@ -22,6 +22,7 @@ import * as limits from "./limits.js";
 import { readColours, readPlanes, type Plane, type Still } from "./planes.js";
 import type { CamerasJson, Feature, PatternJson, SceneJson, ViewPlaneJson } from "./schema.js";
 import { readSheets, type Sheets } from "./sheets.js";
+import { readTimeline, type Timeline } from "./timeline.js";
 
 export interface SceneDocument {
   version: string;
@@ -46,6 +47,7 @@ export interface SceneDocument {
   sheets: Sheets | null; // null: one opaque surface
   shown: { position: Accessor; uv: Accessor; indices: Accessor } | null; // null: nothing, for none but `mesh`
   preview: number | null; // buffer view of `images[0]`
+  timeline: Timeline | null; // null: a scene of one instant
 }
 
 const LAYOUT_FEATURES: Feature[] = [
@@ -57,6 +59,7 @@ const LAYOUT_FEATURES: Feature[] = [
   "sharedPicture",
   "sheets",
   "stacks",
+  "timeline",
   "toRGB",
 ];
 const CODEC_FEATURES = Object.values(CODECS).flatMap(({ needs }) => needs ?? []);
@@ -129,6 +132,7 @@ export function readDocument(json: Json): SceneDocument {
     sheets: readSheets(extension.key("sheets"), viewOf),
     shown: mesh.exists && !root.key("meshes").exists ? null : readShown(root, accessor),
     preview,
+    timeline: readTimeline(extension.key("timeline"), planes),
   };
 }
 

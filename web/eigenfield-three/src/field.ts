@@ -10,12 +10,17 @@ import {
 } from "three";
 import { SceneError, asSceneError } from "./errors.js";
 import { exposureOf } from "./exposure.js";
+import type { Clip } from "./clip.js";
 import { Composer, type Recipe } from "./composer.js";
 import { EigenWeights } from "./eigen-weights.js";
 import { basesOf, planeCoordinates, ranksOf, type CaptureCamera, type SceneInfo, type Vector } from "./info.js";
 import { FILTERS, VIEWS, compareWith, type Filter } from "./material.js";
+import { FilmTextures } from "./film-textures.js";
+import type { ClipFrame } from "./frame-ring.js";
+import { setScales, type Group } from "./groups.js";
 import type { EigenfieldOptions } from "./options.js";
-import { opacityPart, partsOf, type Part } from "./parts.js";
+import { opacityPart, partsOf, rescale, type Part } from "./parts.js";
+import { Player } from "./player.js";
 import type { Reduction } from "./memory.js";
 import { onPlane } from "./passes.js";
 import { Surface } from "./surface.js";
@@ -38,6 +43,7 @@ export interface FieldParts extends TextureParts {
   meshes: Mesh[]; // at least one; they share a geometry
   omega: Float32Array; // (encoded cameras) x (eigen textures of all bases)
   weights: ViewWeights;
+  clip: Clip | null; // null: a scene of one instant
 }
 
 /**
@@ -66,12 +72,15 @@ export class EigenField extends EventDispatcher<FieldEvents> {
   lastWeights: Float64Array[] = [];
   /** Whether in the last draw each texel looked its own weights up. */
   lastByRay = false;
+  /** Plays a clip; null: a scene of one instant. */
+  readonly player: Player | null;
   /** All eigen textures are there; rejects with the SceneError of the `error` event. */
   readonly complete: Promise<void>;
 
   private readonly surface: Surface;
   private readonly textures: Textures;
-  private readonly weights: EigenWeights;
+  private weights: EigenWeights;
+  private group: Group | null; // of the frame that is shown
   private summed: { parts: Part[]; opacity: Part | null } = { parts: [], opacity: null };
   private readonly composers = new Map<number, Composer>(); // by `coarser`, each when it is first asked for
   private readonly encoded: CaptureCamera[];
@@ -94,7 +103,9 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     this.filter = options.filter ?? "bicubic";
     this.weightMode = info.facesPlane ? "ray" : "eye";
     this.encoded = info.cameras.filter((_, i) => !info.heldOut[i]);
-    this.weights = new EigenWeights(info, basesOf(scene).map(({ count }) => count), parts.omega, parts.weights);
+    this.weights = this.weightsOf(parts.omega);
+    this.group = parts.clip && parts.clip.group;
+    this.player = parts.clip && this.makePlayer(parts.clip);
     this.textures = new Textures(parts, source, this.surface, options);
     this.complete = new Promise((resolve, reject) => {
       this.addEventListener("complete", () => resolve());
@@ -163,6 +174,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
   }
 
   dispose(): void {
+    this.player?.dispose();
     this.textures.dispose();
     this.freeComposers();
     this.surface.dispose();
@@ -184,6 +196,36 @@ export class EigenField extends EventDispatcher<FieldEvents> {
   /** Texels a pixel up to which the finest level of what is composed is read. */
   private finestOf([width, height]: [number, number], down: number): number {
     return ONE_SAMPLE * Math.max(1, (this.surface.detail * Math.sqrt(width * height)) / down);
+  }
+
+  private weightsOf(omega: Float32Array): EigenWeights {
+    const { scene, info, weights } = this.parts;
+    return new EigenWeights(info, basesOf(scene).map(({ count }) => count), omega, weights);
+  }
+
+  // ---- clips
+
+  private makePlayer({ timeline, ring }: Clip): Player {
+    const show = (frame: ClipFrame): void => this.showFrame(frame);
+    const failed = (reason: unknown): void => this.dispatchEvent({ type: "error", error: asSceneError(reason) });
+    return new Player(timeline, ring, { show, failed });
+  }
+
+  /** All of a frame at once: what its group has, and its textures. */
+  private showFrame({ group, films }: ClipFrame): void {
+    if (group !== this.group) this.enter(group);
+    if (this.source instanceof FilmTextures) this.source.show(films);
+  }
+
+  private enter(group: Group): void {
+    const { scene } = this.parts;
+    const { plan } = this.textures;
+    this.group = group;
+    if (group.geometry !== this.surface.geometry) this.surface.setGeometry(group.geometry);
+    this.weights.dispose();
+    this.weights = this.weightsOf(group.omega);
+    setScales(scene, group);
+    if (plan) rescale(this.summed.parts, scene, this.textures, plan);
   }
 
   // ---- before each draw

@@ -14,6 +14,7 @@ export { loadEigenfield, type Loaded, type LoadOptions } from "./load.js";
 export type { Filter } from "./material.js";
 export { defaultMemory, type Reduction } from "./memory.js";
 export type { ByteStream, EigenfieldOptions } from "./options.js";
+export { Player, type PlayerEvents } from "./player.js";
 export { EigenfieldPlugin } from "./plugin.js";
 export { SHEETS } from "./sheet-stack.js";
 export type { Mixing } from "./weights.js";

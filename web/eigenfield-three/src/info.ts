@@ -7,6 +7,7 @@ import type { Grid } from "./grid.js";
 import type { JsonObject } from "./json.js";
 import * as limits from "./limits.js";
 import type { Basis } from "./planes.js";
+import type { CodedWeights } from "./weight-decoder.js";
 
 const SHORTEST = 1e-6; // of focal lengths, in pixels
 
@@ -176,10 +177,13 @@ function coloursOf(numbers: number[], scene: SceneDocument, name: string): [numb
 
 /** The (encoded cameras) x (eigen textures) weights, row by row, the bases of all planes side by side. */
 export async function readWeights(scene: SceneDocument, bytes: ViewBytes): Promise<Float32Array> {
-  const bases = basesOf(scene);
   const rows = scene.heldOut.filter((out) => !out).length;
-  const parts = await Promise.all(bases.map((basis) => readOwnWeights(basis, rows, scene, bytes)));
-  const total = bases.reduce((sum, { count }) => sum + count, 0);
+  return sideBySide(rows, await Promise.all(basesOf(scene).map((basis) => readOwnWeights(basis, rows, scene, bytes))));
+}
+
+/** Tables of so many rows as one. */
+export function sideBySide(rows: number, parts: Numbers[]): Float32Array {
+  const total = parts.reduce((sum, { length }) => sum + length, 0) / rows;
   const merged = new Float32Array(rows * total);
   let column = 0;
   for (const part of parts) {
@@ -201,7 +205,15 @@ async function readOwnWeights(
   if (!weights) return new Float32Array(0);
   if ("type" in weights) return readNumbers(weights, scene.views, bytes);
   const { view, codec, where } = weights;
-  const { cameras, components, values } = codec.decode(new Uint8Array(await bytes(view)), where);
+  return checkWeights(codec.decode(new Uint8Array(await bytes(view)), where), rows, count, where);
+}
+
+export function checkWeights(
+  { cameras, components, values }: CodedWeights,
+  rows: number,
+  count: number,
+  where: string,
+): Float32Array {
   if (cameras === rows && components === count) return checkFinite(values, where);
   throw damaged(where, `${cameras} x ${components} weights, and ${rows} encoded cameras x ${count} textures`);
 }

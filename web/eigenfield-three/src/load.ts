@@ -51,15 +51,14 @@ export async function loadEigenfield(source: string | Blob | ArrayBuffer, option
 
 async function parseScene(arrival: Arrival, container: Container, options: EigenfieldOptions): Promise<GLTF> {
   const loader = new GLTFLoader();
+  const from = (start: Promise<number>) => async (offset: number, length: number): Promise<ArrayBuffer> => {
+    const at = (await start) + offset;
+    return arrival.read(at, at + length);
+  };
   const start = container.binary();
   start.catch(() => undefined); // reads hear of it
-  const stream: ByteStream = {
-    total: container.length,
-    read: async (offset, length) => {
-      const at = (await start) + offset;
-      return arrival.read(at, at + length);
-    },
-  };
+  const readGroups: ByteStream["read"] = (...place) => from(container.groups())(...place);
+  const stream: ByteStream = { total: container.length, read: from(start), readGroups };
   loader.register((parser) => new EigenfieldPlugin(parser, { ...options, stream }));
   return loader.parseAsync(container.text, "");
 }

@@ -7,6 +7,8 @@ export interface ByteStream {
   readonly total: number;
   /** `length` bytes from `offset` of the binary chunk, once they are there. Rejects with a SceneError. */
   read(offset: number, length: number): Promise<ArrayBuffer>;
+  /** The same of the chunk that has the groups of a clip; without it a clip is shown as other viewers show it. */
+  readGroups?(offset: number, length: number): Promise<ArrayBuffer>;
 }
 
 export interface EigenfieldOptions {

@@ -44,6 +44,9 @@ export interface Fineness {
 export interface Packer {
   /** Codes are stored as they are, without `fine`. */
   put(piece: Piece, array: WebGLTexture, slots: Slot[], aim: Aim, fine?: Fineness | null): void;
+  /** Calls `work`, which puts many codes: what others have set is asked for and put back once, as each question waits
+   * for the GPU. */
+  together(work: () => void): void;
   free(): void;
 }
 
@@ -53,6 +56,7 @@ export function makePacker(gl: GL, rooms: Rooms, fitting: number, surface: Surfa
   const [packing, spreading] = [link(gl, TRIANGLE, PACK), link(gl, TRIANGLE, SPREAD)];
   const [frame, vertices] = [gl.createFramebuffer(), gl.createVertexArray()];
   const charts = rooms.smaller && makeCharts(gl, surface);
+  let ours = false; // within `together`: the room of codes is bound, and all is set for drawing
   const place = (name: string): WebGLUniformLocation | null => gl.getUniformLocation(packing, name);
   const names = ["precisions", "covered", "factors", "size", "made", "first", "corner", "nodes", "zero"] as const;
   const at = Object.fromEntries(names.map((name) => [name, place(name)])) as Record<
@@ -90,15 +94,16 @@ export function makePacker(gl: GL, rooms: Rooms, fitting: number, surface: Surfa
     const [width, height] = aim.size;
     const smaller = width < picture.width || height < rows ? rooms.smaller : null;
     const step = Math.max(1, Math.floor(((smaller ? fitting - 2 : fitting) * height) / rows));
+    const set = ours && room === rooms.codes;
     onUnit(gl, 2, (smaller && charts?.covered(aim.grid)) ?? null, () =>
-      onUnit(gl, 0, room, () => {
+      onUnit(gl, 0, set ? null : room, () => {
         for (let top = 0; top < height; top += step) {
           const count = Math.min(step, height - top);
           const first = Math.floor((top * rows) / height);
           const last = Math.ceil(((top + count) * rows) / height);
           if (isCodes(picture)) putCodes(gl, picture, row + first, last - first);
           else putRows(gl, picture, row + first, last - first);
-          untouched(gl, () => {
+          const pack = (): void => {
             gl.useProgram(packing); // its sampler `picture` reads unit 0
             gl.bindVertexArray(vertices);
             gl.uniform1i(at.precisions, fine ? 1 : 0); // on unit 1 may be anything
@@ -110,7 +115,9 @@ export function makePacker(gl: GL, rooms: Rooms, fitting: number, surface: Surfa
               gl.colorMask(true, true, true, true);
             } else toSlot(array, slot);
             draw(piece, slot.channel, aim, first, top, count);
-          });
+          };
+          if (set) pack();
+          else untouched(gl, pack);
         }
       }),
     );
@@ -139,6 +146,18 @@ export function makePacker(gl: GL, rooms: Rooms, fitting: number, surface: Surfa
           pack();
         });
       }
+    },
+    together(work) {
+      onUnit(gl, 0, rooms.codes, () =>
+        untouched(gl, () => {
+          ours = true;
+          try {
+            work();
+          } finally {
+            ours = false;
+          }
+        }),
+      );
     },
     free() {
       for (const texture of Object.values(rooms) as (WebGLTexture | null)[]) gl.deleteTexture(texture);

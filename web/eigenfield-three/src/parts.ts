@@ -60,6 +60,11 @@ export function partsOf(scene: SceneDocument, textures: Textures, plan: Plan): P
   return parts;
 }
 
+/** Gives parts the numbers that the pictures of their scene have now. */
+export function rescale(parts: Part[], scene: SceneDocument, textures: Textures, plan: Plan): void {
+  partsOf(scene, textures, plan).forEach(({ scale, bias }, i) => Object.assign(parts[i] ?? {}, { scale, bias }));
+}
+
 /** The opacity of sheets, as a mean whose only channel is R. */
 export function opacityPart({ planes, sheets }: SceneDocument, { means, needs }: Textures): Part | null {
   const stored = means[planes.length];

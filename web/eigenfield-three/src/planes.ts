@@ -10,12 +10,22 @@ import type * as schema from "./schema.js";
 
 const EIGHT = 8; // bits of a code unless a picture says otherwise
 const MOST_BITS = 16;
+const KEY_PICTURE = "av1-10bit-2"; // what the first unit of a film is too
 
 /** One or several textures: value = (code - zero) * scale. */
 export interface Picture extends PictureFile {
   codec: Codec<"picture">;
-  scale: number[]; // of each channel of each texture
+  scale: number[]; // of each channel of each texture; of a clip those of the group that is shown
   zero: number[];
+  part: FilmPart | null; // null: a picture of its own in the file; else `view` is none
+}
+
+/** Where the textures of a picture lie in a film: column and row of each channel of each, which have one size. */
+export interface FilmPart {
+  film: number;
+  size: [number, number];
+  at: [number, number][];
+  where: string;
 }
 
 /** A small grey picture over all of a mean: value = (code - zero) * scale / p, p = (its own code + 1) / 256. */
@@ -39,7 +49,7 @@ export interface Basis {
   corner: [number, number]; // column and row of the grid at which the textures begin
   pictures: Picture[];
   count: number; // textures
-  weights: Accessor | Stream<"weights"> | null; // null: no textures
+  weights: Accessor | Stream<"weights"> | null; // null: no textures, or those of a clip, whose groups have weights
   where: string;
 }
 
@@ -119,7 +129,7 @@ function readPicture(
   const pieces = channels === 3 && codec.bits === EIGHT ? 1 : channels;
   if (size) checkRows(value, pieces * textures, size);
   const [scale, zero] = [value.key("scale"), value.key("zero")];
-  const made = { view: viewOf(value.key("bufferView")), codec, textures, pieces, where: value.where };
+  const made = { view: viewOf(value.key("bufferView")), codec, textures, pieces, where: value.where, part: null };
   if (plain && codec.bits === EIGHT && !scale.exists && !zero.exists) return { ...made, ...asTheyAre(channels) };
   return { ...made, scale: numbersOf(scale, channels, textures), zero: numbersOf(zero, channels, textures) };
 }
@@ -136,6 +146,24 @@ function formatOf(value: Value<schema.MeanJson | schema.TextureJson | schema.Opa
   const codec = codecOf("picture", named, usual);
   if (codec.mimeType !== mimeType || codec.bits !== bits) throw named.wrong(`${bits} bits of ${mimeType}`);
   return codec;
+}
+
+/** Textures in a film, `channels` to each; a group says what their codes stand for. */
+function readInFilm(
+  value: Value<schema.MeanJson | schema.BasisJson>,
+  channels: number,
+  size: [number, number],
+): Picture {
+  const places = value.key("at").items(limits.MAX_COMPONENTS * channels).map((place): [number, number] => {
+    const [left = 0, top = 0] = place.numbers(2, 0, limits.MAX_FILM_SIDE);
+    if (!Number.isInteger(left) || !Number.isInteger(top)) throw place.wrong("no whole numbers");
+    return [left, top];
+  });
+  if (!places.length || places.length % channels) throw value.key("at").wrong(`places of ${channels} channels are needed`);
+  const { where } = value;
+  const part = { film: value.key("film").integer(0, limits.MAX_FILMS - 1), size, at: places, where };
+  const none = { scale: Array<number>(places.length).fill(0), zero: Array<number>(places.length).fill(0) };
+  return { view: -1, codec: CODECS[KEY_PICTURE], textures: places.length / channels, pieces: channels, where, part, ...none };
 }
 
 function asTheyAre(channels: number): Pick<Picture, "scale" | "zero"> {
@@ -158,7 +186,7 @@ export function unitOf(picture: Picture, halves: boolean): number {
 }
 
 /** A number of each channel of each texture, or of each channel of all. */
-function numbersOf(value: Value, channels: number, textures: number): number[] {
+export function numbersOf(value: Value, channels: number, textures: number): number[] {
   const given = value.items(channels * textures).map((item) => item.number());
   if (given.length === channels * textures) return given;
   if (given.length !== channels) throw value.wrong(`${channels} or ${channels * textures} numbers are needed`);
@@ -174,10 +202,15 @@ function readMean(
   const own = plane.key("mean");
   if (!own.exists) {
     if (preview === null || (channels !== 1 && channels !== 3)) throw own.wrong("no mean");
-    const mean = { view: preview, codec: CODECS.png, textures: 1, pieces: 1, where: "/images/0" };
+    const mean = { view: preview, codec: CODECS.png, textures: 1, pieces: 1, where: "/images/0", part: null };
     return { mean: { ...mean, ...asTheyAre(channels) }, meanSize: null, precision: null };
   }
   const meanSize = readSize(own.key("size"));
+  if (own.key("film").exists) {
+    const mean = readInFilm(own, channels, meanSize);
+    if (mean.textures !== 1) throw own.key("at").wrong(`${channels} places are needed`);
+    return { mean, meanSize, precision: null };
+  }
   const mean = readPicture(own, channels, 1, meanSize, viewOf, true);
   return { mean, meanSize, precision: readPrecision(own.key("precision"), mean, viewOf) };
 }
@@ -187,7 +220,7 @@ export function readOpacity(value: Value<schema.OpacityJson>, viewOf: ViewReader
   const size = readSize(value.key("size"));
   const codec = formatOf(value);
   checkRows(value, 1, size);
-  const made = { view: viewOf(value.key("bufferView")), codec, textures: 1, pieces: 1, where: value.where };
+  const made = { view: viewOf(value.key("bufferView")), codec, textures: 1, pieces: 1, where: value.where, part: null };
   const mean = { ...made, scale: [1 / (2 ** codec.bits - 1)], zero: [0] };
   return { channels: 1, mean, meanSize: size, precision: null };
 }
@@ -214,6 +247,13 @@ function readBasis(
   const [column = 0, row = 0] = corner.exists ? corner.numbers(2, 0, limits.MAX_SIDE) : [];
   if (!Number.isInteger(column) || !Number.isInteger(row)) throw corner.wrong("no whole numbers");
   if (column + size[0] > whole[0] || row + size[1] > whole[1]) throw basis.wrong("textures beyond their grid");
+  const where = basis.where;
+  if (basis.key("film").exists) {
+    const picture = readInFilm(basis, channels, size);
+    const { textures: count } = picture;
+    if (count > limits.MAX_COMPONENTS) throw basis.wrong(`more than ${limits.MAX_COMPONENTS} textures`);
+    return { size, grid: whole, corner: [column, row], pictures: [picture], count, weights: null, where };
+  }
   let count = 0;
   const common = basis.key("picture");
   const shared = common.exists ? common.object() : {};
@@ -228,7 +268,7 @@ function readBasis(
   const coded = basis.key("codedWeights");
   const plain = (): Accessor => accessor(basis.key("weights"), "SCALAR", [FLOAT], encoded * count);
   const weights = count ? (coded.exists ? streamOf("weights", coded, viewOf) : plain()) : null;
-  return { size, grid: whole, corner: [column, row], pictures, count, weights, where: basis.where };
+  return { size, grid: whole, corner: [column, row], pictures, count, weights, where };
 }
 
 /** Checks a picture of so many pieces of width x height, one below the other. */

@@ -2,19 +2,23 @@ import { MeshBasicMaterial, type Material, type Mesh, type Object3D } from "thre
 import type { GLTF, GLTFLoaderPlugin, GLTFParser } from "three/addons/loaders/GLTFLoader.js";
 import { checkAddresses } from "./addresses.js";
 import type { ViewBytes } from "./accessors.js";
+import { openClip, type Clip } from "./clip.js";
 import { isScene, readDocument, stillsOf, type SceneDocument } from "./document.js";
 import { cutOff, damaged } from "./errors.js";
 import { EigenField } from "./field.js";
+import { FilmTextures } from "./film-textures.js";
 import { contextOf } from "./gpu.js";
 import { planeCoordinates, readCameras, readTriangles, readWeights, sceneInfo } from "./info.js";
 import type { Json } from "./json.js";
 import { EXTENSION } from "./limits.js";
 import { decodeMean, type Mean } from "./means.js";
+import type { Size } from "./memory.js";
 import type { EigenfieldOptions } from "./options.js";
 import { unpacked } from "./packed.js";
 import { checkGeometry, countsOf, readCodedMesh } from "./proxy.js";
 import { checkSheets } from "./sheets.js";
 import { stillTextures } from "./still-textures.js";
+import type { Timeline } from "./timeline.js";
 import { ViewWeights } from "./weights.js";
 
 /**
@@ -42,7 +46,9 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
     const { json } = this.parser;
     checkAddresses(json as Json);
     Object.assign(json, await unpacked(json, (offset, length) => this.read(offset, length)));
-    this.scene = readDocument(json);
+    const scene = readDocument(json);
+    if (scene.timeline && !this.options.stream?.readGroups) return; // shown as other viewers show it
+    this.scene = scene;
     if (!this.scene.shown) showEmptyMesh(json);
   }
 
@@ -80,26 +86,32 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
       if (data.byteLength < (scene.views[view]?.length ?? 0)) throw cutOff(`/bufferViews/${view}`);
       return data;
     };
-    const proxy = scene.mesh && (await readCodedMesh(scene.mesh, bytes));
+    const clip = scene.timeline && (await this.openClip(scene, scene.timeline));
+    const proxy = clip ? clip.group.geometry : scene.mesh && (await readCodedMesh(scene.mesh, bytes));
     if (proxy) {
       mesh.geometry.dispose();
       for (const each of meshes) each.geometry = proxy;
     }
     if (scene.sheets) checkSheets(scene.sheets, mesh.geometry);
     const [means, cameras, omega, triangles] = await Promise.all([
-      Promise.all(stillsOf(scene).map((still) => decodeMean(still, bytes))),
+      Promise.all(clip ? [] : stillsOf(scene).map((still) => decodeMean(still, bytes))),
       readCameras(scene, bytes),
-      readWeights(scene, bytes),
+      clip ? clip.group.omega : readWeights(scene, bytes),
       readTriangles(scene, bytes),
     ]);
     const encoded = cameras.filter((_, i) => !scene.heldOut[i]);
     const places = Float64Array.from(encoded.flatMap((camera) => planeCoordinates(scene, camera.centre)));
     const weights = new ViewWeights(places, triangles, scene.extent[1] === 0);
     const sizeOf = ({ pieces: [first] }: Mean): [number, number] => [first?.picture.width ?? 1, first?.rows ?? 1];
-    const meanSizes = means.map(sizeOf);
+    const meanSizes = clip ? scene.planes.map(({ meanSize }): Size => meanSize ?? [1, 1]) : means.map(sizeOf);
     const info = sceneInfo(scene, cameras, meanSizes, weights.grid, this.fileBytes(), countsOf(mesh.geometry));
-    const parts = { scene, info, meshes, meanSizes, omega, weights };
-    gltf.userData["eigenfield"] = new EigenField(parts, stillTextures(scene, bytes, means), this.options);
+    const parts = { scene, info, meshes, meanSizes, omega, weights, clip };
+    const source = clip ? new FilmTextures(scene, clip.films) : stillTextures(scene, bytes, means);
+    gltf.userData["eigenfield"] = new EigenField(parts, source, this.options);
+  }
+
+  private openClip(scene: SceneDocument, timeline: Timeline): Promise<Clip> {
+    return openClip(scene, timeline, (...place) => this.options.stream!.readGroups!(...place));
   }
 
   private fileBytes(): number {

@@ -39,6 +39,11 @@ export async function eigenGain(
     });
   });
   closePieces(pieces);
+  return strengthOf(values);
+}
+
+/** The factor for the values of an eigen texture, without their signs. */
+export function strengthOf(values: number[]): number {
   values.sort((a, b) => a - b);
   const strong = values[Math.floor(SHARE * values.length)] ?? 0;
   return strong > 0 ? 0.45 / strong : 1;

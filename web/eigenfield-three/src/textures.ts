@@ -155,6 +155,9 @@ export class Textures {
       putTextures: (basis, first, pieces, picture) => {
         if (!signal.aborted) this.putTextures(plan, basis, first, pieces, picture);
       },
+      together: (work) => {
+        if (!signal.aborted) this.packer?.together(work);
+      },
       announce: () => {
         if (!signal.aborted) this.onTexture();
       },

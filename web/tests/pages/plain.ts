@@ -82,8 +82,38 @@ async function loseContext(field: eigenfield.EigenField): Promise<number> {
   return loaded;
 }
 
+/** Where points of an atlas are on the canvas, from below: in the first triangle that has each. */
+function pixelsOf({ mesh }: eigenfield.EigenField, uvs: [number, number][]): [number, number][] {
+  const { attributes, index } = mesh.geometry;
+  const { position, uv } = attributes as Record<"position" | "uv", THREE.BufferAttribute>;
+  const flat = (i: number): THREE.Vector3 => new THREE.Vector3(uv.getX(i), uv.getY(i), 0);
+  const [share, place] = [new THREE.Vector3(), new THREE.Vector3()];
+  return uvs.map(([u, v]) => {
+    for (let at = 0; at < index!.count; at += 3) {
+      const corners = [0, 1, 2].map((i) => index!.getX(at + i)) as [number, number, number];
+      const triangle = new THREE.Triangle(...(corners.map(flat) as [THREE.Vector3, THREE.Vector3, THREE.Vector3]));
+      if (!triangle.getBarycoord(new THREE.Vector3(u, v, 0), share) || Math.min(...share.toArray()) < 0) continue;
+      place.set(0, 0, 0);
+      corners.forEach((corner, i) => {
+        place.addScaledVector(new THREE.Vector3().fromBufferAttribute(position, corner), share.getComponent(i));
+      });
+      mesh.localToWorld(place).project(camera);
+      return [Math.floor(((place.x + 1) / 2) * WIDTH), Math.floor(((place.y + 1) / 2) * HEIGHT)];
+    }
+    throw new Error(`no triangle at ${u}, ${v}`);
+  });
+}
+
+/** Green at points of the canvas, from below. */
+function greens(points: [number, number][]): number[] {
+  const gl = renderer.getContext();
+  const all = new Uint8Array(4 * WIDTH * HEIGHT);
+  gl.readPixels(0, 0, WIDTH, HEIGHT, gl.RGBA, gl.UNSIGNED_BYTE, all);
+  return points.map(([x, y]) => all[4 * (y * WIDTH + x) + 1]!);
+}
+
 const lab = {
-  THREE, ...eigenfield, renderer, camera, show, draw, drawView, plainLoad, drawEyes, countDraws, loseContext,
+  pixelsOf, greens, THREE, ...eigenfield, renderer, camera, show, draw, drawView, plainLoad, drawEyes, countDraws, loseContext,
 };
 declare global {
   interface Window {

@@ -39,6 +39,8 @@ export interface State extends Options {
   total: number; // in the file
   bytes: number | null; // of the file with as many eigen textures as are summed now
   uvSsim: number | null;
+  time: number | null; // of the frame of a clip, in seconds; null: it is none
+  playing: boolean;
 }
 
 export interface Embedded {
@@ -90,6 +92,8 @@ export function createApi(viewer: Viewer): Embedded {
         total,
         bytes: field ? bytesWith(field.info, viewer.summed()) : null,
         uvSsim: field ? uvSsim(field.info, viewer.summed()) : null,
+        time: field?.player?.time ?? null,
+        playing: field?.player?.playing ?? false,
       };
     },
     goTo: viewer.goTo,

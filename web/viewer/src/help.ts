@@ -17,6 +17,8 @@ const CONTROLS: readonly (readonly [keys: string, does: string, touch?: string])
   ["[ ]", words("doesCameras")],
   ["N", words("doesNearest")],
   [words("keySpace"), words("doesFlip")],
+  [`${words("keySpace")} · , · .`, words("doesPlay")],
+  ["[ ]", words("doesSpeed")],
   ["B", words("doesDivide")],
   ["1 2 3 4", words("doesViews")],
   ["− +", words("doesCount")],

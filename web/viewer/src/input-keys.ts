@@ -17,6 +17,7 @@ const HELD: Readonly<Record<string, Axis>> = {
 };
 
 const PLAIN: readonly string[] = ["0", "home", "escape"]; // keys of pages without a laboratory
+const REPEATED: readonly string[] = ["[", "]", "-", "+", "=", ",", "."]; // while they are held
 
 export interface Actions {
   /** Panel, map and tools are not shown. */
@@ -70,10 +71,22 @@ export function listenToKeys(viewer: Viewer, actions: Actions): Keys {
     return table[key];
   };
 
+  /** Keys of a clip, which go before the others. */
+  const playing = (key: string): (() => void) | undefined => {
+    const table: Record<string, () => void> = {
+      " ": viewer.playOrPause,
+      ",": () => viewer.step(-1),
+      ".": () => viewer.step(1),
+      "[": () => viewer.changeSpeed(-1),
+      "]": () => viewer.changeSpeed(1),
+    };
+    return viewer.player() ? table[key] : undefined;
+  };
+
   addEventListener("keydown", (event) => {
     const key = keyOf(event);
     if (key === "" || taken(event)) return;
-    const act = actions.plain() && !PLAIN.includes(key) ? undefined : once(key);
+    const act = playing(key) ?? (actions.plain() && !PLAIN.includes(key) ? undefined : once(key));
     if (act || HELD[event.code]) document.body.dataset["keys"] = ""; // the style sheet shows which keys do what
     if (!act && HELD[event.code]) { // a letter that acts and is printed there comes first
       event.preventDefault();
@@ -81,7 +94,7 @@ export function listenToKeys(viewer: Viewer, actions: Actions): Keys {
       viewer.request();
       return;
     }
-    if (!act || (event.repeat && !["[", "]", "-", "+", "="].includes(key))) return;
+    if (!act || (event.repeat && !REPEATED.includes(key))) return;
     event.preventDefault();
     act();
   });
@@ -109,6 +122,6 @@ function taken(event: KeyboardEvent): boolean {
   if (key === "Escape") return false;
   if (target.closest("[role=slider]")) return key.startsWith("Arrow");
   if (target instanceof HTMLSelectElement) return true;
-  if (target instanceof HTMLInputElement) return key === " " || key === "Home" || key.startsWith("Arrow");
+  if (target instanceof HTMLInputElement) return (key === " " && target.type !== "range") || key === "Home" || key.startsWith("Arrow");
   return key === " " && target.closest("button, summary, a") !== null;
 }

@@ -18,6 +18,7 @@ import { LANGUAGE, words } from "./language";
 import { keepOffline } from "./offline";
 import { createOverlays } from "./overlays";
 import { createPanel } from "./panel";
+import { createPlaybar } from "./playbar";
 import { posterShown, takePoster } from "./poster";
 import { saveScreenshot } from "./screenshot";
 import { createShare } from "./share";
@@ -69,6 +70,7 @@ function start(): void {
   const panel = createPanel(viewer);
   const map = createCameraMap(viewer);
   const divider = createDivider(viewer);
+  const playbar = createPlaybar(viewer);
   const help = createHelp(config.version);
   const headset = createHeadset(viewer, () => update());
   const draft = createDraft(viewer, headset.presenting);
@@ -106,7 +108,7 @@ function start(): void {
     showPanel(ui === "full" && !matchMedia(SMALL).matches);
   };
   const poster = takePoster(document, config.poster);
-  stageArea.append(...(poster ? [poster] : []), divider.root, ...overlays.roots, draft, share.said, map.root, tools);
+  stageArea.append(...(poster ? [poster] : []), divider.root, ...overlays.roots, draft, share.said, map.root, playbar.root, tools);
   document.body.append(stageArea, panel.root, help.root, chooser.root);
 
   const update = (): void => {
@@ -114,6 +116,7 @@ function start(): void {
     panel.update();
     overlays.update();
     map.update();
+    playbar.update();
     orbit.setAttribute("aria-pressed", String(viewer.modeName() === "orbit"));
     orbit.hidden = !viewer.scene()?.plane;
     lean.hidden = !tilt.possible || !viewer.scene()?.plane;
@@ -129,6 +132,7 @@ function start(): void {
   viewer.onDraw(() => {
     overlays.tick();
     divider.tick();
+    playbar.tick();
     map.update();
     panel.tick();
     if (viewer.scene() !== null && (!viewer.arriving() || !viewer.untouched())) poster?.remove();

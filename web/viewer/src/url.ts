@@ -59,6 +59,8 @@ export function hashOf(viewer: Viewer): string {
     parts.set("eye", triple(eye));
     parts.set("at", triple(target));
   }
+  const player = viewer.player();
+  if (player && !player.playing) parts.set("t", short(player.time));
   if (scene?.plane) parts.set("mode", viewer.modeName());
   if (viewer.photographShown()) parts.set("photograph", "1");
   if (viewer.photographShown() && options.divider !== null) parts.set("divider", short(options.divider));
@@ -103,6 +105,12 @@ function applyHash(viewer: Viewer, hash: string): void {
   }
   const camera = scene.field?.info.names.indexOf(parts.get("camera") ?? "") ?? -1;
   if (camera >= 0) viewer.toCamera(camera);
+
+  const [player, time] = [viewer.player(), number("t")];
+  if (player && time !== null) {
+    player.pause();
+    void player.seek(time);
+  }
 
   viewer.set({
     count: number("n") ?? Infinity,

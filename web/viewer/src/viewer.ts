@@ -14,6 +14,7 @@ import { createOpening } from "./opening";
 import type { Options } from "./options";
 import { createPhotographs } from "./photographs";
 import { createPainter } from "./painter";
+import { createPlayback, type Playback } from "./playback";
 import { createPlaces } from "./places";
 import { emptySession, type Message, type ModeName, type Progress, type Scene, type Status } from "./session";
 import type { Source } from "./source";
@@ -21,7 +22,7 @@ import { createStage, type Stage } from "./stage";
 import { createSway } from "./sway";
 import { createWireframe } from "./wireframe";
 
-export interface Viewer extends Omit<Frames, "changed" | "touch" | "rested"> {
+export interface Viewer extends Omit<Frames, "changed" | "touch" | "rested">, Playback {
   readonly stage: Stage;
   readonly config: Config;
   scene(): Scene | null;
@@ -110,11 +111,13 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
     const { scene } = session;
     edges(options.wireframe && scene ? (scene.field?.mesh ?? scene.gltf.scene) : null);
   };
+  const clips = createPlayback(session, frames.request, changed);
   const opening = createOpening(session, stage, config, {
     changed,
     opened: () => {
       movement.home();
       showEdges();
+      clips.opened();
     },
     closing: () => {
       edges(null);
@@ -143,6 +146,7 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
   const settled = async (): Promise<void> => {
     await opening.done();
     sway.settle();
+    await clips.stopped();
     await frames.rested(photographs.pending);
   };
 
@@ -193,6 +197,12 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
     divide: moves(() => set({ divider: session.photographShown && options.divider !== null ? null : 0.5 })),
     untouched: sway.untouched,
     hold: sway.stop,
+    player: clips.player,
+    playOrPause: moves(clips.playOrPause),
+    toFrame: moves(clips.toFrame),
+    step: moves(clips.step),
+    changeSpeed: clips.changeSpeed,
+    setLoop: clips.setLoop,
     moving: moves(() => {
       frames.touch();
       return movement.moving();

@@ -86,6 +86,7 @@ export function createHeadset(viewer: Viewer, entered: (inside: boolean) => void
     const space = renderer.xr.getReferenceSpace();
     const head = xr && space ? xr.getViewerPose(space) : undefined;
     if (!field || !head) return;
+    field.player?.update(now); // the page itself has no frames now
     moveByStick(Math.min((now - last) / 1000, 0.1));
     last = now;
     base ??= place(head.transform);

@@ -68,7 +68,8 @@ def export(
         output: A file or a folder.
         kind: "html", "mp4", "png" (single pictures), "glb", "obj", "maps", "quilt", "colmap" or "app"; None: by
             the output's name.
-        time: Seconds, of a clip, of which the nearest frame is exported.
+        time: Seconds, of a clip, of which the nearest frame is exported; None: a page plays it, and other kinds
+            refuse it.
         overwrite: Whether existing files, and folders that an export wrote, are replaced.
         progress: Reports each picture; by default a bar in a notebook.
         options: Of the kind (`OPTIONS`): fields of `RenderJob` for pictures; `path` and `frames` (`path_points`) and
@@ -103,7 +104,11 @@ def export(
     if chosen == "glb" and not isinstance(scene, Scene | Clip) and output.exists() and output.samefile(scene):
         raise OptionError("output-kind", f"{output} is the scene itself", remedy="name another file")
     drawn = {name: value for name, value in options.items() if name in PICTURE_OPTIONS}
-    job = RenderJob(as_scene(scene, time), **drawn)
+    loaded = scene if isinstance(scene, Scene | Clip) else load_any(scene)
+    if chosen == "html" and time is None and isinstance(loaded, Clip):  # the page plays it
+        options["glb"] = encode_scene(scene) if isinstance(scene, Clip) else Path(scene).read_bytes()
+        time = loaded.timeline.first
+    job = RenderJob(as_scene(loaded, time), **drawn)
     return _write(chosen, job, points, output, options, overwrite, progress)
 
 

@@ -56,6 +56,7 @@ def write_guests_page(
     metres_per_unit: float | None = None,
     at: tuple[float, float] | None = None,
     url: str | None = None,
+    glb: bytes | None = None,
     overwrite: bool = False,
 ) -> str:
     """Write NAME.html, which shows the scene and has neither panel nor tools, and NAME.jpg, its poster; both or none.
@@ -67,6 +68,7 @@ def write_guests_page(
         metres_per_unit: Metres in one unit of the capture, for headsets.
         at: The first view, on the view plane. Default: the reference camera's.
         url: Where the page will be, for links to it. Default: its name, which most crawlers do not follow.
+        glb: The file that the page holds, of a clip whose first frame the scene is. Default: the scene's own.
 
     Returns:
         The HTML that shows the page within another one.
@@ -96,7 +98,7 @@ def write_guests_page(
         "og:image:height": str(size[1]),
         "twitter:card": "summary_large_image",
     }
-    glb = encode_scene(replace(scene, residual=None))
+    glb = encode_scene(replace(scene, residual=None)) if glb is None else glb
     guests = Guests(poster, tags, url)
     page = single_file(glb, title=title, metres_per_unit=metres_per_unit, start=at, guests=guests)
     with atomic_files(targets, overwrite=overwrite) as (picture, document):

@@ -67,7 +67,7 @@ function ve(e, t) {
 			0
 		]),
 		...N("colr", [
-			...be("nclx"),
+			...F("nclx"),
 			0,
 			2,
 			0,
@@ -77,15 +77,15 @@ function ve(e, t) {
 			128
 		])
 	]), c = N("ftyp", [
-		...be("avif"),
+		...F("avif"),
 		...P(0),
-		...be("avifmif1miafMA1B")
+		...F("avifmif1miafMA1B")
 	]), l = (t) => N("meta", [
 		...P(0),
 		...N("hdlr", [
 			...P(0),
 			...P(0),
-			...be("pict"),
+			...F("pict"),
 			...Array(13).fill(0)
 		]),
 		...N("pitm", [
@@ -121,7 +121,7 @@ function ve(e, t) {
 				1,
 				0,
 				0,
-				...be("av01"),
+				...F("av01"),
 				0
 			])
 		]),
@@ -140,7 +140,7 @@ function ve(e, t) {
 		...c,
 		...l(u),
 		...P(8 + e.byteLength),
-		...be("mdat")
+		...F("mdat")
 	], f = new Uint8Array(u + e.byteLength);
 	return f.set(d), f.set(new Uint8Array(e), u), f.buffer;
 }
@@ -165,7 +165,7 @@ function ye(e, t) {
 function N(e, t) {
 	return [
 		...P(8 + t.length),
-		...be(e),
+		...F(e),
 		...t
 	];
 }
@@ -177,11 +177,11 @@ function P(e) {
 		0
 	].map((t) => e >>> t & 255);
 }
-function be(e) {
+function F(e) {
 	return Array.from(e, (e) => e.charCodeAt(0));
 }
 // eigenfield-three/src/inflate.ts
-async function xe(e, t, n, r) {
+async function be(e, t, n, r) {
 	let i = [], a = 0, o = new Blob([e]).stream().pipeThrough(new DecompressionStream(t)).getReader();
 	try {
 		for (let e = await o.read(); !e.done && a <= n; e = await o.read()) i.push(e.value), a += e.value.length;
@@ -194,11 +194,11 @@ async function xe(e, t, n, r) {
 	return s;
 }
 // eigenfield-three/src/limits.ts
-var Se = "EIGENFIELD_eigen_textures", Ce = 64 * 2 ** 20, F = 16384, we = 16384, Te = 1024, Ee = 2 ** 27, De = 4096, Oe = 8 * 2 ** 30, I = 1e5, ke = 65535, Ae = 2 ** 29, L = 1024, je = 2 ** 25, Me = 2 ** 26, Ne = 2 ** 27, Pe = 2 ** 28, Fe = 1e30, R = 65536, Ie = 126, z = 64, Le = 0, Re = 1, ze = 2, Be = 24, Ve = 44, He = 21, Ue = 26214, We = 4, Ge = Float64Array.from({ length: 4095 }, (e, t) => Math.round(R / (1 + Math.exp((2047 - t) / 256)))), Ke = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), qe = Float64Array.from({ length: 127 }, (e, t) => Math.round(R / (t + 1.5)));
-function B(e) {
-	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + B(Math.floor(e / 4294967296));
+var xe = "EIGENFIELD_eigen_textures", Se = 64 * 2 ** 20, Ce = 16384, we = 16384, Te = 1024, Ee = 2 ** 27, De = 4096, Oe = 8 * 2 ** 30, ke = 1e5, Ae = 65535, je = 2 ** 29, I = 1024, Me = 2 ** 25, Ne = 2 ** 26, Pe = 2 ** 27, Fe = 8192, Ie = 2 ** 24, Le = 2 ** 20, Re = 2 ** 16, ze = 2 ** 30, Be = 1024, Ve = 2 ** 22, He = 2 ** 31 - 1, Ue = 2 ** 28, We = 1e30, L = 65536, Ge = 126, R = 64, Ke = 0, qe = 1, Je = 2, Ye = 24, Xe = 44, Ze = 21, Qe = 26214, $e = 4, et = Float64Array.from({ length: 4095 }, (e, t) => Math.round(L / (1 + Math.exp((2047 - t) / 256)))), tt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), nt = Float64Array.from({ length: 127 }, (e, t) => Math.round(L / (t + 1.5)));
+function z(e) {
+	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + z(Math.floor(e / 4294967296));
 }
-var Je = class {
+var rt = class {
 	bytes;
 	low = 0;
 	high = 4294967295;
@@ -208,49 +208,49 @@ var Je = class {
 	seen;
 	weights;
 	constructor(e, t, n) {
-		this.bytes = e, this.probability = new Uint16Array(t * z).fill(R / 2), this.seen = new Uint8Array(t * z), this.weights = new Float64Array(n * z * 3).fill(Ue);
-		for (let e = 0; e < We; e++) this.code = this.code * 256 + this.next();
+		this.bytes = e, this.probability = new Uint16Array(t * R).fill(L / 2), this.seen = new Uint8Array(t * R), this.weights = new Float64Array(n * R * 3).fill(Qe);
+		for (let e = 0; e < $e; e++) this.code = this.code * 256 + this.next();
 	}
 	checkEnd(e) {
-		if (this.at > this.bytes.length + We) throw ue(e);
+		if (this.at > this.bytes.length + $e) throw ue(e);
 	}
 	flag(e, t, n, r) {
 		return this.node(e, t, n, r, 0) === 1;
 	}
 	raw(e) {
 		let t = 0;
-		for (let n = 0; n < e; n++) t = t * 2 + this.split(R / 2);
+		for (let n = 0; n < e; n++) t = t * 2 + this.split(L / 2);
 		return t;
 	}
 	integer(e, t, n, r) {
 		let i = this.magnitude(e, t, n, r);
-		return i === 0 ? 0 : this.node(e, t, n, r, Re) ? -i : i;
+		return i === 0 ? 0 : this.node(e, t, n, r, qe) ? -i : i;
 	}
 	magnitude(e, t, n, r) {
-		if (!this.node(e, t, n, r, Le)) return 0;
+		if (!this.node(e, t, n, r, Ke)) return 0;
 		let i = 0;
-		for (; i < He && this.node(e, t, n, r, ze + i);) i += 1;
+		for (; i < Ze && this.node(e, t, n, r, Je + i);) i += 1;
 		if (i < 2) return i + 1;
 		let a = 1;
 		for (let o = i - 2; o >= 0; o--) {
 			let s;
-			s = o === i - 2 ? this.node(e, t, n, r, Be + i) : o === i - 3 ? this.node(e, t, n, r, Ve + 2 * Math.min(i, 9) + (a & 1)) : this.split(R / 2), a = a * 2 + s;
+			s = o === i - 2 ? this.node(e, t, n, r, Ye + i) : o === i - 3 ? this.node(e, t, n, r, Xe + 2 * Math.min(i, 9) + (a & 1)) : this.split(L / 2), a = a * 2 + s;
 		}
 		return a + 1;
 	}
 	node(e, t, n, r, i) {
-		return this.bit(e * z + i, t * z + i, n * z + i, (r * z + i) * 3);
+		return this.bit(e * R + i, t * R + i, n * R + i, (r * R + i) * 3);
 	}
 	bit(e, t, n, r) {
-		let { probability: i, weights: a } = this, o = Ke[i[e] >> 4], s = Ke[i[t] >> 4], c = Ke[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / R), u = Ge[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? R - u : -u;
+		let { probability: i, weights: a } = this, o = tt[i[e] >> 4], s = tt[i[t] >> 4], c = tt[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / L), u = et[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? L - u : -u;
 		return a[r] += o * f >> 14, a[r + 1] += s * f >> 14, a[r + 2] += c * f >> 14, this.learn(e, d), this.learn(t, d), this.learn(n, d), d;
 	}
 	learn(e, t) {
 		let [n, r] = [this.probability[e], this.seen[e]];
-		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * qe[r] / R), r < Ie && (this.seen[e] = r + 1);
+		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * nt[r] / L), r < Ge && (this.seen[e] = r + 1);
 	}
 	split(e) {
-		let t = this.low + Math.floor((this.high - this.low) * e / R), n = +(this.code <= t);
+		let t = this.low + Math.floor((this.high - this.low) * e / L), n = +(this.code <= t);
 		for (n ? this.high = t : this.low = t + 1; !((this.low ^ this.high) >>> 24);) this.low = this.low << 8 >>> 0, this.high = (this.high << 8 | 255) >>> 0, this.code = (this.code << 8 | this.next()) >>> 0;
 		return n;
 	}
@@ -258,26 +258,26 @@ var Je = class {
 		return this.bytes[this.at++] ?? 0;
 	}
 };
-function Ye(e, t, n, r = 1) {
+function it(e, t, n, r = 1) {
 	if (e.length < t) throw ue(n);
 	if (e[0] !== r) throw M(n, `coded numbers of version ${e[0]}`);
 	return new DataView(e.buffer, e.byteOffset, e.byteLength);
 }
-function Xe(e, t, n, r) {
+function at(e, t, n, r) {
 	if (t > n || t > 16 * e.length + 1024) throw M(r, `${t} numbers announced`);
 }
 // eigenfield-three/src/table-decoder.ts
-var Ze = 12, Qe = 1, $e = 3, et = 312, tt = $e * et, nt = 938, rt = 24, it = 16, at = 1722, ot = 1726, st = 4, ct = 5;
-function lt(e) {
-	return new Je(e, ot, 21);
+var ot = 12, st = 1, ct = 3, lt = 312, ut = ct * lt, dt = 938, ft = 24, pt = 16, mt = 1722, ht = 1726, gt = 4, _t = 5;
+function vt(e) {
+	return new rt(e, ht, 21);
 }
-function ut(e) {
-	return e.flag(tt, tt, tt, $e) ? 2 : e.flag(937, 937, 937, $e) ? Qe : 0;
+function yt(e) {
+	return e.flag(ut, ut, ut, ct) ? 2 : e.flag(937, 937, 937, ct) ? st : 0;
 }
-function dt(e) {
-	return Math.min(B(e), 11);
+function bt(e) {
+	return Math.min(z(e), 11);
 }
-function ft(e, t, n, r) {
+function xt(e, t, n, r) {
 	let i = new Float64Array(n.length), a = n.length / t, o = (e, n, r) => n < 0 || r < 0 || r >= t ? 0 : e[n * t + r], s = 0;
 	for (let c = 0; c < a; c++) for (let a = 0; a < t; a++) {
 		let [l, u] = [o(i, c, a - 1), o(i, c - 1, a)], [d, f] = [o(i, c - 1, a - 1), o(i, c - 1, a + 1)], [p, m, h] = [
@@ -285,32 +285,32 @@ function ft(e, t, n, r) {
 			0,
 			s
 		];
-		r === Qe ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
-		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * et, y = e.integer(v + dt(m) * Ze + dt(g), v + 144 + dt(m + h), v + 144 + 24 + _ * Ze + dt(g + Math.abs(l)), r);
+		r === st ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
+		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * lt, y = e.integer(v + bt(m) * ot + bt(g), v + 144 + bt(m + h), v + 144 + 24 + _ * ot + bt(g + Math.abs(l)), r);
 		i[c * t + a] = p + y, s = Math.abs(y);
 	}
 	return i;
 }
-function pt(e, t, n, r) {
+function St(e, t, n, r) {
 	let i = new Float64Array(t * n), a = new Float64Array(n);
 	for (let o = 0; o < t; o++) {
 		let t = 0;
 		for (let s = 0; s < n; s++) {
-			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(B(a[s]), 23), d = Math.min(B(t), 23), f = e.integer(nt + l * rt + u, nt + (it + l) * rt + d, 1706 + l, ct + l);
+			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(z(a[s]), 23), d = Math.min(z(t), 23), f = e.integer(dt + l * ft + u, dt + (pt + l) * ft + d, 1706 + l, _t + l);
 			i[o * n + s] = c + f, t = Math.abs(f), a[s] = Math.floor((a[s] + t + 1) / 2);
 		}
 	}
 	return i;
 }
-function mt(e, t, n, r) {
+function Ct(e, t, n, r) {
 	let i = new Float64Array(t).fill(-1), a = new Uint8Array(n), [o, s, c] = [
 		0,
 		1,
 		0
 	];
 	for (let l = 0; l < t; l++) {
-		if (s = +!!e.flag(at + s, at + s, 1724, st), !s) continue;
-		let t = o + e.integer(1725, 1725, 1725, st);
+		if (s = +!!e.flag(mt + s, mt + s, 1724, gt), !s) continue;
+		let t = o + e.integer(1725, 1725, 1725, gt);
 		if (!(t >= 0 && t < n) || a[t]) throw M(r, "a grid with a camera out of place");
 		a[t] = 1, i[l] = t, o = t + 1, c += 1;
 	}
@@ -318,20 +318,20 @@ function mt(e, t, n, r) {
 	return i;
 }
 // eigenfield-three/src/camera-decoder.ts
-var ht = 130, V = 11, gt = 1, _t = 2, vt = 2, yt = 44 * I + 1024;
-async function bt(e, t) {
-	if (e[0] !== vt) throw M(t, `version ${e[0]}`);
-	let n = await xe(Uint8Array.from(e.subarray(1)), "deflate-raw", yt, t);
-	return xt(Uint8Array.from([1, ...n]), t);
+var wt = 130, B = 11, Tt = 1, Et = 2, Dt = 2, Ot = 44 * ke + 1024;
+async function kt(e, t) {
+	if (e[0] !== Dt) throw M(t, `version ${e[0]}`);
+	let n = await be(Uint8Array.from(e.subarray(1)), "deflate-raw", Ot, t);
+	return At(Uint8Array.from([1, ...n]), t);
 }
-function xt(e, t) {
-	let n = Ye(e, ht, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & gt) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
+function At(e, t) {
+	let n = it(e, wt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Tt) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
 	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw M(t, "cameras that cannot be");
 	if (i > 1e5 || a && o * s < i) throw M(t, `${i} cameras`);
-	Xe(e, Math.max(V * i, o * s), V * I, t);
-	let l = ht + (a ? 132 : 0);
-	Ye(e, l, t);
-	let u = (e, t) => a ? n.getFloat32(ht + 4 * (e * V + t), !0) : 0, d = lt(e.subarray(l)), f = a ? mt(d, o * s, i, t) : null, p = pt(d, i, V, (r & _t) !== 0);
+	at(e, Math.max(B * i, o * s), B * ke, t);
+	let l = wt + (a ? 132 : 0);
+	it(e, l, t);
+	let u = (e, t) => a ? n.getFloat32(wt + 4 * (e * B + t), !0) : 0, d = vt(e.subarray(l)), f = a ? Ct(d, o * s, i, t) : null, p = St(d, i, B, (r & Et) !== 0);
 	d.checkEnd(t);
 	let m = {
 		intrinsics: new Float32Array(5 * i),
@@ -342,27 +342,27 @@ function xt(e, t) {
 		0,
 		0,
 		...c.subarray(12)
-	], g = Ct(c[3], c[4], c[5], c[6]), _ = new Float64Array(V), v = 0;
+	], g = Mt(c[3], c[4], c[5], c[6]), _ = new Float64Array(B), v = 0;
 	for (let e = 0; e < (f ? f.length : i); e++) {
 		let t = f ? f[e] : e;
 		if (t < 0) continue;
 		let [n, r] = f ? [Math.floor(e / s), e % s] : [0, 0];
-		for (let e = 0; e < V; e++) {
+		for (let e = 0; e < B; e++) {
 			let t = c[e < 5 ? 0 : e < 8 ? 1 : 2], i = u(0, e) + u(1, e) * n + u(2, e) * r;
-			_[e] = p[v * V + e] * t + h[e] + i;
+			_[e] = p[v * B + e] * t + h[e] + i;
 		}
-		St(_, g, m, t), v += 1;
+		jt(_, g, m, t), v += 1;
 	}
 	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw M(t, "cameras that are not finite");
 	return m;
 }
-function St(e, t, n, r) {
+function jt(e, t, n, r) {
 	n.intrinsics.set(e.subarray(0, 5), 5 * r);
 	let [i, a, o] = [
 		e[5],
 		e[6],
 		e[7]
-	], s = i * i + a * a + o * o, c = 1 + s, l = Ct(2 * i / c, 2 * a / c, 2 * o / c, (1 - s) / c);
+	], s = i * i + a * a + o * o, c = 1 + s, l = Mt(2 * i / c, 2 * a / c, 2 * o / c, (1 - s) / c);
 	for (let i = 0; i < 3; i++) {
 		let a = 0;
 		for (let o = 0; o < 3; o++) {
@@ -373,7 +373,7 @@ function St(e, t, n, r) {
 		n.poses[12 * r + 4 * i + 3] = a;
 	}
 }
-function Ct(e, t, n, r) {
+function Mt(e, t, n, r) {
 	return [
 		[
 			1 - 2 * (t * t + n * n),
@@ -392,8 +392,86 @@ function Ct(e, t, n, r) {
 		]
 	].flat();
 }
+// eigenfield-three/src/film-decoder.ts
+var Nt = 4, Pt = ["prefer-software", "no-preference"], Ft = class {
+	size;
+	where;
+	user;
+	decoder = null;
+	config = null;
+	turn = 0;
+	onTheWay = 0;
+	opened = 0;
+	constructor(e, t, n) {
+		this.size = e, this.where = t, this.user = n;
+	}
+	get open() {
+		return this.opened;
+	}
+	get ready() {
+		return this.onTheWay < Nt;
+	}
+	async start(e) {
+		let { level: t, tier: n, width: r, height: i } = ye(e, this.where);
+		if (r !== this.size[0] || i !== this.size[1]) throw M(this.where, `frames of ${r} x ${i}`);
+		let a = `av01.0.${String(t).padStart(2, "0")}${n ? "H" : "M"}.10`, { turn: o } = this, s = this.config?.codec === a, c = s ? this.config : await It(a, this.size, this.where);
+		o === this.turn && c && (s && this.decoder?.state === "configured" || (this.config = c, this.decoder && this.decoder.state !== "closed" || (this.decoder = this.made()), this.decoder.configure(c)));
+	}
+	decode(e, t, n) {
+		this.onTheWay += 1, this.decoder?.decode(new EncodedVideoChunk({
+			type: n ? "key" : "delta",
+			timestamp: t,
+			data: e
+		}));
+	}
+	async flush() {
+		await this.decoder?.flush().catch(() => void 0);
+	}
+	reset() {
+		this.turn += 1, this.onTheWay = 0, this.decoder?.state === "configured" && this.decoder.reset();
+	}
+	dispose() {
+		this.reset(), this.decoder && this.decoder.state !== "closed" && this.decoder.close(), this.decoder = null;
+	}
+	made() {
+		let e = new VideoDecoder({
+			output: (e) => void this.receive(e),
+			error: (t) => {
+				this.decoder === e && this.fail(this.turn, M(this.where, t.message));
+			}
+		});
+		return e;
+	}
+	async receive(e) {
+		let { turn: t } = this;
+		this.opened += 1;
+		try {
+			await this.user.take(e.timestamp, e);
+		} catch (e) {
+			this.fail(t, e);
+		} finally {
+			e.close(), --this.opened, t === this.turn && --this.onTheWay, this.user.closed();
+		}
+	}
+	fail(e, t) {
+		e === this.turn && (this.reset(), this.user.failed(t));
+	}
+};
+async function It(e, [t, n], r) {
+	for (let r of typeof VideoDecoder > "u" ? [] : Pt) {
+		let i = {
+			codec: e,
+			codedWidth: t,
+			codedHeight: n,
+			hardwareAcceleration: r,
+			optimizeForLatency: !0
+		}, { supported: a } = await VideoDecoder.isConfigSupported(i);
+		if (a) return i;
+	}
+	throw new j("codec", `This browser ${globalThis.isSecureContext ? "decodes no AV1 of 10 bits" : "plays clips from https and localhost only"}; ${globalThis.isSecureContext ? "use a newer browser" : "open the page from there"}. The first frame is shown.`, r);
+}
 // eigenfield-three/src/mesh-front.ts
-var wt = 0, Tt = 2 ** 24, Et = class {
+var Lt = 0, Rt = 2 ** 24, zt = class {
 	points;
 	start;
 	end;
@@ -431,8 +509,8 @@ var wt = 0, Tt = 2 ** 24, Et = class {
 	}
 	closeLeft(e) {
 		let [t, n] = [this.before[e], this.after[e]], r = this.start[t];
-		if (this.status[e] = this.status[t] = wt, this.status[n] === 1 && this.end[n] === r && n !== t) {
-			this.status[n] = wt, this.link(this.before[t], this.after[n]);
+		if (this.status[e] = this.status[t] = Lt, this.status[n] === 1 && this.end[n] === r && n !== t) {
+			this.status[n] = Lt, this.link(this.before[t], this.after[n]);
 			return;
 		}
 		let i = this.before[t], a = this.add(r, this.end[e], this.start[e]);
@@ -440,7 +518,7 @@ var wt = 0, Tt = 2 ** 24, Et = class {
 	}
 	closeRight(e) {
 		let [t, n] = [this.before[e], this.after[e]];
-		this.status[e] = this.status[n] = wt;
+		this.status[e] = this.status[n] = Lt;
 		let r = this.after[n], i = this.add(this.start[e], this.end[n], this.end[e]);
 		this.link(t, i), this.link(i, r);
 	}
@@ -450,9 +528,9 @@ var wt = 0, Tt = 2 ** 24, Et = class {
 			this.after[e],
 			this.into[t]
 		];
-		this.status[e] = wt;
+		this.status[e] = Lt;
 		let a = this.add(this.start[e], t, this.end[e]), o = this.add(t, this.end[e], this.start[e]);
-		i >= 0 && this.status[i] !== wt ? (this.link(a, this.after[i]), this.link(i, o)) : this.link(a, o), this.link(n, a), this.link(o, r), this.into[t] = a;
+		i >= 0 && this.status[i] !== Lt ? (this.link(a, this.after[i]), this.link(i, o)) : this.link(a, o), this.link(n, a), this.link(o, r), this.into[t] = a;
 	}
 	link(e, t) {
 		this.after[e] = t, this.before[t] = e;
@@ -460,7 +538,7 @@ var wt = 0, Tt = 2 ** 24, Et = class {
 	add(e, t, n) {
 		let { heap: r, key: i, points: a } = this, o = this.gates++;
 		this.start[o] = e, this.end[o] = t, this.opposite[o] = n, this.status[o] = 1, this.into[t] = o;
-		let s = (a[3 * e] + a[3 * t]) * Tt + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
+		let s = (a[3 * e] + a[3 * t]) * Rt + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
 		for (; c > 0;) {
 			let e = c - 1 >> 1;
 			if (i[e] <= s) break;
@@ -468,57 +546,57 @@ var wt = 0, Tt = 2 ** 24, Et = class {
 		}
 		return r[c] = o, i[c] = s, o;
 	}
-}, Dt = 2 ** 20, Ot = .8, kt = 44, At = 385, jt = 897, Mt = 1086, Nt = 1095, [Pt, Ft, It, Lt, Rt] = [
+}, Bt = 2 ** 20, Vt = .8, Ht = 44, Ut = 385, Wt = 897, Gt = 1086, Kt = 1095, [qt, Jt, Yt, Xt, Zt] = [
 	0,
 	1,
 	2,
 	3,
 	15
 ];
-function zt(e) {
-	return Math.floor(Math.min(Math.max(e, -Dt), Dt) + .5);
+function Qt(e) {
+	return Math.floor(Math.min(Math.max(e, -Bt), Bt) + .5);
 }
-function Bt(e, t, n) {
+function $t(e, t, n) {
 	let r = Math.max((1 << n) - 1, 1);
 	return (e[3 * t] & r ? 1 : 0) + (e[3 * t + 1] & r ? 2 : 0);
 }
-function Vt(e, t, n, r, i) {
-	i.flat ? Ht(e, t, n, r, i.fine) : Ut(e, t, n, r);
+function en(e, t, n, r, i) {
+	i.flat ? tn(e, t, n, r, i.fine) : nn(e, t, n, r);
 }
-function Ht(e, t, n, r, i) {
+function tn(e, t, n, r, i) {
 	let { a, b: o, o: s, pair: c } = r, [l, u, d, f] = [
 		t[3 * a],
 		t[3 * a + 1],
 		t[3 * o],
 		t[3 * o + 1]
-	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? Ot : -.8, _ = 1 << i >> 1, v = zt((l + d) * .5 + g * m) + _ >> i, y = zt((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(B(Math.floor((p * p + m * m) / b)), 23), S = Math.min(B(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, Pt), T = Math.min(B(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(At + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, Ft);
+	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? Vt : -.8, _ = 1 << i >> 1, v = Qt((l + d) * .5 + g * m) + _ >> i, y = Qt((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(z(Math.floor((p * p + m * m) / b)), 23), S = Math.min(z(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, qt), T = Math.min(z(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(Ut + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, Jt);
 	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + O << i, i === 0) return;
-	let k = Bt(t, a, i) + 4 * Bt(t, o, i);
-	if (e.flag(jt + k, 913 + Bt(t, s, i), 917 + c, Rt)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
+	let k = $t(t, a, i) + 4 * $t(t, o, i);
+	if (e.flag(Wt + k, 913 + $t(t, s, i), 917 + c, Zt)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
 }
-function Ut(e, t, n, { a: r, b: i, o: a }) {
+function nn(e, t, n, { a: r, b: i, o: a }) {
 	let o = 0;
 	for (let e = 0; e < 3; e++) o += (t[3 * i + e] - t[3 * r + e]) ** 2;
-	let s = Math.min(B(o), 43), c = 0;
+	let s = Math.min(z(o), 43), c = 0;
 	for (let o = 0; o < 3; o++) {
-		let l = zt(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, kt + o * 24 + c, 116 + o * kt + s, It);
-		t[3 * n + o] = l + u, c = Math.min(B(Math.abs(u)), 23);
+		let l = Qt(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, Ht + o * 24 + c, 116 + o * Ht + s, Yt);
+		t[3 * n + o] = l + u, c = Math.min(z(Math.abs(u)), 23);
 	}
 }
-function Wt(e, t, n, r, i) {
+function rn(e, t, n, r, i) {
 	for (let a = 0; a < (i ? 2 : 3); a++) {
-		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -Dt), Dt) : 0, o = Mt + a;
-		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, Lt);
+		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -Bt), Bt) : 0, o = Gt + a;
+		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, Xt);
 	}
 }
 // eigenfield-three/src/mesh-faces.ts
-var Gt = 13, Kt = 11, qt = 12, H = 169, Jt = 8, Yt = Nt, Xt = Yt + H + 104 + 26, Zt = Xt + H + 104 + Gt, Qt = Zt + 64 + 64 + H, $t = Qt + H + 4 + 1, en = $t + 6, [tn, nn, rn, an, on] = [
+var an = 13, on = 11, sn = 12, V = 169, cn = 8, ln = Kt, un = ln + V + 104 + 26, dn = un + V + 104 + an, fn = dn + 64 + 64 + V, pn = fn + V + 4 + 1, mn = pn + 6, [hn, gn, _n, vn, yn] = [
 	4,
 	5,
 	6,
 	7,
 	8
-], sn = [
+], bn = [
 	-1,
 	-.4,
 	0,
@@ -529,12 +607,12 @@ var Gt = 13, Kt = 11, qt = 12, H = 169, Jt = 8, Yt = Nt, Xt = Yt + H + 104 + 26,
 	2,
 	4
 ];
-function cn(e, t, n, r, i) {
+function xn(e, t, n, r, i) {
 	let a = new Int32Array(3 * t), o = {
 		points: a,
 		faces: new Int32Array(3 * n),
 		parents: new Int32Array(3 * t).fill(-1)
-	}, s = new Int32Array(t), c = new Et(a, n), [l, u] = [0, 0], d = (e, t, n) => {
+	}, s = new Int32Array(t), c = new zt(a, n), [l, u] = [0, 0], d = (e, t, n) => {
 		o.faces.set([
 			e,
 			t,
@@ -549,7 +627,7 @@ function cn(e, t, n, r, i) {
 		if (l >= t) throw M(i, "more places than announced");
 		return l++;
 	}, p = () => {
-		let t = e.raw(B(l - 1));
+		let t = e.raw(z(l - 1));
 		if (t >= l) throw M(i, "a place that is not there yet");
 		return t;
 	}, m = () => {
@@ -558,44 +636,44 @@ function cn(e, t, n, r, i) {
 			-1,
 			-1
 		];
-		for (let n = 0; n < 3; n++) if (l > 0 && e.flag($t + n, $t + 3 + n, $t + n, on)) t[n] = p();
+		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(pn + n, pn + 3 + n, pn + n, yn)) t[n] = p();
 		else {
 			let i = t[n] = f();
-			Wt(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
+			rn(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
 		}
 		let [n, o, s] = t;
 		if (n === o || o === s || s === n) throw M(i, "a face of two corners");
 		d(n, o, s), c.seed(t);
-	}, h = (e, t, n, i) => c.status[t] === 2 ? qt : c.status[t] !== 1 || n === i || t === e ? Kt : ln(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
+	}, h = (e, t, n, i) => c.status[t] === 2 ? sn : c.status[t] !== 1 || n === i || t === e ? on : Sn(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
 	for (; u < n;) {
 		let t = c.next();
 		if (t < 0) {
 			m();
 			continue;
 		}
-		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * Gt + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = Yt + H + 104 + 2 * y + +(_ === v);
-		if (y < Kt && e.flag(Yt + x, Yt + H + y * Jt + S, w, tn)) {
+		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * an + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = ln + V + 104 + 2 * y + +(_ === v);
+		if (y < on && e.flag(ln + x, ln + V + y * cn + S, w, hn)) {
 			d(l, n, _), c.closeLeft(t);
 			continue;
 		}
-		if (b < Kt && (v !== _ || y >= Kt) && e.flag(Xt + x, Xt + H + b * Jt + C, Xt + H + 104 + b, nn)) {
+		if (b < on && (v !== _ || y >= on) && e.flag(un + x, un + V + b * cn + C, un + V + 104 + b, gn)) {
 			d(l, n, v), c.closeRight(t);
 			continue;
 		}
-		let T = +(y === qt) + (b === qt ? 2 : 0), E = Bt(a, n, r.fine) + 4 * Bt(a, l, r.fine), ee = Zt + 64 + S * Jt + C;
-		if (e.flag(Zt + T * 16 + E, ee, Zt + 64 + 64 + x, rn)) {
+		let T = +(y === sn) + (b === sn ? 2 : 0), E = $t(a, n, r.fine) + 4 * $t(a, l, r.fine), ee = dn + 64 + S * cn + C;
+		if (e.flag(dn + T * 16 + E, ee, dn + 64 + 64 + x, _n)) {
 			c.status[t] = 2;
 			continue;
 		}
 		let D;
-		if (e.flag(Qt + x, Qt + H + T, Qt + H + 4, an)) {
+		if (e.flag(fn + x, fn + V + T, fn + V + 4, vn)) {
 			D = f();
 			let i = c.opposite[t];
 			o.parents.set([
 				n,
 				l,
 				i
-			], 3 * D), Vt(e, a, D, {
+			], 3 * D), en(e, a, D, {
 				a: n,
 				b: l,
 				o: i,
@@ -607,7 +685,7 @@ function cn(e, t, n, r, i) {
 	if (l !== t) throw M(i, "fewer places than announced");
 	return o;
 }
-function ln(e, t, n, r, i, a) {
+function Sn(e, t, n, r, i, a) {
 	let o = (n, r) => a && r === 2 ? 0 : e[3 * n + r] - e[3 * t + r], [s, c, l] = [
 		o(n, 0),
 		o(n, 1),
@@ -630,21 +708,21 @@ function ln(e, t, n, r, i, a) {
 		s * m - c * p
 	], S = Math.sqrt(g * g + _ * _ + v * v);
 	if (S === 0 || g * y + _ * b + v * x > 0) return 0;
-	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = sn.findIndex((e) => C < e);
+	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = bn.findIndex((e) => C < e);
 	return w < 0 ? 10 : w + 1;
 }
 // eigenfield-three/src/mesh-corners.ts
-var un = 32, dn = 4, [fn, pn, mn, hn] = [
+var Cn = 32, wn = 4, [Tn, En, Dn, On] = [
 	0,
 	1,
 	2,
 	3
-], gn = en, _n = gn + 64 + 12 + 16, U = _n + dn + 1, vn = U + 4, [yn, bn, xn] = [
+], kn = mn, An = kn + 64 + 12 + 16, H = An + wn + 1, jn = H + 4, [Mn, Nn, Pn] = [
 	9,
 	10,
 	11
 ];
-function Sn(e, t) {
+function Fn(e, t) {
 	let n = new Int32Array(t + 1);
 	for (let t of e) n[t + 1] += 1;
 	for (let e = 0; e < t; e++) n[e + 1] += n[e];
@@ -654,7 +732,7 @@ function Sn(e, t) {
 		corners: i
 	};
 }
-function Cn(e, t, n, r, i, a, o) {
+function In(e, t, n, r, i, a, o) {
 	let s = t.faces.length / 3, c = Math.min(s, Math.floor(n / 3)), l = {
 		faces: new Int32Array(3 * s),
 		place: new Int32Array(n),
@@ -669,7 +747,7 @@ function Cn(e, t, n, r, i, a, o) {
 		0,
 		0,
 		0
-	], m = new Int32Array(dn), h = /* @__PURE__ */ new Int32Array(8), [g, _, v] = [
+	], m = new Int32Array(wn), h = /* @__PURE__ */ new Int32Array(8), [g, _, v] = [
 		0,
 		0,
 		-1
@@ -678,7 +756,7 @@ function Cn(e, t, n, r, i, a, o) {
 		return -1;
 	}, b = (e, n) => {
 		let [a, o] = [t.faces[3 * e + n], t.faces[3 * e + (n + 1) % 3]];
-		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + un); t++) {
+		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + Cn); t++) {
 			let n = Math.floor(i[t] / 3);
 			if (n >= e) break;
 			if (y(n, o) >= 0) return n;
@@ -687,42 +765,42 @@ function Cn(e, t, n, r, i, a, o) {
 	}, x = (e, t) => l.faces[3 * e + y(e, t)], S = (n, r) => {
 		let i = t.faces[3 * n + r], a = u[i];
 		if (a < 0) return -1;
-		h.fill(hn);
+		h.fill(On);
 		let s = 0;
 		for (let e of [r, (r + 2) % 3]) {
 			if (f[e] < 0) continue;
 			let t = x(f[e], i);
 			s === 1 && m[0] === t ? h[1] = p[e] : (m[s] = t, h[2 * s] = p[e], s += 1);
 		}
-		for (let e = 0; e < un && s < dn && a >= 0; e++) (s < 1 || a !== m[0]) && (s < 2 || a !== m[1]) && (m[s++] = a), a = d[a];
+		for (let e = 0; e < Cn && s < wn && a >= 0; e++) (s < 1 || a !== m[0]) && (s < 2 || a !== m[1]) && (m[s++] = a), a = d[a];
 		let c = -1;
 		for (let t = 0; t < s && c < 0; t++) {
-			let [n, i] = [h[2 * t], h[2 * t + 1]], a = gn + 76 + Math.min(s, 3) * 4 + n;
-			e.flag(gn + t * 16 + n * 4 + i, gn + 64 + t * 3 + r, a, yn) && (c = m[t]);
+			let [n, i] = [h[2 * t], h[2 * t + 1]], a = kn + 76 + Math.min(s, 3) * 4 + n;
+			e.flag(kn + t * 16 + n * 4 + i, kn + 64 + t * 3 + r, a, Mn) && (c = m[t]);
 		}
 		if (c < 0) {
-			if (e.flag(_n + s, _n + s, _n + dn, bn)) return -1;
-			if (c = e.raw(B(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
+			if (e.flag(An + s, An + s, An + wn, Nn)) return -1;
+			if (c = e.raw(z(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
 		}
-		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? pn : mn);
+		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? En : Dn);
 		return c;
 	}, C = () => {
 		let t = _++;
-		if (!e.flag(U, U, U, xn)) return l.kinds[t] = e.flag(U + 1, U + 1, U + 1, xn) ? 2 : 0, t;
+		if (!e.flag(H, H, H, Pn)) return l.kinds[t] = e.flag(H + 1, H + 1, H + 1, Pn) ? 2 : 0, t;
 		l.kinds[t] = 1;
 		let n = v;
-		if (v = t, n >= 0 && e.flag(U + 2, U + 2, U + 2, xn)) {
-			let n = e.raw(B(t - 1));
+		if (v = t, n >= 0 && e.flag(H + 2, H + 2, H + 2, Pn)) {
+			let n = e.raw(z(t - 1));
 			if (n >= t || l.kinds[n] !== 1) throw M(o, "a map that is not there");
 			return l.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
 		}
-		let r = n >= 0 && e.flag(U + 3, U + 3, U + 3, xn);
+		let r = n >= 0 && e.flag(H + 3, H + 3, H + 3, Pn);
 		for (let i = 0; i < 4; i++) l.maps[6 * t + i] = r ? l.maps[6 * n + i] : e.raw(32);
 		for (let n = 4; n < 6; n++) l.maps[6 * t + n] = e.raw(a);
 		return t;
 	};
 	for (let e = 0; e < s; e++) {
-		for (let t = 0; t < 3; t++) f[t] = b(e, t), p[t] = fn;
+		for (let t = 0; t < 3; t++) f[t] = b(e, t), p[t] = Tn;
 		let r = -1, i = [];
 		for (let a = 0; a < 3; a++) {
 			let s = S(e, a);
@@ -742,7 +820,7 @@ function Cn(e, t, n, r, i, a, o) {
 	return l;
 }
 // eigenfield-three/src/mesh-values.ts
-var wn = 16, Tn = 6, En = 13, Dn = 14, On = 20, kn = vn, An = kn + 169 + 280 + 182, jn = An + 144 + 576 + 48, [Mn, Nn] = [12, 13], Pn = [
+var Ln = 16, Rn = 6, zn = 13, Bn = 14, Vn = 20, Hn = jn, Un = Hn + 169 + 280 + 182, Wn = Un + 144 + 576 + 48, [Gn, Kn] = [12, 13], qn = [
 	.5,
 	1.5,
 	3,
@@ -750,14 +828,14 @@ var wn = 16, Tn = 6, En = 13, Dn = 14, On = 20, kn = vn, An = kn + 169 + 280 + 1
 	12,
 	30
 ];
-function Fn(e, t) {
-	return zt(Number.isNaN(e) ? t : e);
+function Jn(e, t) {
+	return Qt(Number.isNaN(e) ? t : e);
 }
-function In(e) {
-	let t = Pn.filter((t) => Math.abs(e) >= t).length;
-	return e < 0 ? Tn - t : Tn + t;
+function Yn(e) {
+	let t = qn.filter((t) => Math.abs(e) >= t).length;
+	return e < 0 ? Rn - t : Rn + t;
 }
-function Ln(e, t, n, r) {
+function Xn(e, t, n, r) {
 	let { points: i, faces: a, parents: o } = t, s = /* @__PURE__ */ new Float64Array(9), c = (e) => i[3 * e], l = (e) => i[3 * e + 1], u = (e) => i[3 * e + 2], d = (e, t) => {
 		let [n, r, i] = [
 			c(t) - c(e),
@@ -778,18 +856,18 @@ function Ln(e, t, n, r) {
 			Infinity,
 			-Infinity
 		];
-		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + wn); e++) for (let i = 1; i < 3; i++) {
-			let o = Rn(a, r[e], i);
+		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + Ln); e++) for (let i = 1; i < 3; i++) {
+			let o = Zn(a, r[e], i);
 			if (o >= t) continue;
 			let s = d(t, o);
 			h += s * u(o), g += s, _ = Math.min(_, u(o)), v = Math.max(v, u(o));
-			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + wn); e++) for (let n = 1; n < 3; n++) {
-				let i = Rn(a, r[e], n);
+			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + Ln); e++) for (let n = 1; n < 3; n++) {
+				let i = Zn(a, r[e], n);
 				i < t && d(t, i);
 			}
 		}
 		let y = 13, b = t > 0 ? u(t - 1) : 0, x = b;
-		g > 0 && (y = Math.min(B(v - _), 12), b = h / g, x = Math.min(Math.max(zn(s), p), m));
+		g > 0 && (y = Math.min(z(v - _), 12), b = h / g, x = Math.min(Math.max(Qn(s), p), m));
 		let S = b, [C, w, T] = [
 			o[3 * t],
 			o[3 * t + 1],
@@ -807,15 +885,15 @@ function Ln(e, t, n, r) {
 				S = Math.min(Math.max(u(C) + t * (u(w) - u(C)) + c * (u(T) - u(C)), p), m);
 			}
 		}
-		let E = Fn(x, b), [ee, D] = [In(S - E), In(b - E)], O = e.integer(kn + ee * En + D, kn + 169 + y * On + f, kn + 169 + 280 + ee * Dn + y, Mn), k = E + O;
-		i[3 * t + 2] = k, f = Math.min(B(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
+		let E = Jn(x, b), [ee, D] = [Yn(S - E), Yn(b - E)], O = e.integer(Hn + ee * zn + D, Hn + 169 + y * Vn + f, Hn + 169 + 280 + ee * Bn + y, Gn), k = E + O;
+		i[3 * t + 2] = k, f = Math.min(z(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
 	}
 }
-function Rn(e, t, n) {
+function Zn(e, t, n) {
 	let r = t % 3;
 	return e[t - r + (r + n) % 3];
 }
-function zn(e) {
+function Qn(e) {
 	let [t, n, r] = [
 		e[0],
 		e[1],
@@ -835,7 +913,7 @@ function zn(e) {
 	];
 	return (s * u - c * d + l * f) / (t * u - n * d + r * f);
 }
-function Bn(e, t, n, r, i) {
+function $n(e, t, n, r, i) {
 	let { faces: a, chart: o, kinds: s, place: c } = t, l = new Int32Array(2 * c.length), u = [0, 0], d = -1;
 	for (let t = 0; t < c.length; t++) {
 		let f = s[o[t]];
@@ -847,25 +925,25 @@ function Bn(e, t, n, r, i) {
 			-1,
 			0
 		];
-		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + wn); e++) {
-			let [r, s] = [Rn(a, i[e], 1), Rn(a, i[e], 2)];
+		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + Ln); e++) {
+			let [r, s] = [Zn(a, i[e], 1), Zn(a, i[e], 2)];
 			if (r < t && o[r] === o[t] && (g = Math.max(g, r)), s < t && o[s] === o[t] && (g = Math.max(g, s)), r >= t || s >= t) continue;
-			let [u, d] = Vn(n, c, l, t, r, s, f === 2);
+			let [u, d] = er(n, c, l, t, r, s, f === 2);
 			if (!Number.isFinite(u) || !Number.isFinite(d)) continue;
 			p += u, m += d, h += 1;
 			let v = Math.abs(l[2 * r] - l[2 * s]) + Math.abs(l[2 * r + 1] - l[2 * s + 1]);
-			_ = Math.max(_, B(v));
+			_ = Math.max(_, z(v));
 		}
 		g < 0 && (g = d), d = t;
-		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = An + 144;
+		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = Un + 144;
 		for (let n = 0; n < 2; n++) {
-			let r = e.integer(An + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], Nn + n);
-			l[2 * t + n] = Fn(y[n], 0) + r, u[n] = Math.min(B(Math.abs(r)), 23);
+			let r = e.integer(Un + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], Kn + n);
+			l[2 * t + n] = Jn(y[n], 0) + r, u[n] = Math.min(z(Math.abs(r)), 23);
 		}
 	}
 	return l;
 }
-function Vn(e, t, n, r, i, a, o) {
+function er(e, t, n, r, i, a, o) {
 	let [s, c, l] = [
 		0,
 		0,
@@ -879,15 +957,15 @@ function Vn(e, t, n, r, i, a, o) {
 	return [n[2 * i] + f * u - m * d, n[2 * i + 1] + f * d + m * u];
 }
 // eigenfield-three/src/mesh-decoder.ts
-var Hn = 144, Un = 2, Wn = 3, Gn = 18, Kn = 8;
-function qn(e, t) {
-	return Yn(e, t, 1);
+var tr = 144, nr = 2, rr = 3, ir = 18, ar = 8;
+function or(e, t) {
+	return cr(e, t, 1);
 }
-function Jn(e, t) {
-	return Yn(e, t, Un);
+function sr(e, t) {
+	return cr(e, t, nr);
 }
-function Yn(e, t, n) {
-	let r = Ye(e, Hn, t, n), [i, a, o] = [
+function cr(e, t, n) {
+	let r = it(e, tr, t, n), [i, a, o] = [
 		r.getUint8(1),
 		r.getUint8(2),
 		r.getUint8(3)
@@ -896,21 +974,21 @@ function Yn(e, t, n) {
 		8,
 		12
 	].map((e) => r.getUint32(e, !0)), u = Float64Array.from({ length: 16 }, (e, t) => r.getFloat64(16 + 8 * t, !0));
-	if (s > Me || l > Me || c > Ne) throw M(t, `${l} vertices and ${c} faces`);
-	if (Xe(e, Math.max(s, c, l), Ne, t), i > 1 || o > Kn * i || a < 1 || a > Gn || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
-	let d = new Je(e.subarray(Hn), jn, 16), f = cn(d, s, c, {
+	if (s > Ne || l > Ne || c > Pe) throw M(t, `${l} vertices and ${c} faces`);
+	if (at(e, Math.max(s, c, l), Pe, t), i > 1 || o > ar * i || a < 1 || a > ir || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
+	let d = new rt(e.subarray(tr), Wn, 16), f = xn(d, s, c, {
 		flat: i === 1,
 		fine: o
 	}, t);
 	d.checkEnd(t);
-	let p = Sn(f.faces, s);
-	i && Ln(d, f, p.first, p.corners);
-	let m = n === Un ? a + Wn : 32, h = Cn(d, f, l, p.first, p.corners, m, t), g = Xn(f.points, u), _ = Sn(h.faces, l), v = Bn(d, h, g, _.first, _.corners);
+	let p = Fn(f.faces, s);
+	i && Xn(d, f, p.first, p.corners);
+	let m = n === nr ? a + rr : 32, h = In(d, f, l, p.first, p.corners, m, t), g = lr(f.points, u), _ = Fn(h.faces, l), v = $n(d, h, g, _.first, _.corners);
 	d.checkEnd(t);
 	let y = new Float32Array(h.maps.buffer);
-	return Qn(Zn(f, h, g, v, 2 ** a, (e) => n === Un ? h.maps[e] / 2 ** (a + 1) - 2 : y[e]), t);
+	return dr(ur(f, h, g, v, 2 ** a, (e) => n === nr ? h.maps[e] / 2 ** (a + 1) - 2 : y[e]), t);
 }
-function Xn(e, t) {
+function lr(e, t) {
 	let n = new Float64Array(e.length);
 	for (let r = 0; r < e.length; r += 3) {
 		let i = (n) => t[4 * n] * e[r] + t[4 * n + 1] * e[r + 1] + t[4 * n + 2] * e[r + 2] + t[4 * n + 3], a = i(3);
@@ -918,7 +996,7 @@ function Xn(e, t) {
 	}
 	return n;
 }
-function Zn(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) {
+function ur(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) {
 	let u = new Float32Array(3 * n.length), d = new Float32Array(2 * n.length), f = new Float32Array(a.buffer);
 	return n.forEach((t, n) => {
 		u.set(o.subarray(3 * t, 3 * t + 3), 3 * n);
@@ -933,15 +1011,15 @@ function Zn(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) 
 		indices: new Uint32Array(t)
 	};
 }
-function Qn(e, t) {
-	let n = (e) => Math.abs(e) <= Fe;
+function dr(e, t) {
+	let n = (e) => Math.abs(e) <= We;
 	if (!e.positions.every(n) || !e.uv.every(n)) throw M(t, "positions or texture coordinates that are not finite");
 	return e;
 }
 // eigenfield-three/src/name-decoder.ts
-var $n = 4 * L;
-async function er(e, t, n) {
-	let r = Math.min(je, $n * t), i = await xe(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
+var fr = 4 * I;
+async function pr(e, t, n) {
+	let r = Math.min(Me, fr * t), i = await be(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
 	if (a === 0 || !Number.isInteger(a)) throw M(n, `${i.length} bytes of ${t} names`);
 	let o = new TextDecoder("utf-8", {
 		fatal: !0,
@@ -960,16 +1038,16 @@ async function er(e, t, n) {
 	return c;
 }
 // eigenfield-three/src/headers.ts
-function tr(e) {
+function mr(e) {
 	let t = new DataView(e);
 	try {
-		return rr(t) ?? ir(t) ?? ar(t) ?? or(t);
+		return gr(t) ?? _r(t) ?? vr(t) ?? yr(t);
 	} catch (e) {
 		if (e instanceof RangeError) return null;
 		throw e;
 	}
 }
-function nr(e, t) {
+function hr(e, t) {
 	return String.fromCharCode(...[
 		0,
 		1,
@@ -977,15 +1055,15 @@ function nr(e, t) {
 		3
 	].map((n) => e.getUint8(t + n)));
 }
-function rr(e) {
-	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || nr(e, 12) !== "IHDR" ? null : {
+function gr(e) {
+	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || hr(e, 12) !== "IHDR" ? null : {
 		type: "image/png",
 		width: e.getUint32(16),
 		height: e.getUint32(20),
 		bits: null
 	};
 }
-function ir(e) {
+function _r(e) {
 	if (e.getUint16(0) !== 65496) return null;
 	for (let t = 2;;) {
 		let n = e.getUint16(t);
@@ -1008,12 +1086,12 @@ function ir(e) {
 		t += 2 + e.getUint16(t + 2);
 	}
 }
-function ar(e) {
-	if (nr(e, 0) !== "RIFF" || nr(e, 8) !== "WEBP") return null;
+function vr(e) {
+	if (hr(e, 0) !== "RIFF" || hr(e, 8) !== "WEBP") return null;
 	let t = {
 		type: "image/webp",
 		bits: null
-	}, n = nr(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
+	}, n = hr(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
 	if (n === "VP8X") return {
 		...t,
 		width: 1 + r(24),
@@ -1033,11 +1111,11 @@ function ar(e) {
 		height: e.getUint16(28, !0) & 16383
 	} : null;
 }
-function or(e) {
-	if (nr(e, 4) !== "ftyp") return null;
+function yr(e) {
+	if (hr(e, 4) !== "ftyp") return null;
 	let t = null, n = null, r = (i, a) => {
 		for (let o = i; o + 8 <= a;) {
-			let i = e.getUint32(o), s = nr(e, o + 4), c = i === 0 ? a : o + i;
+			let i = e.getUint32(o), s = hr(e, o + 4), c = i === 0 ? a : o + i;
 			if (i === 1 || c < o + 8 || c > a) return;
 			if (s === "meta" && r(o + 12, c), (s === "iprp" || s === "ipco") && r(o + 8, c), s === "ispe") {
 				let [n, r] = [e.getUint32(o + 12), e.getUint32(o + 16)];
@@ -1060,15 +1138,15 @@ function or(e) {
 	};
 }
 // eigenfield-three/src/pictures-8bit.ts
-var sr = {
+var br = {
 	colorSpaceConversion: "none",
 	premultiplyAlpha: "none"
-}, cr = {
+}, xr = {
 	"image/avif": "AAAAHGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZgAAAOltZXRhAAAAAAAAACFoZGxyAAAAAAAAAABwaWN0AAAAAAAAAAAAAAAAAAAAAA5waXRtAAAAAAABAAAAHmlsb2MAAAAARAAAAQABAAAAAQAAAQ0AAAAZAAAAKGlpbmYAAAAAAAEAAAAaaW5mZQIAAAAAAQAAYXYwMUNvbG9yAAAAAGhpcHJwAAAASWlwY28AAAAUaXNwZQAAAAAAAAAIAAAACAAAAA5waXhpAAAAAAEIAAAADGF2MUOBABwAAAAAE2NvbHJuY2x4AAEADQAGgAAAABdpcG1hAAAAAAAAAAEAAQQBAoMEAAAAIW1kYXQSAAoIGAi/aYCGg1AyCxlGIYeeaACQQNmg",
 	"image/webp": "UklGRh4AAABXRUJQVlA4TBEAAAAvAAAAAAdQwAIWsP+BiOh/AAA="
 };
-function lr(e, t, n) {
-	let r = tr(e);
+function Sr(e, t, n) {
+	let r = mr(e);
 	if (!r) throw M(t.where, "no picture");
 	let { width: i, height: a, bits: o } = r;
 	if (n && (i !== n[0] || a !== n[1])) throw M(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
@@ -1077,12 +1155,12 @@ function lr(e, t, n) {
 	if (!s || i > 16384 || a > 32768 || s > Ee) throw M(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
-var ur = async (e, t, n) => {
-	let r = t.pieces * t.textures, [i, a] = lr(e, t, n && [n[0], r * n[1]]), o = tr(e)?.type ?? t.codec.mimeType, s;
+var Cr = async (e, t, n) => {
+	let r = t.pieces * t.textures, [i, a] = Sr(e, t, n && [n[0], r * n[1]]), o = mr(e)?.type ?? t.codec.mimeType, s;
 	try {
-		s = await createImageBitmap(new Blob([e], { type: o }), sr);
+		s = await createImageBitmap(new Blob([e], { type: o }), br);
 	} catch (e) {
-		throw await dr(o) ? M(t.where, "it cannot be decoded") : fr(o, t, e);
+		throw await wr(o) ? M(t.where, "it cannot be decoded") : Tr(o, t, e);
 	}
 	if (s.width !== i || s.height !== a) throw s.close(), M(t.where, `decoded to ${s.width} x ${s.height}, not to ${i} x ${a}`);
 	let c = a / r;
@@ -1092,8 +1170,8 @@ var ur = async (e, t, n) => {
 		rows: c
 	}));
 };
-async function dr(e) {
-	let t = cr[e];
+async function wr(e) {
+	let t = xr[e];
 	if (!t) return !0;
 	let n = Uint8Array.from(atob(t), (e) => e.charCodeAt(0));
 	try {
@@ -1102,17 +1180,17 @@ async function dr(e) {
 		return !1;
 	}
 }
-function fr(e, t, n) {
+function Tr(e, t, n) {
 	return new j("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
 }
 // eigenfield-three/src/pictures-10bit.ts
-var pr = /* @__PURE__ */ new Set([
+var Er = /* @__PURE__ */ new Set([
 	"I420P10",
 	"I422P10",
 	"I444P10"
-]), mr = async (e, t, n) => {
-	let r = t.pieces * t.textures, [i, a] = lr(e, t, n && [n[0], r * n[1]]), o = await hr(e, i, a);
-	if (!o) return ur(e, t, n);
+]), Dr = async (e, t, n) => {
+	let r = t.pieces * t.textures, [i, a] = Sr(e, t, n && [n[0], r * n[1]]), o = await Or(e, i, a);
+	if (!o) return Cr(e, t, n);
 	let s = a / r;
 	return Array.from({ length: r }, (e, t) => ({
 		picture: o,
@@ -1120,7 +1198,7 @@ var pr = /* @__PURE__ */ new Set([
 		rows: s
 	}));
 };
-async function hr(e, t, n) {
+async function Or(e, t, n) {
 	if (typeof ImageDecoder > "u") return null;
 	let r = null, i = null;
 	try {
@@ -1129,7 +1207,7 @@ async function hr(e, t, n) {
 			type: "image/avif"
 		}), i = (await r.decode()).image;
 		let a = i.visibleRect;
-		if (!pr.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
+		if (!Er.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
 		let o = new Uint8Array(i.allocationSize()), [s] = await i.copyTo(o);
 		return s ? {
 			data: o.subarray(s.offset),
@@ -1144,36 +1222,36 @@ async function hr(e, t, n) {
 	}
 }
 // eigenfield-three/src/triangle-decoder.ts
-var gr = 5;
-function _r(e, t) {
-	let n = Ye(e, gr, t).getUint32(1, !0);
-	Xe(e, 3 * n, 6 * I, t);
-	let r = lt(e.subarray(gr)), i = pt(r, n, 3, !0);
+var kr = 5;
+function Ar(e, t) {
+	let n = it(e, kr, t).getUint32(1, !0);
+	at(e, 3 * n, 6 * ke, t);
+	let r = vt(e.subarray(kr)), i = St(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
 	if (!a.every((e) => e >= 0 && e < 1e5)) throw M(t, "triangles of cameras that there cannot be");
 	return { corners: Uint32Array.from(a) };
 }
 // eigenfield-three/src/weight-decoder.ts
-var vr = 14, yr = 2 ** 20;
-function br(e, t) {
-	let n = Ye(e, vr, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
+var jr = 14, Mr = 2 ** 20;
+function Nr(e, t) {
+	let n = it(e, jr, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
 	if (n.getUint8(1) > 1 || i === 0) throw M(t, "weights of no camera, or of an unknown kind");
-	Xe(e, o * s * Math.max(a, 1), Pe, t), Ye(e, vr + 4 * a, t);
+	at(e, o * s * Math.max(a, 1), Ue, t), it(e, jr + 4 * a, t);
 	let c = o * s;
 	if (c < i) throw M(t, "a grid with too few cells");
-	let l = lt(e.subarray(vr + 4 * a)), u = r ? mt(l, c, i, t) : null, d = u !== null && i === c, f = [
+	let l = vt(e.subarray(jr + 4 * a)), u = r ? Ct(l, c, i, t) : null, d = u !== null && i === c, f = [
 		0,
 		1,
 		2
-	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * yr * Math.max(o, s);
+	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * Mr * Math.max(o, s);
 	for (let e = 0; e < a; e++) {
-		let r = n.getFloat32(vr + 4 * e, !0);
+		let r = n.getFloat32(jr + 4 * e, !0);
 		if (!(r > 0 && r < Infinity)) throw M(t, "a step that is not positive");
-		let i = ut(l), h = ft(l, s, f[i], i);
+		let i = yt(l), h = xt(l, s, f[i], i);
 		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw M(t, `numbers of component ${e} that cannot be`);
 		f[i] = h;
-		let g = i === 2 ? xr(h, o, s) : h;
+		let g = i === 2 ? Pr(h, o, s) : h;
 		for (let t = 0; t < c; t++) {
 			let n = u ? u[t] : t;
 			n >= 0 && (p[n * a + e] = g[t] * r);
@@ -1187,14 +1265,14 @@ function br(e, t) {
 		values: p
 	};
 }
-function xr(e, t, n) {
-	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = Sr(n);
+function Pr(e, t, n) {
+	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = Fr(n);
 	for (let i = 0; i < t; i++) for (let t = 0; t < n; t++) {
 		let o = 0;
 		for (let r = 0; r < n; r++) o += a(r, t) * e[i * n + r];
 		r[i * n + t] = o;
 	}
-	let o = Sr(t);
+	let o = Fr(t);
 	for (let e = 0; e < t; e++) for (let a = 0; a < n; a++) {
 		let s = 0;
 		for (let i = 0; i < t; i++) s += o(i, e) * r[i * n + a];
@@ -1202,13 +1280,13 @@ function xr(e, t, n) {
 	}
 	return i;
 }
-function Sr(e) {
+function Fr(e) {
 	let [t, n] = [Math.sqrt(1 / e), Math.sqrt(2 / e)], r = Float64Array.from({ length: 4 * e }, (t, r) => n * Math.cos(Math.PI * r / (2 * e)));
 	return (n, i) => n === 0 ? t : r[(2 * i + 1) * n % (4 * e)];
 }
 // eigenfield-three/src/codecs.ts
-function Cr(e) {
-	let [t, n] = [ur, ur];
+function Ir(e) {
+	let [t, n] = [Cr, Cr];
 	return {
 		kind: "picture",
 		decode: t,
@@ -1223,86 +1301,92 @@ function Cr(e) {
 		bits: 8
 	};
 }
-var W = {
+var U = {
 	"mesh-1": {
 		kind: "mesh",
-		decode: qn,
+		decode: or,
 		needs: "codedMesh",
 		limits: ["MAX_VERTICES", "MAX_TRIANGLES"]
 	},
 	"mesh-2": {
 		kind: "mesh",
-		decode: Jn,
+		decode: sr,
 		needs: "mesh-2",
 		limits: ["MAX_VERTICES", "MAX_TRIANGLES"]
 	},
 	"cameras-1": {
 		kind: "cameras",
-		decode: xt,
+		decode: At,
 		needs: "codedCameras",
 		limits: ["MAX_CAMERAS"]
 	},
 	"cameras-2": {
 		kind: "cameras",
-		decode: bt,
+		decode: kt,
 		needs: "cameras-2",
 		limits: ["MAX_CAMERAS"]
 	},
 	"names-1": {
 		kind: "names",
-		decode: er,
+		decode: pr,
 		needs: "codedNames",
 		limits: ["MAX_NAMES", "MAX_CAMERAS"]
 	},
 	"triangles-1": {
 		kind: "triangles",
-		decode: _r,
+		decode: Ar,
 		needs: "codedTriangles",
 		limits: ["MAX_CAMERAS"]
 	},
 	"weights-1": {
 		kind: "weights",
-		decode: br,
+		decode: Nr,
 		needs: "codedWeights",
 		limits: ["MAX_WEIGHTS"]
 	},
-	png: Cr("image/png"),
-	webp: Cr("image/webp"),
-	avif: Cr("image/avif"),
-	jpeg: Cr("image/jpeg"),
+	"film-1": {
+		kind: "film",
+		decode: (...e) => new Ft(...e),
+		needs: "film-1",
+		limits: ["MAX_FILM_SIDE", "MAX_FILM_PIXELS"]
+	},
+	png: Ir("image/png"),
+	webp: Ir("image/webp"),
+	avif: Ir("image/avif"),
+	jpeg: Ir("image/jpeg"),
 	"av1-10bit-1": {
-		...Cr("image/avif"),
+		...Ir("image/avif"),
 		bits: 10,
-		decode: mr,
+		decode: Dr,
 		needs: "bits"
 	},
 	"av1-10bit-2": {
-		...Cr("video/AV1"),
+		...Ir("video/AV1"),
 		bits: 10,
-		decode: (e, t, n) => mr(ve(e, t.where), t, n),
-		bitmaps: (e, t, n) => ur(ve(e, t.where), t, n),
+		decode: (e, t, n) => Dr(ve(e, t.where), t, n),
+		bitmaps: (e, t, n) => Cr(ve(e, t.where), t, n),
 		needs: "av1-10bit-2"
 	}
-}, wr = {
+}, Lr = {
 	mesh: "mesh-1",
 	cameras: "cameras-1",
 	names: "names-1",
 	triangles: "triangles-1",
 	weights: "weights-1"
 };
-function Tr(e, t, n) {
-	let r = t.exists ? t.text(L) : n, i = Object.hasOwn(W, r) ? W[r] : null;
+function Rr(e, t, n) {
+	let r = t.exists ? t.text(I) : n, i = Object.hasOwn(U, r) ? U[r] : null;
 	if (i?.kind === e) return i;
 	throw new j("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
 }
-function Er(e, t) {
-	return Object.keys(W).find((n) => {
-		let r = W[n];
+function zr(e, t) {
+	return Object.keys(U).find((n) => {
+		let r = U[n];
 		return r.kind === "picture" && r.mimeType === e && (t ?? r.bits) === r.bits;
 	});
 }
 // eigenfield-three/src/json.ts
-var G = class e {
+var W = class e {
 	raw;
 	where;
 	constructor(e, t) {
@@ -1333,7 +1417,7 @@ var G = class e {
 		if (this.raw.length > e) throw this.wrong(`longer than ${e} characters`);
 		return this.raw;
 	}
-	number(e = -Fe, t = Fe) {
+	number(e = -We, t = We) {
 		if (typeof this.raw != "number") throw this.wrong("no number");
 		if (!(this.raw >= e && this.raw <= t)) throw this.wrong(`${this.raw} is not in ${e}..${t}`);
 		return this.raw;
@@ -1343,7 +1427,7 @@ var G = class e {
 		if (!Number.isInteger(n)) throw this.wrong(`${n} is no whole number`);
 		return n;
 	}
-	numbers(e, t = -Fe, n = Fe) {
+	numbers(e, t = -We, n = We) {
 		let r = this.items(e);
 		if (r.length !== e) throw this.wrong(`${e} numbers are needed`);
 		return r.map((e) => e.number(t, n));
@@ -1359,25 +1443,25 @@ var G = class e {
 	wrong(e) {
 		return M(this.where || "/", this.exists ? e : "missing");
 	}
-}, Dr = 5121, Or = 5123, kr = 5125, K = 5126, Ar = {
-	[Dr]: 1,
-	[Or]: 2,
-	[kr]: 4,
-	[K]: 4
-}, jr = /* @__PURE__ */ new Set([
+}, Br = 5121, Vr = 5123, Hr = 5125, G = 5126, Ur = {
+	[Br]: 1,
+	[Vr]: 2,
+	[Hr]: 4,
+	[G]: 4
+}, Wr = /* @__PURE__ */ new Set([
 	"cameras",
 	"triangles",
 	"weights"
-]), Mr = {
+]), Gr = {
 	SCALAR: 1,
 	VEC2: 2,
 	VEC3: 3
 };
-function Nr(e) {
+function Kr(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
-	return e.key("bufferViews").items(F).map((e) => {
+	return e.key("bufferViews").items(Ce).map((e) => {
 		let t = e.key("byteOffset"), r = e.key("byteStride");
 		e.key("buffer").integer(0, 0);
 		let i = {
@@ -1389,11 +1473,11 @@ function Nr(e) {
 		return i;
 	});
 }
-function Pr(e) {
+function qr(e) {
 	return (t) => t.integer(0, e.length - 1);
 }
-function Fr(e, t) {
-	let n = e.key("accessors"), r = n.exists ? n.items(F) : [];
+function Jr(e, t) {
+	let n = e.key("accessors"), r = n.exists ? n.items(Ce) : [];
 	return (e, n, i, a) => {
 		let o = r[e.integer(0, r.length - 1)];
 		if (!o) throw e.wrong("no such accessor");
@@ -1403,14 +1487,14 @@ function Fr(e, t) {
 		if (o.key("sparse").exists) throw o.wrong("sparse");
 		let c = o.key("normalized");
 		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = Mr[n] ?? 1, u = o.key("count").integer(1, Pe);
+		let l = Gr[n] ?? 1, u = o.key("count").integer(1, Ue);
 		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
 		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
 		if (!f) throw o.wrong("no such buffer view");
-		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = Ar[s] * l;
+		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = Ur[s] * l;
 		if (f.stride && (f.stride < h || n === "SCALAR")) throw o.wrong("a stride that cannot be");
 		if (m + (u - 1) * (f.stride || h) + h > f.length) throw o.wrong("outside its buffer view");
-		if ((m + f.offset) % Ar[s]) throw o.wrong("not aligned");
+		if ((m + f.offset) % Ur[s]) throw o.wrong("not aligned");
 		return {
 			view: d,
 			offset: m,
@@ -1421,40 +1505,40 @@ function Fr(e, t) {
 		};
 	};
 }
-function Ir(e, t, n) {
-	let r = typeof t.raw == "number" && jr.has(e), i = Tr(e, r ? new G(void 0, t.where) : t.key("codec"), wr[e]);
+function Yr(e, t, n) {
+	let r = typeof t.raw == "number" && Wr.has(e), i = Rr(e, r ? new W(void 0, t.where) : t.key("codec"), Lr[e]);
 	return {
 		view: n(r ? t : t.key("bufferView")),
 		codec: i,
 		where: t.where
 	};
 }
-async function Lr(e, t, n) {
+async function Xr(e, t, n) {
 	let r = await n(e.view), i = t[e.view]?.length ?? Infinity;
 	if (r.byteLength < i) throw ue(e.where);
-	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + Ar[c] * o * s);
-	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : Rr(new Float32Array(l), e.where);
+	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + Ur[c] * o * s);
+	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : Zr(new Float32Array(l), e.where);
 }
-function Rr(e, t) {
+function Zr(e, t) {
 	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw M(t, `${n} among its numbers`);
 	return e;
 }
 // eigenfield-three/src/planes.ts
-var q = 8, zr = 16;
-function Br(e, t) {
+var K = 8, Qr = 16, $r = "av1-10bit-2";
+function ei(e, t) {
 	return new j("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function Vr(e, t = we) {
+function ti(e, t = we) {
 	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
 	if (!n || !r) throw e.wrong("two numbers are needed");
 	if (n * r > Ee) throw e.wrong(`more than ${Ee} texels`);
 	return [n, r];
 }
-function Hr(e, t, n, r, i) {
+function ni(e, t, n, r, i) {
 	let a = e.key("planes").items(16);
 	if (!a.length) throw e.key("planes").wrong("no plane");
 	let o = a.map((e, a) => {
-		let o = e.key("channels").integer(1, 64), s = Zr(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => ei(e, o, t, r, i);
+		let o = e.key("channels").integer(1, 64), s = fi(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => hi(e, o, t, r, i);
 		return {
 			channels: o,
 			...s,
@@ -1464,7 +1548,7 @@ function Hr(e, t, n, r, i) {
 	for (let { channels: e, meanSize: t, bases: n } of o) {
 		s += 4 * e * (t ? t[0] * t[1] : 0);
 		for (let { size: t, count: r, pictures: i } of n) {
-			let n = i.reduce((e, { textures: t, codec: n }) => e + t * (n.bits === q ? 1 : 2), 0);
+			let n = i.reduce((e, { textures: t, codec: n }) => e + t * (n.bits === K ? 1 : 2), 0);
 			s += t[0] * t[1] * e * n, c += r;
 		}
 	}
@@ -1472,7 +1556,7 @@ function Hr(e, t, n, r, i) {
 	if (s > Oe) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
-function Ur(e, t) {
+function ri(e, t) {
 	let n = t.reduce((e, { channels: t }) => e + t, 0), r = e.key("toRGB");
 	if (r.exists) {
 		let e = r.numbers(3 * n), t = (t, r) => e[t * n + r] ?? 0;
@@ -1504,84 +1588,122 @@ function Ur(e, t) {
 			1
 		]
 	];
-	throw Br(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
+	throw ei(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
 }
-function Wr(e, t, n, r, i, a = !1) {
-	let o = Gr(e), s = t === 3 && o.bits === q ? 1 : t;
-	r && ti(e, s * n, r);
+function ii(e, t, n, r, i, a = !1) {
+	let o = ai(e), s = t === 3 && o.bits === K ? 1 : t;
+	r && gi(e, s * n, r);
 	let [c, l] = [e.key("scale"), e.key("zero")], u = {
 		view: i(e.key("bufferView")),
 		codec: o,
 		textures: n,
 		pieces: s,
-		where: e.where
+		where: e.where,
+		part: null
 	};
-	return a && o.bits === q && !c.exists && !l.exists ? {
+	return a && o.bits === K && !c.exists && !l.exists ? {
 		...u,
-		...Kr(t)
+		...si(t)
 	} : {
 		...u,
-		scale: Xr(c, t, n),
-		zero: Xr(l, t, n)
+		scale: di(c, t, n),
+		zero: di(l, t, n)
 	};
 }
-function Gr(e) {
-	let t = e.key("mimeType").text(L);
-	if (!Er(t)) throw e.key("mimeType").wrong("an unknown type");
-	let n = e.key("bits"), r = n.exists ? n.integer(1, zr) : q, i = Er(t, r);
+function ai(e) {
+	let t = e.key("mimeType").text(I);
+	if (!zr(t)) throw e.key("mimeType").wrong("an unknown type");
+	let n = e.key("bits"), r = n.exists ? n.integer(1, Qr) : K, i = zr(t, r);
 	if (!i) throw n.wrong(`${r} bits of ${t}`);
-	let a = e.key("codec"), o = Tr("picture", a, i);
+	let a = e.key("codec"), o = Rr("picture", a, i);
 	if (o.mimeType !== t || o.bits !== r) throw a.wrong(`${r} bits of ${t}`);
 	return o;
 }
-function Kr(e) {
+function oi(e, t, n) {
+	let r = e.key("at").items(De * t).map((e) => {
+		let [t = 0, n = 0] = e.numbers(2, 0, Fe);
+		if (!Number.isInteger(t) || !Number.isInteger(n)) throw e.wrong("no whole numbers");
+		return [t, n];
+	});
+	if (!r.length || r.length % t) throw e.key("at").wrong(`places of ${t} channels are needed`);
+	let { where: i } = e, a = {
+		film: e.key("film").integer(0, 3),
+		size: n,
+		at: r,
+		where: i
+	}, o = {
+		scale: Array(r.length).fill(0),
+		zero: Array(r.length).fill(0)
+	};
+	return {
+		view: -1,
+		codec: U[$r],
+		textures: r.length / t,
+		pieces: t,
+		where: i,
+		part: a,
+		...o
+	};
+}
+function si(e) {
 	return {
 		scale: Array(e).fill(1 / 255),
 		zero: Array(e).fill(0)
 	};
 }
-function qr(e) {
-	return e.some(({ codec: e }) => e.bits > q);
+function ci(e) {
+	return e.some(({ codec: e }) => e.bits > K);
 }
-function Jr({ codec: e }) {
+function li({ codec: e }) {
 	return (2 ** e.bits - 1) / 255;
 }
-function Yr(e, t) {
-	return t ? 1 : 1 / (255 * Jr(e));
+function ui(e, t) {
+	return t ? 1 : 1 / (255 * li(e));
 }
-function Xr(e, t, n) {
+function di(e, t, n) {
 	let r = e.items(t * n).map((e) => e.number());
 	if (r.length === t * n) return r;
 	if (r.length !== t) throw e.wrong(`${t} or ${t * n} numbers are needed`);
 	return Array(n).fill(r).flat();
 }
-function Zr(e, t, n, r) {
+function fi(e, t, n, r) {
 	let i = e.key("mean");
 	if (!i.exists) {
 		if (n === null || t !== 1 && t !== 3) throw i.wrong("no mean");
 		return {
 			mean: {
 				view: n,
-				codec: W.png,
+				codec: U.png,
 				textures: 1,
 				pieces: 1,
 				where: "/images/0",
-				...Kr(t)
+				part: null,
+				...si(t)
 			},
 			meanSize: null,
 			precision: null
 		};
 	}
-	let a = Vr(i.key("size")), o = Wr(i, t, 1, a, r, !0);
+	let a = ti(i.key("size"));
+	if (i.key("film").exists) {
+		let e = oi(i, t, a);
+		if (e.textures !== 1) throw i.key("at").wrong(`${t} places are needed`);
+		return {
+			mean: e,
+			meanSize: a,
+			precision: null
+		};
+	}
+	let o = ii(i, t, 1, a, r, !0);
 	return {
 		mean: o,
 		meanSize: a,
-		precision: $r(i.key("precision"), o, r)
+		precision: mi(i.key("precision"), o, r)
 	};
 }
-function Qr(e, t) {
-	let n = Vr(e.key("size")), r = Gr(e);
-	return ti(e, 1, n), {
+function pi(e, t) {
+	let n = ti(e.key("size")), r = ai(e);
+	return gi(e, 1, n), {
 		channels: 1,
 		mean: {
 			view: t(e.key("bufferView")),
@@ -1589,6 +1711,7 @@ function Qr(e, t) {
 			textures: 1,
 			pieces: 1,
 			where: e.where,
+			part: null,
 			scale: [1 / (2 ** r.bits - 1)],
 			zero: [0]
 		},
@@ -1596,11 +1719,11 @@ function Qr(e, t) {
 		precision: null
 	};
 }
-function $r(e, t, n) {
+function mi(e, t, n) {
 	if (!e.exists) return null;
-	if (t.codec.bits === q) throw e.wrong(`of a mean of ${q} bits`);
-	let r = Vr(e.key("size"), Te), i = Tr("picture", e.key("codec"), "png");
-	if (i !== W.png) throw e.key("codec").wrong("no PNG");
+	if (t.codec.bits === K) throw e.wrong(`of a mean of ${K} bits`);
+	let r = ti(e.key("size"), Te), i = Rr("picture", e.key("codec"), "png");
+	if (i !== U.png) throw e.key("codec").wrong("no PNG");
 	return {
 		view: n(e.key("bufferView")),
 		codec: i,
@@ -1610,46 +1733,60 @@ function $r(e, t, n) {
 		where: e.where
 	};
 }
-function ei(e, t, n, r, i) {
-	let a = Vr(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Vr(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, we) : [];
+function hi(e, t, n, r, i) {
+	let a = ti(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? ti(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, we) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
-	let d = 0, f = e.key("picture"), p = f.exists ? f.object() : {}, m = e.key("textures").items(De).map((e) => {
-		let n = new G({
-			...p,
+	let d = e.where;
+	if (e.key("film").exists) {
+		let n = oi(e, t, a), { textures: r } = n;
+		if (r > 4096) throw e.wrong(`more than ${De} textures`);
+		return {
+			size: a,
+			grid: c,
+			corner: [l, u],
+			pictures: [n],
+			count: r,
+			weights: null,
+			where: d
+		};
+	}
+	let f = 0, p = e.key("picture"), m = p.exists ? p.object() : {}, h = e.key("textures").items(De).map((e) => {
+		let n = new W({
+			...m,
 			...e.object()
 		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, De) : 1;
-		return d += o, Wr(n, t, o, a, i);
+		return f += o, ii(n, t, o, a, i);
 	});
-	if (d > 4096) throw e.wrong(`more than ${De} textures`);
-	let h = e.key("codedWeights"), g = d ? h.exists ? Ir("weights", h, i) : r(e.key("weights"), "SCALAR", [K], n * d) : null;
+	if (f > 4096) throw e.wrong(`more than ${De} textures`);
+	let g = e.key("codedWeights"), _ = f ? g.exists ? Yr("weights", g, i) : r(e.key("weights"), "SCALAR", [G], n * f) : null;
 	return {
 		size: a,
 		grid: c,
 		corner: [l, u],
-		pictures: m,
-		count: d,
-		weights: g,
-		where: e.where
+		pictures: h,
+		count: f,
+		weights: _,
+		where: d
 	};
 }
-function ti(e, t, [n, r]) {
+function gi(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
 	if (n * i > Ee) throw e.wrong(`more than ${Ee} texels`);
 }
 // eigenfield-three/src/sheets.ts
-function ni(e, t) {
+function _i(e, t) {
 	if (!e.exists) return null;
-	let n = e.key("faces").items(32).map((e) => e.integer(1, Ne));
+	let n = e.key("faces").items(32).map((e) => e.integer(1, Pe));
 	if (!n.length) throw e.key("faces").wrong("no sheet");
 	return {
 		faces: n,
-		opacity: Qr(e.key("opacity"), t),
+		opacity: pi(e.key("opacity"), t),
 		where: e.where
 	};
 }
-function ri({ faces: e, where: t }, { index: n, attributes: r }) {
+function vi({ faces: e, where: t }, { index: n, attributes: r }) {
 	let i = e.reduce((e, t) => e + t, 0), a = (n?.count ?? 0) / 3;
 	if (i !== a) throw M(`${t}/faces`, `the sheets have ${i} triangles, the mesh has ${a}`);
 	let o = new Uint8Array(r.position?.count ?? 0), s = 0;
@@ -1661,8 +1798,90 @@ function ri({ faces: e, where: t }, { index: n, attributes: r }) {
 		}
 	});
 }
+// eigenfield-three/src/timeline.ts
+var yi = 64, q = 16, bi = /^[0-9a-f]{64}$/;
+function xi(e, t) {
+	if (!e.exists) {
+		let e = wi(t)[0];
+		if (e) throw M(e.where, "a texture in a film, and no timeline");
+		return null;
+	}
+	let [n = 1, r = 1] = e.key("rate").numbers(2, 1, He), i = n / r;
+	if (!(Number.isInteger(n) && Number.isInteger(r)) || i > 1e3 || i < 1 / 1e3) throw e.key("rate").wrong("no rate");
+	let a = e.key("first"), o = e.key("films").items(4).map(Si), s = e.key("frames").integer(1, Le);
+	return Ei(t, o), {
+		rate: i,
+		first: a.exists ? a.number() : 0,
+		frames: s,
+		films: o,
+		groups: Ci(e, s)
+	};
+}
+function Si(e) {
+	let t = Rr("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, yi, Fe);
+	if (n % yi || r % yi || n * r > Ie) throw e.key("size").wrong(`a film of ${n} x ${r}`);
+	return {
+		codec: t,
+		size: [n, r],
+		where: e.where
+	};
+}
+function Ci(e, t) {
+	let [n, r] = [0, 0], i = e.key("groups").items(Re).map((e) => {
+		let t = e.key("frames").integer(1, Be), i = e.key("length").integer(1, ze), a = e.key("offset").integer(r, 2 ** 53 - 1), o = e.key("sha256").text(64);
+		if (!bi.test(o)) throw e.key("sha256").wrong("no SHA-256");
+		if (a % 4) throw e.key("offset").wrong("no multiple of 4");
+		return [n, r] = [n + t, a + i], {
+			first: n - t,
+			frames: t,
+			offset: a,
+			length: i,
+			sha256: o,
+			where: e.where
+		};
+	});
+	if (n !== t) throw e.key("groups").wrong(`${n} frames in groups, and ${t} in all`);
+	return i;
+}
+function wi(e) {
+	return Ti(e).flatMap(({ part: e }) => e ? [e] : []);
+}
+function Ti(e) {
+	return e.flatMap(({ mean: e, bases: t }) => [e, ...t.flatMap((e) => e.pictures)]);
+}
+function Ei(e, t) {
+	let n = t.map(({ size: e }) => new Uint8Array(e[0] * e[1] / q ** 2));
+	for (let { part: r, where: i } of Ti(e)) {
+		let e = r && t[r.film];
+		if (!r || !e) throw M(i, "it lies in no film");
+		let [a, o] = [e.size[0] / q, n[r.film]], [s, c] = r.size.map((e) => Math.ceil(e / q));
+		for (let [t, n] of r.at) {
+			let l = t + r.size[0] <= e.size[0] && n + r.size[1] <= e.size[1];
+			if (t % q || n % q || !l) throw M(i, `a texture at ${t}, ${n} of its film`);
+			for (let e = n / q; e < n / q + c; e++) {
+				let r = o.subarray(e * a + t / q, e * a + t / q + s);
+				if (r.includes(1)) throw M(i, `two textures at ${t}, ${n} of a film`);
+				r.fill(1);
+			}
+		}
+	}
+}
+function Di({ rate: e, first: t, frames: n }, r) {
+	return Math.min(Math.max(Math.floor((r - t) * e + .5), 0), n - 1);
+}
+function Oi({ rate: e, first: t }, n) {
+	return t + n / e;
+}
+function ki({ groups: e }, t) {
+	let [n, r] = [0, e.length - 1];
+	for (; n < r;) {
+		let i = n + r + 1 >> 1;
+		(e[i]?.first ?? Infinity) <= t ? n = i : r = i - 1;
+	}
+	return n;
+}
 // eigenfield-three/src/document.ts
-var ii = [
+var Ai = [
 	"namePattern",
 	"noFallback",
 	"packed",
@@ -1671,73 +1890,75 @@ var ii = [
 	"sharedPicture",
 	"sheets",
 	"stacks",
+	"timeline",
 	"toRGB"
-], ai = Object.values(W).flatMap(({ needs: e }) => e ?? []), oi = /* @__PURE__ */ new Set([...ii, ...ai]), si = 64, ci = 9, li = 10 ** ci;
-function ui(e) {
-	let t = new G(e, "");
+], ji = Object.values(U).flatMap(({ needs: e }) => e ?? []), Mi = /* @__PURE__ */ new Set([...Ai, ...ji]), Ni = 64, Pi = 9, Fi = 10 ** Pi;
+function Ii(e) {
+	let t = new W(e, "");
 	try {
-		return t.key("extensions").key(Se).exists;
+		return t.key("extensions").key(xe).exists;
 	} catch {
 		return !1;
 	}
 }
-function di(e) {
-	let t = new G(e, ""), n = t.key("extensions").key(Se), r = mi(n), i = Nr(t), a = Fr(t, i), o = Pr(i);
-	hi(t);
-	let s = vi(t, o), c = n.key("cameras"), { count: l, names: u } = yi(c, o), d = Si(c, l), f = d.filter((e) => !e).length, p = Hr(n, f, s, a, o), m = Ur(n, p), h = c.key("colour"), g = c.key("codedColour");
+function Li(e) {
+	let t = new W(e, ""), n = t.key("extensions").key(xe), r = Bi(n), i = Kr(t), a = Jr(t, i), o = qr(i);
+	Vi(t);
+	let s = Wi(t, o), c = n.key("cameras"), { count: l, names: u } = Gi(c, o), d = Ji(c, l), f = d.filter((e) => !e).length, p = ni(n, f, s, a, o), m = ri(n, p), h = c.key("colour"), g = c.key("codedColour");
 	if ((h.exists || g.exists) && m.length < 3) throw h.wrong("needs three channels");
 	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), x = n.key("mesh");
 	return {
 		version: r,
-		generator: b.exists ? b.text(L) : "",
+		generator: b.exists ? b.text(I) : "",
 		planes: p,
 		colours: m,
 		names: u,
 		heldOut: d,
 		reference: n.key("reference").integer(0, l - 1),
-		calibration: Ci(c, l, a, o),
-		sizes: wi(c, l, a),
-		colour: g.exists ? Ir("weights", g, o) : h.exists ? a(h, "SCALAR", [K], 6 * l) : null,
-		...Ti(_),
-		triangles: y.exists ? Ir("triangles", y, o) : v.exists ? _i(a(v, "SCALAR", [Or, kr], null), 2 * I) : null,
-		settings: Ei(n.key("settings")),
-		scores: Ei(n.key("scores")),
+		calibration: Yi(c, l, a, o),
+		sizes: Xi(c, l, a),
+		colour: g.exists ? Yr("weights", g, o) : h.exists ? a(h, "SCALAR", [G], 6 * l) : null,
+		...Zi(_),
+		triangles: y.exists ? Yr("triangles", y, o) : v.exists ? Ui(a(v, "SCALAR", [Vr, Hr], null), 2 * ke) : null,
+		settings: Qi(n.key("settings")),
+		scores: Qi(n.key("scores")),
 		views: i,
-		mesh: x.exists ? Ir("mesh", x, o) : null,
-		sheets: ni(n.key("sheets"), o),
-		shown: x.exists && !t.key("meshes").exists ? null : fi(t, a),
-		preview: s
+		mesh: x.exists ? Yr("mesh", x, o) : null,
+		sheets: _i(n.key("sheets"), o),
+		shown: x.exists && !t.key("meshes").exists ? null : Ri(t, a),
+		preview: s,
+		timeline: xi(n.key("timeline"), p)
 	};
 }
-function fi(e, t) {
+function Ri(e, t) {
 	let n = e.key("meshes").at(0).key("primitives").at(0), r = n.key("mode");
 	if (r.exists && r.integer(0, 6) !== 4) throw r.wrong("no triangles");
 	let [i, a] = [n.key("attributes"), n.key("indices")];
 	return {
-		position: gi(t(i.key("POSITION"), "VEC3", [K], null), Me),
-		uv: gi(t(i.key("TEXCOORD_0"), "VEC2", [K], null), Me),
-		indices: _i(t(a, "SCALAR", [
-			Dr,
-			Or,
-			kr
-		], null), Ne)
+		position: Hi(t(i.key("POSITION"), "VEC3", [G], null), Ne),
+		uv: Hi(t(i.key("TEXCOORD_0"), "VEC2", [G], null), Ne),
+		indices: Ui(t(a, "SCALAR", [
+			Br,
+			Vr,
+			Hr
+		], null), Pe)
 	};
 }
-function pi({ planes: e, sheets: t }) {
+function zi({ planes: e, sheets: t }) {
 	return t ? [...e, t.opacity] : e;
 }
-function mi(e) {
-	let t = e.key("version").text(L);
+function Bi(e) {
+	let t = e.key("version").text(I);
 	if (!/^1\.\d+$/.test(t)) throw new j("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
-	for (let e of n.exists ? n.items(F) : []) {
-		let t = e.text(L);
-		if (!oi.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
+	for (let e of n.exists ? n.items(Ce) : []) {
+		let t = e.text(I);
+		if (!Mi.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
-function hi(e) {
-	let t = e.key("nodes").items(F), n = Array(t.length).fill(!1);
+function Vi(e) {
+	let t = e.key("nodes").items(Ce), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
 		for (let e of r.exists ? r.items(t.length) : []) {
@@ -1746,64 +1967,64 @@ function hi(e) {
 			n[r] = !0;
 		}
 	}
-	for (let r of e.key("scenes").items(F)) {
+	for (let r of e.key("scenes").items(Ce)) {
 		let e = r.key("nodes");
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
-function gi(e, t) {
+function Hi(e, t) {
 	if (e.count > t) throw M(e.where, `more than ${t}`);
 	return e;
 }
-function _i(e, t) {
+function Ui(e, t) {
 	if (e.count % 3) throw M(e.where, "torn triangles");
-	return gi(e, 3 * t);
+	return Hi(e, 3 * t);
 }
-function vi(e, t) {
+function Wi(e, t) {
 	let n = e.key("images");
 	if (!n.exists) return null;
 	let r = n.at(0).key("bufferView");
 	return r.exists ? t(r) : null;
 }
-function yi(e, t) {
+function Gi(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
-		count: n.key("count").integer(1, I),
-		names: Ir("names", n, t)
+		count: n.key("count").integer(1, ke),
+		names: Yr("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? xi(r) : i.items(I).map((e) => e.text(L));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? qi(r) : i.items(ke).map((e) => e.text(I));
 	if (!a.length) throw i.wrong("no cameras");
-	let o = bi(a);
+	let o = Ki(a);
 	if (o) throw i.wrong(o);
 	return {
 		count: a.length,
 		names: a
 	};
 }
-function bi(e) {
+function Ki(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
-function xi(e) {
-	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, I));
+function qi(e) {
+	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, ke));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
-	let r = e.key("parts").items(si).map((e) => {
-		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(L))];
+	let r = e.key("parts").items(Ni).map((e) => {
+		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(I))];
 		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
 		if (a.exists) {
-			let e = a.items(i).map((e) => e.text(L));
+			let e = a.items(i).map((e) => e.text(I));
 			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
 			return [r, e];
 		}
-		let [o, s] = [e.key("first").integer(0, li), e.key("step").integer(0, li)], c = e.key("digits").integer(1, ci);
+		let [o, s] = [e.key("first").integer(0, Fi), e.key("step").integer(0, Fi)], c = e.key("digits").integer(1, Pi);
 		return [r, Array.from({ length: i }, (e, t) => String(o + s * t).padStart(c, "0"))];
 	});
 	return Array.from({ length: t * n }, (t, i) => {
 		let a = [Math.floor(i / n), i % n], o = r.map(([e, t]) => t[a[e] ?? 0]).join("");
-		if (o.length > 1024) throw e.wrong(`names of more than ${L} characters`);
+		if (o.length > 1024) throw e.wrong(`names of more than ${I} characters`);
 		return o;
 	});
 }
-function Si(e, t) {
+function Ji(e, t) {
 	let n = Array(t).fill(!1), r = e.key("heldOut");
 	if (!r.exists) return n;
 	for (let e of r.items(t)) {
@@ -1814,21 +2035,21 @@ function Si(e, t) {
 	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
 	return n;
 }
-function Ci(e, t, n, r) {
+function Yi(e, t, n, r) {
 	let i = e.key("coded");
-	return i.exists ? Ir("cameras", i, r) : {
-		intrinsics: n(e.key("intrinsics"), "SCALAR", [K], 5 * t),
-		poses: n(e.key("poses"), "SCALAR", [K], 12 * t)
+	return i.exists ? Yr("cameras", i, r) : {
+		intrinsics: n(e.key("intrinsics"), "SCALAR", [G], 5 * t),
+		poses: n(e.key("poses"), "SCALAR", [G], 12 * t)
 	};
 }
-function wi(e, t, n) {
+function Xi(e, t, n) {
 	let r = e.key("size");
-	if (!r.exists) return n(e.key("sizes"), "SCALAR", [kr], 2 * t);
-	let [i = 0, a = 0] = r.numbers(2, 1, ke);
+	if (!r.exists) return n(e.key("sizes"), "SCALAR", [Hr], 2 * t);
+	let [i = 0, a = 0] = r.numbers(2, 1, Ae);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
-function Ti(e) {
+function Zi(e) {
 	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
 	for (let i of [
 		r(t, t) - 1,
@@ -1843,23 +2064,23 @@ function Ti(e) {
 		extent: [i, a]
 	};
 }
-function Ei(e) {
+function Qi(e) {
 	return e.exists ? e.object() : {};
 }
 // eigenfield-three/src/info.ts
-var Di = 1e-6;
-async function Oi(e, t) {
+var $i = 1e-6;
+async function ea(e, t) {
 	let [n, { lenses: r, poses: i }, a, o] = await Promise.all([
-		Ai(e, t),
-		Mi(e, t),
-		Ni(e, t),
-		ki(e, t)
+		na(e, t),
+		ia(e, t),
+		aa(e, t),
+		ta(e, t)
 	]);
 	return n.map((t, n) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
-		if (!(s > Di && c > Di)) throw M(r.where, `focal lengths of "${t}"`);
-		let { R: f, t: p } = Pi([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
-		if (!m || !h || Math.max(m, h) > 65535 || m * h > Ae) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
+		if (!(s > $i && c > $i)) throw M(r.where, `focal lengths of "${t}"`);
+		let { R: f, t: p } = oa([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
+		if (!m || !h || Math.max(m, h) > 65535 || m * h > je) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
 				s,
@@ -1876,13 +2097,13 @@ async function Oi(e, t) {
 				0,
 				1
 			]
-		], [_, v] = o ? Fi([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
+		], [_, v] = o ? sa([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
 		return {
 			name: t,
 			K: g,
 			R: f,
 			t: p,
-			centre: Gi(f, p),
+			centre: ya(f, p),
 			width: m,
 			height: h,
 			gain: _,
@@ -1890,8 +2111,8 @@ async function Oi(e, t) {
 		};
 	});
 }
-async function ki({ colour: e, heldOut: t, views: n }, r) {
-	if (!e || "type" in e) return e && Lr(e, n, r);
+async function ta({ colour: e, heldOut: t, views: n }, r) {
+	if (!e || "type" in e) return e && Xr(e, n, r);
 	let { cameras: i, components: a, values: o } = await e.codec.decode(new Uint8Array(await r(e.view)), e.where);
 	if (a !== 6 || i !== t.filter((e) => !e).length) throw M(e.where, `${i} x ${a} colours`);
 	let s = 0;
@@ -1904,31 +2125,31 @@ async function ki({ colour: e, heldOut: t, views: n }, r) {
 		0
 	] : [...o.subarray(6 * s, 6 * ++s)]));
 }
-async function Ai({ names: e, heldOut: t }, n) {
+async function na({ names: e, heldOut: t }, n) {
 	if (Array.isArray(e)) return e;
-	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : bi(r);
+	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : Ki(r);
 	if (i) throw M(e.where, i);
 	return r;
 }
-async function ji(e, t, n) {
+async function ra(e, t, n) {
 	return {
-		numbers: await Lr(e, t.views, n),
+		numbers: await Xr(e, t.views, n),
 		where: e.where
 	};
 }
-async function Mi(e, t) {
+async function ia(e, t) {
 	let { calibration: n, heldOut: r } = e;
 	if ("intrinsics" in n) {
 		let { intrinsics: r, poses: i } = n;
 		return {
-			lenses: await ji(r, e, t),
-			poses: await ji(i, e, t)
+			lenses: await ra(r, e, t),
+			poses: await ra(i, e, t)
 		};
 	}
 	let { view: i, codec: a, where: o } = n, s = await a.decode(new Uint8Array(await t(i)), o), c = s.poses.length / 12;
 	if (c !== r.length) throw M(o, `${c} cameras in it, and ${r.length} names`);
 	let l = (e) => ({
-		numbers: Rr(e, o),
+		numbers: Zr(e, o),
 		where: o
 	});
 	return {
@@ -1936,15 +2157,15 @@ async function Mi(e, t) {
 		poses: l(s.poses)
 	};
 }
-async function Ni(e, t) {
-	if (!Array.isArray(e.sizes)) return ji(e.sizes, e, t);
+async function aa(e, t) {
+	if (!Array.isArray(e.sizes)) return ra(e.sizes, e, t);
 	let [n, r] = e.sizes;
 	return {
 		numbers: Uint32Array.from({ length: 2 * e.heldOut.length }, (e, t) => t % 2 ? r : n),
 		where: "its cameras' size"
 	};
 }
-function Pi(e, t, n) {
+function oa(e, t, n) {
 	let r = (t) => [
 		e[4 * t] ?? NaN,
 		e[4 * t + 1] ?? NaN,
@@ -1962,46 +2183,53 @@ function Pi(e, t, n) {
 		let a = Y(i[e], i[r]) - +(e === r);
 		if (!(Math.abs(a) <= 2e-4)) throw M(t, `the pose of "${n}" is no rotation`);
 	}
-	if (!(Y(Ki(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
+	if (!(Y(ba(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
 	return {
 		R: i,
 		t: a
 	};
 }
-function Fi(e, t, n) {
+function sa(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
 	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw M(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
-async function Ii(e, t) {
-	let n = J(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => Li(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
-	for (let e of i) {
-		let t = e.length / r;
-		for (let n = 0; n < r; n++) o.set(e.subarray(n * t, (n + 1) * t), n * a + s);
-		s += t;
-	}
-	return o;
+async function ca(e, t) {
+	let n = e.heldOut.filter((e) => !e).length;
+	return la(n, await Promise.all(J(e).map((r) => ua(r, n, e, t))));
 }
-async function Li({ weights: e, count: t }, n, r, i) {
+function la(e, t) {
+	let n = t.reduce((e, { length: t }) => e + t, 0) / e, r = new Float32Array(e * n), i = 0;
+	for (let a of t) {
+		let t = a.length / e;
+		for (let o = 0; o < e; o++) r.set(a.subarray(o * t, (o + 1) * t), o * n + i);
+		i += t;
+	}
+	return r;
+}
+async function ua({ weights: e, count: t }, n, r, i) {
 	if (!e) return /* @__PURE__ */ new Float32Array();
-	if ("type" in e) return Lr(e, r.views, i);
-	let { view: a, codec: o, where: s } = e, { cameras: c, components: l, values: u } = o.decode(new Uint8Array(await i(a)), s);
-	if (c === n && l === t) return Rr(u, s);
-	throw M(s, `${c} x ${l} weights, and ${n} encoded cameras x ${t} textures`);
+	if ("type" in e) return Xr(e, r.views, i);
+	let { view: a, codec: o, where: s } = e;
+	return da(o.decode(new Uint8Array(await i(a)), s), n, t, s);
+}
+function da({ cameras: e, components: t, values: n }, r, i, a) {
+	if (e === r && t === i) return Zr(n, a);
+	throw M(a, `${e} x ${t} weights, and ${r} encoded cameras x ${i} textures`);
 }
 function J(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
 }
-function Ri(e) {
+function fa(e) {
 	return Math.max(0, ...J(e).map(({ count: e }) => e));
 }
-function zi(e, t) {
+function pa(e, t) {
 	let n = [...t.slice(0, e.planes.length), ...J(e).map(({ grid: e }) => e)];
 	return [Math.max(...n.map(([e]) => e)), Math.max(...n.map(([, e]) => e))];
 }
-async function Bi(e, t) {
+async function ma(e, t) {
 	if (!e.triangles) return /* @__PURE__ */ new Uint32Array();
-	let { where: n } = e.triangles, r = await Vi(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
+	let { where: n } = e.triangles, r = await ha(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
 		if (Math.max(t, a, o) >= i) throw M(n, `no encoded camera ${Math.max(t, a, o)}`);
@@ -2009,11 +2237,11 @@ async function Bi(e, t) {
 	}
 	return r;
 }
-async function Vi(e, t, n) {
-	return "type" in e ? Uint32Array.from(await Lr(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
+async function ha(e, t, n) {
+	return "type" in e ? Uint32Array.from(await Xr(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
 }
-function Hi(e, t, n, r, i, a) {
-	let { right: o, up: s } = e, c = Ki(o, s), l = [
+function ga(e, t, n, r, i, a) {
+	let { right: o, up: s } = e, c = ba(o, s), l = [
 		0,
 		0,
 		0
@@ -2041,8 +2269,8 @@ function Hi(e, t, n, r, i, a) {
 		settings: e.settings,
 		scores: e.scores,
 		metresPerUnit: typeof u == "number" && u > 0 && u <= 1e30 ? u : null,
-		bytes: Ui(e, i),
-		size: zi(e, n),
+		bytes: _a(e, i),
+		size: pa(e, n),
 		planes: e.planes.map(({ channels: e, bases: t }, r) => ({
 			channels: e,
 			mean: n[r] ?? [1, 1],
@@ -2058,8 +2286,8 @@ function Hi(e, t, n, r, i, a) {
 		facesPlane: Math.abs(Y(l, c)) > .7
 	};
 }
-function Ui(e, t) {
-	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(Ri(e)).fill(0);
+function _a(e, t) {
+	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(fa(e)).fill(0);
 	for (let { pictures: t } of J(e)) {
 		let e = 0;
 		for (let { view: n, textures: i } of t) {
@@ -2081,7 +2309,7 @@ function Ui(e, t) {
 		textures: s
 	};
 }
-function Wi(e, t) {
+function va(e, t) {
 	let { origin: n, extent: r } = e, i = [
 		t[0] - n[0],
 		t[1] - n[1],
@@ -2089,7 +2317,7 @@ function Wi(e, t) {
 	];
 	return [r[0] > 0 ? Y(i, e.right) / r[0] : 0, r[1] > 0 ? Y(i, e.up) / r[1] : 0];
 }
-function Gi(e, t) {
+function ya(e, t) {
 	let n = (n) => -(e[0][n] * t[0] + e[1][n] * t[1] + e[2][n] * t[2]);
 	return [
 		n(0),
@@ -2100,7 +2328,7 @@ function Gi(e, t) {
 function Y(e, t) {
 	return e[0] * t[0] + e[1] * t[1] + e[2] * t[2];
 }
-function Ki(e, t) {
+function ba(e, t) {
 	return [
 		e[1] * t[2] - e[2] * t[1],
 		e[2] * t[0] - e[0] * t[2],
@@ -2108,7 +2336,7 @@ function Ki(e, t) {
 	];
 }
 // eigenfield-three/src/cameras.ts
-function qi(e, t, n) {
+function xa(e, t, n) {
 	let { info: r } = e, i = r.cameras.filter((e, t) => !r.heldOut[t]), a = r.cameras[r.reference];
 	if (!a) throw RangeError(`no camera ${r.reference}`);
 	let { width: o, height: s } = a, c = [
@@ -2147,7 +2375,7 @@ function qi(e, t, n) {
 	e.viewWeights(t, n, "delaunay").forEach((e, t) => {
 		let n = i[t];
 		if (!e || !n) return;
-		let r = Ji(n, o, s);
+		let r = Sa(n, o, s);
 		for (let t of [
 			0,
 			1,
@@ -2158,7 +2386,7 @@ function qi(e, t, n) {
 			2
 		]) t < 2 && (c[t][i] += e * r[t][i]), l[t][i] += e * n.R[t][i];
 	});
-	let u = Xi(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Yi(t) * m[0], Yi(n) * m[1]], _ = [
+	let u = wa(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Ca(t) * m[0], Ca(n) * m[1]], _ = [
 		0,
 		1,
 		2
@@ -2175,7 +2403,7 @@ function qi(e, t, n) {
 		offset: null
 	};
 }
-function Ji({ K: e, width: t, height: n }, r, i) {
+function Sa({ K: e, width: t, height: n }, r, i) {
 	let a = Math.max(r / t, i / n), [o, s] = [(r - a * t) / 2, (i - a * n) / 2];
 	return [
 		[
@@ -2195,16 +2423,16 @@ function Ji({ K: e, width: t, height: n }, r, i) {
 		]
 	];
 }
-function Yi(e) {
+function Ca(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Xi(e) {
+function wa(e) {
 	let t = e;
 	for (let e = 0; e < 50; e++) {
 		let e = [
-			Ki(t[1], t[2]),
-			Ki(t[2], t[0]),
-			Ki(t[0], t[1])
+			ba(t[1], t[2]),
+			ba(t[2], t[0]),
+			ba(t[0], t[1])
 		], n = Y(t[0], e[0]);
 		if (!(n > 1e-12)) break;
 		let r = t.map((t, r) => t.map((t, i) => (t + e[r][i] / n) / 2)), i = Math.max(...r.flatMap((e, n) => e.map((e, r) => Math.abs(e - t[n][r]))));
@@ -2212,24 +2440,24 @@ function Xi(e) {
 	}
 	return t;
 }
-function Zi(e, t, n, r, i = 1) {
+function Ta(e, t, n, r, i = 1) {
 	let a = n.width / n.height, o = i * Math.min(1, a / r), s = i * Math.min(1, r / a), c = {
 		left: (1 - o) / 2,
 		top: (1 - s) / 2,
 		width: o,
 		height: s
 	};
-	return Qi(e, t, n), $i(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
+	return Ea(e, t, n), Da(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
 }
-function Qi(e, t, n) {
+function Ea(e, t, n) {
 	let { R: r, centre: i } = n, a = new x().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
 	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new A()), t.updateMatrixWorld(!0);
 }
-function $i(e, t, n, r) {
-	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = ea(e, n);
+function Da(e, t, n, r) {
+	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Oa(e, n);
 	t.near = d, t.far = f, t.projectionMatrix.set(l * i, -l * a, -(2 * r.left - 1 + l * o), 0, 0, u * s, -(1 - 2 * r.top - u * c), 0, 0, 0, -(f + d) / (f - d), -2 * f * d / (f - d), 0, 0, -1, 0), t.projectionMatrixInverse.copy(t.projectionMatrix).invert();
 }
-function ea(e, t) {
+function Oa(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
@@ -2239,7 +2467,7 @@ function ea(e, t) {
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
 // eigenfield-three/src/exposure.ts
-function ta(e) {
+function ka(e) {
 	let [t, n] = [[
 		1,
 		1,
@@ -2259,46 +2487,46 @@ function ta(e) {
 	};
 }
 // eigenfield-three/src/memory.ts
-var na = 4 / 3, ra = ua({
+var Aa = 4 / 3, ja = Ra({
 	components: 4,
 	halves: !0
-}), ia = {
+}), Ma = {
 	components: 4,
 	halves: !1
-}, aa = {
+}, Na = {
 	components: 2,
 	halves: !1
-}, oa = {
+}, Pa = {
 	components: 2,
 	halves: !0
-}, sa = 2 ** 20, ca = 1 / 64, la = 34;
-function ua({ components: e, halves: t }) {
+}, Fa = 2 ** 20, Ia = 1 / 64, La = 34;
+function Ra({ components: e, halves: t }) {
 	return (e > 2 ? 4 : e) * (t ? 2 : 1);
 }
-function da() {
+function za() {
 	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
-	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && fa(e) ? Math.min(t ?? 4, 6) * 128 * sa : Math.min(t ?? 8, 8) * 256 * sa;
+	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && Ba(e) ? Math.min(t ?? 4, 6) * 128 * Fa : Math.min(t ?? 8, 8) * 256 * Fa;
 }
-function fa(e) {
+function Ba(e) {
 	return (e?.maxTouchPoints ?? 0) > 1;
 }
 function X([e, t], n) {
 	return [Math.ceil(e / n), Math.ceil(t / n)];
 }
-function pa(e, t) {
+function Va(e, t) {
 	let [n, r] = X(e, t);
 	return n * r;
 }
-function ma(e) {
+function Ha(e) {
 	return Math.ceil(e / 4);
 }
-function ha(e, t) {
-	return t * ga(e);
+function Ua(e, t) {
+	return t * Wa(e);
 }
-function ga(e) {
+function Wa(e) {
 	return Math.max(1, Math.ceil(e / 4));
 }
-function _a(e) {
+function Ga(e) {
 	let { atlas: t, means: n, bases: r } = e, i = [
 		t,
 		...n.map(({ size: e }) => e),
@@ -2306,7 +2534,7 @@ function _a(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-var va = [{
+var Ka = [{
 	meanDown: 1,
 	scaleDown: 1,
 	halves: !0
@@ -2329,14 +2557,14 @@ var va = [{
 	scaleDown: t * e,
 	halves: !1
 })))];
-function ya(e, t) {
-	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => ba(e, t.meanDown) + e.geometry + xa(e, t, n), o = (n, r) => a(n, r) + wa(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = va.filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
+function qa(e, t) {
+	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => Ja(e, t.meanDown) + e.geometry + Ya(e, t, n), o = (n, r) => a(n, r) + Qa(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = Ka.filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
 	for (; !u && l > 0; l--) u = c.find((e) => o(e, l - 1));
-	u ??= va.at(-1);
-	let d = Ta({
+	u ??= Ka.at(-1);
+	let d = $a({
 		...u,
 		usable: l
-	}, e), f = Ea(d, e, t);
+	}, e), f = eo(d, e, t);
 	return {
 		...u,
 		usable: l,
@@ -2345,52 +2573,52 @@ function ya(e, t) {
 		limitation: f
 	};
 }
-function ba(e, t) {
-	let n = e.means.map(({ size: e, channels: n, tenBits: r }) => ua({
+function Ja(e, t) {
+	let n = e.means.map(({ size: e, channels: n, tenBits: r }) => Ra({
 		components: n,
 		halves: r
-	}) * ma(n) * pa(e, t)), r = _a(e).map((n) => {
-		let r = n.join() === e.atlas.join() ? na : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
-		return ra * pa(n, t) * (r + +!!i);
+	}) * Ha(n) * Va(e, t)), r = Ga(e).map((n) => {
+		let r = n.join() === e.atlas.join() ? Aa : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
+		return ja * Va(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function xa({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
+function Ya({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
 	return e.reduce((e, a) => {
 		let o = Math.min(i, a.count);
 		if (!o) return e;
-		let s = t ? ga(o) * 129 * 129 * ra : 0;
-		return e + ua({
+		let s = t ? Wa(o) * 129 * 129 * ja : 0;
+		return e + Ra({
 			components: o,
 			halves: r && a.tenBits
-		}) * ha(o, a.channels) * pa(a.size, n) + s;
+		}) * Ua(o, a.channels) * Va(a.size, n) + s;
 	}, 0);
 }
-function Sa({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
-	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = Ca([...a, ...o].map(({ size: e }) => e)), l = Math.floor(ca * i / (ua(ia) * s)), u = [s, Math.min(c, Math.max(la, l))], d = [...n > 1 ? a.map((e) => X(e.size, n)) : [], ...r > 1 ? o.map((e) => X(e.size, r)) : []];
+function Xa({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
+	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = Za([...a, ...o].map(({ size: e }) => e)), l = Math.floor(Ia * i / (Ra(Ma) * s)), u = [s, Math.min(c, Math.max(La, l))], d = [...n > 1 ? a.map((e) => X(e.size, n)) : [], ...r > 1 ? o.map((e) => X(e.size, r)) : []];
 	return {
 		picture: {
 			size: u,
-			format: ia
+			format: Ma
 		},
 		codes: [...a, ...o].some(({ tenBits: e }) => e) ? {
 			size: u,
-			format: aa
+			format: Na
 		} : null,
 		smaller: d.length ? {
-			size: Ca(d),
-			format: oa
+			size: Za(d),
+			format: Pa
 		} : null
 	};
 }
-function Ca(e) {
+function Za(e) {
 	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
 }
-function wa(e, t, n) {
-	let r = Object.values(Sa(e, t, n)).map((e) => e ? ua(e.format) * pa(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(..._a(e).map((e) => pa(e, 1))) : 0;
+function Qa(e, t, n) {
+	let r = Object.values(Xa(e, t, n)).map((e) => e ? Ra(e.format) * Va(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(...Ga(e).map((e) => Va(e, 1))) : 0;
 	return [...r, i].reduce((e, t) => e + t, 0);
 }
-function Ta({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
+function $a({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 	let a = Math.max(0, ...i.bases.map(({ count: e }) => e)), o = [];
 	return e < a && o.push({
 		kind: "count",
@@ -2404,37 +2632,37 @@ function Ta({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 		percent: Math.round(100 / t)
 	}), o;
 }
-function Ea(e, t, n) {
+function eo(e, t, n) {
 	if (!e.length) return null;
 	let r = e.map((e) => e.kind === "count" ? `${e.part} of ${e.whole} eigen textures are drawn` : e.kind === "bits" ? "eigen textures have 8 bits" : `${e.kind === "mean" ? "the mean texture has" : "eigen textures have"} ${e.percent} % of ${e.kind === "mean" ? "its" : "their"} width and height`), i = {
 		meanDown: 1,
 		scaleDown: 1,
 		halves: !0
-	}, a = ba(t, 1) + xa(t, i, Infinity) + wa(t, i, n.memory) + t.geometry, o = a > n.memory ? `the scene needs ${Da(a)} MB of graphics memory and ${Da(n.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${Oa(r.join(", "))}: ${o}.`;
+	}, a = Ja(t, 1) + Ya(t, i, Infinity) + Qa(t, i, n.memory) + t.geometry, o = a > n.memory ? `the scene needs ${to(a)} MB of graphics memory and ${to(n.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${no(r.join(", "))}: ${o}.`;
 }
-function Da(e) {
+function to(e) {
 	return (e / 1e6).toFixed(+(e < 1e7));
 }
-function Oa(e) {
+function no(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var ka = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Aa = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", ja = 2, Ma = `
+var ro = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", io = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", ao = 2, oo = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${Aa}${ka}`, Na = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", Pa = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", Fa = `${Ma}
+${io}${ro}`, so = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", co = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", lo = `${oo}
 in vec3 point;
 out vec4 place;
 void main() { place = placeOf(point); }
-`, Ia = "sumTextures", La = "finerValue", Ra = "finerOpacity";
-function za(n, r, i) {
+`, uo = "sumTextures", fo = "finerValue", po = "finerOpacity";
+function mo(n, r, i) {
 	let o = new O({
 		glslVersion: h,
-		vertexShader: Na,
-		fragmentShader: `${Ma}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
+		vertexShader: so,
+		fragmentShader: `${oo}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
 		uniforms: {
 			rectangle: { value: new ae(...r) },
 			...i
@@ -2470,7 +2698,7 @@ function za(n, r, i) {
 	let c = new S(s, o);
 	return c.frustumCulled = !1, c;
 }
-function Ba([e, t], n) {
+function ho([e, t], n) {
 	return new oe(e, t, {
 		type: g,
 		depthBuffer: !1,
@@ -2479,29 +2707,29 @@ function Ba([e, t], n) {
 		magFilter: n ? y : w
 	});
 }
-function Va(e, t) {
-	let n = Ki(e.right, e.up), r = [
+function go(e, t) {
+	let n = ba(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
 		t[2] - e.origin[2]
 	];
-	return [...Wi(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
+	return [...va(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
 }
-function Ha(t, n, r) {
+function _o(t, n, r) {
 	let { index: i } = t, a = t.getAttribute("position"), o = t.getAttribute("uv"), s = new Float32Array(3 * a.count), c = new Float32Array(2 * a.count);
-	for (let e = 0; e < a.count; e++) s.set(Va(n, [
+	for (let e = 0; e < a.count; e++) s.set(go(n, [
 		a.getX(e),
 		a.getY(e),
 		a.getZ(e)
 	]), 3 * e), c.set([o.getX(e), o.getY(e)], 2 * e);
-	let l = Array.from({ length: 5 }, (e, t) => t - ja), d = l.flatMap((e) => l.map((t) => new ie(t, e)));
+	let l = Array.from({ length: 5 }, (e, t) => t - ao), d = l.flatMap((e) => l.map((t) => new ie(t, e)));
 	d.sort((e, t) => t.lengthSq() - e.lengthSq());
 	let f = new v();
 	f.setAttribute("position", new e(c, 2)), f.setAttribute("onPlane", new e(s, 3)), f.setIndex(i && new e(i.array, 1)), f.instanceCount = d.length, f.boundingSphere = new te();
 	let p = new O({
 		glslVersion: h,
-		vertexShader: Pa.replace("SHIFTS", String(d.length)),
-		fragmentShader: Fa,
+		vertexShader: co.replace("SHIFTS", String(d.length)),
+		fragmentShader: lo,
 		uniforms: {
 			texel: { value: new ie(2 / r.width, 2 / r.height) },
 			shifts: { value: d }
@@ -2520,19 +2748,19 @@ function Ha(t, n, r) {
 		}
 	};
 }
-var Ua = new i(0), Wa = new i();
-function Ga(e, t, n) {
+var vo = new i(0), yo = new i();
+function bo(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(Wa), e.setClearColor(Ua, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(Wa, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(yo), e.setClearColor(vo, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(yo, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/composer.ts
-var Ka = {
+var xo = {
 	version: 0,
 	mean: !0,
 	opacity: 0,
@@ -2542,7 +2770,7 @@ var Ka = {
 	eye: null,
 	places: 0,
 	maps: null
-}, qa = class {
+}, So = class {
 	opacity;
 	down;
 	surface;
@@ -2553,14 +2781,14 @@ var Ka = {
 	camera = new n();
 	constructor(e, t, n, r, i, a) {
 		this.opacity = n, this.down = r, this.surface = i, this.plane = a;
-		let [o, ...s] = _a({
+		let [o, ...s] = Ga({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), c = (e, n) => {
-			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(Ya), a = new k();
+			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(wo), a = new k();
 			return i.forEach(({ quad: e }, t) => a.add(Object.assign(e, { renderOrder: t }))), {
-				target: Ba(X(e, r), n),
+				target: ho(X(e, r), n),
 				scene: a,
 				steps: i,
 				places: null
@@ -2568,7 +2796,7 @@ var Ka = {
 		}, l = c(o ?? e, !0);
 		this.grids = s.map((e) => c(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = za(La, [
+			let t = mo(fo, [
 				0,
 				0,
 				1,
@@ -2582,36 +2810,36 @@ var Ka = {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && Qa(this.composed, n) || (this.composed = n, Ga(e, t, () => {
+		this.composed && Do(this.composed, n) || (this.composed = n, bo(e, t, () => {
 			n.opacity > this.opacityDrawn && this.drawOpacity(e, n.opacity);
 			for (let t of this.grids) {
 				n.eye && t.steps.some(({ part: e }) => e.basis) && this.findPlaces(e, t, n.places);
-				for (let e of t.steps) Xa(e, t.places?.target.texture ?? null, n);
+				for (let e of t.steps) To(e, t.places?.target.texture ?? null, n);
 				this.draw(e, t.scene, t.target, this.opacityDrawn > 0 && t === this.grids.at(-1));
 			}
 		}));
 	}
 	dispose() {
-		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), Ja(n);
+		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), Co(n);
 	}
 	drawOpacity(e, t) {
 		let n = this.grids.at(-1);
 		if (!this.opacity || !n) return;
-		let r = Ba(X(this.opacity.grid, this.down), !1), i = Ya(this.opacity);
-		for (let e of i) Xa(e, null, Ka);
+		let r = ho(X(this.opacity.grid, this.down), !1), i = wo(this.opacity);
+		for (let e of i) To(e, null, xo);
 		let [a, o] = [new k(), new k()];
-		a.add(...i.map(({ quad: e }) => e)), o.add(za(Ra, [
+		a.add(...i.map(({ quad: e }) => e)), o.add(mo(po, [
 			0,
 			0,
 			1,
 			1
 		], { coarse: { value: r.texture } })), this.draw(e, a, r), this.draw(e, o, n.target);
-		for (let e of [a, o]) Ja(e);
+		for (let e of [a, o]) Co(e);
 		r.dispose(), this.opacityDrawn = t;
 	}
 	findPlaces(e, t, n) {
 		if (t.places?.version === n) return;
-		let r = t.places?.target ?? Ba([t.target.width, t.target.height], !1), { scene: i, free: a } = Ha(this.surface.geometry, this.plane, r);
+		let r = t.places?.target ?? ho([t.target.width, t.target.height], !1), { scene: i, free: a } = _o(this.surface.geometry, this.plane, r);
 		this.draw(e, i, r), a(), t.places = {
 			target: r,
 			version: n
@@ -2623,17 +2851,17 @@ var Ka = {
 		r && i.colorMask(!0, !0, !0, !1), e.clear(!0, !1, !1), r && i.colorMask(!0, !0, !0, !0), e.render(t, this.camera);
 	}
 };
-function Ja(e) {
+function Co(e) {
 	for (let { geometry: t, material: n } of e.children) t.dispose(), n.dispose();
 }
-function Ya(e) {
+function wo(e) {
 	let t = e.colours.length, [n, r] = [e.scale.length / (4 * t), Math.floor(64 / t)], i = [];
 	for (let a = 0; a < n; a += r) {
 		let o = Array.from({ length: 64 }, (t, n) => new A(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), s = e.basis ? 1 : 4, c = za(Ia, e.rectangle, {
+		])), s = e.basis ? 1 : 4, c = mo(uo, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(a * t / s) },
 			sharing: { value: s },
@@ -2657,31 +2885,31 @@ function Ya(e) {
 	}
 	return i;
 }
-function Xa({ part: e, first: t, groups: n, quad: r }, i, a) {
+function To({ part: e, first: t, groups: n, quad: r }, i, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Za(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Eo(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
 	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", u ? i : null), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function Za(e, t, n, r) {
+function Eo(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function Qa(e, t) {
+function Do(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
 // eigenfield-three/src/maps.ts
-function $a(e, t, n, i, a) {
+function Oo(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? ga(t) : 0;
+		u += e, d += t ? Wa(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -2700,7 +2928,7 @@ function $a(e, t, n, i, a) {
 	return p.format = D, p.type = g, p.minFilter = p.magFilter = y, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
 }
 // eigenfield-three/src/eigen-weights.ts
-var eo = class {
+var ko = class {
 	info;
 	counts;
 	omega;
@@ -2732,12 +2960,12 @@ var eo = class {
 		if (n >= 0) return Float64Array.from(this.omega.subarray(n * this.total, (n + 1) * this.total));
 		let r = this.info.cameras[e];
 		if (!r) throw RangeError(`no camera ${e}`);
-		return this.at(...Wi(this.info.viewPlane, r.centre), t);
+		return this.at(...va(this.info.viewPlane, r.centre), t);
 	}
 	maps(e, t) {
 		if (this.made?.mixing === e && this.made.usable === t) return this.made.texture;
 		this.dispose();
-		let n = $a(this.views, e, this.omega, this.counts, t);
+		let n = Oo(this.views, e, this.omega, this.counts, t);
 		return this.made = {
 			texture: n,
 			mixing: e,
@@ -2747,20 +2975,20 @@ var eo = class {
 	dispose() {
 		this.made?.texture.dispose();
 	}
-}, to = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", no = {
+}, Ao = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", jo = {
 	bilinear: 0,
 	bicubic: 1
-}, ro = {
+}, Mo = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, io = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", ao = io.replace("void main", "invariant gl_Position;\nvoid main"), oo = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", so = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", co = `${oo}
-${Aa}${to}
+}, No = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Po = No.replace("void main", "invariant gl_Position;\nvoid main"), Fo = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", Io = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", Lo = `${Fo}
+${io}${Ao}
 uniform float shownGain;       // of the eigen texture around mid grey
 in vec2 surfaceUv;
 vec3 eigenColour(vec3 value) { return clamp(0.5 + shownGain * value, 0.0, 1.0); }
-`, lo = `${co}${so}
+`, Ro = `${Lo}${Io}
 in vec3 surfacePlace;
 out vec4 fragment;
 void main() {
@@ -2770,7 +2998,7 @@ void main() {
   if (shown == 3) colour = errorColour(colour, surfacePlace);
   fragment = vec4(colour, 1.0);
 }
-`, uo = `${co}
+`, zo = `${Lo}
 layout(location = 0) out vec4 fragment;
 layout(location = 1) out vec4 solid;
 vec3 threeBytes(float depth) {
@@ -2784,61 +3012,400 @@ void main() {
   float depth = (gl_FragCoord.z - gl_DepthRange.near) / gl_DepthRange.diff;
   solid = colour.a < 0.5 ? vec4(0.0) : vec4(threeBytes(depth), 1.0);
 }
-`, fo = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", po = {
+`, Bo = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", Vo = {
 	blending: a,
 	blendSrc: E,
 	blendDst: ee
-}, mo = {
+}, Ho = {
 	depthWrite: !1,
 	stencilWrite: !0,
 	stencilFunc: d,
 	stencilZPass: _
 };
-function ho(e, t) {
+function Uo(e, t) {
 	let n = {
 		composed: { value: null },
 		finest: { value: 1 },
 		exposureScale: { value: new A(1, 1, 1) },
 		exposureBias: { value: new A() },
-		shown: { value: ro.picture },
+		shown: { value: Mo.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new x() }
 	}, r = new O({
 		glslVersion: h,
-		vertexShader: t ? ao : io,
-		fragmentShader: t ? uo : lo,
+		vertexShader: t ? Po : No,
+		fragmentShader: t ? zo : Ro,
 		uniforms: n,
-		defines: { BICUBIC: no.bicubic },
+		defines: { BICUBIC: jo.bicubic },
 		side: e ? u : m,
 		...t ? {
-			...po,
-			...mo
+			...Vo,
+			...Ho
 		} : {}
 	});
 	return r.name = "eigen textures", r;
 }
-function go(e) {
+function Wo(e) {
 	let { side: t } = e;
 	return new O({
 		name: "depth of sheets",
 		glslVersion: h,
-		vertexShader: ao,
-		fragmentShader: fo,
+		vertexShader: Po,
+		fragmentShader: Bo,
 		colorWrite: !1,
 		side: t,
 		stencilWrite: !0,
 		stencilZPass: se
 	});
 }
-function _o(e, t, n) {
-	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !vo(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
+function Go(e, t, n) {
+	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !Ko(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
 	u && (d.elements[13] = 1), e.toPhotograph.value.multiplyMatrices(d, l.multiply(c)), e.photograph.value = n;
 }
-function vo(e) {
+function Ko(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
-var yo = 3, bo = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", xo = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", So = `#version 300 es
+// eigenfield-three/src/film-codes.ts
+var qo = /* @__PURE__ */ new Set([
+	"I420P10",
+	"I422P10",
+	"I444P10"
+]), Jo = /* @__PURE__ */ new Set([
+	"I420",
+	"I420A",
+	"I422",
+	"I444",
+	"NV12"
+]), Yo = /* @__PURE__ */ new Set([
+	"RGBA",
+	"RGBX",
+	"BGRA",
+	"BGRX"
+]), Xo = 1, Zo = Uint16Array.from({ length: 256 }, (e, t) => Math.round(t * 1023 / 255));
+async function Qo(e, t) {
+	let n = e.format ?? "", { width: r, height: i } = e.visibleRect ?? {
+		width: 0,
+		height: 0
+	};
+	if (!qo.has(n) && !Jo.has(n) && !Yo.has(n)) throw new j("unsupported", `This browser does not hand out its frames (${n || "no format"}).`, "");
+	let a = e.allocationSize(), o = t && t.length >= a ? t : new Uint8Array(a), [s] = await e.copyTo(o), { offset: c, stride: l } = s ?? {
+		offset: 0,
+		stride: 0
+	};
+	if (qo.has(n)) return {
+		data: o.subarray(c),
+		width: r,
+		height: i,
+		stride: l,
+		room: o
+	};
+	let [u, d] = Yo.has(n) ? [4, c + Xo] : [1, c];
+	return $o(o.subarray(d), l, u, [r, i]);
+}
+function $o(e, t, n, [r, i]) {
+	let a = new Uint16Array(r * i);
+	for (let o = 0; o < i; o++) for (let i = 0; i < r; i++) a[o * r + i] = Zo[e[o * t + n * i]];
+	return {
+		data: new Uint8Array(a.buffer),
+		width: r,
+		height: i,
+		stride: 2 * r
+	};
+}
+function es({ data: e, stride: t }, { size: [n, r], at: i }) {
+	return i.map(([i, a]) => ({
+		data: e.subarray(a * t + 2 * i),
+		width: n,
+		height: r,
+		stride: t
+	}));
+}
+// eigenfield-three/src/pieces.ts
+function ts(e) {
+	for (let { picture: t } of e) "close" in t && t.close();
+}
+// eigenfield-three/src/strength.ts
+var ns = 128, rs = .98;
+async function is(e, t, n, r) {
+	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
+	if (!o) return 1;
+	let s = t - (a - o.textures), c = li(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(ns, ns).getContext("2d", { willReadFrequently: !0 });
+	if (!d) return 1;
+	d.imageSmoothingEnabled = !1;
+	let f = [];
+	return u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
+		d.drawImage(e, 0, t, e.width, r, 0, 0, ns, ns);
+		let { data: u } = d.getImageData(0, 0, ns, ns);
+		(l ? [
+			0,
+			1,
+			2
+		] : [a]).forEach((e) => {
+			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
+			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
+		});
+	}), ts(u), as(f);
+}
+function as(e) {
+	e.sort((e, t) => e - t);
+	let t = e[Math.floor(rs * e.length)] ?? 0;
+	return t > 0 ? .45 / t : 1;
+}
+// eigenfield-three/src/film-textures.ts
+var os = class {
+	scene;
+	films;
+	filling = null;
+	constructor(e, t) {
+		this.scene = e, this.films = t;
+	}
+	fill(e) {
+		return this.filling = e, this.put(e), e.announce(), Promise.resolve();
+	}
+	show(e) {
+		this.films = e, this.filling && this.put(this.filling);
+	}
+	gain(e) {
+		let t = 0;
+		for (let { channels: n, bases: r } of this.scene.planes) {
+			let i = this.scene.colours.slice(t, t += n), a = r.find(({ count: t }) => t > e)?.pictures[0];
+			if (a) return Promise.resolve(this.gainOf(a, e, i));
+		}
+		return Promise.resolve(1);
+	}
+	dispose() {
+		this.filling = null;
+	}
+	put(e) {
+		e.together(() => {
+			this.scene.planes.forEach(({ mean: t }, n) => e.putMean(n, {
+				pieces: this.piecesOf(t),
+				precision: null
+			})), J(this.scene).forEach(({ pictures: [t] }, n) => {
+				t && e.putTextures(n, 0, this.piecesOf(t), t);
+			});
+		});
+	}
+	piecesOf({ part: e }) {
+		let t = e && this.films[e.film];
+		return t ? es(t, e).map((e) => ({
+			picture: e,
+			row: 0,
+			rows: e.height
+		})) : [];
+	}
+	gainOf({ part: e, pieces: t, scale: n, zero: r }, i, a) {
+		let o = e && this.films[e.film];
+		return o ? as(es(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
+			let s = t * i + o, c = Math.max(...(a[o] ?? [0]).map(Math.abs)) * (n[s] ?? 0);
+			return cs(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
+		})) : 1;
+	}
+}, ss = 8;
+function cs({ data: e, width: t, height: n, stride: r }) {
+	let i = [];
+	for (let a = 0; a < n; a += ss) for (let n = 0; n < t; n += ss) {
+		let t = a * r + 2 * n;
+		i.push(e[t] + 256 * e[t + 1]);
+	}
+	return i;
+}
+// eigenfield-three/src/container.ts
+var ls = 1179937895, us = 1313821514, ds = 5130562, fs = 1280591429;
+async function ps(e) {
+	let t = await e.read(0, 4).catch((t) => {
+		throw t instanceof j && t.code === "truncated" ? vs(e.received === 0) : t;
+	});
+	if (new DataView(t).getUint32(0, !0) !== ls) throw vs(!1);
+	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
+	if (r !== 2) throw new j("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
+	if (i < 20) throw M("8", "a length of no file");
+	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
+	if (a.getUint32(4, !0) !== us) throw M("16", "it does not begin with JSON");
+	if (o > Se) throw M("12", `${o} bytes of JSON`);
+	if (20 + o > i) throw M("12", "a chunk longer than the file");
+	let s = hs(await e.read(20, 20 + o)), c = (t, n) => () => ms(e, 20 + o, i, t, n);
+	return {
+		length: i,
+		text: s,
+		json: gs(s, "20"),
+		binary: c(ds, "binary chunk"),
+		groups: c(fs, "chunk of groups")
+	};
+}
+async function ms(e, t, n, r, i) {
+	let a = t;
+	for (let t = 1; t < 64 && a + 8 <= n; t++) {
+		let t = new DataView(await e.read(a, a + 8)), i = t.getUint32(0, !0);
+		if (a + 8 + i > n) throw M(String(a), "a chunk longer than the file");
+		if (t.getUint32(4, !0) === r) return a + 8;
+		a += 8 + i;
+	}
+	throw M(String(t), `no ${i}`);
+}
+function hs(e) {
+	try {
+		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
+	} catch {
+		throw M("20", "its JSON is not UTF-8");
+	}
+}
+function gs(e, t) {
+	if (_s(e) > 64) throw M(t, "its JSON is nested too deep");
+	try {
+		return JSON.parse(e);
+	} catch {
+		throw M(t, "its JSON cannot be read");
+	}
+}
+function _s(e) {
+	let [t, n] = [0, 0], r = !1;
+	for (let i = 0; i < e.length; i++) {
+		let a = e[i];
+		if (a === "\"") r = !r;
+		else if (r && a === "\\") i += 1;
+		else if (r) continue;
+		else a === "[" || a === "{" ? n = Math.max(n, ++t) : (a === "]" || a === "}") && --t;
+	}
+	return n;
+}
+function vs(e) {
+	return new j("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
+}
+// eigenfield-three/src/proxy.ts
+var ys = 65535;
+function bs(e, t) {
+	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
+	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
+	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
+	for (let e = 0; e < n.count; e++) {
+		if (!(Math.max(Math.abs(n.getX(e)), Math.abs(n.getY(e)), Math.abs(n.getZ(e))) <= 1e30)) throw M(t.position.where, `vertex ${e} is not finite`);
+		if (!(Math.max(Math.abs(r.getX(e)), Math.abs(r.getY(e))) <= 1e30)) throw M(t.uv.where, `texture coordinates of vertex ${e} are not finite`);
+	}
+	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
+}
+async function xs({ view: e, codec: t, where: n }, r) {
+	return Ss(t.decode(new Uint8Array(await r(e)), n), n);
+}
+function Ss({ positions: n, uv: r, indices: i }, a) {
+	if (!i.length) throw M(a, "a mesh without faces");
+	let o = new t();
+	o.setAttribute("position", new e(n, 3)), o.setAttribute("uv", new e(r, 2));
+	let s = n.length / 3 <= ys;
+	return o.setIndex(new e(s ? Uint16Array.from(i) : i, 1)), o;
+}
+function Cs(e) {
+	return {
+		vertices: e.getAttribute("position").count,
+		triangles: (e.index?.count ?? 0) / 3
+	};
+}
+// eigenfield-three/src/groups.ts
+var ws = 3, Ts = 4, Es = class {
+	scene;
+	timeline;
+	read;
+	kept = /* @__PURE__ */ new Map();
+	mesh = null;
+	constructor(e, t, n) {
+		this.scene = e, this.timeline = t, this.read = n;
+	}
+	open(e) {
+		let t = this.kept.get(e) ?? this.opened(e);
+		this.kept.delete(e), this.kept.set(e, t);
+		for (let [e] of this.kept) this.kept.size > ws && this.kept.delete(e);
+		return t;
+	}
+	async opened(e) {
+		let t = this.timeline.groups[e];
+		if (!t) throw RangeError(`no group ${e}`);
+		let n = new Uint8Array(await this.read(t.offset, t.length));
+		await Os(n, t);
+		let { head: r, at: i } = await ks(n, t), a = As(n, i, t), o = r.key("mesh"), s = this.geometryOf(a(o.key("length")), Rr("mesh", o.key("codec"), "mesh-2").decode, o.where), c = this.weightsOf(r, a), { first: l, frames: u } = t, d = js(r, t, this.timeline.films.length, a);
+		return {
+			index: e,
+			first: l,
+			frames: u,
+			geometry: s,
+			omega: c,
+			...this.scalesOf(r),
+			units: d
+		};
+	}
+	geometryOf(e, t, n) {
+		let r = this.mesh;
+		if (r && r.bytes.length === e.length && r.bytes.every((t, n) => t === e[n])) return r.geometry;
+		let i = Ss(t(e, n), n);
+		return this.mesh = {
+			bytes: e,
+			geometry: i
+		}, i;
+	}
+	weightsOf(e, t) {
+		let n = this.scene.heldOut.filter((e) => !e).length, r = Ns(e.key("weights"), this.scene.planes.length);
+		return la(n, this.scene.planes.flatMap(({ bases: e }, i) => {
+			let a = r[i] && Ns(r[i], e.length);
+			return e.map(({ count: e }, r) => {
+				let i = a[r];
+				return da(U["weights-1"].decode(t(i), i.where), n, e, i.where);
+			});
+		}));
+	}
+	scalesOf(e) {
+		let { planes: t } = this.scene;
+		return {
+			means: Ns(e.key("means"), t.length).map((e, n) => Ms(e, t[n].mean)),
+			bases: Ns(e.key("bases"), t.length).flatMap((e, n) => {
+				let { bases: r } = t[n];
+				return Ns(e, r.length).map((e, t) => Ms(e, r[t].pictures[0]));
+			})
+		};
+	}
+};
+function Ds(e, { means: t, bases: n }) {
+	e.planes.forEach(({ mean: e }, n) => Object.assign(e, t[n])), J(e).forEach(({ pictures: [e] }, t) => e && Object.assign(e, n[t]));
+}
+async function Os(e, { sha256: t, where: n }) {
+	let r = globalThis.crypto?.subtle;
+	if (!r) return;
+	let i = new Uint8Array(await r.digest("SHA-256", e));
+	if (Array.from(i, (e) => e.toString(16).padStart(2, "0")).join("") !== t) throw M(n, "other bytes than its SHA-256 says");
+}
+async function ks(e, { where: t }) {
+	if (e.length < Ts) throw M(t, "no head");
+	let n = Ts + new DataView(e.buffer).getUint32(0, !0);
+	if (n > e.length) throw M(t, "a head longer than the group");
+	let r = await be(e.subarray(Ts, n), "deflate-raw", Ve, t);
+	return {
+		head: new W(gs(new TextDecoder("utf-8").decode(r), t), t),
+		at: n
+	};
+}
+function As(e, t, n) {
+	let r = t;
+	return (t) => {
+		let i = r;
+		if (r += t.integer(1, n.length), r > e.length) throw t.wrong("beyond the end of the group");
+		return e.subarray(i, r);
+	};
+}
+function js(e, t, n, r) {
+	return Ns(e.key("frames"), t.frames).map((e) => Ns(e, n).map((e) => r(e)));
+}
+function Ms(e, { pieces: t, textures: n }) {
+	let r = e;
+	return {
+		scale: di(r.key("scale"), t, n),
+		zero: di(r.key("zero"), t, n)
+	};
+}
+function Ns(e, t) {
+	let n = e.items(t);
+	if (n.length !== t) throw e.wrong(`${t} entries are needed`);
+	return n;
+}
+var Ps = 3, Fs = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", Is = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", Ls = `#version 300 es
 precision highp float;
 precision highp int;
 uniform highp sampler2D picture; // values, and whether they are of a chart
@@ -2848,7 +3415,7 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec2 own = texelFetch(picture, at, 0).rg;
   vec2 sum = vec2(own.r * own.g, own.g);
-  for (int far = 1; far <= ${yo} && sum.y == 0.0; far++) {
+  for (int far = 1; far <= ${Ps} && sum.y == 0.0; far++) {
     for (int y = -far; y <= far; y++) {
       for (int x = -far; x <= far; x++) {
         vec2 near = texelFetch(picture, clamp(at + ivec2(x, y), ivec2(0), size - 1), 0).rg;
@@ -2858,9 +3425,9 @@ void main() {
   }
   stored = vec4(sum.y > 0.0 ? sum.x / sum.y : own.r);
 }
-`, Co = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
+`, Rs = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
 // eigenfield-three/src/parts.ts
-function wo(e, t, n) {
+function zs(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -2870,7 +3437,7 @@ function wo(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = Eo(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = Hs(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -2898,7 +3465,7 @@ function wo(e, t, n) {
 						a + e[1] / i[1]
 					],
 					colours: f,
-					...Do(l, u, h, n.halves && qr(l)),
+					...Us(l, u, h, n.halves && ci(l)),
 					basis: {
 						ready: m,
 						column: o,
@@ -2906,11 +3473,17 @@ function wo(e, t, n) {
 					}
 				});
 			}
-			o += p, s += h ? ga(h) : 0;
+			o += p, s += h ? Wa(h) : 0;
 		}
 	}), r;
 }
-function To({ planes: e, sheets: t }, { means: n, needs: r }) {
+function Bs(e, t, n, r) {
+	zs(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
+		scale: t,
+		bias: n
+	}));
+}
+function Vs({ planes: e, sheets: t }, { means: n, needs: r }) {
 	let i = n[e.length], a = r.means[e.length]?.size;
 	return !t || !i || !a ? null : {
 		stored: i,
@@ -2926,12 +3499,12 @@ function To({ planes: e, sheets: t }, { means: n, needs: r }) {
 			0,
 			0
 		]],
-		...Eo(t.opacity),
+		...Hs(t.opacity),
 		basis: null
 	};
 }
-function Eo({ mean: e, channels: t, precision: n }) {
-	let { scale: r, zero: i } = e, a = n ? 4 : 1 / Yr(e, qr([e])), o = {
+function Hs({ mean: e, channels: t, precision: n }) {
+	let { scale: r, zero: i } = e, a = n ? 4 : 1 / ui(e, ci([e])), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
 	};
@@ -2941,8 +3514,8 @@ function Eo({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function Do(e, t, n, r) {
-	let i = e.flatMap((e) => Array(e.textures).fill(Yr(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * ga(n), c = {
+function Us(e, t, n, r) {
+	let i = e.flatMap((e) => Array(e.textures).fill(ui(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * Wa(n), c = {
 		scale: new Float32Array(s),
 		bias: new Float32Array(s)
 	};
@@ -2952,20 +3525,150 @@ function Do(e, t, n, r) {
 	}
 	return c;
 }
-// eigenfield-three/src/footprint.ts
-var Oo = 256;
-function ko(e, t, n) {
+// eigenfield-three/src/player.ts
+var Ws = .25, Gs = class extends f {
+	timeline;
+	user;
+	first;
+	duration;
+	frames;
+	rate;
+	ring;
+	shown;
+	clock;
+	last = null;
+	plays = !1;
+	pace = 1;
+	goal = null;
+	following = null;
+	waiters = [];
+	asked = null;
+	disposed = !1;
+	constructor(e, t, n) {
+		super(), this.timeline = e, this.user = n, this.rate = e.rate, this.frames = e.frames, this.first = e.first, this.duration = e.frames / e.rate, this.shown = {
+			position: 0,
+			number: 0
+		}, this.clock = 0, this.ring = t({
+			ready: () => this.wake(),
+			failed: (e, t) => this.fail(e, t)
+		});
+	}
+	get playing() {
+		return this.plays;
+	}
+	get frame() {
+		return this.shown.number;
+	}
+	get time() {
+		return Oi(this.timeline, this.shown.number);
+	}
+	get sought() {
+		return (this.following ?? this.goal ?? this.shown.position) % this.frames;
+	}
+	get waiting() {
+		return this.goal !== null;
+	}
+	get late() {
+		return this.ring.late;
+	}
+	get open() {
+		return this.ring.open;
+	}
+	get loop() {
+		return this.ring.loop;
+	}
+	set loop(e) {
+		this.ring.loop = e, this.ring.feed(), this.dispatchEvent({ type: "change" });
+	}
+	get speed() {
+		return this.pace;
+	}
+	set speed(e) {
+		if (!(e > 0 && e < Infinity)) throw RangeError("A speed is above 0.");
+		this.pace = e, this.dispatchEvent({ type: "change" });
+	}
+	play() {
+		this.plays || this.disposed || (this.plays = !0, this.last = null, !this.loop && (this.following ?? this.goal ?? this.shown.position) >= this.end && this.toFrame(0), this.dispatchEvent({ type: "change" }), this.wake());
+	}
+	pause() {
+		this.plays && (this.plays = !1, this.clock = this.shown.position, this.dispatchEvent({ type: "change" }));
+	}
+	seek(e) {
+		return this.toFrame(Di(this.timeline, e));
+	}
+	toFrame(e) {
+		return this.toPosition(this.lap + Math.min(Math.max(Math.round(e), 0), this.frames - 1));
+	}
+	step(e) {
+		this.pause();
+		let t = (this.following ?? this.goal ?? this.shown.position) + Math.round(e);
+		return this.loop ? this.toPosition(t < 0 ? t + this.frames : t) : this.toPosition(Math.min(Math.max(t, this.lap), this.end));
+	}
+	update(e = performance.now()) {
+		if (this.disposed) return;
+		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, Ws);
+		if (this.last = this.plays && this.goal === null ? e : null, this.goal === null && !this.plays) return;
+		this.goal === null && (this.clock = this.advanced(t));
+		let n = this.ring.take(this.goal ?? Math.floor(this.clock));
+		n && this.show(n), this.goal === null && !this.loop && this.clock >= this.end && this.ring.isOver(this.end) && this.pause();
+	}
+	dispose() {
+		this.disposed = !0, this.plays = !1, this.ring.dispose(), this.settle();
+	}
+	get lap() {
+		return this.shown.position - this.shown.number;
+	}
+	get end() {
+		return this.lap + this.frames - 1;
+	}
+	advanced(e) {
+		let t = this.clock + e * this.pace * this.rate, n = this.loop ? this.ring.reach : Math.min(this.ring.reach, this.end);
+		return Math.max(this.clock, Math.min(t, n));
+	}
+	toPosition(e) {
+		let t = new Promise((e) => void this.waiters.push(e));
+		return this.goal === null ? this.begin(e) : this.following = e, t;
+	}
+	begin(e) {
+		if (this.following = null, e === this.shown.position) return this.goal = null, this.clock = e, this.settle();
+		if (this.goal = this.ring.seek(e) ? e : null, this.goal === null) return this.settle();
+		this.dispatchEvent({ type: "change" }), this.wake();
+	}
+	show(e) {
+		let { position: t, number: n } = e;
+		this.shown = {
+			position: t,
+			number: n
+		}, this.user.show(e), t === this.goal && (this.goal = null, this.clock = t, this.following === null ? this.settle() : this.begin(this.following)), this.dispatchEvent({ type: "frame" });
+	}
+	settle() {
+		for (let e of this.waiters.splice(0)) e();
+		this.dispatchEvent({ type: "change" });
+	}
+	wake() {
+		this.asked !== null || this.disposed || !this.plays && this.goal === null || (this.asked = requestAnimationFrame((e) => {
+			this.asked = null, this.update(e), this.plays && this.wake();
+		}));
+	}
+	fail(e, t) {
+		if (this.disposed) return;
+		this.user.failed(e), t === null && this.pause();
+		let n = this.goal !== null && ki(this.timeline, this.goal % this.frames);
+		n === !1 || t !== null && n !== t || (this.goal = this.following = null, this.settle());
+	}
+}, Ks = 256;
+function qs(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / Oo)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / Ks)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Ao(t, i.getX(e), i.getY(e), i.getZ(e))), l = jo(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Js(t, i.getX(e), i.getY(e), i.getZ(e))), l = Ys(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = jo(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = Ys(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -2975,7 +3678,7 @@ function ko(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function Ao({ K: e, R: t, t: n }, r, i, a) {
+function Js({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -2983,12 +3686,12 @@ function Ao({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function jo(e) {
+function Ys(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/sheet-stack.ts
-var Mo = "sheets", No = 16, Po = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Fo = `${oo}${so}
+var Xs = "sheets", Zs = 16, Qs = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", $s = `${Fo}${Io}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -3013,7 +3716,7 @@ void main() {
   gl_FragDepth = depth;
   fragment = colour;
 }
-`, Io = new ae(), Lo = class {
+`, ec = new ae(), tc = class {
 	material;
 	scene = new k();
 	camera = new n();
@@ -3023,16 +3726,16 @@ void main() {
 	everywhere = new t();
 	target = null;
 	constructor(t) {
-		this.material = t, this.depth = go(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
+		this.material = t, this.depth = Wo(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
 			let { materialIndex: o = 0 } = a, s = this.sheets.material.length / 2, c = s - 1 - (o >> 1);
 			e.getContext().depthRange(c / s, (c + 1) / s);
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
 		let { shown: n, photograph: r, toPhotograph: i } = t.uniforms;
 		this.screen = new O({
-			name: Mo,
+			name: Xs,
 			glslVersion: h,
-			vertexShader: Po,
-			fragmentShader: Fo,
+			vertexShader: Qs,
+			fragmentShader: $s,
 			uniforms: {
 				shown: n,
 				photograph: r,
@@ -3046,7 +3749,7 @@ void main() {
 				toPlace: { value: new x() }
 			},
 			transparent: !0,
-			...po
+			...Vo
 		});
 		let a = new Float32Array([
 			-1,
@@ -3062,7 +3765,7 @@ void main() {
 		this.everywhere.setAttribute("position", new e(a, 3));
 	}
 	get bytes() {
-		return this.target ? No * this.target.width * this.target.height : 0;
+		return this.target ? Zs * this.target.width * this.target.height : 0;
 	}
 	setGeometry(e, t) {
 		e.clearGroups();
@@ -3080,7 +3783,7 @@ void main() {
 	attach(e, t) {
 		for (let t of [e.material].flat()) t.visible = !1;
 		let n = new S(this.everywhere, this.screen);
-		n.name = Mo, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
+		n.name = Xs, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
 			t(n, i), this.draw(n, i, e);
 		}, e.add(n);
 	}
@@ -3091,18 +3794,18 @@ void main() {
 		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
 	}
 	draw(e, t, n) {
-		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Io);
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(ec);
 		if (!a || !o) return;
-		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Ro(a, o));
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = nc(a, o));
 		let { target: s } = this;
-		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), Ga(e, t, () => {
+		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), bo(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
 		}), e.getContext().depthRange(0, 1);
 		let { uniforms: c } = this.screen;
 		this.set("sheets", s.textures[0]), this.set("solid", s.textures[1]), this.set("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
 	}
 };
-function Ro(e, t) {
+function nc(e, t) {
 	let n = new l(e, t, re);
 	n.format = c;
 	let r = new oe(e, t, {
@@ -3116,7 +3819,7 @@ function Ro(e, t) {
 	return i && (i.type = ne), r;
 }
 // eigenfield-three/src/surface.ts
-var zo = class {
+var rc = class {
 	meshes;
 	faces;
 	reference;
@@ -3131,7 +3834,7 @@ var zo = class {
 		if (!i) throw Error("a field needs a mesh");
 		this.mesh = i;
 		let a = [i.material].flat().some((e) => e.side !== m);
-		this.material = ho(a, t !== null), this.stack = t && new Lo(this.material);
+		this.material = Uo(a, t !== null), this.stack = t && new tc(this.material);
 		for (let t of e) {
 			let e = (e, n) => r(e, n, t);
 			this.stack ? this.stack.attach(t, e) : (t.material = this.material, t.onBeforeRender = (t, n, r) => e(t, r));
@@ -3149,7 +3852,7 @@ var zo = class {
 		if (n !== e) {
 			let { index: r, attributes: i } = e;
 			if (!r || !i.position || !i.uv) throw TypeError("A surface needs position, uv and an index.");
-			this.stack && t && ri({
+			this.stack && t && vi({
 				faces: t,
 				where: "the geometry"
 			}, e), n.dispose();
@@ -3158,52 +3861,52 @@ var zo = class {
 		e.boundingBox = e.boundingSphere = null, this.faces = t, this.version += 1, this.show(t);
 	}
 	show(e) {
-		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? ko(this.geometry, this.reference, [1, 1]) : 0;
+		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? qs(this.geometry, this.reference, [1, 1]) : 0;
 	}
 	dispose() {
 		this.stack?.dispose(), this.material.dispose(), this.geometry.dispose();
 	}
 };
 // eigenfield-three/src/gpu.ts
-function Bo(e) {
+function ic(e) {
 	let t = e.getContext();
 	if (!(t instanceof WebGL2RenderingContext)) throw new j("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
 	if ((t.getExtension("EXT_color_buffer_float") ?? t.getExtension("EXT_color_buffer_half_float")) || t.isContextLost()) return t;
 	throw new j("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
 }
-function Vo(e, t) {
+function ac(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function Ho(e, { components: t, halves: n }) {
+function oc(e, { components: t, halves: n }) {
 	return t > 2 ? n ? e.RGBA16F : e.RGBA8 : t > 1 ? n ? e.RG16F : e.RG8 : n ? e.R16F : e.R8;
 }
-function Uo(e, [t, n], r, i, a) {
-	return Ko(e, e.TEXTURE_2D_ARRAY, () => {
-		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, Ho(e, a), t, n, r);
+function sc(e, [t, n], r, i, a) {
+	return uc(e, e.TEXTURE_2D_ARRAY, () => {
+		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, oc(e, a), t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function Wo(e, t, n, r) {
+function cc(e, t, n, r) {
 	let { width: i, height: a } = n, o = r > 2 ? e.RGBA : r > 1 ? e.RG : e.RED;
-	qo(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
+	dc(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
 }
-function Go(e, [t, n], r) {
-	return Ko(e, e.TEXTURE_2D, () => {
-		e.texStorage2D(e.TEXTURE_2D, 1, Ho(e, r), t, n);
+function lc(e, [t, n], r) {
+	return uc(e, e.TEXTURE_2D, () => {
+		e.texStorage2D(e.TEXTURE_2D, 1, oc(e, r), t, n);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D, t, e.NEAREST);
 	});
 }
-function Ko(e, t, n) {
+function uc(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return qo(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return dc(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function qo(e, t, n, r) {
+function dc(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -3217,7 +3920,7 @@ function qo(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-function Jo(e, t, n) {
+function fc(e, t, n) {
 	let r = e.createProgram();
 	for (let [i, a] of [[e.VERTEX_SHADER, t], [e.FRAGMENT_SHADER, n]]) {
 		let t = e.createShader(i);
@@ -3225,7 +3928,7 @@ function Jo(e, t, n) {
 	}
 	return e.linkProgram(r), r;
 }
-function Yo(e, t, n, r) {
+function pc(e, t, n, r) {
 	if (!n) {
 		r();
 		return;
@@ -3233,9 +3936,9 @@ function Yo(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), qo(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), dc(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function Xo(e, t) {
+function mc(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -3250,13 +3953,13 @@ function Xo(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r && e.isProgram(r) ? r : null), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/charts.ts
-function Zo(e, t) {
-	let n = Jo(e, ...Co), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
+function hc(e, t) {
+	let n = fc(e, ...Rs), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
 		let { index: o } = t, s = t.getAttribute("uv"), c = Float32Array.from({ length: 2 * (o?.count ?? 0) }, (e, t) => {
 			let n = o?.getX(t >> 1) ?? 0;
 			return t % 2 ? s.getY(n) : s.getX(n);
 		}), [l, u] = [e.createVertexArray(), e.createBuffer()], d = e.getParameter(e.ARRAY_BUFFER_BINDING);
-		Xo(e, () => {
+		mc(e, () => {
 			e.useProgram(n), e.bindVertexArray(l), e.bindBuffer(e.ARRAY_BUFFER, u), e.bufferData(e.ARRAY_BUFFER, c, e.STREAM_DRAW);
 			let t = e.getAttribLocation(n, "uv");
 			e.enableVertexAttribArray(t), e.vertexAttribPointer(t, 2, e.FLOAT, !1, 0, 0), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, a, 0), e.viewport(0, 0, ...i), e.colorMask(!0, !0, !0, !0), e.drawArrays(e.TRIANGLES, 0, c.length / 2);
@@ -3267,7 +3970,7 @@ function Zo(e, t) {
 			let { geometry: r } = t;
 			if (i?.grid.join() !== n.join() || i.geometry !== r) {
 				e.deleteTexture(i?.texture ?? null);
-				let t = Go(e, n, {
+				let t = lc(e, n, {
 					components: 1,
 					halves: !1
 				});
@@ -3285,8 +3988,8 @@ function Zo(e, t) {
 	};
 }
 // eigenfield-three/src/packing.ts
-function Qo(e, t, n, r) {
-	let [i, a] = [Jo(e, bo, xo), Jo(e, bo, So)], [o, s] = [e.createFramebuffer(), e.createVertexArray()], c = t.smaller && Zo(e, r), l = (t) => e.getUniformLocation(i, t), u = Object.fromEntries([
+function gc(e, t, n, r) {
+	let [i, a] = [fc(e, Fs, Is), fc(e, Fs, Ls)], [o, s] = [e.createFramebuffer(), e.createVertexArray()], c = t.smaller && hc(e, r), l = !1, u = (t) => e.getUniformLocation(i, t), d = Object.fromEntries([
 		"precisions",
 		"covered",
 		"factors",
@@ -3296,39 +3999,51 @@ function Qo(e, t, n, r) {
 		"corner",
 		"nodes",
 		"zero"
-	].map((e) => [e, l(e)])), d = ({ picture: t, rows: n }, r, i, a, o, s) => {
-		let { size: c, corner: l, unit: d, codes: f } = i;
-		$o(t) ? e.uniform4f(u.factors, 255 * d, 65280 * d, 0, 0) : e.uniform4fv(u.factors, [
+	].map((e) => [e, u(e)])), f = ({ picture: t, rows: n }, r, i, a, o, s) => {
+		let { size: c, corner: l, unit: u, codes: f } = i;
+		_c(t) ? e.uniform4f(d.factors, 255 * u, 65280 * u, 0, 0) : e.uniform4fv(d.factors, [
 			0,
 			1,
 			2,
 			3
-		].map((e) => e === r ? f * d : 0)), e.uniform2i(u.size, t.width, n), e.uniform2i(u.made, ...c), e.uniform2i(u.corner, ...l), e.uniform1i(u.first, a), e.viewport(0, o, c[0], s), e.drawArrays(e.TRIANGLES, 0, 3);
-	}, f = (t, n) => {
+		].map((e) => e === r ? f * u : 0)), e.uniform2i(d.size, t.width, n), e.uniform2i(d.made, ...c), e.uniform2i(d.corner, ...l), e.uniform1i(d.first, a), e.viewport(0, o, c[0], s), e.drawArrays(e.TRIANGLES, 0, 3);
+	}, p = (t, n) => {
 		e.bindFramebuffer(e.DRAW_FRAMEBUFFER, o), n === null ? e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, t, 0) : e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, t, 0, n);
-	}, p = (t, { layer: n, component: r }) => {
-		f(t, n), e.colorMask(r === 0, r === 1, r === 2, r === 3);
-	}, m = (r, o, l, m, h, g) => {
-		let { picture: _, row: v, rows: y } = r, [b, x] = h.size, S = b < _.width || x < y ? t.smaller : null, C = Math.max(1, Math.floor((S ? n - 2 : n) * x / y));
-		Yo(e, 2, (S && c?.covered(h.grid)) ?? null, () => Yo(e, 0, o, () => {
-			for (let t = 0; t < x; t += C) {
-				let n = Math.min(C, x - t), a = Math.floor(t * y / x), o = Math.ceil((t + n) * y / x);
-				$o(_) ? ts(e, _, v + a, o - a) : es(e, _, v + a, o - a), Xo(e, () => {
-					e.useProgram(i), e.bindVertexArray(s), e.uniform1i(u.precisions, +!!g), e.uniform1i(u.covered, S ? 2 : 0), e.uniform2i(u.nodes, g?.precision.width ?? 0, g?.precision.height ?? 0), e.uniform1f(u.zero, g?.zero ?? 0), S ? (f(S, null), e.colorMask(!0, !0, !0, !0)) : p(l, m), d(r, m.channel, h, a, t, n);
-				});
+	}, m = (t, { layer: n, component: r }) => {
+		p(t, n), e.colorMask(r === 0, r === 1, r === 2, r === 3);
+	}, h = (r, o, u, h, g, _) => {
+		let { picture: v, row: y, rows: b } = r, [x, S] = g.size, C = x < v.width || S < b ? t.smaller : null, w = Math.max(1, Math.floor((C ? n - 2 : n) * S / b)), T = l && o === t.codes;
+		pc(e, 2, (C && c?.covered(g.grid)) ?? null, () => pc(e, 0, T ? null : o, () => {
+			for (let t = 0; t < S; t += w) {
+				let n = Math.min(w, S - t), a = Math.floor(t * b / S), o = Math.ceil((t + n) * b / S);
+				_c(v) ? yc(e, v, y + a, o - a) : vc(e, v, y + a, o - a);
+				let c = () => {
+					e.useProgram(i), e.bindVertexArray(s), e.uniform1i(d.precisions, +!!_), e.uniform1i(d.covered, C ? 2 : 0), e.uniform2i(d.nodes, _?.precision.width ?? 0, _?.precision.height ?? 0), e.uniform1f(d.zero, _?.zero ?? 0), C ? (p(C, null), e.colorMask(!0, !0, !0, !0)) : m(u, h), f(r, h.channel, g, a, t, n);
+				};
+				T ? c() : mc(e, c);
 			}
-		})), S && Yo(e, 0, S, () => Xo(e, () => {
-			e.useProgram(a), e.bindVertexArray(s), e.uniform2i(e.getUniformLocation(a, "size"), b, x), p(l, m), e.viewport(0, 0, b, x), e.drawArrays(e.TRIANGLES, 0, 3);
+		})), C && pc(e, 0, C, () => mc(e, () => {
+			e.useProgram(a), e.bindVertexArray(s), e.uniform2i(e.getUniformLocation(a, "size"), x, S), m(u, h), e.viewport(0, 0, x, S), e.drawArrays(e.TRIANGLES, 0, 3);
 		}));
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let s = $o(n.picture) ? t.codes : t.picture;
+			let s = _c(n.picture) ? t.codes : t.picture;
 			if (!s) return;
-			let c = () => i.forEach((e) => m(n, s, r, e, a, o));
-			o ? Yo(e, 1, t.precision, () => {
-				es(e, o.precision, 0, o.precision.height), c();
+			let c = () => i.forEach((e) => h(n, s, r, e, a, o));
+			o ? pc(e, 1, t.precision, () => {
+				vc(e, o.precision, 0, o.precision.height), c();
 			}) : c();
+		},
+		together(n) {
+			pc(e, 0, t.codes, () => mc(e, () => {
+				l = !0;
+				try {
+					n();
+				} finally {
+					l = !1;
+				}
+			}));
 		},
 		free() {
 			for (let n of Object.values(t)) e.deleteTexture(n);
@@ -3336,17 +4051,17 @@ function Qo(e, t, n, r) {
 		}
 	};
 }
-function $o(e) {
+function _c(e) {
 	return "data" in e;
 }
-function es(e, t, n, r) {
+function vc(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function ts(e, { data: t, width: n, stride: r }, i, a) {
+function yc(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
 // eigenfield-three/src/textures.ts
-var ns = class {
+var bc = class {
 	parts;
 	source;
 	surface;
@@ -3372,21 +4087,21 @@ var ns = class {
 		let { scene: i, info: a, meanSizes: o } = e, s = i.planes.flatMap(({ channels: e, bases: t }) => t.map((t) => ({
 			...t,
 			channels: e,
-			tenBits: qr(t.pictures)
+			tenBits: ci(t.pictures)
 		})));
 		this.layout = s;
-		let c = pi(i).map(({ channels: e, mean: t }, n) => ({
+		let c = zi(i).map(({ channels: e, mean: t }, n) => ({
 			size: o[n] ?? [1, 1],
 			channels: e,
 			pieces: t.pieces,
-			tenBits: qr([t])
+			tenBits: ci([t])
 		}));
 		this.needs = {
 			atlas: a.size,
 			means: c,
 			bases: s,
 			rays: a.facesPlane,
-			geometry: rs(n.geometry)
+			geometry: xc(n.geometry)
 		}, this.means = c.map(() => new p()), this.bases = s.map(() => new p()), this.ready = s.map(({ count: e }) => Array(e).fill(!1)), this.stillVersions = c.map(() => 0);
 	}
 	get hasMeans() {
@@ -3400,7 +4115,7 @@ var ns = class {
 		return Math.min(t, ...e);
 	}
 	get bytes() {
-		return this.plan ? this.plan.bytes - this.needs.geometry + rs(this.surface.geometry) : 0;
+		return this.plan ? this.plan.bytes - this.needs.geometry + xc(this.surface.geometry) : 0;
 	}
 	get attached() {
 		return this.renderer !== null || this.disposed;
@@ -3430,7 +4145,7 @@ var ns = class {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		let n = Bo(e);
+		let n = ic(e);
 		if (n.isContextLost()) return;
 		let { packer: r, plan: i } = this.makeRoom(n);
 		this.plan = i, this.packer = r, this.onPlan(i), await this.source.fill(this.filling(n, i, t)), t.aborted || this.onComplete();
@@ -3444,6 +4159,9 @@ var ns = class {
 			},
 			putTextures: (e, r, i, a) => {
 				n.aborted || this.putTextures(t, e, r, i, a);
+			},
+			together: (e) => {
+				n.aborted || this.packer?.together(e);
 			},
 			announce: () => {
 				n.aborted || this.onTexture();
@@ -3460,12 +4178,12 @@ var ns = class {
 			this.layout[t]
 		];
 		if (!(c instanceof WebGLTexture) || !l || !u) return;
-		let { size: d, grid: f, corner: p, channels: m, tenBits: h } = u, g = Yr(i, s && h), _ = {
+		let { size: d, grid: f, corner: p, channels: m, tenBits: h } = u, g = ui(i, s && h), _ = {
 			size: X(d, o),
 			grid: f,
 			corner: p,
 			unit: g,
-			codes: 255 * Jr(i)
+			codes: 255 * li(i)
 		};
 		for (let e = n; e < Math.min(n + i.textures, a); e++) {
 			let t = r.slice((e - n) * i.pieces, (e - n + 1) * i.pieces), a = m * Math.floor(e / 4);
@@ -3477,20 +4195,20 @@ var ns = class {
 		this.version += 1;
 	}
 	putMean(e, t, n, { pieces: r, precision: i }) {
-		let [a, o] = [this.means[n]?.sourceTexture, pi(this.parts.scene)[n]], { size: s, tenBits: c } = this.needs.means[n] ?? {};
+		let [a, o] = [this.means[n]?.sourceTexture, zi(this.parts.scene)[n]], { size: s, tenBits: c } = this.needs.means[n] ?? {};
 		if (!(a instanceof WebGLTexture) || !o || !s) return;
 		this.stillVersions[n] = this.version += 1;
 		let { mean: l, channels: u } = o, d = X(s, t.meanDown), [f] = r;
 		if (f && r.length === 1 && "close" in f.picture && !c && d.join() === s.join()) {
-			Wo(e, a, f.picture, u);
+			cc(e, a, f.picture, u);
 			return;
 		}
 		let p = {
 			size: d,
 			grid: s,
 			corner: [0, 0],
-			unit: Yr(l, c === !0),
-			codes: 255 * Jr(l)
+			unit: ui(l, c === !0),
+			codes: 255 * li(l)
 		};
 		this.put(r, a, u, p, (e) => ({
 			layer: Math.floor(e / 4),
@@ -3516,25 +4234,25 @@ var ns = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs;
-		this.needs.geometry = rs(this.surface.geometry);
+		this.needs.geometry = xc(this.surface.geometry);
 		let r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
-		for (let i = this.options.memory ?? da();; i /= 2) {
-			let a = ya(this.needs, Vo(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => Uo(e, X(t, o), ma(n), !1, {
+		for (let i = this.options.memory ?? za();; i /= 2) {
+			let a = qa(this.needs, ac(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => sc(e, X(t, o), Ha(n), !1, {
 				components: n,
 				halves: r
 			})), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return Uo(e, a ? X(t, s) : [1, 1], a ? ha(a, n) : 1, u, {
+				return sc(e, a ? X(t, s) : [1, 1], a ? Ua(a, n) : 1, u, {
 					components: Math.max(1, a),
 					halves: l && i
 				});
-			})], f = Sa(this.needs, a, i), [p, m, h] = [
+			})], f = Xa(this.needs, a, i), [p, m, h] = [
 				f.picture,
 				f.codes,
 				f.smaller
-			].map((t) => t ? Go(e, t.size, t.format) : null), g = Go(e, Ca(r), ia);
+			].map((t) => t ? lc(e, t.size, t.format) : null), g = lc(e, Za(r), Ma);
 			if (p && g && (m || !f.codes) && (h || !f.smaller) && !d.includes(null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = d[t] ?? null), {
-				packer: Qo(e, {
+				packer: gc(e, {
 					picture: p,
 					codes: m ?? null,
 					precision: g,
@@ -3553,11 +4271,11 @@ var ns = class {
 		}
 	}
 };
-function rs({ attributes: e, index: t }) {
+function xc({ attributes: e, index: t }) {
 	return Object.values(e).reduce((e, t) => e + t.array.byteLength, 0) + (t?.array.byteLength ?? 0);
 }
 // eigenfield-three/src/field.ts
-var is = 1.5, as = .001, os = class extends f {
+var Sc = 1.5, Cc = .001, wc = class extends f {
 	parts;
 	source;
 	mesh;
@@ -3575,10 +4293,12 @@ var is = 1.5, as = .001, os = class extends f {
 	photograph = null;
 	lastWeights = [];
 	lastByRay = !1;
+	player;
 	complete;
 	surface;
 	textures;
 	weights;
+	group;
 	summed = {
 		parts: [],
 		opacity: null
@@ -3590,7 +4310,7 @@ var is = 1.5, as = .001, os = class extends f {
 	constructor(e, t, n = {}) {
 		super(), this.parts = e, this.source = t;
 		let { scene: r, info: i } = e, a = r.sheets?.faces ?? null;
-		this.surface = new zo(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = Ri(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = new eo(i, J(r).map(({ count: e }) => e), e.omega, e.weights), this.textures = new ns(e, t, this.surface, n), this.complete = new Promise((e, t) => {
+		this.surface = new rc(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = fa(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.textures = new bc(e, t, this.surface, n), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0), this.listen(), n.renderer && this.textures.attach(n.renderer);
 	}
@@ -3628,25 +4348,45 @@ var is = 1.5, as = .001, os = class extends f {
 		this.textures.attach(e);
 	}
 	dispose() {
-		this.textures.dispose(), this.freeComposers(), this.surface.dispose(), this.weights.dispose();
+		this.player?.dispose(), this.textures.dispose(), this.freeComposers(), this.surface.dispose(), this.weights.dispose();
 	}
 	listen() {
 		this.textures.onPlan = (e) => {
 			let { scene: t } = this.parts;
 			this.freeComposers(), this.summed = {
-				parts: wo(t, this.textures, e),
-				opacity: To(t, this.textures)
+				parts: zs(t, this.textures, e),
+				opacity: Vs(t, this.textures)
 			}, e.limitation && queueMicrotask(() => this.dispatchEvent({ type: "limited" }));
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return is * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
+		return Sc * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
+	}
+	weightsOf(e) {
+		let { scene: t, info: n, weights: r } = this.parts;
+		return new ko(n, J(t).map(({ count: e }) => e), e, r);
+	}
+	makePlayer({ timeline: e, ring: t }) {
+		return new Gs(e, t, {
+			show: (e) => this.showFrame(e),
+			failed: (e) => this.dispatchEvent({
+				type: "error",
+				error: de(e)
+			})
+		});
+	}
+	showFrame({ group: e, films: t }) {
+		e !== this.group && this.enter(e), this.source instanceof os && this.source.show(t);
+	}
+	enter(e) {
+		let { scene: t } = this.parts, { plan: n } = this.textures;
+		this.group = e, e.geometry !== this.surface.geometry && this.surface.setGeometry(e.geometry), this.weights.dispose(), this.weights = this.weightsOf(e.omega), Ds(t, e), n && Bs(this.summed.parts, t, this.textures, n);
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = ls(t, n), [i, a] = Wi(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
+		let r = Dc(t, n), [i, a] = va(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
 		this.setView(), this.setExposure(o, [i, a]);
-		let u = no[this.filter];
+		let u = jo[this.filter];
 		l.defines.BICUBIC !== u && (l.defines.BICUBIC = u, l.needsUpdate = !0), l.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
@@ -3655,7 +4395,7 @@ var is = 1.5, as = .001, os = class extends f {
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
 		if (!s) {
 			let { parts: e, opacity: t } = this.summed;
-			s = new qa(i, e, t, o, this.surface, a), this.composers.set(o, s);
+			s = new So(i, e, t, o, this.surface, a), this.composers.set(o, s);
 		}
 		s.compose(e, t, n);
 		let { composed: c, finest: l } = this.surface.material.uniforms;
@@ -3666,15 +4406,15 @@ var is = 1.5, as = .001, os = class extends f {
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.surface.material.uniforms.shown.value, r = n === ro.eigen ? this.shownEigen : null;
+		let n = this.surface.material.uniforms.shown.value, r = n === Mo.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			opacity: this.textures.opacityVersion,
 			only: r,
-			count: n === ro.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === Mo.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && Va(this.info.viewPlane, t),
+			eye: t && go(this.info.viewPlane, t),
 			places: t ? this.surface.version : 0,
 			maps: t && this.weights.maps(this.mixing, this.usable)
 		};
@@ -3682,7 +4422,7 @@ var is = 1.5, as = .001, os = class extends f {
 	setExposure(e, t) {
 		let { cameras: n, heldOut: r, mixedColours: i, viewPlane: a } = this.info, o = this.exposure ?? (i || this.showsErrors ? e : null), s = o === null ? void 0 : n[o], c = [[s, 1]];
 		if (i && (o === null || r[o])) {
-			let e = s ? Wi(a, s.centre) : t, { camera: n, weight: r } = this.parts.weights.at(...e, this.mixing);
+			let e = s ? va(a, s.centre) : t, { camera: n, weight: r } = this.parts.weights.at(...e, this.mixing);
 			c = [
 				0,
 				1,
@@ -3690,7 +4430,7 @@ var is = 1.5, as = .001, os = class extends f {
 				3
 			].map((e) => [this.encoded[n[e] ?? 0], r[e] ?? 0]);
 		}
-		let { scale: l, bias: u } = ta(c), { exposureScale: d, exposureBias: f } = this.surface.material.uniforms;
+		let { scale: l, bias: u } = ka(c), { exposureScale: d, exposureBias: f } = this.surface.material.uniforms;
 		d.value.fromArray(l), f.value.fromArray(u);
 	}
 	get showsErrors() {
@@ -3698,9 +4438,9 @@ var is = 1.5, as = .001, os = class extends f {
 	}
 	setView() {
 		let { uniforms: e } = this.surface.material, t = this.showsErrors, n = this.view === "error" && !t ? "picture" : this.view, r = this.shownEigen;
-		e.shown.value = ro[n === "eigen" && r >= this.loaded ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
+		e.shown.value = Mo[n === "eigen" && r >= this.loaded ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
 		let i = t && this.info.cameras[this.camera ?? 0];
-		i && this.photograph && _o(e, i, this.photograph);
+		i && this.photograph && Go(e, i, this.photograph);
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -3713,29 +4453,29 @@ var is = 1.5, as = .001, os = class extends f {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= as * Math.max(...r);
+		return Math.abs(i) <= Cc * Math.max(...r);
 	}
 	fail(e) {
-		if (us(e)) return;
+		if (Oc(e)) return;
 		let t = de(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
 		this.dispatchEvent({
 			type: "error",
 			error: new j(t.code, r, t.where)
 		});
 	}
-}, ss = new x(), cs = new A();
-function ls(e, t) {
-	return cs.setFromMatrixPosition(e.matrixWorld).applyMatrix4(ss.copy(t.matrixWorld).invert()), [
-		cs.x,
-		cs.y,
-		cs.z
+}, Tc = new x(), Ec = new A();
+function Dc(e, t) {
+	return Ec.setFromMatrixPosition(e.matrixWorld).applyMatrix4(Tc.copy(t.matrixWorld).invert()), [
+		Ec.x,
+		Ec.y,
+		Ec.z
 	];
 }
-function us(e) {
+function Oc(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var ds = class {
+var kc = class {
 	received = 0;
 	chunks = [];
 	waiters = [];
@@ -3778,113 +4518,214 @@ var ds = class {
 		}
 		return n.buffer;
 	}
-}, fs = 1179937895, ps = 1313821514, ms = 5130562;
-async function hs(e) {
-	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof j && t.code === "truncated" ? bs(e.received === 0) : t;
-	});
-	if (new DataView(t).getUint32(0, !0) !== fs) throw bs(!1);
-	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
-	if (r !== 2) throw new j("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
-	if (i < 20) throw M("8", "a length of no file");
-	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== ps) throw M("16", "it does not begin with JSON");
-	if (o > Ce) throw M("12", `${o} bytes of JSON`);
-	if (20 + o > i) throw M("12", "a chunk longer than the file");
-	let s = _s(await e.read(20, 20 + o));
-	return {
-		length: i,
-		text: s,
-		json: vs(s, "20"),
-		binary: () => gs(e, 20 + o, i)
+}, Ac = 8, jc = class {
+	timeline;
+	groups;
+	user;
+	loop = !0;
+	late = 0;
+	decoders;
+	slots = /* @__PURE__ */ new Map();
+	skipped = /* @__PURE__ */ new Set();
+	rooms;
+	shown = null;
+	wanted = 0;
+	from = 1;
+	next = 0;
+	given = null;
+	fed = 0;
+	broken = /* @__PURE__ */ new Set();
+	newest = -1;
+	turn = 0;
+	feeding = !1;
+	constructor(e, t, n) {
+		this.timeline = e, this.groups = t, this.user = n, this.rooms = e.films.map(() => []), this.decoders = e.films.map(({ codec: e, size: t, where: n }, r) => e.decode(t, n, {
+			take: (e, t) => this.receive(r, e, t),
+			closed: () => this.feed(),
+			failed: (e) => this.fail(e)
+		}));
+	}
+	get open() {
+		return this.decoders.reduce((e, t) => e + t.open, 0);
+	}
+	get reach() {
+		return Math.max(this.newest, this.from) + Ac / 2;
+	}
+	isOver(e) {
+		return this.newest >= e && ![...this.slots.keys()].some((t) => t <= e);
+	}
+	seek(e) {
+		let t = ki(this.timeline, this.numberOf(e));
+		if (this.broken.has(t)) return !1;
+		let n = e - this.numberOf(e) + (this.timeline.groups[t]?.first ?? 0), r = this.slots.has(e) && ![...this.skipped].some((t) => t > e);
+		(this.given === null || this.next <= n || e < this.next && !r) && (this.stop(), this.next = n), this.wanted = this.from = e;
+		for (let [t, n] of this.slots) t < e && this.forget(t, n);
+		return this.feed(), !0;
+	}
+	take(e) {
+		this.wanted = e;
+		let [t, n] = [...this.slots].filter(([t, { films: n }]) => t <= e && !n.includes(null)).at(-1) ?? [];
+		if (t === void 0 || !n) return this.feed(), null;
+		for (let [e, n] of this.slots) e >= t || (this.late += 1, this.forget(e, n));
+		this.slots.delete(t);
+		for (let e of this.skipped) e < t && this.skipped.delete(e);
+		return this.reuse(this.shown?.films ?? []), this.from = t + 1, this.shown = {
+			position: t,
+			number: this.numberOf(t),
+			group: n.group,
+			films: n.films
+		}, this.feed(), this.shown;
+	}
+	feed() {
+		if (this.feeding) return;
+		this.feeding = !0;
+		let { turn: e } = this;
+		this.feedAll().catch((t) => {
+			e === this.turn && this.fail(t);
+		}).finally(() => {
+			this.feeding = !1, e !== this.turn && this.feed();
+		});
+	}
+	dispose() {
+		this.stop(), this.loop = !1, this.next = Infinity;
+		for (let e of this.decoders) e.dispose();
+	}
+	numberOf(e) {
+		return e % this.timeline.frames;
+	}
+	get hasRoom() {
+		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = Math.max(this.from, this.wanted) + Ac;
+		return this.next < Math.min(n, t) && this.decoders.every(({ ready: e }) => e);
+	}
+	async feedAll() {
+		for (; this.hasRoom;) {
+			let [{ turn: e }, t, n] = [
+				this,
+				this.next,
+				this.numberOf(this.next)
+			], r = ki(this.timeline, n);
+			if (this.broken.has(r)) {
+				this.pass(r, t);
+				continue;
+			}
+			this.fed = r;
+			let i = this.given?.index === r ? this.given : await this.groups.open(r), a = n - i.first, o = i.units[a] ?? [];
+			if (a === 0 && await Promise.all(this.decoders.map((e, t) => e.start(o[t]))), e !== this.turn || (this.given = i, this.next = t + 1, this.decoders.forEach((e, n) => e.decode(o[n], t, a === 0)), a === i.frames - 1 && await Promise.all(this.decoders.map((e) => e.flush())), e !== this.turn)) return;
+		}
+	}
+	async receive(e, t, n) {
+		let [{ turn: r }, i] = [this, this.slotOf(t)];
+		if (!i) return;
+		let a = await Qo(n, this.rooms[e]?.pop() ?? null);
+		if (r !== this.turn || this.slots.get(t) !== i) return this.reuseOne(e, a);
+		i.films[e] = a, i.films.includes(null) || this.user.ready();
+	}
+	slotOf(e) {
+		let t = this.slots.get(e);
+		if (t || this.skipped.has(e)) return t ?? null;
+		if (this.newest = Math.max(this.newest, e), e < this.from || !this.given) return null;
+		if (e < this.wanted && this.slots.size > 0) return this.late += 1, this.skipped.add(e), null;
+		let n = {
+			group: this.given,
+			films: this.decoders.map(() => null)
+		};
+		return this.slots.set(e, n), n;
+	}
+	fail(e) {
+		if (!(e instanceof j && (e.code === "damaged" || e.code === "truncated"))) return this.stop(), this.next = Infinity, this.user.failed(e, null);
+		this.halt();
+		for (let [e, t] of this.slots) t.films.includes(null) && this.forget(e, t);
+		this.broken.add(this.fed), this.user.failed(e, this.fed), this.feed();
+	}
+	pass(e, t) {
+		let { first: n, frames: r } = this.timeline.groups[e];
+		this.next = t - this.numberOf(t) + n + r, this.newest = this.next - 1;
+	}
+	stop() {
+		this.halt(), this.newest = -1;
+		for (let [e, t] of this.slots) this.forget(e, t);
+	}
+	halt() {
+		this.turn += 1, this.given = null, this.skipped.clear();
+		for (let e of this.decoders) e.reset();
+	}
+	forget(e, { films: t }) {
+		this.slots.delete(e), this.reuse(t);
+	}
+	reuse(e) {
+		e.forEach((e, t) => e && this.reuseOne(t, e));
+	}
+	reuseOne(e, { room: t }) {
+		t && this.rooms[e]?.push(t);
+	}
+}, Mc = {
+	mimeType: "video/AV1",
+	bits: 10
+};
+async function Nc(e, t, n) {
+	let r = new Es(e, t, n), i = await r.open(0);
+	return Ds(e, i), {
+		timeline: t,
+		group: i,
+		films: await Promise.all(t.films.map((e, t) => Pc(i.units[0][t], e))),
+		ring: (e) => new jc(t, r, e)
 	};
 }
-async function gs(e, t, n) {
-	let r = t;
-	for (let t = 1; t < 64 && r + 8 <= n; t++) {
-		let t = new DataView(await e.read(r, r + 8)), i = t.getUint32(0, !0);
-		if (r + 8 + i > n) throw M(String(r), "a chunk longer than the file");
-		if (t.getUint32(4, !0) === ms) return r + 8;
-		r += 8 + i;
-	}
-	throw M(String(t), "no binary chunk");
-}
-function _s(e) {
-	try {
-		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
-	} catch {
-		throw M("20", "its JSON is not UTF-8");
-	}
-}
-function vs(e, t) {
-	if (ys(e) > 64) throw M(t, "its JSON is nested too deep");
-	try {
-		return JSON.parse(e);
-	} catch {
-		throw M(t, "its JSON cannot be read");
-	}
-}
-function ys(e) {
-	let [t, n] = [0, 0], r = !1;
-	for (let i = 0; i < e.length; i++) {
-		let a = e[i];
-		if (a === "\"") r = !r;
-		else if (r && a === "\\") i += 1;
-		else if (r) continue;
-		else a === "[" || a === "{" ? n = Math.max(n, ++t) : (a === "]" || a === "}") && --t;
-	}
-	return n;
-}
-function bs(e) {
-	return new j("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
-}
-// eigenfield-three/src/pieces.ts
-function xs(e) {
-	for (let { picture: t } of e) "close" in t && t.close();
+async function Pc(e, { size: t, where: n }) {
+	let r = {
+		view: -1,
+		codec: Mc,
+		textures: 1,
+		pieces: 1,
+		where: n
+	}, i = await Dr(ve(e.slice().buffer, n), r, t), a = i[0].picture;
+	if ("data" in a) return a;
+	let o = new OffscreenCanvas(...t).getContext("2d");
+	return o.drawImage(a, 0, 0), ts(i), $o(o.getImageData(0, 0, ...t).data, 4 * t[0], 4, t);
 }
 // eigenfield-three/src/means.ts
-async function Ss(e, t) {
-	let { mean: n, meanSize: r } = e, i = e.precision && await Cs(await t(e.precision.view), e.precision);
+async function Fc(e, t) {
+	let { mean: n, meanSize: r } = e, i = e.precision && await Ic(await t(e.precision.view), e.precision);
 	return {
 		pieces: await n.codec.decode(await t(n.view), n, r),
 		precision: i
 	};
 }
-async function Cs(e, t) {
-	let { type: n } = tr(e) ?? {}, { mimeType: r } = t.codec;
+async function Ic(e, t) {
+	let { type: n } = mr(e) ?? {}, { mimeType: r } = t.codec;
 	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
 	if (!i) throw M(t.where, "no picture");
 	return i.picture;
 }
-function ws({ pieces: e, precision: t }) {
-	xs(e), t?.close();
+function Lc({ pieces: e, precision: t }) {
+	ts(e), t?.close();
 }
 // eigenfield-three/src/packed.ts
-var Ts = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Es = 4;
-async function Ds(e, t) {
-	let n = new G(e, ""), r = n.key("extensions").key(Se), i = r.key("packed");
+var Rc = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", zc = 4;
+async function Bc(e, t) {
+	let n = new W(e, ""), r = n.key("extensions").key(xe), i = r.key("packed");
 	if (!i.exists) return e;
-	mi(r);
-	let a = Nr(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < Es) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, Es)).getUint32(0, !0);
-	if (Es + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new G(vs(await ks(await t(o.offset + Es, s), i.where), i.where), i.where).object(), u = Os(new G(c, `${i.where}/lengths`), o, Es + s), { packed: d, ...f } = r.object();
+	Bi(r);
+	let a = Kr(n), o = a[i.integer(a.length - 1, a.length - 1)];
+	if (!o || o.length < zc) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, zc)).getUint32(0, !0);
+	if (zc + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new W(gs(await Hc(await t(o.offset + zc, s), i.where), i.where), i.where).object(), u = Vc(new W(c, `${i.where}/lengths`), o, zc + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
-		bufferViews: [...n.key("bufferViews").items(F).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
+		bufferViews: [...n.key("bufferViews").items(Ce).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
 		extensions: {
 			...n.key("extensions").object(),
-			[Se]: {
+			[xe]: {
 				...f,
 				...l
 			}
 		}
 	};
 }
-function Os(e, t, n) {
-	let r = n, i = e.items(F).map((e) => {
+function Vc(e, t, n) {
+	let r = n, i = e.items(Ce).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
 			buffer: 0,
@@ -3895,8 +4736,8 @@ function Os(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function ks(e, t) {
-	let n = new TextEncoder().encode(Ts), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function Hc(e, t) {
+	let n = new TextEncoder().encode(Rc), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -3904,7 +4745,7 @@ async function ks(e, t) {
 		~r,
 		~i
 	]), a.set(n, 5), a.set(new Uint8Array(e), 5 + n.length);
-	let o = await xe(a, "deflate-raw", n.length + Ce, t);
+	let o = await be(a, "deflate-raw", n.length + Se, t);
 	try {
 		return new TextDecoder("utf-8", {
 			fatal: !0,
@@ -3914,59 +4755,9 @@ async function ks(e, t) {
 		throw M(t, "its JSON is not UTF-8");
 	}
 }
-// eigenfield-three/src/proxy.ts
-var As = 65535;
-function js(e, t) {
-	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
-	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
-	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
-	for (let e = 0; e < n.count; e++) {
-		if (!(Math.max(Math.abs(n.getX(e)), Math.abs(n.getY(e)), Math.abs(n.getZ(e))) <= 1e30)) throw M(t.position.where, `vertex ${e} is not finite`);
-		if (!(Math.max(Math.abs(r.getX(e)), Math.abs(r.getY(e))) <= 1e30)) throw M(t.uv.where, `texture coordinates of vertex ${e} are not finite`);
-	}
-	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
-}
-async function Ms({ view: n, codec: r, where: i }, a) {
-	let { positions: o, uv: s, indices: c } = r.decode(new Uint8Array(await a(n)), i);
-	if (!c.length) throw M(i, "a mesh without faces");
-	let l = new t();
-	l.setAttribute("position", new e(o, 3)), l.setAttribute("uv", new e(s, 2));
-	let u = o.length / 3 <= As;
-	return l.setIndex(new e(u ? Uint16Array.from(c) : c, 1)), l;
-}
-function Ns(e) {
-	return {
-		vertices: e.getAttribute("position").count,
-		triangles: (e.index?.count ?? 0) / 3
-	};
-}
-// eigenfield-three/src/strength.ts
-var Ps = 128, Fs = .98;
-async function Is(e, t, n, r) {
-	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
-	if (!o) return 1;
-	let s = t - (a - o.textures), c = Jr(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Ps, Ps).getContext("2d", { willReadFrequently: !0 });
-	if (!d) return 1;
-	d.imageSmoothingEnabled = !1;
-	let f = [];
-	u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, Ps, Ps);
-		let { data: u } = d.getImageData(0, 0, Ps, Ps);
-		(l ? [
-			0,
-			1,
-			2
-		] : [a]).forEach((e) => {
-			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
-			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
-		});
-	}), xs(u), f.sort((e, t) => e - t);
-	let p = f[Math.floor(Fs * f.length)] ?? 0;
-	return p > 0 ? .45 / p : 1;
-}
 // eigenfield-three/src/still-textures.ts
-var Ls = 3;
-function Rs(e) {
+var Uc = 3;
+function Wc(e) {
 	return J(e).flatMap((e, t) => {
 		let n = 0;
 		return e.pictures.map((r) => {
@@ -3980,27 +4771,27 @@ function Rs(e) {
 		});
 	}).sort((e, t) => e.first - t.first || e.number - t.number);
 }
-function zs(e, t, n) {
-	let r = Rs(e), i = n, a = ({ basis: e, picture: n }) => {
+function Gc(e, t, n) {
+	let r = Wc(e), i = n, a = ({ basis: e, picture: n }) => {
 		let r = t(n.view).then((t) => n.codec.decode(t, n, e.size));
 		return r.catch(() => void 0), r;
 	};
 	return {
 		async fill(n) {
-			let { plan: o, signal: s } = n, c = i ?? await Promise.all(pi(e).map((e) => Ss(e, t)));
+			let { plan: o, signal: s } = n, c = i ?? await Promise.all(zi(e).map((e) => Fc(e, t)));
 			i = null, c.forEach((e, t) => {
-				n.putMean(t, e), ws(e);
+				n.putMean(t, e), Lc(e);
 			});
 			let l = r.filter(({ first: e }) => e < o.usable), u = [], d = 0;
 			try {
 				for (let { number: e, first: t, picture: r } of l) {
 					if (s.aborted) return;
-					for (let e of l.slice(d, d + Ls - u.length)) u.push(a(e)), d += 1;
+					for (let e of l.slice(d, d + Uc - u.length)) u.push(a(e)), d += 1;
 					let i = await u[0] ?? [];
-					u.shift(), n.putTextures(e, t, i, r), xs(i), n.announce();
+					u.shift(), n.putTextures(e, t, i, r), ts(i), n.announce();
 				}
 			} finally {
-				for (let e of u) e.then(xs).catch(() => void 0);
+				for (let e of u) e.then(ts).catch(() => void 0);
 			}
 			n.end();
 		},
@@ -4008,41 +4799,41 @@ function zs(e, t, n) {
 			let r = 0;
 			for (let { channels: i, bases: a } of e.planes) {
 				let o = e.colours.slice(r, r += i), s = a.find(({ count: e }) => e > n);
-				if (s) return Is(s, n, o, t);
+				if (s) return is(s, n, o, t);
 			}
 			return Promise.resolve(1);
 		},
 		dispose() {
-			i?.forEach(ws), i = null;
+			i?.forEach(Lc), i = null;
 		}
 	};
 }
 // eigenfield-three/src/grid.ts
-function Bs(e) {
+function Kc(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = Vs(e, n, r) ?? (n === r ? null : Vs(e, r, n));
+		let r = t / n, i = qc(e, n, r) ?? (n === r ? null : qc(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function Vs(e, t, n) {
-	let [r, i] = [Us(e, 0), Us(e, 1)];
-	if (t === 1 && Ws(i) > 0 || n === 1 && Ws(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => Gs(i, e) - Gs(i, t));
+function qc(e, t, n) {
+	let [r, i] = [Yc(e, 0), Yc(e, 1)];
+	if (t === 1 && Xc(i) > 0 || n === 1 && Xc(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => Zc(i, e) - Zc(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Gs(r, e) - Gs(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Zc(r, e) - Zc(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return Hs(n, t, (e, t) => Gs(r, o(t, e))) && Hs(t, n, (e, t) => Gs(i, o(e, t))) ? {
+	return Jc(n, t, (e, t) => Zc(r, o(t, e))) && Jc(t, n, (e, t) => Zc(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function Hs(e, t, n) {
+function Jc(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -4052,33 +4843,33 @@ function Hs(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function Us(e, t) {
+function Yc(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function Ws(e) {
+function Xc(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var Gs = (e, t) => e[t] ?? 0, Ks = 1e-6, qs = 32, Js = class {
+var Zc = (e, t) => e[t] ?? 0, Qc = 1e-6, $c = 32, el = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = Bs(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = Kc(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(Ys(e), this.isLine ? 0 : Ys(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(tl(e), this.isLine ? 0 : tl(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => ac(e, t, this.places) : e === "bilinear" && this.grid ? sc(this.places, this.grid) : Qs(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => dl(e, t, this.places) : e === "bilinear" && this.grid ? pl(this.places, this.grid) : il(this.places, this.triangles);
 	}
 };
-function Ys(e) {
+function tl(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Xs(e) {
+function nl(e) {
 	let t = {
 		camera: [
 			0,
@@ -4098,7 +4889,7 @@ function Xs(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function Zs(e, t, n, r, i, a) {
+function rl(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -4106,49 +4897,49 @@ function Zs(e, t, n, r, i, a) {
 		m
 	];
 }
-function Qs(e, t) {
+function il(e, t) {
 	if (!t.length) {
-		let t = ic(e, rc(e));
-		return (n, r) => nc(n, r, e, t);
+		let t = ul(e, ll(e));
+		return (n, r) => cl(n, r, e, t);
 	}
-	let n = ec(e, t, 3), r = tc(t);
+	let n = ol(e, t, 3), r = sl(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * qs + $(i)] ?? []) {
+		for (let r of n[$(a) * $c + $(i)] ?? []) {
 			let [n, l, u] = [
-				$s(t, r, 0),
-				$s(t, r, 1),
-				$s(t, r, 2)
-			], d = Zs(i, a, e, n, l, u), f = Math.min(...d);
+				al(t, r, 0),
+				al(t, r, 1),
+				al(t, r, 2)
+			], d = rl(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? nc(i, a, e, r) : Xs(c.map((e, n) => [$s(t, o, n), e]));
+		return s < -1e-9 ? cl(i, a, e, r) : nl(c.map((e, n) => [al(t, o, n), e]));
 	};
 }
-var $s = (e, t, n) => e[3 * t + n] ?? 0;
+var al = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * qs)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * $c)));
 }
-function ec(e, t, n) {
+function ol(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * qs + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * $c + t]?.push(i);
 	}
 	return r;
 }
-function tc(e) {
+function sl(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [$s(e, n, r), $s(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [al(e, n, r), al(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -4157,7 +4948,7 @@ function tc(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function nc(e, t, n, r) {
+function cl(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -4172,12 +4963,12 @@ function nc(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return Xs([[o, 1 - c], [s, c]]);
+	return nl([[o, 1 - c], [s, c]]);
 }
-function rc(e) {
+function ll(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function ic(e, t) {
+function ul(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -4198,7 +4989,7 @@ function ic(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function ac(e, t, n) {
+function dl(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -4212,12 +5003,12 @@ function ac(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || oc(n, r, i, a) <= Ks) return nc(e, t, n, ic(n, [
+	if (a < 0 || fl(n, r, i, a) <= Qc) return cl(e, t, n, ul(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = Zs(e, t, n, r, i, a);
+	let [l, u, d] = rl(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -4233,15 +5024,15 @@ function ac(e, t, n) {
 		]
 	};
 }
-function oc(e, t, n, r) {
+function fl(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function sc(e, t) {
+function pl(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = ic(e, rc(e));
-		return (n, r) => nc(n, r, e, t);
+		let t = ul(e, ll(e));
+		return (n, r) => cl(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -4250,7 +5041,7 @@ function sc(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = ec(e, o.flat(), 4), c = [];
+	let s = ol(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -4258,12 +5049,12 @@ function sc(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * qs + $(t)] ?? []) {
-			let s = o[a], c = s ? cc(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * $c + $(t)] ?? []) {
+			let s = o[a], c = s ? ml(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return nc(t, n, e, l);
-		let [a, c] = lc(t, n, e, r);
+		if (!r || i < -1e-9) return cl(t, n, e, l);
+		let [a, c] = hl(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -4275,7 +5066,7 @@ function sc(e, t) {
 		};
 	};
 }
-function cc(e, t, n, r) {
+function ml(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -4283,7 +5074,7 @@ function cc(e, t, n, r) {
 	}
 	return i;
 }
-function lc(e, t, n, r) {
+function hl(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -4301,27 +5092,29 @@ function lc(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = uc(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [uc(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = gl(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [gl(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function uc(e) {
+function gl(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var dc = class {
+var _l = class {
 	parser;
 	options;
-	name = Se;
+	name = xe;
 	scene = null;
 	ours;
 	constructor(e, t = {}) {
-		this.parser = e, this.options = t, this.ours = ui(e.json);
+		this.parser = e, this.options = t, this.ours = Ii(e.json);
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
-		this.options.renderer && Bo(this.options.renderer);
+		this.options.renderer && ic(this.options.renderer);
 		let { json: e } = this.parser;
-		me(e), Object.assign(e, await Ds(e, (e, t) => this.read(e, t))), this.scene = di(e), this.scene.shown || fc(e);
+		me(e), Object.assign(e, await Bc(e, (e, t) => this.read(e, t)));
+		let t = Li(e);
+		(!t.timeline || this.options.stream?.readGroups) && (this.scene = t, this.scene.shown || vl(e));
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
@@ -4342,33 +5135,37 @@ var dc = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = pc(e, this.parser), [r] = n;
+		let n = yl(e, this.parser), [r] = n;
 		if (!r) throw M("/meshes/0", "no node shows it");
-		t.shown && js(r.geometry, t.shown);
+		t.shown && bs(r.geometry, t.shown);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
 			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ue(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await Ms(t.mesh, i);
-		if (a) {
+		}, a = t.timeline && await this.openClip(t, t.timeline), o = a ? a.group.geometry : t.mesh && await xs(t.mesh, i);
+		if (o) {
 			r.geometry.dispose();
-			for (let e of n) e.geometry = a;
+			for (let e of n) e.geometry = o;
 		}
-		t.sheets && ri(t.sheets, r.geometry);
-		let [o, s, c, l] = await Promise.all([
-			Promise.all(pi(t).map((e) => Ss(e, i))),
-			Oi(t, i),
-			Ii(t, i),
-			Bi(t, i)
-		]), u = s.filter((e, n) => !t.heldOut[n]), d = new Js(Float64Array.from(u.flatMap((e) => Wi(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = {
+		t.sheets && vi(t.sheets, r.geometry);
+		let [s, c, l, u] = await Promise.all([
+			Promise.all(a ? [] : zi(t).map((e) => Fc(e, i))),
+			ea(t, i),
+			a ? a.group.omega : ca(t, i),
+			ma(t, i)
+		]), d = c.filter((e, n) => !t.heldOut[n]), f = new el(Float64Array.from(d.flatMap((e) => va(t, e.centre))), u, t.extent[1] === 0), p = a ? t.planes.map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
 			scene: t,
-			info: Hi(t, s, f, d.grid, this.fileBytes(), Ns(r.geometry)),
+			info: ga(t, c, p, f.grid, this.fileBytes(), Cs(r.geometry)),
 			meshes: n,
-			meanSizes: f,
-			omega: c,
-			weights: d
-		};
-		e.userData.eigenfield = new os(p, zs(t, i, o), this.options);
+			meanSizes: p,
+			omega: l,
+			weights: f,
+			clip: a
+		}, h = a ? new os(t, a.films) : Gc(t, i, s);
+		e.userData.eigenfield = new wc(m, h, this.options);
+	}
+	openClip(e, t) {
+		return Nc(e, t, (...e) => this.options.stream.readGroups(...e));
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -4376,65 +5173,66 @@ var dc = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function fc(e) {
+function vl(e) {
 	let [t] = e.nodes;
 	t && (t.mesh = 0), e.meshes = [{ primitives: [{
 		attributes: {},
 		material: 0
 	}] }], e.materials = [{ doubleSided: !0 }];
 }
-function pc(e, t) {
+function yl(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		mc(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		bl(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function mc(e) {
+function bl(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function hc(e, t = {}) {
+async function xl(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new ds(), i = new AbortController(), a = () => {
+	let r = new kc(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = vc(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = wl(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
-		let e = await hs(r);
-		if (!ui(e.json)) return {
-			gltf: await _c(r, e, o),
+		let e = await ps(r);
+		if (!Ii(e.json)) return {
+			gltf: await Cl(r, e, o),
 			field: null
 		};
-		let i = await gc(r, e, t);
+		let i = await Sl(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
 			gltf: i,
-			field: a instanceof os ? a : null
+			field: a instanceof wc ? a : null
 		};
 	} catch (e) {
 		throw i.abort(), n?.throwIfAborted(), de(e);
 	}
 }
-async function gc(e, t, n) {
-	let r = new ce(), i = t.binary();
-	i.catch(() => void 0);
-	let a = {
+async function Sl(e, t, n) {
+	let r = new ce(), i = (t) => async (n, r) => {
+		let i = await t + n;
+		return e.read(i, i + r);
+	}, a = t.binary();
+	a.catch(() => void 0);
+	let o = {
 		total: t.length,
-		read: async (t, n) => {
-			let r = await i + t;
-			return e.read(r, r + n);
-		}
+		read: i(a),
+		readGroups: (...e) => i(t.groups())(...e)
 	};
-	return r.register((e) => new dc(e, {
+	return r.register((e) => new _l(e, {
 		...n,
-		stream: a
+		stream: o
 	})), r.parseAsync(t.text, "");
 }
-async function _c(e, t, n) {
+async function Cl(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -4446,25 +5244,25 @@ async function _c(e, t, n) {
 		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function vc(e, t, n, r) {
+async function wl(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? yc(e) : await bc(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? Tl(e) : await El(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : xc(t.received, e);
+			throw n.aborted ? e : Dl(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function yc(e) {
+function Tl(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function bc(e, t) {
+async function El(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -4475,7 +5273,7 @@ async function bc(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function xc(e, t) {
+function Dl(e, t) {
 	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { os as EigenField, dc as EigenfieldPlugin, Mo as SHEETS, j as SceneError, da as defaultMemory, hc as loadEigenfield, qi as novelCamera, Zi as placeCamera, pe as refuseAddresses };
+export { wc as EigenField, _l as EigenfieldPlugin, Gs as Player, Xs as SHEETS, j as SceneError, za as defaultMemory, xl as loadEigenfield, xa as novelCamera, Ta as placeCamera, pe as refuseAddresses };

@@ -1,0 +1,72 @@
+"""Clips in the viewer's server and in pages: their files are carried as they are."""
+
+from __future__ import annotations
+
+import base64
+import io
+import re
+import urllib.request
+
+import pytest
+from PIL import Image
+
+from eigenfield.core.errors import OptionError
+from eigenfield.gltf import load_clip, save
+from eigenfield.rendering import RenderJob, viewpoint
+from eigenfield.viewer import view
+from eigenfield.viewer.exports import export
+from support.clips import numbered_clip
+
+EMBEDDED = re.compile(rb'id="eigenfield-scene">([^<]*)<')
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory):
+    path = tmp_path_factory.mktemp("clip") / "clip.glb"
+    save(numbered_clip((2, 3)), path)
+    return path
+
+
+def held_in(page):
+    return base64.b64decode(EMBEDDED.search(page.read_bytes())[1])
+
+
+@pytest.mark.parametrize("laboratory", [False, True])
+def test_a_page_holds_the_clip_s_file(file, tmp_path, laboratory):
+    for name, clip in (("file", file), ("value", load_clip(file))):
+        page = tmp_path / f"{name}.html"
+        export(clip, page, **({"laboratory": True} if laboratory else {}))
+        assert held_in(page) == file.read_bytes()
+
+
+def test_the_poster_is_the_first_frame(file, tmp_path):
+    export(file, tmp_path / "page.html")
+    first = load_clip(file).scene(0.0)
+    camera, weights = viewpoint(first)
+    with Image.open(tmp_path / "page.jpg") as poster:
+        assert poster.size == (camera.width, camera.height)
+        shown = io.BytesIO()
+        ground = (21 / 255, 23 / 255, 26 / 255)
+        Image.fromarray(RenderJob(first, background=ground).rgb(camera, weights)).save(
+            shown, "JPEG", quality=85, optimize=True
+        )
+        assert (tmp_path / "page.jpg").read_bytes() == shown.getvalue()
+
+
+def test_a_page_of_one_frame_holds_a_scene(file, tmp_path):
+    export(file, tmp_path / "page.html", time=0.2)
+    assert held_in(tmp_path / "page.html") != file.read_bytes()
+    assert b"EFTL" not in held_in(tmp_path / "page.html")
+
+
+def test_the_server_gives_the_clip_s_file(file):
+    for clip in (file, load_clip(file)):
+        with view(clip, browser=False) as server, urllib.request.urlopen(f"{server.address}scene.glb") as answer:
+            assert answer.read() == file.read_bytes()
+
+
+def test_photographs_are_not_shown_beside_a_clip(file, tmp_path):
+    with pytest.raises(OptionError) as error:
+        view(file, tmp_path, browser=False)
+    assert error.value.code == "clip-photographs"
+    assert error.value.remedy == "leave the capture out"

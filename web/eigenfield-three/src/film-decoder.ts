@@ -1,0 +1,123 @@
+// A film of the codec `film-1`, decoded by the browser: a temporal unit of AV1 goes in, a frame comes out.
+
+import { readSequenceHeader } from "./av1-picture.js";
+import { SceneError, damaged } from "./errors.js";
+
+const MOST_OPEN = 4; // frames that are on their way: decoders have few, and wait for them
+const LADDER: HardwareAcceleration[] = ["prefer-software", "no-preference"]; // what hardware decodes is slow to read back
+
+export interface FilmUser {
+  /** What becomes of a frame, which is closed behind it. */
+  take(position: number, frame: VideoFrame): Promise<void>;
+  /** A frame is closed: there may be room for another unit. */
+  closed(): void;
+  /** A unit could not be decoded; what was given is thrown away. */
+  failed(reason: unknown): void;
+}
+
+export class FilmDecoder {
+  private decoder: VideoDecoder | null = null;
+  private config: VideoDecoderConfig | null = null;
+  private turn = 0; // of decoding: what belongs to one before is thrown away
+  private onTheWay = 0;
+  private opened = 0;
+
+  /** `size`: of its frames. */
+  constructor(
+    private readonly size: [number, number],
+    private readonly where: string,
+    private readonly user: FilmUser,
+  ) {}
+
+  /** Frames that are not closed. */
+  get open(): number {
+    return this.opened;
+  }
+
+  /** Whether there is room for another unit. */
+  get ready(): boolean {
+    return this.onTheWay < MOST_OPEN;
+  }
+
+  /** Makes the decoder what the first unit of a group needs. Raises SceneError: `codec`, `damaged`. */
+  async start(unit: Uint8Array): Promise<void> {
+    const { level, tier, width, height } = readSequenceHeader(unit, this.where);
+    if (width !== this.size[0] || height !== this.size[1]) throw damaged(this.where, `frames of ${width} x ${height}`);
+    const codec = `av01.0.${String(level).padStart(2, "0")}${tier ? "H" : "M"}.10`;
+    const { turn } = this;
+    const same = this.config?.codec === codec;
+    const config = same ? this.config : await supported(codec, this.size, this.where);
+    if (turn !== this.turn || !config) return;
+    if (same && this.decoder?.state === "configured") return;
+    this.config = config;
+    if (!this.decoder || this.decoder.state === "closed") this.decoder = this.made();
+    this.decoder.configure(config);
+  }
+
+  /** Only after `start`, and while `ready`. `key`: the first unit of a group. */
+  decode(unit: Uint8Array, position: number, key: boolean): void {
+    this.onTheWay += 1;
+    this.decoder?.decode(new EncodedVideoChunk({ type: key ? "key" : "delta", timestamp: position, data: unit }));
+  }
+
+  /** All units have become frames. */
+  async flush(): Promise<void> {
+    await this.decoder?.flush().catch(() => undefined); // stopped, or `failed` has heard of it
+  }
+
+  /** What was given is needed no more. */
+  reset(): void {
+    this.turn += 1;
+    this.onTheWay = 0;
+    if (this.decoder?.state === "configured") this.decoder.reset();
+  }
+
+  dispose(): void {
+    this.reset();
+    if (this.decoder && this.decoder.state !== "closed") this.decoder.close();
+    this.decoder = null;
+  }
+
+  private made(): VideoDecoder {
+    const made = new VideoDecoder({
+      output: (frame) => void this.receive(frame),
+      error: (reason) => {
+        if (this.decoder === made) this.fail(this.turn, damaged(this.where, reason.message));
+      },
+    });
+    return made;
+  }
+
+  private async receive(frame: VideoFrame): Promise<void> {
+    const { turn } = this;
+    this.opened += 1;
+    try {
+      await this.user.take(frame.timestamp, frame);
+    } catch (reason) {
+      this.fail(turn, reason);
+    } finally {
+      frame.close();
+      this.opened -= 1;
+      if (turn === this.turn) this.onTheWay -= 1;
+      this.user.closed();
+    }
+  }
+
+  private fail(turn: number, reason: unknown): void {
+    if (turn !== this.turn) return;
+    this.reset();
+    this.user.failed(reason);
+  }
+}
+
+async function supported(codec: string, [width, height]: [number, number], where: string): Promise<VideoDecoderConfig> {
+  for (const hardwareAcceleration of typeof VideoDecoder === "undefined" ? [] : LADDER) {
+    const size = { codedWidth: width, codedHeight: height };
+    const config = { codec, ...size, hardwareAcceleration, optimizeForLatency: true };
+    const { supported } = await VideoDecoder.isConfigSupported(config);
+    if (supported) return config;
+  }
+  const why = globalThis.isSecureContext ? "decodes no AV1 of 10 bits" : "plays clips from https and localhost only";
+  const remedy = globalThis.isSecureContext ? "use a newer browser" : "open the page from there";
+  throw new SceneError("codec", `This browser ${why}; ${remedy}. The first frame is shown.`, where);
+}

@@ -1,0 +1,167 @@
+// The groups of a clip: each is fetched, checked and opened when one of its frames is wanted.
+
+import type { BufferGeometry } from "three";
+import { codecOf, CODECS } from "./codecs.js";
+import { parseJson } from "./container.js";
+import type { SceneDocument } from "./document.js";
+import { damaged } from "./errors.js";
+import { basesOf, checkWeights, sideBySide } from "./info.js";
+import { inflated } from "./inflate.js";
+import { Value } from "./json.js";
+import * as limits from "./limits.js";
+import type { ByteReader } from "./packed.js";
+import { numbersOf, type Picture } from "./planes.js";
+import { geometryOf } from "./proxy.js";
+import type { AffineJson, GroupHeadJson } from "./schema.js";
+import type { GroupPlace, Timeline } from "./timeline.js";
+
+const KEPT = 3; // groups that are open at a time
+const HEAD = 4; // bytes of the length of a group's head
+
+/** What the codes of a picture stand for. */
+export type Affine = Pick<Picture, "scale" | "zero">;
+
+/** What all frames of a group share, and the units of its films. */
+export interface Group {
+  index: number;
+  first: number; // frame
+  frames: number;
+  geometry: BufferGeometry; // that of the group before, where it is the same
+  omega: Float32Array; // (encoded cameras) x (eigen textures of all bases)
+  means: Affine[]; // of each plane
+  bases: Affine[]; // of all planes
+  units: Uint8Array[][]; // of each frame, one for each film
+}
+
+export class Groups {
+  private readonly kept = new Map<number, Promise<Group>>(); // that was wanted last is the last
+  private mesh: { bytes: Uint8Array; geometry: BufferGeometry } | null = null; // of the group opened last
+
+  /** `read`: bytes of the chunk of groups. */
+  constructor(
+    private readonly scene: SceneDocument,
+    private readonly timeline: Timeline,
+    private readonly read: ByteReader,
+  ) {}
+
+  /** Raises SceneError: `damaged`, `truncated`, `codec-unknown`. */
+  open(index: number): Promise<Group> {
+    const group = this.kept.get(index) ?? this.opened(index);
+    this.kept.delete(index);
+    this.kept.set(index, group);
+    for (const [oldest] of this.kept) if (this.kept.size > KEPT) this.kept.delete(oldest);
+    return group;
+  }
+
+  private async opened(index: number): Promise<Group> {
+    const place = this.timeline.groups[index];
+    if (!place) throw new RangeError(`no group ${index}`);
+    const bytes = new Uint8Array(await this.read(place.offset, place.length));
+    await checkDigest(bytes, place);
+    const { head, at } = await readHead(bytes, place);
+    const streams = takeStreams(bytes, at, place);
+    const mesh = head.key("mesh");
+    const geometry = this.geometryOf(streams(mesh.key("length")), codecOf("mesh", mesh.key("codec"), "mesh-2").decode, mesh.where);
+    const omega = this.weightsOf(head, streams);
+    const { first, frames } = place;
+    const units = unitsOf(head, place, this.timeline.films.length, streams);
+    return { index, first, frames, geometry, omega, ...this.scalesOf(head), units };
+  }
+
+  /** Groups of a still proxy have the same mesh, which is decoded once. */
+  private geometryOf(
+    bytes: Uint8Array,
+    decode: (typeof CODECS)["mesh-2"]["decode"],
+    where: string,
+  ): BufferGeometry {
+    const before = this.mesh;
+    if (before && before.bytes.length === bytes.length && before.bytes.every((byte, i) => byte === bytes[i])) {
+      return before.geometry;
+    }
+    const geometry = geometryOf(decode(bytes, where), where);
+    this.mesh = { bytes, geometry };
+    return geometry;
+  }
+
+  private weightsOf(head: Value<GroupHeadJson>, streams: Streams): Float32Array {
+    const rows = this.scene.heldOut.filter((out) => !out).length;
+    const listed = exactly(head.key("weights"), this.scene.planes.length);
+    const tables = this.scene.planes.flatMap(({ bases }, i) => {
+      const own = listed[i] && exactly(listed[i], bases.length);
+      return bases.map(({ count }, k) => {
+        const length = own![k]!;
+        const coded = CODECS["weights-1"].decode(streams(length as Value<number>), length.where);
+        return checkWeights(coded, rows, count, length.where);
+      });
+    });
+    return sideBySide(rows, tables);
+  }
+
+  private scalesOf(head: Value<GroupHeadJson>): Pick<Group, "means" | "bases"> {
+    const { planes } = this.scene;
+    const means = exactly(head.key("means"), planes.length).map((own, i) => affineOf(own, planes[i]!.mean));
+    const bases = exactly(head.key("bases"), planes.length).flatMap((own, i) => {
+      const { bases } = planes[i]!;
+      return exactly(own as Value<AffineJson[]>, bases.length).map((each, k) => affineOf(each, bases[k]!.pictures[0]!));
+    });
+    return { means, bases };
+  }
+}
+
+/** Gives the pictures of a scene the scales of a group. */
+export function setScales(scene: SceneDocument, { means, bases }: Pick<Group, "means" | "bases">): void {
+  scene.planes.forEach(({ mean }, i) => Object.assign(mean, means[i]));
+  basesOf(scene).forEach(({ pictures: [picture] }, i) => picture && Object.assign(picture, bases[i]));
+}
+
+/** Without a secure context there is no SHA-256: what is wrong is then found where it is decoded. */
+async function checkDigest(bytes: Uint8Array<ArrayBuffer>, { sha256, where }: GroupPlace): Promise<void> {
+  const subtle = globalThis.crypto?.subtle as SubtleCrypto | undefined;
+  if (!subtle) return;
+  const digest = new Uint8Array(await subtle.digest("SHA-256", bytes));
+  const found = Array.from(digest, (byte) => byte.toString(16).padStart(2, "0")).join("");
+  if (found !== sha256) throw damaged(where, "other bytes than its SHA-256 says");
+}
+
+async function readHead(
+  bytes: Uint8Array<ArrayBuffer>,
+  { where }: GroupPlace,
+): Promise<{ head: Value<GroupHeadJson>; at: number }> {
+  if (bytes.length < HEAD) throw damaged(where, "no head");
+  const at = HEAD + new DataView(bytes.buffer).getUint32(0, true);
+  if (at > bytes.length) throw damaged(where, "a head longer than the group");
+  const json = await inflated(bytes.subarray(HEAD, at), "deflate-raw", limits.MAX_GROUP_JSON, where);
+  const text = new TextDecoder("utf-8").decode(json);
+  return { head: new Value(parseJson(text, where), where), at };
+}
+
+/** The bytes of the next stream, whose length stands at a place of the head. */
+type Streams = (length: Value<number>) => Uint8Array;
+
+function takeStreams(bytes: Uint8Array, start: number, place: GroupPlace): Streams {
+  let at = start;
+  return (length) => {
+    const from = at;
+    at += length.integer(1, place.length);
+    if (at > bytes.length) throw length.wrong("beyond the end of the group");
+    return bytes.subarray(from, at);
+  };
+}
+
+/** Of each frame a unit for each film. */
+function unitsOf(head: Value<GroupHeadJson>, place: GroupPlace, films: number, streams: Streams): Uint8Array[][] {
+  return exactly(head.key("frames"), place.frames).map((frame) => {
+    return exactly(frame as Value<number[]>, films).map((length) => streams(length as Value<number>));
+  });
+}
+
+function affineOf(value: Value, { pieces, textures }: Picture): Affine {
+  const own = value as Value<AffineJson>;
+  return { scale: numbersOf(own.key("scale"), pieces, textures), zero: numbersOf(own.key("zero"), pieces, textures) };
+}
+
+function exactly<T>(value: Value<T>, count: number): ReturnType<Value<T>["items"]> {
+  const items = value.items(count);
+  if (items.length !== count) throw value.wrong(`${count} entries are needed`);
+  return items;
+}

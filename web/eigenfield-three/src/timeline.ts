@@ -1,0 +1,128 @@
+// When the frames of a clip are shown, in which groups they are coded, and where their textures lie in films, checked.
+
+import { codecOf, type Codec } from "./codecs.js";
+import { damaged } from "./errors.js";
+import type { Value } from "./json.js";
+import * as limits from "./limits.js";
+import type { FilmPart, Picture, Plane } from "./planes.js";
+import type { FilmJson, GroupJson, TimelineJson } from "./schema.js";
+
+const FILM_STEP = 64; // sides of films are multiples of it
+const PLACE_STEP = 16; // columns and rows at which textures begin
+const DIGEST = /^[0-9a-f]{64}$/;
+
+/** A grey video in which textures lie side by side. */
+export interface Film {
+  codec: Codec<"film">;
+  size: [number, number];
+  where: string;
+}
+
+/** Frames that are decoded by themselves, and their bytes in the chunk of groups. */
+export interface GroupPlace {
+  first: number; // frame
+  frames: number;
+  offset: number;
+  length: number;
+  sha256: string;
+  where: string;
+}
+
+export interface Timeline {
+  rate: number; // frames a second
+  first: number; // seconds
+  frames: number;
+  films: Film[];
+  groups: GroupPlace[];
+}
+
+/** The timeline of a clip; null: a scene of one instant. Raises SceneError: `damaged`, `codec-unknown`. */
+export function readTimeline(value: Value<TimelineJson>, planes: Plane[]): Timeline | null {
+  if (!value.exists) {
+    const part = partsOf(planes)[0];
+    if (part) throw damaged(part.where, "a texture in a film, and no timeline");
+    return null;
+  }
+  const [numerator = 1, denominator = 1] = value.key("rate").numbers(2, 1, limits.MAX_RATE_TERM);
+  const rate = numerator / denominator;
+  const whole = Number.isInteger(numerator) && Number.isInteger(denominator);
+  if (!whole || rate > limits.MAX_RATE || rate < 1 / limits.MAX_RATE) throw value.key("rate").wrong("no rate");
+  const first = value.key("first");
+  const films = value.key("films").items(limits.MAX_FILMS).map(readFilm);
+  const frames = value.key("frames").integer(1, limits.MAX_FRAMES);
+  checkPlaces(planes, films);
+  return { rate, first: first.exists ? first.number() : 0, frames, films, groups: readGroups(value, frames) };
+}
+
+function readFilm(value: Value<FilmJson>): Film {
+  const codec = codecOf("film", value.key("codec"), "film-1");
+  const [width = 0, height = 0] = value.key("size").numbers(2, FILM_STEP, limits.MAX_FILM_SIDE);
+  if (width % FILM_STEP || height % FILM_STEP || width * height > limits.MAX_FILM_PIXELS) {
+    throw value.key("size").wrong(`a film of ${width} x ${height}`);
+  }
+  return { codec, size: [width, height], where: value.where };
+}
+
+function readGroups(value: Value<TimelineJson>, frames: number): GroupPlace[] {
+  let [first, end] = [0, 0];
+  const groups = value.key("groups").items(limits.MAX_GROUPS).map((group: Value<GroupJson>): GroupPlace => {
+    const count = group.key("frames").integer(1, limits.MAX_GROUP_FRAMES);
+    const length = group.key("length").integer(1, limits.MAX_GROUP);
+    const offset = group.key("offset").integer(end, Number.MAX_SAFE_INTEGER);
+    const sha256 = group.key("sha256").text(64);
+    if (!DIGEST.test(sha256)) throw group.key("sha256").wrong("no SHA-256");
+    if (offset % 4) throw group.key("offset").wrong("no multiple of 4");
+    [first, end] = [first + count, offset + length];
+    return { first: first - count, frames: count, offset, length, sha256, where: group.where };
+  });
+  if (first !== frames) throw value.key("groups").wrong(`${first} frames in groups, and ${frames} in all`);
+  return groups;
+}
+
+function partsOf(planes: Plane[]): FilmPart[] {
+  return picturesOf(planes).flatMap(({ part }) => (part ? [part] : []));
+}
+
+function picturesOf(planes: Plane[]): Picture[] {
+  return planes.flatMap(({ mean, bases }) => [mean, ...bases.flatMap((basis) => basis.pictures)]);
+}
+
+/** Raises SceneError `damaged` unless all textures lie in films, each in a place of its own. */
+function checkPlaces(planes: Plane[], films: Film[]): void {
+  const taken = films.map(({ size }) => new Uint8Array((size[0] * size[1]) / PLACE_STEP ** 2));
+  for (const { part, where } of picturesOf(planes)) {
+    const film = part && films[part.film];
+    if (!part || !film) throw damaged(where, "it lies in no film");
+    const [columns, cells] = [film.size[0] / PLACE_STEP, taken[part.film]!];
+    const [width, height] = part.size.map((side) => Math.ceil(side / PLACE_STEP)) as [number, number];
+    for (const [left, top] of part.at) {
+      const inside = left + part.size[0] <= film.size[0] && top + part.size[1] <= film.size[1];
+      if (left % PLACE_STEP || top % PLACE_STEP || !inside) throw damaged(where, `a texture at ${left}, ${top} of its film`);
+      for (let row = top / PLACE_STEP; row < top / PLACE_STEP + height; row++) {
+        const own = cells.subarray(row * columns + left / PLACE_STEP, row * columns + left / PLACE_STEP + width);
+        if (own.includes(1)) throw damaged(where, `two textures at ${left}, ${top} of a film`);
+        own.fill(1);
+      }
+    }
+  }
+}
+
+/** The number of the frame that is nearest to a time in seconds, within the clip. */
+export function frameAt({ rate, first, frames }: Timeline, seconds: number): number {
+  return Math.min(Math.max(Math.floor((seconds - first) * rate + 0.5), 0), frames - 1);
+}
+
+export function timeOf({ rate, first }: Timeline, frame: number): number {
+  return first + frame / rate;
+}
+
+/** The index of the group that has a frame. */
+export function groupOf({ groups }: Timeline, frame: number): number {
+  let [low, high] = [0, groups.length - 1];
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if ((groups[middle]?.first ?? Infinity) <= frame) low = middle;
+    else high = middle - 1;
+  }
+  return low;
+}

@@ -1,0 +1,257 @@
+// The timeline of a clip, the heads of its groups, and its player with decoders of every manner. Needs no browser.
+
+import assert from "node:assert/strict";
+import { createHash } from "node:crypto";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { after, before, beforeEach, test } from "node:test";
+import { deflateRawSync, inflateRawSync } from "node:zlib";
+import { python } from "./command.mjs";
+import { FakeFrame, installClock, installFakes } from "./fake-video.mjs";
+import { buildModule } from "./module.mjs";
+
+const EXTENSION = "EIGENFIELD_eigen_textures";
+let built, close, json, chunk, facts;
+
+before(async () => {
+  let folder;
+  ({ module: built, folder, close } = await buildModule("clip"));
+  python("-c", `from pathlib import Path; from support import clips; clips.write(Path(${JSON.stringify(folder)}))`);
+  const bytes = readFileSync(join(folder, "clip.glb"));
+  facts = JSON.parse(readFileSync(join(folder, "clip.json"), "utf8"));
+  const chunks = [];
+  for (let at = 12; at < bytes.length; at += 8 + bytes.readUInt32LE(at)) {
+    chunks.push(bytes.subarray(at + 8, at + 8 + bytes.readUInt32LE(at)));
+  }
+  json = await built.unpacked(JSON.parse(chunks[0]), read(chunks[1]));
+  chunk = chunks[2];
+});
+after(() => close());
+
+/** The document after its extension was changed. */
+function changed(change = () => undefined) {
+  const copy = structuredClone(json);
+  change(copy.extensions[EXTENSION].timeline, copy.extensions[EXTENSION]);
+  return built.readDocument(copy);
+}
+
+const read = (data) => (offset, length) => Promise.resolve(new Uint8Array(data.subarray(offset, offset + length)).buffer);
+const damaged = (part) => (error) => error.code === "damaged" && error.where.includes(part);
+
+test("a timeline is read, and frames have times and groups", () => {
+  const { timeline, planes } = changed();
+  const frames = facts.groups.reduce((a, b) => a + b);
+  assert.deepEqual([timeline.frames, timeline.rate, timeline.first], [frames, facts.rate[0] / facts.rate[1], 0]);
+  assert.deepEqual(timeline.groups.map((group) => group.frames), facts.groups);
+  assert.deepEqual(timeline.films.map(({ codec }) => codec.needs), ["film-1", "film-1"]);
+  assert.deepEqual(planes[0].bases.map(({ count }) => count), [facts.textures]);
+  const groups = facts.groups.flatMap((count, i) => Array(count).fill(i));
+  assert.deepEqual(Array.from({ length: frames }, (_, i) => built.groupOf(timeline, i)), groups);
+  for (let i = 0; i < frames; i++) {
+    for (const off of [-0.49, 0, 0.49]) assert.equal(built.frameAt(timeline, built.timeOf(timeline, i + off)), i);
+  }
+  assert.deepEqual([-9, 1e9].map((time) => built.frameAt(timeline, time)), [0, frames - 1]);
+});
+
+const FAULTS = {
+  "no sum of frames": ["timeline/groups", (timeline) => (timeline.frames += 1)],
+  "a rate of nothing": ["timeline/rate", (timeline) => (timeline.rate = [1, 0])],
+  "a rate beyond bounds": ["timeline/rate", (timeline) => (timeline.rate = [2000, 1])],
+  "no films": ["planes", (timeline) => (timeline.films = [])],
+  "a side of a film": ["films/0/size", (timeline) => (timeline.films[0].size = [100, 128])],
+  "a group over another": ["groups/1/offset", (timeline) => (timeline.groups[1].offset = 4)],
+  "a group not aligned": ["groups/1/offset", (timeline) => (timeline.groups[1].offset += 1)],
+  "no digest": ["groups/0/sha256", (timeline) => (timeline.groups[0].sha256 = "00")],
+  "a place that leaves the film": ["mean", (_, { planes }) => (planes[0].mean.at = [[4096, 0]])],
+  "a place at 8": ["mean", (_, { planes }) => (planes[0].mean.at = [[8, 0]])],
+  "two textures at a place": ["bases/0", (_, { planes: [{ bases: [basis] }] }) => (basis.at[1] = basis.at[0])],
+  "a film that is not there": ["mean", (_, { planes }) => (planes[0].mean.film = 3)],
+  "places for half a texture": ["planes/1/mean", (_, { planes }) => planes[1].mean.at.pop()],
+  "films and no timeline": ["mean", (_, extension) => delete extension.timeline],
+};
+
+test("a timeline that cannot be is refused with its place", () => {
+  for (const [name, [part, change]] of Object.entries(FAULTS)) assert.throws(() => changed(change), damaged(part), name);
+});
+
+test("groups are opened with mesh, weights, scales and units; what is damaged says where", async () => {
+  const scene = changed();
+  const groups = new built.Groups(scene, scene.timeline, read(chunk));
+  for (const [index, { first, frames }] of scene.timeline.groups.entries()) {
+    const group = await groups.open(index);
+    assert.deepEqual([group.index, group.first, group.frames, group.units.length], [index, first, frames, frames]);
+    assert.equal(group.omega.length, scene.heldOut.length * facts.textures);
+    assert.deepEqual([group.means.length, group.bases.length], [2, 1]);
+    assert.equal(group.bases[0].scale.length, facts.textures);
+    assert.equal(group.geometry, (await groups.open(0)).geometry, "one still proxy is one geometry");
+  }
+  const wrong = Buffer.from(chunk);
+  wrong[scene.timeline.groups[1].offset + 60] ^= 1;
+  await assert.rejects(new built.Groups(scene, scene.timeline, read(wrong)).open(1), damaged("groups/1"));
+});
+
+test("heads of groups that cannot be are refused", async () => {
+  const scene = changed();
+  const [place] = scene.timeline.groups;
+  const own = chunk.subarray(0, place.length);
+  const size = own.readUInt32LE(0);
+  const head = JSON.parse(inflateRawSync(own.subarray(4, 4 + size)));
+  const openWith = (change) => {
+    const copy = structuredClone(head);
+    change(copy);
+    const text = deflateRawSync(JSON.stringify(copy));
+    const length = Buffer.alloc(4);
+    length.writeUInt32LE(text.length);
+    const made = Buffer.concat([length, text, own.subarray(4 + size)]);
+    Object.assign(place, { length: made.length, sha256: createHash("sha256").update(made).digest("hex") });
+    return new built.Groups(scene, scene.timeline, read(made)).open(0);
+  };
+  assert.equal((await openWith(() => undefined)).frames, place.frames);
+  const faults = {
+    "a frame less": (copy) => copy.frames.pop(),
+    "a unit less": (copy) => copy.frames[1].pop(),
+    "a unit of nothing": (copy) => (copy.frames[1][0] = 0),
+    "a unit beyond the end": (copy) => (copy.frames.at(-1)[1] += 1),
+    "weights of another number": (copy) => copy.weights.pop(),
+    "scales of another number": (copy) => copy.bases[0].pop(),
+    "no mesh": (copy) => delete copy.mesh,
+  };
+  for (const [name, change] of Object.entries(faults)) {
+    await assert.rejects(openWith(change), { code: "damaged" }, name);
+  }
+  const cut = new built.Groups(scene, scene.timeline, read(Buffer.from([255, 255, 255, 255])));
+  await assert.rejects(cut.open(0), { code: "damaged" });
+});
+
+// ---- the player, with decoders that only count
+
+const clock = installClock();
+const manner = {};
+beforeEach(() => Object.keys(manner).forEach((key) => delete manner[key]));
+
+/** A player of the clip. `shown`: of each frame its number, and the timestamps and widths that its films hold. */
+function makePlayer() {
+  installFakes(manner);
+  const scene = changed();
+  const groups = new built.Groups(scene, scene.timeline, read(chunk));
+  const [shown, failed] = [[], []];
+  const numbers = ({ data }) => [...new Uint32Array(data.slice(0, 8).buffer)];
+  const player = new built.Player(scene.timeline, (user) => new built.FrameRing(scene.timeline, groups, user), {
+    show: ({ position, number, group, films }) => shown.push({ position, number, group, films: films.map(numbers) }),
+    failed: (reason) => failed.push(reason),
+  });
+  return { player, shown, failed, timeline: scene.timeline };
+}
+
+function assertWhole(shown, timeline) {
+  for (const { position, number, group, films } of shown) {
+    assert.equal(number, position % timeline.frames);
+    assert.equal(group.index, built.groupOf(timeline, number));
+    assert.deepEqual(films, timeline.films.map(({ size }) => [position, size[0]]), `frame ${number}`);
+  }
+}
+
+async function until(check) {
+  for (let i = 0; i < 4000 && !check(); i++) await new Promise((resolve) => setTimeout(resolve, 2));
+  assert.ok(check(), check.toString());
+}
+
+const MANNERS = { "in order": {}, "that keep two back": { delayed: 2 }, "that shuffle their frames": { shuffled: true } };
+for (const [name, how] of Object.entries(MANNERS)) {
+  for (const speed of Object.keys(how).length ? [2] : [0.5, 1, 2, 7]) {
+    test(`decoders ${name}: at speed ${speed} each frame is shown with films of its own, and none stays open`, async () => {
+      Object.assign(manner, how);
+      const { player, shown, failed, timeline } = makePlayer();
+      player.speed = speed;
+      player.play();
+      await until(() => shown.length > 20 && shown.at(-1).position > timeline.frames + 3);
+      player.pause();
+      assertWhole(shown, timeline);
+      const positions = shown.map(({ position }) => position);
+      assert.deepEqual(positions, positions.toSorted((a, b) => a - b));
+      await until(() => FakeFrame.open === 0);
+      assert.deepEqual([player.open, failed], [0, []]);
+      player.dispose();
+    });
+  }
+
+  test(`decoders ${name}: after each of sixty seeks its frame is shown`, async () => {
+    Object.assign(manner, how);
+    const { player, shown, timeline } = makePlayer();
+    for (let i = 0; i < 60; i++) {
+      const wanted = (i * i * 7 + 3 * i) % timeline.frames;
+      if (i % 3 === 0) player.play();
+      await player.toFrame(wanted);
+      if (i % 3) assert.equal(player.frame, wanted);
+      player.pause();
+    }
+    const at = player.frame;
+    await player.step(-1);
+    assert.equal(player.frame, (at + timeline.frames - 1) % timeline.frames);
+    assertWhole(shown, timeline);
+    player.dispose();
+  });
+}
+
+test("of many seeks at once the last is shown, and all are answered", async () => {
+  const { player, shown, timeline } = makePlayer();
+  await Promise.all([20, 3, 11, 24, 0, 16].map((frame) => player.toFrame(frame)));
+  assert.equal(player.frame, 16);
+  assertWhole(shown, timeline);
+  assert.ok(shown.length <= 3, "those between are not decoded");
+  player.dispose();
+});
+
+test("the clock goes as fast as the speed says where decoders keep up", async () => {
+  const { player, shown, timeline } = makePlayer();
+  player.play();
+  await until(() => shown.length > 3);
+  const [begun, position] = [clock.now, shown.at(-1).position];
+  await until(() => clock.now > begun + 3000);
+  const frames = ((clock.now - begun) / 1000) * timeline.rate;
+  assert.ok(Math.abs(shown.at(-1).position - position - frames) < 6, `${shown.at(-1).position - position} of ${frames}`);
+  player.dispose();
+});
+
+test("a group that is damaged is left out with a line, and the rest plays on", async () => {
+  const { player, shown, failed, timeline } = makePlayer();
+  const bad = timeline.groups[1];
+  manner.fails = (timestamp) => timestamp % timeline.frames === bad.first + 2;
+  player.play();
+  await until(() => shown.at(-1)?.position > timeline.frames + bad.first + bad.frames);
+  assertWhole(shown, timeline);
+  assert.deepEqual(failed.map(({ code }) => code), ["damaged"]);
+  const seen = new Set(shown.map(({ number }) => number));
+  assert.ok(seen.has(bad.first - 1) && seen.has(bad.first + bad.frames), "all up to it, and all behind it");
+  const { frame } = player;
+  player.pause();
+  await player.toFrame(bad.first);
+  assert.deepEqual([player.frame, player.waiting], [frame, false]);
+  await player.toFrame(20);
+  assert.equal(player.frame, 20);
+  player.dispose();
+  await until(() => FakeFrame.open === 0);
+});
+
+test("without a decoder nothing is shown, and it is said", async () => {
+  const { player, shown, failed } = makePlayer();
+  delete globalThis.VideoDecoder;
+  player.play();
+  await until(() => failed.length > 0);
+  assert.deepEqual([player.playing, shown.length, failed.length, failed[0].code], [false, 0, 1, "codec"]);
+});
+
+test("frames of eight bits, and those of colours, become codes of ten", async () => {
+  const frame = (format, bytes, stride) => ({
+    format,
+    visibleRect: { width: 2, height: 2 },
+    allocationSize: () => bytes.length,
+    copyTo: async (data) => (data.set(bytes), [{ offset: 1, stride }]),
+  });
+  const codes = ({ data }) => [...new Uint16Array(data.slice(0, 8).buffer)];
+  const luma = await built.codesOf(frame("NV12", [9, 0, 85, 7, 255, 128, 7], 3), null);
+  assert.deepEqual(codes(luma), [0, 341, 1023, 514]);
+  const colours = Array.from({ length: 17 }, (_, i) => (i % 4 === 2 ? 85 : 1));
+  assert.deepEqual(codes(await built.codesOf(frame("BGRX", colours, 8), null)), [341, 341, 341, 341]);
+  await assert.rejects(built.codesOf(frame(null, [], 0), null), { code: "unsupported" });
+});

@@ -1,0 +1,117 @@
+// A clip in the built viewer: its bar, its keys, its time in the address, and what is said where nothing plays it.
+
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { after, before, test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { eigenfield } from "./command.mjs";
+import { launch, openPage, scenePath } from "./harness.mjs";
+import { openViewer, settled } from "./viewer-page.mjs";
+
+const CLIP = "clip.glb";
+const FRAMES = 25;
+let browser;
+before(async () => (browser = await launch()));
+after(() => browser?.close());
+
+const state = (page) => page.evaluate(() => window.eigenfield.state());
+const until = (page, check, given) => page.waitForFunction(check, given, { timeout: 60_000 });
+const frame = (page) => page.evaluate(() => window.eigenfield.field.player.frame);
+const opened = (page) => until(page, () => window.eigenfield.state().status === "ready");
+
+test("a clip plays when it is opened, while the eye moves, and stands still where less motion is wished for", async () => {
+  const moving = await openViewer(browser, CLIP, { glide: true });
+  await until(moving.page, () => window.eigenfield.field?.player.frame > 1);
+  assert.equal((await state(moving.page)).playing, true);
+  const { x } = await state(moving.page);
+  await moving.page.keyboard.press("ArrowRight");
+  await until(moving.page, (before) => window.eigenfield.state().x !== before, x);
+  assert.equal((await state(moving.page)).playing, true);
+  await settled(moving.page);
+  const { playing, time } = await state(moving.page);
+  assert.equal(playing, false);
+  assert.equal(time, (await frame(moving.page)) / 10);
+  await moving.close();
+  const { page, close } = await openViewer(browser, CLIP);
+  await opened(page);
+  assert.deepEqual([(await state(page)).playing, (await state(page)).time], [false, 0]);
+  await close();
+});
+
+for (const ui of ["plain", "full"]) {
+  test(`bar and keys of a clip (${ui})`, async () => {
+    const { page, close } = await openViewer(browser, CLIP, { config: { ui }, width: 800, height: 600 });
+    await opened(page);
+    const bar = page.getByRole("group", { name: "Playback" });
+    await bar.getByRole("button", { name: "Play", exact: true }).click();
+    await until(page, () => window.eigenfield.field.player.frame > 1);
+    await bar.getByRole("button", { name: "Pause" }).click();
+    assert.equal((await state(page)).playing, false);
+    const place = bar.getByRole("slider", { name: "Time" });
+    await place.fill("7");
+    await until(page, () => window.eigenfield.field.player.frame === 7);
+    assert.equal(await place.getAttribute("aria-valuetext"), "0.70\u00a0s");
+    await place.press("ArrowRight");
+    await until(page, () => window.eigenfield.field.player.frame === 8);
+    await page.keyboard.press(",");
+    await until(page, () => window.eigenfield.field.player.frame === 7);
+    await page.keyboard.press(".");
+    await until(page, () => window.eigenfield.field.player.frame === 8);
+    await page.keyboard.press("]");
+    assert.equal(await bar.getByRole("button", { name: /Speed/ }).textContent(), "2×");
+    for (let i = 0; i < 3; i++) await page.keyboard.press("[");
+    assert.equal(await bar.getByRole("button", { name: /Speed/ }).textContent(), "0.25×");
+    await page.keyboard.press(" ");
+    assert.equal((await state(page)).playing, true);
+    await page.keyboard.press(" ");
+    assert.equal((await state(page)).playing, false);
+    await bar.getByRole("button", { name: "Repeat" }).click();
+    assert.equal(await page.evaluate(() => window.eigenfield.field.player.loop), false);
+    await close();
+  });
+}
+
+test("the address says when, and an address that does is opened there", async () => {
+  const { page, close } = await openViewer(browser, CLIP, { hash: "#x=0&y=0&t=1.25", glide: true });
+  await until(page, () => window.eigenfield.field?.player.frame === 13);
+  assert.equal((await state(page)).playing, false);
+  await page.keyboard.press(".");
+  await until(page, () => /[#&]t=1.4(&|$)/.test(location.hash));
+  await close();
+});
+
+test("a still scene has no bar, and its keys do what they did", async () => {
+  const { page, close } = await openViewer(browser, "scene.glb");
+  await opened(page);
+  assert.equal(await page.getByRole("group", { name: "Playback" }).count(), 0);
+  await page.keyboard.press("]");
+  await until(page, () => window.eigenfield.state().camera !== null);
+  assert.equal((await state(page)).time, null);
+  await close();
+});
+
+test("without a decoder of videos the first frame is shown in full, and a line says why it does not play", async () => {
+  const init = () => delete globalThis.VideoDecoder;
+  const { page, close } = await openViewer(browser, CLIP, { init, width: 800 });
+  await opened(page);
+  assert.equal(await page.evaluate(() => window.eigenfield.field.loaded), 4);
+  await page.keyboard.press(" ");
+  await until(page, () => window.eigenfield.state().message !== null);
+  const { message, playing, status } = await state(page);
+  assert.equal(message.code, "codec");
+  assert.match(message.text, /decodes no AV1 of 10 bits.*The first frame is shown/);
+  assert.deepEqual([playing, status], [false, "ready"]);
+  await close();
+});
+
+test("a page that `export` wrote plays from the disk", async () => {
+  const file = scenePath("clip-page.html");
+  eigenfield("export", scenePath(CLIP), "-o", file, "--overwrite", "--quiet");
+  assert.ok(readFileSync(file).length > 0);
+  const { page, close } = await openPage(browser, pathToFileURL(file).href);
+  await until(page, () => window.eigenfield?.field?.player.frame > 2);
+  const seen = new Set();
+  while (seen.size < 3) seen.add(await frame(page));
+  assert.ok(Math.max(...seen) < FRAMES);
+  await close();
+});

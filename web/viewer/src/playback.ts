@@ -1,0 +1,63 @@
+// A clip and its page: frames are drawn as they come, and a clip that nobody has asked otherwise plays at once.
+
+import type { Player } from "eigenfield-three";
+import { reducedMotion } from "./mode";
+import type { Session } from "./session";
+
+const SPEEDS = [0.25, 0.5, 1, 2, 4];
+
+export interface Playback {
+  /** The player of the clip that is open; null: no clip is. */
+  player(): Player | null;
+  playOrPause(): void;
+  toFrame(number: number): void;
+  /** Frames on, or back, and stands there. */
+  step(frames: number): void;
+  /** The next speed, or the one before; behind the last the first follows if `around`. */
+  changeSpeed(step: 1 | -1, around?: boolean): void;
+  setLoop(on: boolean): void;
+}
+
+export interface Clips extends Playback {
+  /** A scene is here. */
+  opened(): void;
+  /** It stands still, and what was sought is shown. */
+  stopped(): Promise<void>;
+}
+
+/** request: asks for a frame of the page. */
+export function createPlayback(session: Session, request: () => void, changed: () => void): Clips {
+  const player = (): Player | null => session.scene?.field?.player ?? null;
+  return {
+    player,
+    playOrPause: () => {
+      const own = player();
+      if (own?.playing) own.pause();
+      else own?.play();
+    },
+    toFrame: (number) => void player()?.toFrame(number),
+    step: (frames) => void player()?.step(frames),
+    changeSpeed: (step, around = false) => {
+      const own = player();
+      if (!own) return;
+      const next = SPEEDS.indexOf(own.speed) + step;
+      const speed = SPEEDS[around ? next % SPEEDS.length : Math.min(Math.max(next, 0), SPEEDS.length - 1)];
+      if (speed !== undefined) own.speed = speed;
+    },
+    setLoop: (on) => {
+      const own = player();
+      if (own) own.loop = on;
+    },
+    opened: () => {
+      const own = player();
+      own?.addEventListener("frame", request);
+      own?.addEventListener("change", changed);
+      if (!reducedMotion()) own?.play();
+    },
+    stopped: async () => {
+      const own = player();
+      own?.pause();
+      if (own?.waiting) await own.toFrame(own.sought);
+    },
+  };
+}

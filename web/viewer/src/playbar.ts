@@ -1,0 +1,56 @@
+// Below the picture of a clip: plays, and says where it is. Without words, but for screen readers.
+
+import { button, element, icon, ICONS, keyCaps } from "./dom";
+import { words } from "./language";
+import { shown } from "./text";
+import type { Viewer } from "./viewer";
+
+export interface Playbar {
+  readonly root: HTMLElement;
+  update(): void;
+  /** After a frame. */
+  tick(): void;
+}
+
+export function createPlaybar(viewer: Viewer): Playbar {
+  const play = button(words("play"), ICONS.play, viewer.playOrPause);
+  const place = element("input", { type: "range", min: "0", max: "0", step: "1", "aria-label": words("time") });
+  place.addEventListener("input", () => viewer.toFrame(Number(place.value)));
+  const time = element("output", { class: "figures", "aria-hidden": "true" });
+  const speed = element("button", { type: "button", class: "speed figures" });
+  speed.addEventListener("click", () => viewer.changeSpeed(1, true));
+  const loop = button(words("repeat"), ICONS.loop, () => viewer.setLoop(viewer.player()?.loop === false));
+  const root = element("div", { class: "playbar", role: "group", "aria-label": words("playback") }, play, place, time, speed, loop);
+
+  const tick = (): void => {
+    const player = viewer.player();
+    if (!player) return;
+    const now = shown(player.time, 2, "\u00a0s");
+    place.value = String(player.frame);
+    place.style.setProperty("--part", `${(100 * player.frame) / Math.max(player.frames - 1, 1)}%`);
+    place.setAttribute("aria-valuetext", now);
+    time.textContent = now;
+  };
+  return {
+    root,
+    tick,
+    update: () => {
+      const player = viewer.player();
+      root.hidden = player === null;
+      document.body.toggleAttribute("data-clip", player !== null);
+      if (!player) return;
+      const label = words(player.playing ? "pause" : "play");
+      play.replaceChildren(icon(player.playing ? ICONS.pause : ICONS.play), keyCaps(words("keySpace")));
+      play.title = label;
+      play.setAttribute("aria-label", label);
+      place.max = String(player.frames - 1);
+      const digits = String(player.speed).split(".")[1]?.length ?? 0;
+      const rate = shown(player.speed, digits, "×");
+      speed.textContent = rate;
+      speed.title = words("speed");
+      speed.setAttribute("aria-label", `${words("speed")} ${rate}`);
+      loop.setAttribute("aria-pressed", String(player.loop));
+      tick();
+    },
+  };
+}
