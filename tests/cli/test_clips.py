@@ -109,7 +109,7 @@ def test_a_film_has_the_rate_of_the_clip_and_follows_a_path(clip, run, tmp_path)
         (["--time", "5:5", "-o", "a.mp4"], "leaves nothing"),
         (["--time", "5:99", "-o", "a.mp4"], "name frames between 0 and 12"),
         (["--time", "5:8", "-o", "a.png"], "a path, or a range of times, makes many pictures"),
-        (["--time", "5:8", "--path", "grid", "--frames", "9", "-o", "a.mp4"], "no range of --time"),
+        (["--time", "5:8", "--path", "grid", "--frames", "9", "-o", "a.mp4"], "a range of --time says how many"),
         (["--time", "3:x", "-o", "a.mp4"], "a range: 0s:2s"),
         (["--time", "3", "-o", "a.mp4"], "one picture makes no film"),
     ],

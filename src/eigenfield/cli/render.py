@@ -67,8 +67,10 @@ def command(
         raise OptionError("viewpoint", f"{' and '.join(given)} exclude each other", remedy="give one of them")
     flight = path is not None or (time is not None and time.several)
     _check_output(output, flight, is_numbered(output))
-    if frames is not None and (path is None or (time is not None and time.several)):
-        raise OptionError("frames", "--frames needs --path, and no range of --time", remedy="leave it out")
+    if path is None and frames is not None:
+        raise OptionError("frames", "--frames needs --path", remedy="give a path, or leave it out")
+    if frames is not None and time is not None and time.several:
+        raise OptionError("frames", "a range of --time says how many pictures there are", remedy="leave --frames out")
     if flight and not is_numbered(output) and picture["background"] is None:
         raise OptionError("background", "a film cannot be transparent", remedy="name a colour, or write .png pictures")
     if residual and (at is not None or flight):
