@@ -16,7 +16,7 @@ from eigenfield.capture.film import open_film
 from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.photoset import PhotoSet
 from eigenfield.capture.readers.video import decode_video
-from eigenfield.core.errors import CaptureError, OptionError
+from eigenfield.core.errors import CaptureError, EigenfieldError, OptionError
 from eigenfield.imaging.png import png_bytes
 from support.filmed import (
     HEIGHT,
@@ -111,6 +111,20 @@ def test_a_calibration_of_other_cameras_is_named(tmp_path):
     rig = calibration(tmp_path / "rig.json", {c: [(f"cam_{c + 1}.png", None)] for c in range(3)})
     footage = opened(tmp_path / "take", calibration=rig)
     assert footage.names == ("cam_1", "cam_2") and any("cam_3.png" in line for line in footage.problems)
+
+
+def test_instants_that_are_captures_with_a_calibration_each(tmp_path):
+    for frame in range(4):
+        folder = tmp_path / f"frame_{frame + 1:04d}"
+        for camera in range(3):
+            picture(folder / "images" / f"view_00_{camera:02d}.png", camera, frame)
+        calibration(folder / "transforms.json", {c: [(f"images/view_00_{c:02d}.png", None)] for c in range(3)})
+    footage = opened(tmp_path, rate=24)
+    assert footage.names == ("view_00_00", "view_00_01", "view_00_02") and not footage.problems
+    assert all_seen(footage) == whole(3, range(4)) and footage.cameras[1].centre[0] == pytest.approx(0.1)
+    calibration(folder / "transforms.json", {c + 1: [(f"images/view_00_{c:02d}.png", None)] for c in range(3)})
+    assert "frame_0001" in str(footage_refused("footage-moving", tmp_path))
+    assert len(opened(tmp_path, calibration=tmp_path / "frame_0001")) == 4
 
 
 def test_a_zip_of_footage(tmp_path):
@@ -256,6 +270,44 @@ def test_a_video_that_is_damaged_in_the_middle_is_masked_out_there(tmp_path):
         else:
             assert frame_of(photograph, truth[1]) == number
     assert masked
+
+
+def test_any_folders_are_footage_or_refused(tmp_path):
+    random = np.random.default_rng(3)
+    words = ["cam", "frame", "", "0", "00", "view_", "images", "masks", "t", "é", "cam_1"]
+    opened_at_all = 0
+    for trial in range(60):
+        root = tmp_path / str(trial)
+        folder, name = random.choice(words, 2)
+        for outer in range(4):
+            for inner in range(4):
+                if random.random() < 0.85:
+                    stray = random.choice(words) if random.random() < 0.05 else name
+                    picture(root / f"{folder}{outer}" / f"{stray}{inner}.png", inner, outer)
+        try:
+            footage = opened(root)
+        except EigenfieldError as error:
+            assert error.remedy and "\n" not in str(error)
+        else:
+            opened_at_all += 1
+            assert footage.frames.shape == (len(footage.names), len(footage)) and seen(footage, len(footage) - 1)
+    assert opened_at_all > 20
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_videos_changed_at_random_are_read_or_refused(tmp_path, seed):
+    random = np.random.default_rng(seed)
+    rig(tmp_path)
+    data = bytearray((tmp_path / "cam_1.mp4").read_bytes())
+    for place in random.integers(0, len(data), 1 + seed):
+        data[place] = random.integers(0, 256)
+    (tmp_path / "cam_1.mp4").write_bytes(data[: len(data) - int(random.integers(0, 3)) * 200])
+    try:
+        footage = opened(tmp_path)
+        for instant in footage.instants():
+            assert instant.photograph(1).pixels.shape == (48, 64, 3)
+    except EigenfieldError as error:
+        assert error.remedy and "cam_1" in str(error)
 
 
 def test_stills_of_footage_are_said_so(tmp_path):

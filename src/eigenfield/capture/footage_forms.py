@@ -38,12 +38,14 @@ class Found:
     Attributes:
         rate: Frames a second of the clock that the tracks' times count.
         calibration: Of footage whose frames are entries: an entry for each camera, with its name as the file.
+        instants: The folders of instants, where they are such.
     """
 
     tracks: tuple[Track, ...]
     rate: Fraction
     problems: tuple[str, ...] = ()
     calibration: Calibration | None = None
+    instants: tuple[Path, ...] = ()
 
 
 def find_footage(root: Path, rate: float | None) -> Found | None:
@@ -90,18 +92,22 @@ def _picture_folders(root: Path) -> list[Path]:
             continue
         with os.scandir(place) as entries:
             inner = [Path(e.path) for e in entries if e.is_dir() and not _is_other(e.name)]
-        found = [one for one in sorted(inner, key=lambda path: natural_key(path.name)) if photographs_in(one)]
+        found = [one for one in sorted(inner, key=lambda path: natural_key(path.name)) if _pictures_of(one)]
         if len(found) >= FORM_MIN_CAMERAS:
             return found
     return []
+
+
+def _pictures_of(folder: Path) -> list[Path]:
+    return photographs_in(folder) or photographs_in(folder / IMAGES_FOLDER)
 
 
 def _is_other(name: str) -> bool:
     return name.startswith((".", "@", "__MACOSX")) or OTHER_FOLDERS.fullmatch(name) is not None
 
 
-def _of_folders(folders: Sequence[Path], rate: float | None) -> Found:
-    pictures = {folder: photographs_in(folder) for folder in folders}
+def _of_folders(folders: Sequence[Path], rate: float | None) -> Found | None:
+    pictures = {folder: _pictures_of(folder) for folder in folders}
     by_folder, lines = _folders_are_cameras(pictures)
     frames: dict[str, dict[int, Path]] = defaultdict(dict)
     for folder, files in pictures.items():
@@ -119,8 +125,9 @@ def _of_folders(folders: Sequence[Path], rate: float | None) -> Found:
                 )
     frames = {name: found for name, found in frames.items() if found}
     if len(frames) < FORM_MIN_CAMERAS:
-        return _refuse_form(folders[0].parent)
-    return _of_numbers(frames, rate, lines)
+        return None
+    found = _of_numbers(frames, rate, lines)
+    return found if by_folder else replace(found, instants=tuple(folders))
 
 
 def _of_numbers(frames: dict[str, dict[int, Path]], rate: float | None, lines: list[str]) -> Found:
@@ -165,15 +172,6 @@ def _is_camera(names: Sequence[str]) -> bool | None:
     if any(_number(name) is None for name in names) or words <= set(CAMERA_WORDS):
         return True
     return False if words <= set(INSTANT_WORDS) else None
-
-
-def _refuse_form(root: Path) -> Found:
-    raise CaptureError(
-        "footage-missing",
-        "holds no footage: neither a video a camera, nor a folder of numbered pictures a camera or an instant",
-        path=root,
-        remedy="put the video of each camera into one folder, or leave out --clip",
-    )
 
 
 # entries of a calibration

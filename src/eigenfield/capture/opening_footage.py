@@ -77,6 +77,8 @@ def open_footage(
     claim = _find_calibration(root, options)
     root = root.parent if root.is_file() else root
     found, read = _find_tracks(root, claim, options)
+    if claim is None and found.instants:
+        claim, read = _calibration_of_instants(found.instants, options)
     still, tracks = _open_cameras(found, claim, read, root, options)
     return _on_clock(root, found, still, tracks, asked, offsets)
 
@@ -118,6 +120,35 @@ def _find_tracks(root: Path, claim: Claim | None, options: OpenOptions) -> tuple
             remedy="put the videos of all cameras into one folder, or leave out --clip",
         )
     return found, one_camera_each(read)[0] if timed and read is not None else read
+
+
+def _calibration_of_instants(
+    folders: Sequence[Path], options: OpenOptions
+) -> tuple[Claim, Calibration] | tuple[None, None]:
+    """The calibration in the first instant's folder, as programs write it that render each frame as a capture.
+
+    Raises CaptureError `footage-moving` where that of the last instant has other poses.
+    """
+    first, last = (_read_beside(folder, options) for folder in (folders[0], folders[-1]))
+    if first is None:
+        return None, None
+    if last is not None:
+        poses = {PurePosixPath(entry.file).name: (entry.R, entry.centre) for entry in first[1].entries}
+        for entry in last[1].entries:
+            R, centre = poses.get(PurePosixPath(entry.file).name, (entry.R, entry.centre))
+            if not (np.allclose(entry.R, R, atol=1e-5) and np.allclose(entry.centre, centre, rtol=1e-4, atol=1e-6)):
+                message = f"{entry.label} has another pose here than in {folders[0].name}: the cameras move"
+                remedy = "film with cameras that stand still; of one that moves with all others, encode each instant"
+                raise CaptureError("footage-moving", message, path=last[1].path, remedy=remedy)
+    return first
+
+
+def _read_beside(folder: Path, options: OpenOptions) -> tuple[Claim, Calibration] | None:
+    claim = _find_calibration(folder, options)
+    if claim is None:
+        return None
+    assert claim.format.read_cameras is not None
+    return claim, claim.format.read_cameras(claim.found, folder)
 
 
 # cameras
