@@ -31,6 +31,7 @@ from eigenfield.gltf.clips import coded_clip
 from eigenfield.gltf.group import group_bytes
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.proxy import refuse_no_mesh
+from eigenfield.runtime.files import output_errors
 from eigenfield.runtime.parallel import even_pieces, parallel_map
 from eigenfield.runtime.stages import SCENE_ROOMS, Stages, stage_key
 
@@ -67,6 +68,9 @@ def encode_clip(
     refuse_still_options(asked)
     proxy = _checked_proxy(footage, proxy)
     length = group_length(asked.group or DEFAULT_GROUP, footage.timeline.rate)
+    if work is not None:
+        with output_errors(work):
+            work.mkdir(parents=True, exist_ok=True)
     plan = plan_encoding(footage.instant(len(footage) // 2), proxy, asked, work, progress)
     identity = stage_key([_footage_digest(footage), asked, _plan_digest(plan)], SCENE_ROOMS)
     spans = even_pieces(len(footage), -(-len(footage) // length))
