@@ -148,9 +148,7 @@ def our_point(source: Source, footage: Footage, proxy: Path, work: Path, group: 
     path = work / f"clip-{quality}.glb"
     began = time.perf_counter()
     options = EncodeOptions(quality=quality, hold_out=source.hold_out, group=group)
-    stages = work / f"stages-{quality}"
-    stages.mkdir(exist_ok=True)
-    clip = encode_footage(footage, proxy, options, work=stages, progress=None)
+    clip = encode_footage(footage, proxy, options, work=work / f"stages-{quality}", progress=None)
     ef.save(clip, path, overwrite=True)
     seconds = time.perf_counter() - began
     figures = evaluate_clip(path, footage, progress=None)

@@ -24,9 +24,9 @@ from eigenfield.encoding.clip.frames import load_arrays, save_arrays
 from eigenfield.encoding.fitted.code_planes import ZERO_CODE, code_unit
 
 FILM_PRESET = 4  # of SVT-AV1, as for stills
-# Of the quantiser step that a film is asked for, to that of pictures. What stays from frame to frame is coded more finely
-# than was asked for, since each later frame gains by it: textures of a moving cloth are 5 dB nearer than pictures, for
-# four times their bytes. At equal quality such films take 40 % less than those of fixed steps
+# Of the quantiser step that a film is asked for, to that of pictures. What stays from frame to frame is coded more
+# finely than was asked for, since each later frame gains by it: textures of a moving cloth are 5 dB nearer than
+# pictures, for four times their bytes. At equal quality such films take 40 % less than those of fixed steps
 FILM_STEP_RATIO = 2.0
 
 
