@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from support import clips, coded_scenes, composed, patched, pinholes, sheet_scenes, viewer_scenes
+from support import coded_scenes, composed, patched, pinholes, sheet_scenes, viewer_clips, viewer_scenes
 from support.browsers import CHROMIUM, OTHERS, lacks
 
 WEB = Path(__file__).parents[2] / "web"
@@ -48,7 +48,7 @@ def cases(plain: bool):
 def folder(tmp_path_factory):
     made = tmp_path_factory.mktemp("viewer")
     viewer_scenes.write(made)
-    clips.write(made)
+    viewer_clips.write(made)
     composed.write(made)
     coded_scenes.write(made)
     sheet_scenes.write(made)

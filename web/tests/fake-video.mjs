@@ -45,10 +45,12 @@ export function installFakes(manner) {
     turn = 0;
     whole = false; // nothing but a key picture may come next
 
+    static made = [];
     static isConfigSupported = async ({ codec }) => ({ supported: codec === "av01.0.00M.10" });
 
     constructor({ output, error }) {
       Object.assign(this, { output, error });
+      globalThis.VideoDecoder.made.push(this);
     }
 
     configure({ codedWidth, codedHeight }) {
@@ -76,6 +78,13 @@ export function installFakes(manner) {
         return;
       }
       this.output(new FakeFrame(timestamp, this.size));
+    }
+
+    /** As a browser does where a page is not looked at. */
+    takeBack() {
+      this.state = "closed";
+      Object.assign(this, { queue: [], turn: this.turn + 1 });
+      this.error(new DOMException("reclaimed", "QuotaExceededError"));
     }
 
     async flush() {

@@ -13,6 +13,8 @@ export interface FilmUser {
   closed(): void;
   /** A unit could not be decoded; what was given is thrown away. */
   failed(reason: unknown): void;
+  /** The browser took the decoder back, as it does where a page is not looked at; `start` makes another. */
+  lost(): void;
 }
 
 export class FilmDecoder {
@@ -82,7 +84,9 @@ export class FilmDecoder {
     const made = new VideoDecoder({
       output: (frame) => void this.receive(frame),
       error: (reason) => {
-        if (this.decoder === made) this.fail(this.turn, damaged(this.where, reason.message));
+        if (this.decoder !== made) return;
+        if (reason.name === "QuotaExceededError") this.user.lost();
+        else this.fail(this.turn, damaged(this.where, reason.message));
       },
     });
     return made;

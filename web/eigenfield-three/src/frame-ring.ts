@@ -48,6 +48,7 @@ export class FrameRing {
   private newest = -1; // position of the last frame that came
   private turn = 0;
   private feeding = false;
+  private hopeless = false; // no group can be decoded
 
   constructor(
     private readonly timeline: Timeline,
@@ -60,6 +61,7 @@ export class FrameRing {
         take: (position, frame) => this.receive(film, position, frame),
         closed: () => this.feed(),
         failed: (reason) => this.fail(reason),
+        lost: () => this.rest(),
       }),
     );
   }
@@ -95,13 +97,21 @@ export class FrameRing {
     return true;
   }
 
+  /** Tries again where nothing could be decoded. */
+  retry(): void {
+    this.hopeless = false;
+    if (this.next === Infinity) this.seek(this.from);
+  }
+
   /** The newest frame up to a position, unless that is shown already. What comes before it is let go, and after the next
    * call it too. */
   take(position: number): ClipFrame | null {
+    if (this.next === Infinity && !this.hopeless) this.seek(this.from);
     this.wanted = position;
-    const there = [...this.slots].filter(([at, { films }]) => at <= position && !films.includes(null));
-    const [at, slot] = there.at(-1) ?? [];
-    if (at === undefined || !slot) {
+    const there = [...this.slots.keys()].filter((at) => at <= position && !this.slots.get(at)?.films.includes(null));
+    const at = Math.max(...there);
+    const slot = this.slots.get(at);
+    if (!slot) {
       this.feed();
       return null;
     }
@@ -135,9 +145,8 @@ export class FrameRing {
   }
 
   dispose(): void {
-    this.stop();
-    this.loop = false;
-    this.next = Infinity;
+    this.rest();
+    this.hopeless = true;
     for (const decoder of this.decoders) decoder.dispose();
   }
 
@@ -202,8 +211,8 @@ export class FrameRing {
   private fail(reason: unknown): void {
     const ofTheFile = reason instanceof SceneError && (reason.code === "damaged" || reason.code === "truncated");
     if (!ofTheFile) {
-      this.stop();
-      this.next = Infinity; // until something else is sought
+      this.rest();
+      this.hopeless = true;
       return this.user.failed(reason, null);
     }
     this.halt();
@@ -211,6 +220,12 @@ export class FrameRing {
     this.broken.add(this.fed);
     this.user.failed(reason, this.fed);
     this.feed();
+  }
+
+  /** Nothing is decoded until something is sought. */
+  private rest(): void {
+    this.stop();
+    this.next = Infinity;
   }
 
   /** Goes on behind a group that cannot be decoded, from one of its positions. */

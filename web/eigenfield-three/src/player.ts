@@ -115,6 +115,7 @@ export class Player extends EventDispatcher<PlayerEvents> {
     if (this.plays || this.disposed) return;
     this.plays = true;
     this.last = null;
+    this.ring.retry();
     if (!this.loop && (this.following ?? this.goal ?? this.shown.position) >= this.end) void this.toFrame(0);
     this.dispatchEvent({ type: "change" });
     this.wake();

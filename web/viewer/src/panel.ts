@@ -186,7 +186,8 @@ export function createPanel(viewer: Viewer): Panel {
       divide.title = photographs ? "" : words("noPhotographs");
       divide.setAttribute("aria-pressed", String(flipped && options.divider !== null));
       flip.setAttribute("aria-pressed", String(flipped));
-      noPhotographs.hidden = photographs;
+      noPhotographs.hidden = photographs || viewer.player() !== null;
+      flip.hidden = divide.hidden = viewer.player() !== null; // photographs would be of one instant
       mode.show(viewer.modeName());
       weights.show(options.weights);
       mixing.show(options.mixing);

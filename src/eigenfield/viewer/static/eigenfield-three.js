@@ -437,7 +437,7 @@ var Nt = 4, Pt = ["prefer-software", "no-preference"], Ft = class {
 		let e = new VideoDecoder({
 			output: (e) => void this.receive(e),
 			error: (t) => {
-				this.decoder === e && this.fail(this.turn, M(this.where, t.message));
+				this.decoder === e && (t.name === "QuotaExceededError" ? this.user.lost() : this.fail(this.turn, M(this.where, t.message)));
 			}
 		});
 		return e;
@@ -3588,7 +3588,7 @@ var Ws = .25, Gs = class extends f {
 		this.pace = e, this.dispatchEvent({ type: "change" });
 	}
 	play() {
-		this.plays || this.disposed || (this.plays = !0, this.last = null, !this.loop && (this.following ?? this.goal ?? this.shown.position) >= this.end && this.toFrame(0), this.dispatchEvent({ type: "change" }), this.wake());
+		this.plays || this.disposed || (this.plays = !0, this.last = null, this.ring.retry(), !this.loop && (this.following ?? this.goal ?? this.shown.position) >= this.end && this.toFrame(0), this.dispatchEvent({ type: "change" }), this.wake());
 	}
 	pause() {
 		this.plays && (this.plays = !1, this.clock = this.shown.position, this.dispatchEvent({ type: "change" }));
@@ -4538,11 +4538,13 @@ var kc = class {
 	newest = -1;
 	turn = 0;
 	feeding = !1;
+	hopeless = !1;
 	constructor(e, t, n) {
 		this.timeline = e, this.groups = t, this.user = n, this.rooms = e.films.map(() => []), this.decoders = e.films.map(({ codec: e, size: t, where: n }, r) => e.decode(t, n, {
 			take: (e, t) => this.receive(r, e, t),
 			closed: () => this.feed(),
-			failed: (e) => this.fail(e)
+			failed: (e) => this.fail(e),
+			lost: () => this.rest()
 		}));
 	}
 	get open() {
@@ -4562,18 +4564,21 @@ var kc = class {
 		for (let [t, n] of this.slots) t < e && this.forget(t, n);
 		return this.feed(), !0;
 	}
+	retry() {
+		this.hopeless = !1, this.next === Infinity && this.seek(this.from);
+	}
 	take(e) {
-		this.wanted = e;
-		let [t, n] = [...this.slots].filter(([t, { films: n }]) => t <= e && !n.includes(null)).at(-1) ?? [];
-		if (t === void 0 || !n) return this.feed(), null;
-		for (let [e, n] of this.slots) e >= t || (this.late += 1, this.forget(e, n));
-		this.slots.delete(t);
-		for (let e of this.skipped) e < t && this.skipped.delete(e);
-		return this.reuse(this.shown?.films ?? []), this.from = t + 1, this.shown = {
-			position: t,
-			number: this.numberOf(t),
-			group: n.group,
-			films: n.films
+		this.next === Infinity && !this.hopeless && this.seek(this.from), this.wanted = e;
+		let t = [...this.slots.keys()].filter((t) => t <= e && !this.slots.get(t)?.films.includes(null)), n = Math.max(...t), r = this.slots.get(n);
+		if (!r) return this.feed(), null;
+		for (let [e, t] of this.slots) e >= n || (this.late += 1, this.forget(e, t));
+		this.slots.delete(n);
+		for (let e of this.skipped) e < n && this.skipped.delete(e);
+		return this.reuse(this.shown?.films ?? []), this.from = n + 1, this.shown = {
+			position: n,
+			number: this.numberOf(n),
+			group: r.group,
+			films: r.films
 		}, this.feed(), this.shown;
 	}
 	feed() {
@@ -4587,7 +4592,7 @@ var kc = class {
 		});
 	}
 	dispose() {
-		this.stop(), this.loop = !1, this.next = Infinity;
+		this.rest(), this.hopeless = !0;
 		for (let e of this.decoders) e.dispose();
 	}
 	numberOf(e) {
@@ -4632,10 +4637,13 @@ var kc = class {
 		return this.slots.set(e, n), n;
 	}
 	fail(e) {
-		if (!(e instanceof j && (e.code === "damaged" || e.code === "truncated"))) return this.stop(), this.next = Infinity, this.user.failed(e, null);
+		if (!(e instanceof j && (e.code === "damaged" || e.code === "truncated"))) return this.rest(), this.hopeless = !0, this.user.failed(e, null);
 		this.halt();
 		for (let [e, t] of this.slots) t.films.includes(null) && this.forget(e, t);
 		this.broken.add(this.fed), this.user.failed(e, this.fed), this.feed();
+	}
+	rest() {
+		this.stop(), this.next = Infinity;
 	}
 	pass(e, t) {
 		let { first: n, frames: r } = this.timeline.groups[e];

@@ -1,0 +1,60 @@
+"""A numbered clip for the tests of the web viewer.
+
+    PYTHONPATH=tests python -m support.viewer_clips FOLDER
+
+writes into FOLDER
+
+    clip.glb     frames that show their numbers (`support.clips`), in groups of 5, 7, 1 and 12
+    clip.json    {"groups": frames of each, "rate", "bits" of a number, "textures", "codes": for each frame the SHA-256
+                 of the codes of each film, two bytes a code, the lower first}
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.coding.video.film import decode_film
+from eigenfield.core.clip import Clip
+from eigenfield.gltf import save
+from eigenfield.gltf.clips import CodedGroups
+from support.clips import BITS, TEXTURES_COUNT, numbered_clip
+
+GROUPS = (5, 7, 1, 12)
+
+
+def write(folder: Path) -> None:
+    """Write both files into a folder that is there."""
+    clip = numbered_clip(GROUPS)
+    rate = clip.timeline.rate
+    facts = {
+        "groups": list(GROUPS), "rate": [rate.numerator, rate.denominator], "bits": BITS, "textures": TEXTURES_COUNT,
+        "codes": digests(clip),
+    }  # fmt: skip
+    save(clip, folder / "clip.glb", overwrite=True)
+    (folder / "clip.json").write_text(json.dumps(facts), encoding="utf-8")
+
+
+def digests(clip: Clip) -> list[list[str]]:
+    """For each frame one of each film."""
+    groups = clip.groups
+    assert isinstance(groups, CodedGroups)
+    listed: list[list[str]] = []
+    for index in range(len(groups.lengths)):
+        units = zip(*groups.coded(index).units, strict=True)
+        films = [decode_film(own, size, "the film") for own, size in zip(units, groups.layout.sizes, strict=True)]
+        listed += [[_digest(codes) for codes in frame] for frame in zip(*films, strict=True)]
+    return listed
+
+
+def _digest(codes: NDArray[np.uint16]) -> str:
+    return hashlib.sha256(codes.astype("<u2").tobytes()).hexdigest()
+
+
+if __name__ == "__main__":
+    write(Path(sys.argv[1]))
