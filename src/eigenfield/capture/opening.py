@@ -127,8 +127,8 @@ def open_photographs(path: StrPath, options: OpenOptions | None = None, **change
     source = _find_source(path, options, NAME_FORMATS)
     if source is None:
         raise _no_photographs(Path(path))
-    made = make_photo_set(_read_arrangement(source), source.root, masks=_masks(options), strict=options.strict)
-    return _finish(made)
+    photographs = make_photo_set(_read_arrangement(source), source.root, masks=_masks(options), strict=options.strict)
+    return _finish(photographs)
 
 
 def _open_folders(paths: Sequence[StrPath], options: OpenOptions) -> PhotoSet:
