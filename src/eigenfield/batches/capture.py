@@ -109,8 +109,8 @@ def find_cameras(job: CaptureJob, output: Path) -> Path:
         light_field = capture.light_field
         if surface is not None:
             layers = surface.layers if surface.surface == "layers" else 1  # trials tell nothing about cameras
-            work = output / WORK_FOLDER / job.name
-            light_field = reconstruct(capture, surface, layers=layers, work=work, progress=None).light_field
+            made = reconstruct(capture, surface, layers=layers, work=output / WORK_FOLDER / job.name, progress=None)
+            light_field = made.light_field
         assert light_field is not None
         save_calibration(light_field, folder / "calibration")
 

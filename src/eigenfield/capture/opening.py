@@ -127,8 +127,8 @@ def open_photographs(path: StrPath, options: OpenOptions | None = None, **change
     source = _find_source(path, options, NAME_FORMATS)
     if source is None:
         raise _no_photographs(Path(path))
-    photographs = make_photo_set(_read_arrangement(source), source.root, masks=_masks(options), strict=options.strict)
-    return _finish(photographs)
+    made = make_photo_set(_read_arrangement(source), source.root, masks=_masks(options), strict=options.strict)
+    return _finish(made)
 
 
 def _open_folders(paths: Sequence[StrPath], options: OpenOptions) -> PhotoSet:

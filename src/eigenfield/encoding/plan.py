@@ -85,7 +85,7 @@ class EncodePlan:
     def scene(
         self,
         planes: tuple[Plane, ...],
-        plane_settings: Mapping[str, Any],
+        own: Mapping[str, Any],
         *,
         payloads: Payloads | None = None,
         colours: NDArray[np.float32] | None = None,
@@ -95,7 +95,7 @@ class EncodePlan:
 
         Args:
             planes: As in `Scene`, with a row of weights for each encoded camera.
-            plane_settings: Settings that record how the planes were made.
+            own: Settings that record how the planes were made.
         """
         views, rig = self.views, self.views.rig
         sizes = [rig.cameras[index].width * rig.cameras[index].height for index in views.taken_by]
@@ -105,7 +105,7 @@ class EncodePlan:
             "atlas": list(self.atlas),
             "density": round(self.density, 4),
             "holdOut": self.options.hold_out,
-            **plane_settings,
+            **own,
             **_scale(views.capture, self.options.metres_per_unit),
             **_origin(views.capture),
             **_lenses(views.capture),
@@ -117,7 +117,7 @@ class EncodePlan:
                 "pixels": sum(sizes),
             },
         }
-        scene = Scene(
+        made = Scene(
             proxy=replace(self.proxy, lattice=None),
             rig=rig,
             appearance=Appearance(planes=planes, colours=colours, to_rgb=to_rgb),
@@ -125,7 +125,7 @@ class EncodePlan:
             generator=f"eigenfield {__version__}",
             payloads=self.payloads | (payloads or {}),
         )
-        return scene if self.options.fallback is None else with_fallback(scene, self.options.fallback)
+        return made if self.options.fallback is None else with_fallback(made, self.options.fallback)
 
 
 def component_count(asked: int, observations: int) -> int:

@@ -90,10 +90,10 @@ def read_transforms(path: Path) -> Calibration:
     strange = tuple(lens_keys(top, TRANSFORMS_READ_LENS_KEYS))
 
     def make(item: tuple[int, Any]) -> Entry:
-        number, listed = item
-        inside = listed if isinstance(listed, dict) else {}
+        number, own = item
+        inside = own if isinstance(own, dict) else {}
         frame = _Frame(inside, top, f"frame {number}", path, tuple(key for key in strange if key not in inside))
-        return _make_entry(frame, listed, undo)
+        return _make_entry(frame, own, undo)
 
     entries, errors = read_each(make, enumerate(frames))
     return Calibration(path, "transforms", entries, errors)
@@ -198,14 +198,14 @@ def _as_float(value: float) -> float:
         return math.inf
 
 
-def _make_entry(frame: _Frame, listed: Any, undo: Similarity) -> Entry:
-    if not isinstance(listed, dict):
+def _make_entry(frame: _Frame, own: Any, undo: Similarity) -> Entry:
+    if not isinstance(own, dict):
         raise frame.error("frame-not-object", f"{frame.label} is not an object", "mend or remove it")
-    file = listed.get("file_path")
+    file = own.get("file_path")
     if not isinstance(file, str) or not file or "\0" in file:
         raise frame.error("frame-file", f"{frame.label} has no usable file_path", "mend or remove it")
     frame = replace(frame, label=f"{frame.label} ({one_line(file)})")
-    mask = listed.get("mask_path")
+    mask = own.get("mask_path")
     if mask is not None and (not isinstance(mask, str) or "\0" in mask):
         raise frame.error("frame-mask", f"{frame.label} has a mask_path that is no text", "mend or remove it")
     pose = frame.pose("transform_matrix", f"transform_matrix of {frame.label}")
@@ -237,8 +237,8 @@ def _read_applied_transform(top: Mapping[str, Any], path: Path) -> Similarity:
 
 def _read_intrinsics(frame: _Frame) -> Intrinsics:
     # focal length and angle come from the frame if it has any of them, and are not mixed with those of the file
-    has_own = any(key in frame.own for key in ("fl_x", "fl_y", "camera_angle_x", "x_fov"))
-    owner = _Frame(frame.own if has_own else frame.top, {}, frame.label, frame.path)
+    own = any(key in frame.own for key in ("fl_x", "fl_y", "camera_angle_x", "x_fov"))
+    owner = _Frame(frame.own if own else frame.top, {}, frame.label, frame.path)
     fx, fy = owner.number("fl_x"), owner.number("fl_y")
     focal = None
     if fx is not None or fy is not None:

@@ -45,9 +45,9 @@ def with_mesh(scene: S, mesh: Mesh) -> S:
     if sheets is not None:  # they are counted by triangles, of which none may be left out
         sound = Mesh(raw.vertices.astype(np.float32), raw.faces.astype(np.int32), np.asarray(raw.uv, np.float32))
     proxy = replace(relief_proxy(sound, scene.rig.cameras, DEPTH_ERROR_PX), sheets=sheets)
-    coded = coded_mesh(proxy, scene.rig.cameras, scene.rig.reference)
-    payloads = scene.payloads.without("mesh") | coded.payloads
-    return replace(scene, proxy=coded.value, payloads=payloads, scores={}, residual=None)
+    made = coded_mesh(proxy, scene.rig.cameras, scene.rig.reference)
+    payloads = scene.payloads.without("mesh") | made.payloads
+    return replace(scene, proxy=made.value, payloads=payloads, scores={}, residual=None)
 
 
 def _raw(mesh: Mesh) -> RawMesh:
