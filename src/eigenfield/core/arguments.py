@@ -31,8 +31,8 @@ _WORDS = {int: "a whole number", float: "a number", str: "a text", bool: "True o
 
 
 def public_name(function: Callable[..., Any]) -> str:
-    """What users call a function: `eigenfield.open` is `open_any` within."""
-    return function.__name__.removesuffix("_any")
+    """What users call a function: `eigenfield.open` has a longer name within."""
+    return "open" if function.__name__ in ("open_any", "open_path") else function.__name__
 
 
 def checked(function: Callable[P, R]) -> Callable[P, R]:
