@@ -126,6 +126,8 @@ def test_no_public_class_name_twice():
         for node in ast.parse(path.read_text(encoding="utf-8")).body:
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
                 places.setdefault(node.name, []).append(name)
+    with_methods = ["eigenfield.api", "eigenfield.core.scene"]  # of which the first adds methods: decision 41
+    assert sorted(places.pop("Scene")) == with_methods
     offenders = [f"{name}: {', '.join(modules)}" for name, modules in sorted(places.items()) if len(modules) > 1]
     assert len(places) > 100 and not offenders, "\n".join(offenders)
 

@@ -43,7 +43,7 @@ def nine(tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def small(nine) -> ef.EncodedScene:
+def small(nine) -> ef.Scene:
     return ef.encode(nine, nine / "proxy.ply", fit="none", textures=2, atlas=64)
 
 
@@ -74,9 +74,18 @@ def test_encode_and_evaluate_take_paths_and_captures(nine):
 def test_a_scene_and_a_picture_show_themselves_briefly():
     scene = tiny_scene(held_out=(1,), cameras=6)
     assert repr(scene).count("\n") == 2 and "6 cameras, 1 of them held out" in repr(scene)
-    encoded = ef.EncodedScene(scene.proxy, scene.rig, scene.appearance)
-    assert repr(encoded).startswith("EncodedScene of 6 cameras") and len(repr(encoded)) < 300
+    made = ef.Scene(scene.proxy, scene.rig, scene.appearance)
+    assert repr(made).startswith("Scene of 6 cameras") and len(repr(made)) < 300
     assert len(repr(ef.render(scene))) < 80
+
+
+def test_a_scene_that_is_made_of_its_parts_has_the_methods(tmp_path):
+    parts = tiny_scene(cameras=6)
+    made = ef.Scene(parts.proxy, parts.rig, parts.appearance)
+    np.testing.assert_array_equal(made.render().image, ef.render(parts).image)
+    made.save(tmp_path / "made.glb", codec="png")
+    assert ef.load(tmp_path / "made.glb").names == made.names
+    assert "proxy: The surface." in inspect.getdoc(ef.Scene)
 
 
 def within(value) -> list:
@@ -123,7 +132,7 @@ def test_a_loaded_scene_has_its_parts_at_hand(small, tmp_path):
     with pytest.raises(ef.OptionError, match="no camera is called nobody"):
         scene.texture("nobody")
     for again in (small, replace(scene, scores={}), pickle.loads(pickle.dumps(scene)), scene.with_mesh(scene.mesh)):
-        assert type(again) is ef.EncodedScene and again.mean.shape == (64, 64, 3)
+        assert type(again) is ef.Scene and again.mean.shape == (64, 64, 3)
     assert inspect.signature(ef.load).parameters.keys() == {"path"} and "Read a scene" in ef.load.__doc__
 
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from eigenfield.core.version import __version__
 
 if TYPE_CHECKING:
-    from eigenfield.api import EncodedScene as EncodedScene
+    from eigenfield.api import Scene as Scene
     from eigenfield.api import encode as encode
     from eigenfield.api import load as load
     from eigenfield.batches import BatchResult as BatchResult
@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from eigenfield.core.mesh import Mesh as Mesh
     from eigenfield.core.open_options import OpenOptions as OpenOptions
     from eigenfield.core.progress import Progress as Progress
-    from eigenfield.core.scene import Scene as Scene
     from eigenfield.encoding import EncodeOptions as EncodeOptions
     from eigenfield.encoding import Target as Target
     from eigenfield.evaluation import evaluate as evaluate
@@ -60,7 +59,6 @@ _HOME = {  # a room, or a name in a room where that is another
     "CaptureError": "core.errors",
     "EigenfieldError": "core.errors",
     "EncodeOptions": "encoding",
-    "EncodedScene": "api",
     "FormatError": "core.errors",
     "LightField": "capture",
     "Mesh": "core.mesh",
@@ -71,7 +69,7 @@ _HOME = {  # a room, or a name in a room where that is another
     "Progress": "core.progress",
     "ProxyError": "core.errors",
     "Reconstruction": "reconstruction.whole",
-    "Scene": "core.scene",
+    "Scene": "api",
     "SurfaceOptions": "reconstruction",
     "Target": "encoding",
     "WorkerError": "core.errors",

@@ -15,18 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield import encoding, gltf, rendering
-from eigenfield.core.scene import Scene
+from eigenfield.core import scene as data
 from eigenfield.encoding.geometry.exchange import with_mesh
 
 P = ParamSpec("P")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class EncodedScene(Scene):
-    """A scene as `encode` and `load` return it, which saves and draws itself.
-
-    `dataclasses.replace`, copies and pickles keep the coded bytes of parts that have not changed.
-    """
+class Scene(data.Scene):
+    __doc__ = data.Scene.__doc__  # it has the same parts
 
     render = rendering.render
     render_many = rendering.render_many
@@ -46,14 +43,14 @@ class EncodedScene(Scene):
         return scene_html(self)
 
 
-def _returning_encoded_scene(function: Callable[P, Scene]) -> Callable[P, EncodedScene]:
+def _returning_scene(function: Callable[P, data.Scene]) -> Callable[P, Scene]:
     @functools.wraps(function)
-    def call(*args: P.args, **named: P.kwargs) -> EncodedScene:
+    def call(*args: P.args, **named: P.kwargs) -> Scene:
         made = function(*args, **named)
-        return EncodedScene(**{one.name: getattr(made, one.name) for one in fields(made) if one.init})
+        return Scene(**{one.name: getattr(made, one.name) for one in fields(made) if one.init})
 
     return call
 
 
-encode = _returning_encoded_scene(encoding.encode)
-load = _returning_encoded_scene(gltf.load)
+encode = _returning_scene(encoding.encode)
+load = _returning_scene(gltf.load)
