@@ -58,8 +58,8 @@ pygments_dark_style = "a11y-high-contrast-dark"
 def signature_to_show(
     app: Sphinx, what: str, name: str, found: Any, options: Any, signature: str | None, returned: str | None
 ) -> tuple[str, str | None] | None:
-    """Attributes are listed one a line below a class, and no reader makes a `Scene` by hand. A function that is a
-    default is shown by its name."""
+    """A class is shown without its arguments, which are its attributes and listed one a line below it. A function that
+    is a default is shown by its name."""
     if what == "class":
         return "", None
     return None if signature is None else (re.sub(r"<function (\w+)>", r"\1", signature), returned)

@@ -43,7 +43,7 @@ def nine(tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def small(nine) -> ef.EncodedScene:
+def small(nine) -> ef.Scene:
     return ef.encode(nine, nine / "proxy.ply", fit="none", textures=2, atlas=64)
 
 
@@ -74,9 +74,18 @@ def test_encode_and_evaluate_take_paths_and_captures(nine):
 def test_a_scene_and_a_picture_show_themselves_briefly():
     scene = tiny_scene(held_out=(1,), cameras=6)
     assert repr(scene).count("\n") == 2 and "6 cameras, 1 of them held out" in repr(scene)
-    encoded = ef.EncodedScene(scene.proxy, scene.rig, scene.appearance)
-    assert repr(encoded).startswith("EncodedScene of 6 cameras") and len(repr(encoded)) < 300
+    made = ef.Scene(scene.proxy, scene.rig, scene.appearance)
+    assert repr(made).startswith("Scene of 6 cameras") and len(repr(made)) < 300
     assert len(repr(ef.render(scene))) < 80
+
+
+def test_a_scene_that_is_made_of_its_parts_has_the_methods(tmp_path):
+    parts = tiny_scene(cameras=6)
+    made = ef.Scene(parts.proxy, parts.rig, parts.appearance)
+    np.testing.assert_array_equal(made.render().image, ef.render(parts).image)
+    made.save(tmp_path / "made.glb", codec="png")
+    assert ef.load(tmp_path / "made.glb").names == made.names
+    assert "proxy: The surface." in inspect.getdoc(ef.Scene)
 
 
 def within(value) -> list:
@@ -123,7 +132,7 @@ def test_a_loaded_scene_has_its_parts_at_hand(small, tmp_path):
     with pytest.raises(ef.OptionError, match="no camera is called nobody"):
         scene.texture("nobody")
     for again in (small, replace(scene, scores={}), pickle.loads(pickle.dumps(scene)), scene.with_mesh(scene.mesh)):
-        assert type(again) is ef.EncodedScene and again.mean.shape == (64, 64, 3)
+        assert type(again) is ef.Scene and again.mean.shape == (64, 64, 3)
     assert inspect.signature(ef.load).parameters.keys() == {"path", "time"} and "Read a scene" in ef.load.__doc__
 
 
@@ -273,8 +282,8 @@ def test_a_notebook_shows_progress_unless_told_otherwise(nine, monkeypatch):
         ("load", [3], {}, "path of load is 3; give a path"),
         ("load", [tiny_scene()], {}, "path of load is a Scene; give a path"),
         ("save", [3, "a.glb"], {}, "scene of save is 3"),
-        ("open", [None], {}, "path of open_path"),
-        ("open", ["a"], {"grid": "3x3"}, "grid of open_path is '3x3'; give (a whole number, a whole number) or None"),
+        ("open", [None], {}, "path of open is None"),
+        ("open", ["a"], {"grid": "3x3"}, "grid of open is '3x3'; give (a whole number, a whole number) or None"),
         ("evaluate", [None, "a"], {}, "scene of evaluate"),
         ("reconstruct", ["photos"], {}, "capture of reconstruct is 'photos'"),
         ("set_threads", ["all"], {}, "count of set_threads is 'all'"),
@@ -283,9 +292,9 @@ def test_a_notebook_shows_progress_unless_told_otherwise(nine, monkeypatch):
         ("calibrate", ["a"], {"board": "9x6"}, "board describes a chart"),
         ("calibrate", ["a"], {"chart": "paper"}, "no chart is called paper; use checkerboard or charuco"),
         ("calibrate", ["a"], {"chart": "charuco", "masks": "b"}, "masks means nothing to charts"),
-        ("calibrate", ["a"], {"griid": (3, 3)}, "OpenOptions has no option griid; did you mean grid?"),
-        ("open", ["a"], {"wurk": "b"}, "OpenOptions has no option wurk; did you mean work?"),
-        ("reconstruct", [NO_PHOTOGRAPHS], {"layer": 3}, "SurfaceOptions has no option layer; did you mean layers?"),
+        ("calibrate", ["a"], {"griid": (3, 3)}, "calibrate has no option griid; did you mean grid?"),
+        ("open", ["a"], {"wurk": "b"}, "open has no option wurk; did you mean work?"),
+        ("reconstruct", [NO_PHOTOGRAPHS], {"layer": 3}, "reconstruct has no option layer; did you mean layers?"),
         ("encode", ["a"], {"layer": 3}, "encode has no option layer; did you mean layers?"),
         ("view", [3], {}, "scene of view is 3"),
         ("view", [tiny_scene()], {"grid": (3, 3)}, "grid is for a capture"),

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 from eigenfield.core.version import __version__
 
 if TYPE_CHECKING:
-    from eigenfield.api import EncodedClip as EncodedClip
-    from eigenfield.api import EncodedScene as EncodedScene
+    from eigenfield.api import Clip as Clip
+    from eigenfield.api import Scene as Scene
     from eigenfield.api import encode as encode
     from eigenfield.api import load as load
     from eigenfield.api import load_clip as load_clip
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from eigenfield.capture import PhotoSet as PhotoSet
     from eigenfield.capture import opening as _opening
     from eigenfield.core.camera import Camera as Camera
-    from eigenfield.core.clip import Clip as Clip
     from eigenfield.core.errors import CaptureError as CaptureError
     from eigenfield.core.errors import EigenfieldError as EigenfieldError
     from eigenfield.core.errors import FormatError as FormatError
@@ -41,7 +40,6 @@ if TYPE_CHECKING:
     from eigenfield.core.mesh import Mesh as Mesh
     from eigenfield.core.open_options import OpenOptions as OpenOptions
     from eigenfield.core.progress import Progress as Progress
-    from eigenfield.core.scene import Scene as Scene
     from eigenfield.encoding import EncodeOptions as EncodeOptions
     from eigenfield.encoding import Target as Target
     from eigenfield.evaluation import evaluate as evaluate
@@ -63,11 +61,9 @@ _HOME = {  # a room, or a name in a room where that is another
     "BatchResult": "batches",
     "Camera": "core.camera",
     "CaptureError": "core.errors",
-    "Clip": "core.clip",
+    "Clip": "api",
     "EigenfieldError": "core.errors",
     "EncodeOptions": "encoding",
-    "EncodedClip": "api",
-    "EncodedScene": "api",
     "Footage": "capture",
     "FormatError": "core.errors",
     "LightField": "capture",
@@ -79,7 +75,7 @@ _HOME = {  # a room, or a name in a room where that is another
     "Progress": "core.progress",
     "ProxyError": "core.errors",
     "Reconstruction": "reconstruction.whole",
-    "Scene": "core.scene",
+    "Scene": "api",
     "SurfaceOptions": "reconstruction",
     "Target": "encoding",
     "WorkerError": "core.errors",

@@ -18,20 +18,17 @@ from numpy.typing import NDArray
 
 from eigenfield import encoding, gltf, rendering
 from eigenfield.capture import Capture, Footage
-from eigenfield.core.clip import Clip
+from eigenfield.core import clip as clip_data
+from eigenfield.core import scene as data
 from eigenfield.core.observations import CalibratedObservations
-from eigenfield.core.scene import Scene
 from eigenfield.encoding.geometry.exchange import with_mesh
 
 P = ParamSpec("P")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class EncodedScene(Scene):
-    """A scene as `encode` and `load` return it, which saves and draws itself.
-
-    `dataclasses.replace`, copies and pickles keep the coded bytes of parts that have not changed.
-    """
+class Scene(data.Scene):
+    __doc__ = data.Scene.__doc__  # it has the same parts
 
     render = rendering.render
     render_many = rendering.render_many
@@ -52,11 +49,8 @@ class EncodedScene(Scene):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class EncodedClip(Clip):
-    """A clip as `load_clip` returns it, which saves and draws itself.
-
-    It is a function from time to scenes. A group of frames is read and decoded when one of them is asked for.
-    """
+class Clip(clip_data.Clip):
+    __doc__ = clip_data.Clip.__doc__  # it has the same parts
 
     render = rendering.render
     render_many = rendering.render_many
@@ -67,11 +61,11 @@ class EncodedClip(Clip):
         """(n,) seconds of the frames."""
         return self.timeline.times
 
-    def scene(self, time: float) -> EncodedScene:
+    def scene(self, time: float) -> Scene:
         """The frame nearest to a time in seconds. OptionError `time`, outside the clip."""
-        return _encoded_scene(super().scene(time))
+        return _with_methods(super().scene(time))
 
-    def scenes(self, first: float | None = None, last: float | None = None) -> Iterator[EncodedScene]:
+    def scenes(self, first: float | None = None, last: float | None = None) -> Iterator[Scene]:
         """The frames from one time to another, both in seconds, one after the other; by default all."""
         times = self.times
         ends = [times[index] if time is None else time for index, time in ((0, first), (-1, last))]
@@ -79,46 +73,44 @@ class EncodedClip(Clip):
         return map(self.scene, times[start : stop + 1])
 
 
-def _encoded_scene(scene: Scene) -> EncodedScene:
-    return EncodedScene(**{one.name: getattr(scene, one.name) for one in fields(scene) if one.init})
+def _with_methods(scene: data.Scene) -> Scene:
+    return Scene(**{one.name: getattr(scene, one.name) for one in fields(scene) if one.init})
 
 
-def _returning_encoded_scene(function: Callable[P, Scene]) -> Callable[P, EncodedScene]:
+def _returning_scene(function: Callable[P, data.Scene]) -> Callable[P, Scene]:
     @functools.wraps(function)
-    def call(*args: P.args, **named: P.kwargs) -> EncodedScene:
-        return _encoded_scene(function(*args, **named))
+    def call(*args: P.args, **named: P.kwargs) -> Scene:
+        return _with_methods(function(*args, **named))
 
     return call
 
 
-def _encoded_clip(clip: Clip) -> EncodedClip:
-    return EncodedClip(**{one.name: getattr(clip, one.name) for one in fields(clip)})
+def _clip_with_methods(clip: clip_data.Clip) -> Clip:
+    return Clip(**{one.name: getattr(clip, one.name) for one in fields(clip)})
 
 
 @functools.wraps(gltf.load_clip)
-def load_clip(path: str | os.PathLike[str]) -> EncodedClip:
-    return _encoded_clip(gltf.load_clip(path))
+def load_clip(path: str | os.PathLike[str]) -> Clip:
+    return _clip_with_methods(gltf.load_clip(path))
 
 
-_encode_scene = _returning_encoded_scene(encoding.encode)
-
-
-@overload
-def encode(capture: Footage, *args: Any, **named: Any) -> EncodedClip: ...
+_encode_scene = _returning_scene(encoding.encode)
 
 
 @overload
-def encode(
-    capture: str | os.PathLike[str] | Capture | CalibratedObservations, *args: Any, **named: Any
-) -> EncodedScene: ...
+def encode(capture: Footage, *args: Any, **named: Any) -> Clip: ...
+
+
+@overload
+def encode(capture: str | os.PathLike[str] | Capture | CalibratedObservations, *args: Any, **named: Any) -> Scene: ...
 
 
 @functools.wraps(encoding.encode)
-def encode(*args: Any, **named: Any) -> EncodedScene | EncodedClip:
+def encode(*args: Any, **named: Any) -> Scene | Clip:
     if isinstance(args[0] if args else named.get("capture"), Footage):
         footage = args[0] if args else named.pop("capture")
-        return _encoded_clip(encoding.encode_footage(footage, *args[1:], **named))
+        return _clip_with_methods(encoding.encode_footage(footage, *args[1:], **named))
     return _encode_scene(*args, **named)
 
 
-load = _returning_encoded_scene(gltf.load)
+load = _returning_scene(gltf.load)

@@ -139,11 +139,11 @@ def test_export_writes_one_frame(clip, run, tmp_path):
 
 def test_a_clip_in_python(clip, tmp_path):
     opened = ef.load_clip(clip)
-    assert isinstance(opened, ef.Clip) and len(opened.times) == 12 and repr(opened).startswith("EncodedClip(")
+    assert isinstance(opened, ef.Clip) and len(opened.times) == 12 and repr(opened).startswith("Clip(")
     numbers = [shown_number(scene.mean[..., 0]) for scene in opened.scenes(0.3, 0.7)]
     assert numbers == [3, 4, 5, 6, 7] and len(list(opened.scenes())) == 12
     scene = ef.load(clip, time=0.4)
-    assert isinstance(scene, ef.EncodedScene) and isinstance(opened.scene(0.4), ef.EncodedScene)
+    assert isinstance(scene, ef.Scene) and isinstance(opened.scene(0.4), ef.Scene)
     picture = opened.render(at=(0, 0), time=0.4, resolution=(480, 400))
     assert np.array_equal(picture.image, scene.render(at=(0, 0), resolution=(480, 400)).image)
     assert drawn_number(picture.to_uint8()) == 4

@@ -294,7 +294,9 @@ def test_focus_and_corners():
 
 
 @pytest.mark.parametrize(("name", "proxy", "grid", "coverage"), [
-    ("tarot_17x17_512", "calibration/proxy.ply", {"rows": 17, "columns": 17}, 0.999),
+    pytest.param(
+        "tarot_17x17_512", "calibration/proxy.ply", {"rows": 17, "columns": 17}, 0.999, marks=pytest.mark.slow
+    ),
     ("cube_colmap_mesh", "proxy.obj", None, 0.85),
 ])  # fmt: skip
 def test_real_captures(data, tmp_path, name, proxy, grid, coverage, inspect):

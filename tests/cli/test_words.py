@@ -35,22 +35,28 @@ def flat(node: ast.AST) -> str:
     return node.value if isinstance(node, ast.Constant) else "{}"
 
 
-def texts() -> list[str]:
-    """Every text of the package that is no docstring."""
-    found = []
-    for path in sorted(Path(eigenfield.__file__).parent.rglob("*.py")):
-        tree = ast.parse(path.read_text("utf-8"))
-        passed = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
-        for node in ast.walk(tree):
-            if isinstance(node, ast.JoinedStr):
-                passed |= {id(part) for part in node.values}
-            if isinstance(node, ast.JoinedStr) or (isinstance(node, ast.Constant) and isinstance(node.value, str)):
-                found += [flat(node)] * (id(node) not in passed)
+def texts_of(source: str) -> list[str]:
+    """Every text of a file of the package that is no docstring."""
+    tree, found = ast.parse(source), []
+    passed = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.JoinedStr):
+            passed |= {id(part) for part in node.values}
+        if isinstance(node, ast.JoinedStr) or (isinstance(node, ast.Constant) and isinstance(node.value, str)):
+            found += [flat(node)] * (id(node) not in passed)
     return found
 
 
-TEXTS = texts()
-COMMANDS = sorted({command for text in TEXTS for command in COMMAND.findall(text)})
+SOURCES = [path.read_text("utf-8") for path in sorted(Path(eigenfield.__file__).parent.rglob("*.py"))]
+# Each worker collects this file, so that it parses no more of the package than it must
+WITH_COMMANDS = [text for source in SOURCES if "`eigenfield " in source for text in texts_of(source)]
+COMMANDS = sorted({command for text in WITH_COMMANDS for command in COMMAND.findall(text)})
+
+
+@pytest.fixture(scope="module")
+def texts() -> list[str]:
+    """Every text of the package that is no docstring."""
+    return [text for source in SOURCES for text in texts_of(source)]
 
 
 @pytest.fixture(scope="module")
@@ -86,22 +92,22 @@ def test_a_command_that_a_message_gives_runs(command, places, run, tmp_path, mon
     assert code == 0, err
 
 
-def test_a_command_stands_in_backticks_and_is_whole():
+def test_a_command_stands_in_backticks_and_is_whole(texts):
     """So that the test above runs it; lines that are a command, or end in one, and the list of topics have none."""
     named = re.compile(rf"(?<!`)\beigenfield (?:{'|'.join(VERBS)})\b(?! \{{)(?! TOPIC)(?! COMMAND)")
-    assert [text for text in TEXTS if named.search(text) and "Examples:" not in text] == []
+    assert [text for text in texts if named.search(text) and "Examples:" not in text] == []
 
 
-def test_options_pages_and_extras_that_messages_name_exist():
+def test_options_pages_and_extras_that_messages_name_exist(texts):
     options = {word for verb in VERBS for option in group.get_command(None, verb).params
                for word in (*option.opts, *option.secondary_opts)} | {"--help", "--version"}  # fmt: skip
     others = {"--image_path", "--overlay"}  # of other programs
-    named = {word for text in TEXTS for word in re.findall(r"(?<![\w-])--[a-z][a-z-]*[a-z](?![\w-])", text)}
+    named = {word for text in texts for word in re.findall(r"(?<![\w-])--[a-z][a-z-]*[a-z](?![\w-])", text)}
     assert named - options - others == set()
     extras = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
-    assert {name for text in TEXTS for name in re.findall(r"eigenfield\[(\w+)\]", text)} <= set(extras)
-    assert {name for text in TEXTS for name in re.findall(r"`eigenfield help ([\w-]+)`", text)} <= set(TOPICS)
-    assert [text for text in TEXTS if "docs/" in text] == []  # a wheel holds them elsewhere
+    assert {name for text in texts for name in re.findall(r"eigenfield\[(\w+)\]", text)} <= set(extras)
+    assert {name for text in texts for name in re.findall(r"`eigenfield help ([\w-]+)`", text)} <= set(TOPICS)
+    assert [text for text in texts if "docs/" in text] == []  # a wheel holds them elsewhere
 
 
 def refused(run, *words) -> str:

@@ -43,7 +43,7 @@ def test_photographs_promise_by_parallax_and_overlap(parallax: float, overlap: f
 
 def test_words() -> None:
     low = {"image": CAPTURED, "between": {"psnr_luma_at_least": 25.96, "widest": ["a", "b"]}}
-    assert score_words(low) == ["35.1 dB in captured views", "at least about 26 dB between them"]
+    assert score_words(low) == ["35.1 dB in captured views", "at least about 26 dB of luma between them"]
     held = {"image": {**CAPTURED, "held_out": {"psnr": 27.38}}}
     assert score_words(held) == ["35.1 dB in captured views", "27.4 dB between them (held out)"]
     dense = {"image": CAPTURED, "between": {"cameras": 12, "psnr": 34.2}}

@@ -181,7 +181,7 @@ def test_refused_uvs_are_welded_and_cut_anew(caplog):
 def test_a_large_mesh_without_an_atlas_is_simplified_and_the_log_says_so(caplog):
     mesh = grid(130, uv=False, height=0.1)
     assert len(mesh.faces) > PROXY_DEFAULT_TRIANGLES
-    with caplog.at_level(logging.WARNING, "eigenfield.proxy"):
+    with caplog.at_level(logging.INFO, "eigenfield.proxy"):
         result = unwrap_mesh(mesh, triangles=500)
     assert "simplified from 33800 to" in caplog.text
     assert 300 <= len(result.faces) <= 500

@@ -54,6 +54,22 @@ for (const [name, plans] of Object.entries(PLANS)) {
   });
 }
 
+for (const name of Object.keys(PLANS)) {
+  test(`${name}: nor while a slow device moves, which composes fewer texels`, async () => {
+    const { page, close } = await lab.open();
+    const whole = await drawn(page, name, 1e9);
+    for (const coarser of [2, 4]) {
+      await page.evaluate((times) => {
+        Object.assign(window.field, { coarser: times, filter: "bilinear" });
+        window.lab.drawView(window.field, window.field.info.cameras[1]);
+      }, coarser);
+      const { mean, largest, pixels } = difference(await canvasPixels(page), whole.picture, { margin: 6 });
+      assert.ok(pixels > 2e4 && mean < 2 && largest <= 14, `1/${coarser}: mean ${mean}, largest ${largest}`);
+    }
+    await close();
+  });
+}
+
 test("memory for nothing at all: a picture, or one sentence", async () => {
   const { page, close } = await lab.open();
   const little = await drawn(page, "patched-coded.glb", 1e6); // 16 MB at 2048²

@@ -71,8 +71,8 @@ def read_jobs(source: Path | Sequence[Path], shared: Mapping[str, Any]) -> list[
     if not isinstance(source, Path):
         rows, base, first = [{"path": str(path)} for path in source], Path(), None
     elif source.suffix.lower() == ".toml":
-        rows, own = _read_toml(source)
-        base, first, shared = absolute_place(source).parent, source, {**own, **shared}
+        rows, file_options = _read_toml(source)
+        base, first, shared = absolute_place(source).parent, source, {**file_options, **shared}
     elif source.is_dir() or find_objects(source):
         rows, base, first = [{"path": str(path)} for path in captures_in(source)], Path(), source
     else:
@@ -152,21 +152,21 @@ def _file_error(path: Path, message: str, remedy: str) -> OptionError:
 def _jobs(
     rows: Sequence[dict[str, Any]], base: Path, shared: Mapping[str, Any], source: Path | None
 ) -> Iterator[CaptureJob]:
-    made: dict[str, CaptureJob] = {}  # by the options: checking them takes longer than all else
+    jobs: dict[str, CaptureJob] = {}  # by the options: checking them takes longer than all else
     for row in rows:
-        own = {**shared, **row}
-        path, name = absolute_place(own.pop("path"), base), own.pop("name", None)
-        text = repr(own)
+        options = {**shared, **row}
+        path, name = absolute_place(options.pop("path"), base), options.pop("name", None)
+        text = repr(options)
         try:
             _check_type("name", name)
-            if text not in made:
-                made[text] = _checked(own, base)
+            if text not in jobs:
+                jobs[text] = _checked(options, base)
         except EigenfieldError as error:
             called = f"{excerpt(name or path.name)}: {error.message}" if set(row) - {"path", "name"} else error.message
             raise OptionError(error.code, called, path=source, remedy=error.remedy) from error
         is_file = path.is_file() or path.name.lower().endswith(VIDEO_AND_ZIP)
         called = path.stem if is_file else path.name
-        yield replace(made[text], name=file_name(name or called, "capture"), path=address_of(path))
+        yield replace(jobs[text], name=file_name(name or called, "capture"), path=address_of(path))
 
 
 def _checked(given: dict[str, Any], base: Path) -> CaptureJob:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, overload
 
@@ -19,6 +20,7 @@ from eigenfield.capture.archive import is_zip
 from eigenfield.capture.writers.save import refuse_folder, save_calibration
 from eigenfield.core.arguments import checked
 from eigenfield.core.errors import OptionError
+from eigenfield.core.fields import refuse_unknown
 from eigenfield.core.notebook import notebook_progress
 from eigenfield.core.open_options import OpenOptions
 from eigenfield.core.progress import Progress
@@ -102,6 +104,7 @@ def calibrate(
         OutputError: The folder may not or cannot be written.
     """
     place, folder = (None if each is None else Path(each) for each in (output, work))
+    refuse_unknown(names, [one.name for one in fields(OpenOptions)], "calibrate", OpenOptions.renamed)
     described = ChartOptions(chart, board, square, marker, dictionary, inverted, legacy)
     given = {name: value for name, value in names.items() if value not in (None, ())}
     if place is not None:

@@ -22,10 +22,10 @@ def capture_identity(capture: Capture, of_file: Callable[[Path], Any] = file_dig
     """
     if capture.light_field is None:
         layout = {} if capture.layout is None else vars(capture.layout)
-        own: list[Any] = [v.tolist() if isinstance(v, np.ndarray) else v for _, v in sorted(layout.items())]
-        own += [[shot.focal, shot.width, shot.height] for shot in capture.shots]
+        arrangement: list[Any] = [v.tolist() if isinstance(v, np.ndarray) else v for _, v in sorted(layout.items())]
+        arrangement += [[shot.focal, shot.width, shot.height] for shot in capture.shots]
     else:
-        own = [
+        arrangement = [
             [view.camera.K.tolist(), view.camera.R.tolist(), view.camera.t.tolist(), str(view.lens)]
             for view in capture.views
         ] + ([capture.origin.tolist()] if capture.origin.any() else [])
@@ -35,4 +35,4 @@ def capture_identity(capture: Capture, of_file: Callable[[Path], Any] = file_dig
         which = [] if source.picture is None else source.picture.identity()
         return [source.name, of_file(source.path), mask, source.upright, source.exposure, *which]
 
-    return [parallel_map(digest, capture.sources), own]
+    return [parallel_map(digest, capture.sources), arrangement]

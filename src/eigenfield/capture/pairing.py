@@ -118,22 +118,22 @@ def _make_views(
 
     outcomes = parallel_map(or_error(make), pairs)
     errors = [outcome for outcome in outcomes if isinstance(outcome, CaptureError)]
-    made = [outcome for outcome in outcomes if not isinstance(outcome, CaptureError)]
+    paired = [outcome for outcome in outcomes if not isinstance(outcome, CaptureError)]
     problems = []
-    if rescaled := [one.view for one in made if one.scaled]:
+    if rescaled := [one.view for one in paired if one.scaled]:
         camera, name = rescaled[0].camera, one_line(rescaled[0].path.name)
         problems.append(
             f"{len(rescaled)} cameras are for another size of the same picture and were scaled to the photographs "
             f"(to {camera.width}x{camera.height} for {name})"
         )
-    if disagreeing := [(one.view, *one.focals) for one in made if one.focals is not None]:
+    if disagreeing := [(one.view, *one.focals) for one in paired if one.focals is not None]:
         view, stated, by_angle = disagreeing[0]
         problems.append(
             f"{len(disagreeing)} cameras have a focal length and an angle of view that contradict each other "
             f"({stated:.4g} and {by_angle:.4g} pixels for {one_line(view.path.name)}): the focal length is taken"
         )
-    problems += _describe_rotations(made)
-    if outside := [one for one in made if _is_outside(one.view.camera)]:
+    problems += _describe_rotations(paired)
+    if outside := [one for one in paired if _is_outside(one.view.camera)]:
         camera, unsized = outside[0].view.camera, not outside[0].sized
         problems.append(
             f"{len(outside)} cameras have their principal point outside of the photograph or in its corner "
@@ -142,7 +142,7 @@ def _make_views(
             + ("the calibration gives no width and height (w, h), so " if unsized else "")
             + "its numbers may be of a larger photograph, or fractions; right only for photographs that were cut out"
         )
-    return [one.view for one in made], errors, problems
+    return [one.view for one in paired], errors, problems
 
 
 def _is_outside(camera: Camera) -> bool:
@@ -152,15 +152,15 @@ def _is_outside(camera: Camera) -> bool:
     return bool((inside < 0).any() or (inside <= near).all())
 
 
-def _describe_rotations(made: Sequence[_Made]) -> list[str]:
+def _describe_rotations(paired: Sequence[_Made]) -> list[str]:
     """Lines about rotations that `Entry.camera` corrected."""
     problems = []
-    if scaled := [one for one in made if one.pose_scale != 1]:
+    if scaled := [one for one in paired if one.pose_scale != 1]:
         problems.append(
             f"{len(scaled)} cameras have a pose with a scale ({scaled[0].pose_scale:.4g} for "
             f"{one_line(scaled[0].view.path.name)}), which is divided out"
         )
-    if rounded := [one.view for one in made if one.pose_rounded and one.pose_scale == 1]:
+    if rounded := [one.view for one in paired if one.pose_rounded and one.pose_scale == 1]:
         problems.append(
             f"{len(rounded)} cameras have rotations of few digits (that of {one_line(rounded[0].path.name)} is not "
             "orthonormal): the nearest rotations are taken"

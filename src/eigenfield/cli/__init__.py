@@ -139,9 +139,9 @@ def main() -> None:
     """Entry point: exit code 0, 2 for an error that a person can correct, 130 when interrupted; a bug keeps its
     traceback and exits with 1."""
     prepare_streams()
-    asked = os.environ.get(COMPLETION_VARIABLE)
-    if asked is not None:  # by the script of `eigenfield completion`
-        sys.exit(shell_complete(group, {}, "eigenfield", COMPLETION_VARIABLE, asked))
+    completion = os.environ.get(COMPLETION_VARIABLE)
+    if completion is not None:  # by the script of `eigenfield completion`
+        sys.exit(shell_complete(group, {}, "eigenfield", COMPLETION_VARIABLE, completion))
     logging.basicConfig(format="%(message)s", level=logging.WARNING)
     with contextlib.suppress(ValueError):  # not in the main thread
         for number in STOP_SIGNALS:

@@ -64,8 +64,8 @@ def command(
         raise
     click.echo(as_markdown(done.records), nl=False)
     before = f", {done.taken_up} of them finished before" if done.taken_up else ""
-    made = len(done.records) - len(done.failed)
-    note(f"{address_of(done.page)}: {made} scenes{before}, {time.monotonic() - started:.0f} s", quiet)
+    finished = len(done.records) - len(done.failed)
+    note(f"{address_of(done.page)}: {finished} scenes{before}, {time.monotonic() - started:.0f} s", quiet)
     for record in done.failed:
         where = f" (on {record['worker']})" if record["worker"] else ""
         click.echo(f"eigenfield: {record['name']}: {record['error']}{where}", err=True)

@@ -227,11 +227,11 @@ def command(
                 if surface is None:
                     scene = encode(opened, proxy, options, work=kept, workers=for_maps, progress=progress)
                 else:
-                    made = reconstruct_capture(opened, surface, scratch, progress, quiet, reached)
-                    log.info("%s", "\n".join(made.report.lines(made.light_field.names)))
+                    result = reconstruct_capture(opened, surface, scratch, progress, quiet, reached)
+                    log.info("%s", "\n".join(result.report.lines(result.light_field.names)))
                     scene = encode(
-                        made.light_field, made.proxy, options, triangles=None, hold_out=made.hold_out, work=scratch,
-                        workers=for_maps, progress=progress,
+                        result.light_field, result.proxy, options, triangles=None, hold_out=result.hold_out,
+                        work=scratch, workers=for_maps, progress=progress,
                     )  # fmt: skip
                 lines = last_lines
             save(scene, output, **options.for_save, overwrite=overwrite, progress=progress)

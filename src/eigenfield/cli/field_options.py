@@ -26,12 +26,12 @@ def field_options(
         only: Names of the fields that are meant; None: all that are offered.
         parsers: Click callbacks by name, for values that are more than a word or a number.
     """
-    kinds, made = get_type_hints(cls), []
+    kinds, decorators = get_type_hints(cls), []
     shown = {name: one for name, one in options_of(cls) if (one.offered if only is None else name in only)}
     for field, one in shown.items():
         name = prefix + field
         if one.parts is not None:
-            made.append(field_options(one.parts, f"{name}_", None, **parsers))
+            decorators.append(field_options(one.parts, f"{name}_", None, **parsers))
             continue
         how: dict[str, Any] = {"help": one.help, "metavar": one.metavar, "callback": parsers.get(name)}
         if name not in parsers:
@@ -46,9 +46,9 @@ def field_options(
         if one.bare is not None:
             how |= {"is_flag": False, "flag_value": one.bare}
         letters = [] if one.letter is None else [one.letter]
-        made.append(click.option(words, *letters, name, **how))
-    made += [_renamed(old, new) for old, new in cls.renamed.items() if new in shown]
-    return together(*made)
+        decorators.append(click.option(words, *letters, name, **how))
+    decorators += [_renamed(old, new) for old, new in cls.renamed.items() if new in shown]
+    return together(*decorators)
 
 
 def from_fields(cls: type[T], values: dict[str, Any], prefix: str = "") -> T:

@@ -76,15 +76,15 @@ def command(
     with progress_bars(quiet) as progress:
         opened = leave_out(open_for_work(capture, place, work, quiet), without, quiet)
         surface = replace(from_fields(SurfaceOptions, settings), layers=1)  # a file holds no layers
-        made = reconstruct_capture(opened, surface, work, progress, quiet)
-    note_all(made.report.lines(made.light_field.names), quiet)
-    if made.calibration is not None:
+        result = reconstruct_capture(opened, surface, work, progress, quiet)
+    note_all(result.report.lines(result.light_field.names), quiet)
+    if result.calibration is not None:
         cameras = output.with_suffix(".cameras")
-        save_calibration(made.light_field, cameras, overwrite=True)
+        save_calibration(result.light_field, cameras, overwrite=True)
         note(f"cameras: {cameras}", quiet)
-    mesh = made.proxy.mesh
-    write_mesh(mesh, output, origin=made.light_field.origin, overwrite=overwrite)
+    mesh = result.proxy.mesh
+    write_mesh(mesh, output, origin=result.light_field.origin, overwrite=overwrite)
     click.echo(
-        f"{output}: {len(mesh.vertices)} vertices, {len(mesh.faces)} triangles for {len(made.light_field)} "
+        f"{output}: {len(mesh.vertices)} vertices, {len(mesh.faces)} triangles for {len(result.light_field)} "
         f"photographs, {time.monotonic() - started:.0f} s"
     )

@@ -30,6 +30,11 @@ _WORDS = {int: "a whole number", float: "a number", str: "a text", bool: "True o
           os.PathLike: "a path"}  # fmt: skip
 
 
+def public_name(function: Callable[..., Any]) -> str:
+    """What users call a function: `eigenfield.open` has a longer name within."""
+    return "open" if function.__name__ in ("open_any", "open_path") else function.__name__
+
+
 def checked(function: Callable[P, R]) -> Callable[P, R]:
     """The function, which raises OptionError `argument` for arguments of another type than it says, and unknown ones,
     and `path` for a path that no file can have.
@@ -45,7 +50,7 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
     def hint(name: str) -> Any:
         holder = types.SimpleNamespace(__annotations__={name: signature.parameters[name].annotation})
         try:
-            return get_type_hints(holder, function.__globals__)[name]
+            return get_type_hints(holder, inspect.unwrap(function).__globals__)[name]
         except NameError:
             return object
 
@@ -55,11 +60,11 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
             given = signature.bind(*args, **named).arguments
         except TypeError as error:
             remedy = f"it takes {', '.join(signature.parameters)}"
-            raise OptionError("argument", f"{function.__name__}: {error}", remedy=remedy) from None
+            raise OptionError("argument", f"{public_name(function)}: {error}", remedy=remedy) from None
         for name, value in given.items():
             kind = signature.parameters[name].kind
             if kind is not inspect.Parameter.VAR_KEYWORD and not matches(value, hint(name)):
-                message = f"{name} of {function.__name__} is {_shown(value)}"
+                message = f"{name} of {public_name(function)} is {_shown(value)}"
                 raise OptionError("argument", message, remedy=f"give {in_words(hint(name))}")
         try:
             return function(*args, **named)

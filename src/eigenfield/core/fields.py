@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import difflib
+import functools
 import inspect
 import textwrap
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, ClassVar, Never, Self, TypeVar, get_type_hints
 
-from eigenfield.core.arguments import in_words, kind_in_words, matches
+from eigenfield.core.arguments import in_words, kind_in_words, matches, public_name
 from eigenfield.core.errors import OptionError
 
 T = TypeVar("T")
@@ -123,12 +124,12 @@ def document_options(cls: type[T]) -> type[T]:
 
 
 def takes_options(cls: type[Any], without: Collection[str] = (), *, others: bool = False) -> Callable[[F], F]:
-    """Decorator: a function's `**changes` are fields of a dataclass of options, which its signature and docstring show.
+    """Decorator: a function's `**changes` are fields of a class of options, which its signature and docstring show.
 
     Args:
-        cls: The dataclass.
+        cls: The class of options. Other names raise OptionError `option-unknown` or `option-renamed`.
         without: Fields that are none of its arguments.
-        others: Whether `changes` has more than these fields.
+        others: Whether `changes` has more than these fields, of which the function refuses what is unknown.
     """
 
     def show(function: F) -> F:
@@ -137,15 +138,23 @@ def takes_options(cls: type[Any], without: Collection[str] = (), *, others: bool
         rest = changes if others else changes.replace(annotation=Never)
         shown = [(name, one) for name, one in options_of(cls) if name not in without]
         defaults = {one.name: one.default for one in fields(cls)}
+        known = [*(one.name for one in before_them), *defaults]
         added = [
             inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=defaults[name], annotation=kinds[name])
             for name, _ in shown
         ]
-        function.__signature__ = signature.replace(parameters=[*before_them, *added, rest])  # type: ignore[attr-defined]
+
+        @functools.wraps(function)
+        def call(*args: Any, **named: Any) -> Any:
+            if not others:
+                refuse_unknown(named, known, public_name(function), cls.renamed)
+            return function(*args, **named)
+
+        call.__signature__ = signature.replace(parameters=[*before_them, *added, rest])  # type: ignore[attr-defined]
         before, last, after = (function.__doc__ or "").partition(f"        {changes.name}:")
         filler = textwrap.TextWrapper(120, initial_indent=" " * 8, subsequent_indent=" " * 12)
         lines = "".join(filler.fill(f"{name}: {' '.join(one.help.split())}") + "\n" for name, one in shown)
-        function.__doc__ = f"{before}{lines}{last}{after}"
-        return function
+        call.__doc__ = f"{before}{lines}{last}{after}"
+        return call  # type: ignore[return-value]
 
     return show

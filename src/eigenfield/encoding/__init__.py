@@ -101,10 +101,10 @@ def encode(
         others={"workers": workers},
     )
     if surface is not None:
-        made = estimate(capture, options, surface, work, workers, progress)
-        capture, proxy = made.light_field, made.proxy
+        reconstruction = estimate(capture, options, surface, work, workers, progress)
+        capture, proxy = reconstruction.light_field, reconstruction.proxy
         # the mesh has no more triangles than were asked for
-        options = replace(options, triangles=None, hold_out=made.hold_out)
+        options = replace(options, triangles=None, hold_out=reconstruction.hold_out)
     else:
         assert proxy is not None
         capture = calibrated(capture, proxy)

@@ -72,8 +72,8 @@ def make_draft(
             blind=None,  # who is held out takes no part at all
             hold_out=None,
         )
-        made = reconstruct(chosen.reduced(factor), opaque, progress=_within(progress))
-        proxy, chosen = made.proxy, _as_photographed(made.light_field, chosen, factor)
+        reconstruction = reconstruct(chosen.reduced(factor), opaque, progress=_within(progress))
+        proxy, chosen = reconstruction.proxy, _as_photographed(reconstruction.light_field, chosen, factor)
     assert isinstance(chosen, LightField)
     factor = _factor(chosen, DRAFT_TEXTURE_PIXELS)
     small = chosen.reduced(factor)

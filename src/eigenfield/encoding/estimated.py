@@ -107,9 +107,9 @@ def estimate(
     else:
         raise OptionError("capture", f"{kind_in_words(given)} makes no proxy", remedy="give the proxy, or a folder")
     check_selection(opened, options)
-    made = reconstruct(opened, surface, work=folder, workers=workers, progress=progress)
-    _warn(made.light_field.problems[len(opened.problems) :])
-    return made
+    reconstruction = reconstruct(opened, surface, work=folder, workers=workers, progress=progress)
+    _warn(reconstruction.light_field.problems[len(opened.problems) :])
+    return reconstruction
 
 
 def calibrated(given: Given, proxy: str | os.PathLike[str] | Mesh | Proxy) -> CalibratedObservations:

@@ -64,7 +64,7 @@ def score_words(scores: Mapping[str, Any]) -> list[str]:
     if image.get("held_out"):
         words.append(f"{image['held_out']['psnr']:.1f} dB between them (held out)")
     elif "psnr_luma_at_least" in between:
-        words.append(f"at least about {between['psnr_luma_at_least']:.0f} dB between them")
+        words.append(f"at least about {between['psnr_luma_at_least']:.0f} dB of luma between them")
     elif between.get("psnr") is not None:
         words.append(f"about {between['psnr']:.0f} dB between them")
     return words

@@ -243,18 +243,18 @@ def start_session(
 
 def _map_settings(scene: Scene) -> tuple[bool, int]:
     """Whether the texture maps were aligned, and their `max_angle`, by the scene's settings."""
-    made = scene.provenance
-    resampling = RESAMPLING if made.resampling is None else made.resampling
-    max_angle = DEFAULT_MAX_ANGLE if made.max_angle is None else made.max_angle
-    known = resampling == RESAMPLING and made.align in [None, "dis"]
+    provenance = scene.provenance
+    resampling = RESAMPLING if provenance.resampling is None else provenance.resampling
+    max_angle = DEFAULT_MAX_ANGLE if provenance.max_angle is None else provenance.max_angle
+    known = resampling == RESAMPLING and provenance.align in [None, "dis"]
     if not (known and isinstance(max_angle, int) and 1 <= max_angle <= 90):
         raise OptionError(
             "settings-unknown",
-            f"the scene was made with resampling {resampling!r}, alignment {made.align!r} and angles up to "
+            f"the scene was made with resampling {resampling!r}, alignment {provenance.align!r} and angles up to "
             f"{max_angle!r}, which this version has not",
             remedy="evaluate with the version that encoded it",
         )
-    return made.align is not None, max_angle
+    return provenance.align is not None, max_angle
 
 
 def sample_evenly(indices: Sequence[int], count: int) -> list[int]:

@@ -47,13 +47,13 @@ def _cluster_charts(mesh: Mesh, triangles: int) -> Mesh | None:
     chart = vertex_components(mesh.faces, len(mesh.vertices))
     for cells in range(2, 128):
         cell = np.floor(mesh.uv * cells).astype(np.int64) @ [1, 1 << 10] + (chart.astype(np.int64) << 20)
-        _, own, count = np.unique(cell, return_inverse=True, return_counts=True)
-        middle = np.stack([np.bincount(own, axis) / count for axis in mesh.uv.T], axis=1)
-        apart = np.square(mesh.uv - middle[own]).sum(axis=1)
+        _, cluster, count = np.unique(cell, return_inverse=True, return_counts=True)
+        middle = np.stack([np.bincount(cluster, axis) / count for axis in mesh.uv.T], axis=1)
+        apart = np.square(mesh.uv - middle[cluster]).sum(axis=1)
         chosen = np.zeros(len(count), np.int64)
         farthest_first = np.argsort(-apart, kind="stable")
-        chosen[own[farthest_first]] = farthest_first
-        faces = own[mesh.faces]
+        chosen[cluster[farthest_first]] = farthest_first
+        faces = cluster[mesh.faces]
         kept = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
         _, first = np.unique(np.sort(faces[kept], axis=1), axis=0, return_index=True)
         if len(first) > triangles:

@@ -99,12 +99,12 @@ def code_pictures(
     for plan in planned[: len(scene.appearance.planes)]:
         files = [[next(done) for _ in some] for some in plan]
         planes.append(PlanePictures(files[0][0], files[1:]))
-    first, made = planes[0].mean, ScenePictures(None, planes, next(done, None))
+    first, pictures = planes[0].mean, ScenePictures(None, planes, next(done, None))
     plain = sheets is None and to_rgb is None and scene.appearance.planes[0].mean.shape[2] in (1, 3)
     if cached.one("mesh") is not None or (plain and first.codec == "png" and first.affine is None):
-        return made  # other viewers are shown another mesh, or the mean itself
+        return pictures  # other viewers are shown another mesh, or the mean itself
     preview = cached.one("preview") if codec is None else None
-    return replace(made, preview=preview or _preview(scene))
+    return replace(pictures, preview=preview or _preview(scene))
 
 
 def _mean(scene: Scene, plane: Plane, codec: str, quality: int) -> list[Callable[[], PicturePayload]]:

@@ -83,13 +83,13 @@ def _parts(document: Document) -> dict[str, int]:
         if place.part in found and not document.cut_off(reference):
             found[place.part].append(reference)
     counted: set[int] = set()
-    made = {"total": document.glb.source.size}
+    sizes = {"total": document.glb.source.size}
     for name, references in found.items():
         views = {view.index: view.length for view in map(document.view, references) if view.index not in counted}
         counted |= views.keys()
-        made[name] = sum(views.values())
-    made["other"] = made["total"] - sum(made[name] for name in found)
-    return made
+        sizes[name] = sum(views.values())
+    sizes["other"] = sizes["total"] - sum(sizes[name] for name in found)
+    return sizes
 
 
 def _view_of(document: Document, accessor: Value) -> Value:
@@ -123,9 +123,9 @@ def without_residual(data: bytes) -> bytes:
     if residual.get("order") == len(accessors) - 1 and accessors[-1]["bufferView"] == len(views) - 1:
         end = document.view_at(len(views) - 1).offset
         del views[-1], accessors[-1]
-    made = {**glb.json, "bufferViews": views, "accessors": accessors, "buffers": [{"byteLength": end}]}
-    made["extensions"] = {**made["extensions"], limits.EXTENSION: extension}
-    return b"".join(glb_blocks(json_bytes(made), bytes(glb.binary.data[:end]), behind=glb.behind(BINARY_CHUNK)))
+    gltf = {**glb.json, "bufferViews": views, "accessors": accessors, "buffers": [{"byteLength": end}]}
+    gltf["extensions"] = {**gltf["extensions"], limits.EXTENSION: extension}
+    return b"".join(glb_blocks(json_bytes(gltf), bytes(glb.binary.data[:end]), behind=glb.behind(BINARY_CHUNK)))
 
 
 def store_scores(path: str | os.PathLike[str], scores: Mapping[str, Any]) -> None:

@@ -168,9 +168,9 @@ def _read_basis(document: Document, entry: Value, channels: int, rows: int, find
     textures: list[PictureLayout] = []
     total, lost = 0, 0
     common = entry["picture"].mapping() if entry.has("picture") else {}
-    for own in entry["textures"].items(limits.MAX_COMPONENTS):
+    for entry_of_texture in entry["textures"].items(limits.MAX_COMPONENTS):
         with findings.part():
-            texture = Value(dict(common) | own.mapping(), own.where)
+            texture = Value(dict(common) | entry_of_texture.mapping(), entry_of_texture.where)
             count = texture["count"].integer(1, limits.MAX_COMPONENTS) if texture.has("count") else 1
             total += count  # also of a picture that is damaged: its weights are there
             if lost or document.cut_off(texture["bufferView"]):

@@ -196,8 +196,8 @@ def _decode_basis(basis: BasisLayout, channels: int) -> Coded[Basis]:
             zero[part] = picture.affine.zero.reshape(-1, channels)
 
     parallel_map(decode, range(len(basis.textures)))
-    made = Basis(textures, scale, zero, basis.weights, basis.grid, basis.corner)
-    return Coded(made, payloads_of(made, [picture.payload for picture in basis.textures], basis.payload))
+    decoded = Basis(textures, scale, zero, basis.weights, basis.grid, basis.corner)
+    return Coded(decoded, payloads_of(decoded, [picture.payload for picture in basis.textures], basis.payload))
 
 
 @checked

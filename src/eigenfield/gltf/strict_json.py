@@ -40,12 +40,12 @@ def parse(data: bytes, where: str | None = None, *, finite: bool = True) -> Any:
         return int(text) if len(text) <= 20 else refuse(f"a whole number of {len(text)} digits")
 
     def single(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        made = dict(pairs)
-        if len(made) < len(pairs):
+        mapping = dict(pairs)
+        if len(mapping) < len(pairs):
             keys = [key for key, _ in pairs]
             doubled = next(key for i, key in enumerate(keys) if key in keys[:i]) if len(keys) < 1000 else "a key"
             raise FormatError("json-invalid", f"{quote(doubled)} occurs twice in one object", where=where)
-        return made
+        return mapping
 
     constant = refuse if finite else float
     try:

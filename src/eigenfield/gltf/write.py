@@ -212,10 +212,10 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayl
     if scene.proxy.sheets is not None and coded.opacity is not None:
         proxy["sheets"] = _sheets(scene.proxy.sheets, coded.opacity, buffer)
     planes = []
-    for index, (plane, made) in enumerate(zip(scene.appearance.planes, coded.planes, strict=True)):
+    for index, (plane, coding) in enumerate(zip(scene.appearance.planes, coded.planes, strict=True)):
         weights = [cached.one(f"planes[{index}].bases[{b}].weights") for b in range(len(plane.bases))]
         planes.append(
-            _plane(plane, made, weights, buffer, inline=index > 0 or mesh is not None or coded.preview is not None)
+            _plane(plane, coding, weights, buffer, inline=index > 0 or mesh is not None or coded.preview is not None)
         )
     cameras = cameras or write_cameras(scene, buffer, poses)
     view_plane = write_view_plane(scene, buffer, poses is not None)
@@ -239,10 +239,10 @@ def _by_gain_per_byte(
     they take off for a byte; those of one basis in their order."""
     queues, to_rgb = [], scene.appearance.to_rgb
     slices = scene.appearance.channel_slices
-    for plane, own, made, shown in zip(scene.appearance.planes, slices, coded.planes, planes, strict=True):
-        matrix = np.eye(plane.mean.shape[2]) if to_rgb is None else to_rgb[:, own]
+    for plane, channels, coding, shown in zip(scene.appearance.planes, slices, coded.planes, planes, strict=True):
+        matrix = np.eye(plane.mean.shape[2]) if to_rgb is None else to_rgb[:, channels]
         share = np.square(matrix, dtype=np.float64).sum(axis=0)
-        for basis, files, entry in zip(plane.bases, made.bases, shown["bases"], strict=True):
+        for basis, files, entry in zip(plane.bases, coding.bases, shown["bases"], strict=True):
             energy = np.square(basis.weights, dtype=np.float64).mean(axis=0) / float(np.prod(basis.size))
             gains, at = [], 0
             for file in files:
@@ -280,13 +280,13 @@ def _plane(
     """A plane's entry without the textures' buffer views; weights: of each basis, coded; inline: the mean is its own
     picture, not images[0]."""
     height, width, channels = plane.mean.shape
-    made: dict[str, Any] = {"channels": channels}
+    fields: dict[str, Any] = {"channels": channels}
     if inline:
         mean: dict[str, Any] = {"bufferView": buffer.stream(coded.mean, "mean"), "size": [width, height]}
-        made["mean"] = mean | _picture(coded.mean, "mean")
+        fields["mean"] = mean | _picture(coded.mean, "mean")
         if coded.mean.precision is not None:
-            made["mean"]["precision"] = _precision(coded.mean.precision, buffer)
-    made["bases"] = []
+            fields["mean"]["precision"] = _precision(coded.mean.precision, buffer)
+    fields["bases"] = []
     for basis, files, stream in zip(plane.bases, coded.bases, weights, strict=True):
         entry: dict[str, Any] = {"size": [basis.textures.shape[2], basis.textures.shape[1]]}
         if basis.grid is not None:
@@ -296,8 +296,8 @@ def _plane(
         elif basis.count:
             entry["weights"] = buffer.accessor(basis.weights.ravel(), FLOAT, "SCALAR")
         entry |= _textures([_picture(file, "textures") for file in files])
-        made["bases"].append(entry)
-    return made
+        fields["bases"].append(entry)
+    return fields
 
 
 def _precision(picture: Payload, buffer: Buffer) -> dict[str, Any]:
@@ -365,5 +365,5 @@ def _needs(
         "stacks": any(picture.count != 1 for picture in pictures),
         "toRGB": scene.appearance.to_rgb is not None,
     }
-    own = {CODECS[codec].needs for codec in codecs}
-    return sorted({name for name, needed in found.items() if needed} | {need for need in own if need is not None})
+    of_codecs = {CODECS[codec].needs for codec in codecs}
+    return sorted({name for name, needed in found.items() if needed} | {need for need in of_codecs if need is not None})

@@ -68,24 +68,24 @@ def write_cameras(scene: Scene, buffer: Buffer, stream: Payload | None) -> dict[
         stream: The coded matrices; None: they are plain.
     """
     sizes = np.array([[c.width, c.height] for c in scene.rig.cameras])
-    made: dict[str, Any] = {}
+    fields: dict[str, Any] = {}
     if stream is not None and (sizes == sizes[0]).all():
-        made["size"] = sizes[0].tolist()
+        fields["size"] = sizes[0].tolist()
     else:
-        made["sizes"] = buffer.accessor(sizes.ravel(), UINT32, "SCALAR")
+        fields["sizes"] = buffer.accessor(sizes.ravel(), UINT32, "SCALAR")
     if scene.appearance.colours is not None:
-        made |= _colours(scene.appearance.colours, scene, buffer)
+        fields |= _colours(scene.appearance.colours, scene, buffer)
     if scene.rig.held_out.any():
-        made["heldOut"] = np.flatnonzero(scene.rig.held_out).tolist()
+        fields["heldOut"] = np.flatnonzero(scene.rig.held_out).tolist()
     if stream is not None:
-        made["coded"] = write_stream(stream, "cameras", buffer)
+        fields["coded"] = write_stream(stream, "cameras", buffer)
     else:
         cameras = scene.rig.cameras
         intrinsics = np.array([[c.K[0, 0], c.K[1, 1], c.K[0, 1], c.K[0, 2], c.K[1, 2]] for c in cameras])
         poses = np.array([np.hstack([c.R, c.t[:, None]]) for c in cameras])
-        made["intrinsics"] = buffer.accessor(intrinsics.ravel(), FLOAT, "SCALAR")
-        made["poses"] = buffer.accessor(poses.ravel(), FLOAT, "SCALAR")
-    return _names(scene.rig.names, None if stream is None else buffer) | made
+        fields["intrinsics"] = buffer.accessor(intrinsics.ravel(), FLOAT, "SCALAR")
+        fields["poses"] = buffer.accessor(poses.ravel(), FLOAT, "SCALAR")
+    return _names(scene.rig.names, None if stream is None else buffer) | fields
 
 
 def _colours(colours: NDArray[np.float32], scene: Scene, buffer: Buffer) -> dict[str, Any]:
@@ -126,18 +126,18 @@ def write_view_plane(scene: Scene, buffer: Buffer, short: bool) -> dict[str, Any
     """
     plane = scene.rig.view_plane
     numbers = {"origin": plane.origin, "right": plane.right, "up": plane.up, "extent": plane.extent}
-    made: dict[str, Any] = {name: (value + 0.0).tolist() for name, value in numbers.items()}  # + 0.0: no minus zero
+    fields: dict[str, Any] = {name: (value + 0.0).tolist() for name, value in numbers.items()}  # + 0.0: no minus zero
     if short:
         size = max(np.abs(plane.origin).max(), plane.extent.max())
         units = {"origin": size, "right": 1.0, "up": 1.0, "extent": size}
-        made = {name: _rounded(value, units[name]) for name, value in numbers.items()}
+        fields = {name: _rounded(value, units[name]) for name, value in numbers.items()}
     if len(scene.rig.triangles):
         stream = _encode_at("triangles", scene.rig.triangles) if short else None
         if stream is not None:
-            made["codedTriangles"] = write_stream(stream, "triangles", buffer)
+            fields["codedTriangles"] = write_stream(stream, "triangles", buffer)
         else:
-            made["triangles"] = buffer.accessor(scene.rig.triangles.ravel(), UINT32, "SCALAR")
-    return made
+            fields["triangles"] = buffer.accessor(scene.rig.triangles.ravel(), UINT32, "SCALAR")
+    return fields
 
 
 def _decimals(numbers: Iterable[float], digits: int) -> list[float]:

@@ -57,7 +57,7 @@ def prepare_proxy(
     try:
         simpler = None if simplified is None else simplified(mesh)
         if simpler is not None:
-            log.warning("the mesh is simplified from %d to %d triangles", len(mesh.faces), len(simpler.faces))
+            log.info("the mesh is simplified from %d to %d triangles", len(mesh.faces), len(simpler.faces))
             mesh = simpler
         return unwrap_mesh(mesh, triangles=triangles, cameras=cameras, progress=progress)
     except ProxyError as error:

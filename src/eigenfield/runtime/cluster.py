@@ -128,16 +128,16 @@ def _wait_for_workers(client: Client, count: int, seconds: float | None) -> None
 
 
 def _refuse_other_versions(reached: ClusterWorkers) -> None:
-    own = installed()
+    here = installed()
     try:
         found = reached.everywhere(installed)
     except Exception as error:  # Dask sends what cannot be imported there as a plain Exception
-        remedy = f"install eigenfield {own['eigenfield']} on all machines"
+        remedy = f"install eigenfield {here['eigenfield']} on all machines"
         raise WorkerError(
             "cluster-version", f"a worker has no eigenfield, or another one: {error}".split("\n")[0], remedy=remedy
         ) from None
     for worker, its in found.items():
-        for package, version in own.items():
+        for package, version in here.items():
             if its.get(package) != version:
                 message = f"{worker} has {package} {its.get(package, 'not at all')}, and here it is {version}"
                 raise WorkerError("cluster-version", message, remedy="install the same versions on all machines")

@@ -206,13 +206,13 @@ def open_executor(workers: int | None = None, cluster: str | None = None) -> Ite
         with open_cluster(cluster, workers) as reached:
             yield reached
         return
-    made: Workers = ThisProcess() if workers is None else LocalProcesses(workers, max(1, threads() // workers))
+    executor: Workers = ThisProcess() if workers is None else LocalProcesses(workers, max(1, threads() // workers))
     try:
-        yield made
+        yield executor
     except BaseException:
-        made.shutdown(wait=False)
+        executor.shutdown(wait=False)
         raise
-    made.shutdown()
+    executor.shutdown()
 
 
 def as_finished(workers: Workers, calls: Iterable[tuple[Any, ...]]) -> Iterator[tuple[int, Future[Any]]]:

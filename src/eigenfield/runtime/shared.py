@@ -45,15 +45,15 @@ def share(values: Iterable[T], folder: Path) -> Iterator[list[Shared[T]]]:
         OutputError: The folder cannot be written.
     """
     with temporary_folder("eigenfield-shared", folder) as place:
-        made = []
+        handles = []
         with output_errors(folder):
             place.chmod(0o755 | 0o777 & ~current_umask())  # they also write results there, if the umask lets them
             for number, value in enumerate(values):
-                made.append(Shared[T](place / str(number)))
-                made[-1].file.write_bytes(pickle.dumps(value))
-                made[-1].file.chmod(0o644)
+                handles.append(Shared[T](place / str(number)))
+                handles[-1].file.write_bytes(pickle.dumps(value))
+                handles[-1].file.chmod(0o644)
         try:
-            yield made
+            yield handles
         finally:
             _reader.cache_clear()  # of this process, where that is the worker
 

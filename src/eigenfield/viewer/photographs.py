@@ -33,11 +33,11 @@ class Photographs:
             CaptureError: `photograph-size`: a photograph does not have its camera's size.
         """
         for index, view in views.items():
-            own, other = scene.rig.cameras[index], capture.views[view].camera
-            if (own.width, own.height) != (other.width, other.height):
+            camera, other = scene.rig.cameras[index], capture.views[view].camera
+            if (camera.width, camera.height) != (other.width, other.height):
                 raise CaptureError(
                     "photograph-size",
-                    f"is {other.width}x{other.height}, the scene's camera of that name {own.width}x{own.height}",
+                    f"is {other.width}x{other.height}, the scene's camera of that name {camera.width}x{camera.height}",
                     path=capture.views[view].path,
                     remedy="name the photographs that were encoded",
                 )

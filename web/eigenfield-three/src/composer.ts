@@ -3,6 +3,7 @@
 import {
   Camera,
   Scene,
+  Vector2,
   Vector3,
   type BufferGeometry,
   type DataArrayTexture,
@@ -13,7 +14,7 @@ import {
   type WebGLRenderer,
 } from "three";
 import type { ViewPlane } from "./info.js";
-import { gridsOf, smaller } from "./memory.js";
+import { gridsOf, smaller, type Size } from "./memory.js";
 import type { Part } from "./parts.js";
 import { FINER, FINER_OPACITY, LAYERS, SUM, makePlacing, makeQuad, makeTarget, within } from "./passes.js";
 import type { Surface } from "./surface.js";
@@ -27,7 +28,7 @@ export interface Recipe {
   count: number;
   weights: Float64Array; // of all textures of all bases
   eye: [number, number, number] | null; // X, Y, height: each texel looks its weights up in `maps`
-  places: number; // version of the surface, which says where texels lie
+  places: number; // version of the surface, which says where texels lie; 0 where nothing depends on it
   maps: DataArrayTexture | null;
 }
 
@@ -57,7 +58,7 @@ interface Grid {
   target: WebGLRenderTarget;
   scene: Scene;
   steps: Step[];
-  places: { target: WebGLRenderTarget; version: number } | null; // where its texels lie, once weights are looked up
+  places: { target: WebGLRenderTarget; version: number } | null; // where its texels lie, once that is needed
 }
 
 /** Sums means and eigen textures into one texture of the whole atlas, for one viewpoint after the other. */
@@ -67,12 +68,14 @@ export class Composer {
   private opacityDrawn = 0; // its version
   private readonly camera = new Camera();
 
-  /** `opacity`: of sheets; `down`: what is composed has the atlas's side over this. */
+  /** `opacity`: of sheets; `down`: what is composed has the atlas's side over this; `snaps`: it has fewer texels than what
+   * is stored, and those beside a chart take what is stored in it. */
   constructor(
     atlas: [number, number],
     parts: Part[],
     private readonly opacity: Part | null,
     private readonly down: number,
+    private readonly snaps: boolean,
     private readonly surface: Surface,
     private readonly plane: ViewPlane,
   ) {
@@ -80,7 +83,8 @@ export class Composer {
     const bases = parts.filter(({ basis }) => basis);
     const [own, ...coarser] = gridsOf({ atlas, means, bases });
     const make = (size: [number, number], mips: boolean): Grid => {
-      const steps = parts.filter(({ grid }) => grid.join() === size.join()).flatMap(stepsOf);
+      const own = parts.filter(({ grid }) => grid.join() === size.join());
+      const steps = own.flatMap((part) => stepsOf(part, snaps ? smaller(size, down) : null));
       const scene = new Scene();
       steps.forEach(({ quad }, i) => scene.add(Object.assign(quad, { renderOrder: i })));
       return { target: makeTarget(smaller(size, down), mips), scene, steps, places: null };
@@ -106,7 +110,8 @@ export class Composer {
     within(renderer, camera, () => {
       if (recipe.opacity > this.opacityDrawn) this.drawOpacity(renderer, recipe.opacity);
       for (const grid of this.grids) {
-        if (recipe.eye && grid.steps.some(({ part }) => part.basis)) this.findPlaces(renderer, grid, recipe.places);
+        const rays = recipe.eye !== null && grid.steps.some(({ part }) => part.basis);
+        if (rays || this.snaps) this.findPlaces(renderer, grid, recipe.places);
         for (const step of grid.steps) setStep(step, grid.places?.target.texture ?? null, recipe);
         this.draw(renderer, grid.scene, grid.target, this.opacityDrawn > 0 && grid === this.grids.at(-1));
       }
@@ -126,7 +131,7 @@ export class Composer {
     const whole = this.grids.at(-1);
     if (!this.opacity || !whole) return;
     const own = makeTarget(smaller(this.opacity.grid, this.down), false);
-    const steps = stepsOf(this.opacity);
+    const steps = stepsOf(this.opacity, null);
     for (const step of steps) setStep(step, null, STILL);
     const [sum, finer] = [new Scene(), new Scene()];
     sum.add(...steps.map(({ quad }) => quad));
@@ -166,7 +171,10 @@ function freeQuads(scene: Scene): void {
   }
 }
 
-function stepsOf(part: Part): Step[] {
+/** `target`: its size, if texels beside a chart take what is stored in it. */
+function stepsOf(part: Part, target: Size | null): Step[] {
+  const [left, top, right, bottom] = part.rectangle;
+  const beside = target && new Vector2(1 / ((right - left) * target[0]), 1 / ((bottom - top) * target[1]));
   const channels = part.colours.length;
   const [all, most] = [part.scale.length / (4 * channels), Math.floor(LAYERS / channels)];
   const steps: Step[] = [];
@@ -186,6 +194,7 @@ function stepsOf(part: Part): Step[] {
       weightMaps: { value: null },
       firstGroup: { value: (part.basis?.group ?? 0) + first },
       places: { value: null },
+      beside: { value: beside ?? new Vector2() },
       eye: { value: new Vector3() },
     });
     steps.push({ part, first, groups: Math.min(most, all - first), quad });
@@ -214,7 +223,7 @@ function setStep({ part, first, groups, quad }: Step, places: Texture | null, re
   set("entries", channels * used);
   set("rayWeights", rays);
   set("weightMaps", rays ? recipe.maps : null);
-  set("places", rays ? places : null);
+  set("places", places);
   if (recipe.eye) (uniforms["eye"]?.value as Vector3).set(...recipe.eye);
   quad.visible = used > 0;
   quad.material.uniformsNeedUpdate = true;

@@ -261,7 +261,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     let composer = this.composers.get(down);
     if (!composer) {
       const { parts, opacity } = this.summed;
-      composer = new Composer(size, parts, opacity, down, this.surface, viewPlane);
+      composer = new Composer(size, parts, opacity, down, this.coarser > 1, this.surface, viewPlane);
       this.composers.set(down, composer);
     }
     composer.compose(renderer, camera, recipe);
@@ -287,7 +287,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
       count: shown === VIEWS.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
       weights,
       eye: eye && onPlane(this.info.viewPlane, eye),
-      places: eye ? this.surface.version : 0,
+      places: eye || this.coarser > 1 ? this.surface.version : 0,
       maps: eye && this.weights.maps(this.mixing, this.usable),
     };
   }

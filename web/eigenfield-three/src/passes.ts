@@ -30,7 +30,7 @@ import cubic from "../../../src/eigenfield/rendering/shaders/cubic.glsl?raw";
 import { cross, dot, planeCoordinates, type Vector, type ViewPlane } from "./info.js";
 
 export const LAYERS = 64; // that the shader sums in one draw
-const REACH = 2; // texels beside a chart that the widest filter reads
+const REACH = 2; // as in compose.glsl
 
 const HEAD = `
 precision highp float;
@@ -55,15 +55,21 @@ uniform vec2 shifts[SHIFTS];
 in vec2 position;       // texture coordinates
 in vec3 onPlane;
 out vec3 point;
+flat out vec2 shift;
 void main() {
   point = onPlane;
-  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);
+  shift = shifts[gl_InstanceID];
+  gl_Position = vec4(2.0 * position - 1.0 + texel * shift, 0.0, 1.0);
 }
 `;
 const PLACE = `${HEAD}
 in vec3 point;
+flat in vec2 shift;
 out vec4 place;
-void main() { place = placeOf(point); }
+void main() {
+  place = placeOf(point);
+  place.w += codeOf(shift);
+}
 `;
 export const SUM = "sumTextures";
 export const FINER = "finerValue";

@@ -126,7 +126,7 @@ def register_photographs(
         waiting: What is reported of each that took no part if it gets no camera.
     """
     report = dict(waiting) | dict(zip(shown, motion.report, strict=True))
-    views = [shown[own] for own in model.registered]
+    views = [shown[number] for number in model.registered]
     found = {i: (view.camera, view.lens) for i, view in zip(views, motion.light_field.views, strict=True)}
     point_of = _points_of_features(model, shown)
     refined = {image.camera_id for image in model.reconstruction.images.values()}
@@ -146,8 +146,8 @@ def register_photographs(
             )
     entries = tuple(report[index] for index in range(len(photos)))
     order = sorted(found)
-    made, lenses = zip(*(found[index] for index in order), strict=True)
-    light_field = photos.subset(order).with_cameras(made, lenses, lost(entries))
+    solved, lenses = zip(*(found[index] for index in order), strict=True)
+    light_field = photos.subset(order).with_cameras(solved, lenses, lost(entries))
     place = np.searchsorted(order, views)
     return SfmResult(light_field, replace(motion.points, view=place[motion.points.view]), entries)
 

@@ -96,10 +96,10 @@ def structure_from_motion(
         return [values[index] for index in shown]
 
     lenses = None if known is None else of_part(known)
-    seen, own = of_part(undistorted), of_part(shared)
+    seen, camera_of = of_part(undistorted), of_part(shared)
     matches = cached_matches(stages, key, part, seen, of_part(each), lenses, matching, seed, parts, progress)
     model = map_views(
-        [f.points for f in seen], cameras[: max(own) + 1], own, matches, known is not None, seed, progress
+        [f.points for f in seen], cameras[: max(camera_of) + 1], camera_of, matches, known is not None, seed, progress
     )
     report = _report(part, of_part(found), matches, model)
     if model is None:

@@ -149,8 +149,8 @@ def _find_parameters(
         return None, [f"{HCI_PARAMETERS_FILE} cannot be used: {error.message}"]
     size = (found.rows, found.columns)
     if last >= size[0] * size[1] or (grid is not None and grid != size):
-        asked = f"--grid says {grid[0]}x{grid[1]}" if grid else f"there is a photograph with the number {last}"
-        return None, [f"{HCI_PARAMETERS_FILE} cannot be used: it is for {size[0]}x{size[1]} cameras, but {asked}"]
+        reason = f"--grid says {grid[0]}x{grid[1]}" if grid else f"there is a photograph with the number {last}"
+        return None, [f"{HCI_PARAMETERS_FILE} cannot be used: it is for {size[0]}x{size[1]} cameras, but {reason}"]
     return found, []
 
 

@@ -329,8 +329,8 @@ def _walk_mappings(
 ) -> Iterator[tuple[str, Mapping[str, Any], str | None]]:
     """Every mapping of the tree, with the name of its camera, and the key that makes it a part of a lens."""
     if isinstance(node, dict):
-        own = next((node[k] for k in ("name", "camera_name", "image", "file") if isinstance(node.get(k), str)), None)
-        name = own if own and depth else name
+        stated = next((node[k] for k in ("name", "camera_name", "image", "file") if isinstance(node.get(k), str)), None)
+        name = stated if stated and depth else name
         yield name, node, lens
         for key, value in node.items():
             part = key.lower() in OPENCV_PARTS

@@ -196,11 +196,11 @@ def _weld_mesh(mesh: Mesh, lattice: Lattice, uv_bits: int, sheet: NDArray[np.int
     faces, sheet = first[same.reshape(-1)][mesh.faces[whole]], sheet[whole]
     used, faces = np.unique(faces, return_inverse=True)
     faces = faces.reshape(-1, 3)
-    own = np.zeros((len(used), 1), np.int64)
-    own[faces, 0] = sheet[:, None]
-    if (own[faces, 0] != sheet[:, None]).any():
+    sheet_of = np.zeros((len(used), 1), np.int64)
+    sheet_of[faces, 0] = sheet[:, None]
+    if (sheet_of[faces, 0] != sheet[:, None]).any():
         raise ValueError("sheets that share a vertex")
-    points = np.concatenate([steps[used].astype(np.int64).reshape(-1, 3), own], axis=1)
+    points = np.concatenate([steps[used].astype(np.int64).reshape(-1, 3), sheet_of], axis=1)
     points, place = np.unique(points, axis=0, return_inverse=True)
     return _Welded(
         np.ascontiguousarray(points[:, :3]), place.reshape(-1).astype(np.int32), faces.astype(np.int32), sheet,

@@ -97,9 +97,9 @@ def encode_masked_preview(picture: Codes, opacity: Codes, side: int, colours: in
     middle = pixels[opaque, :3].mean(axis=0) if opaque.any() else np.zeros(3)
     filled = np.where(opaque[..., None], pixels[..., :3], np.rint(middle).astype(np.uint8))
     reduced = Image.fromarray(filled).quantize(colours - 1, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
-    made = Image.fromarray(np.where(opaque, np.asarray(reduced) + 1, 0).astype(np.uint8), "P")
-    made.putpalette([*map(int, np.rint(middle)), *(reduced.getpalette() or [])[: 3 * (colours - 1)]])
-    return _image_bytes(made, "PNG", transparency=0, optimize=True)
+    paletted = Image.fromarray(np.where(opaque, np.asarray(reduced) + 1, 0).astype(np.uint8), "P")
+    paletted.putpalette([*map(int, np.rint(middle)), *(reduced.getpalette() or [])[: 3 * (colours - 1)]])
+    return _image_bytes(paletted, "PNG", transparency=0, optimize=True)
 
 
 def _shrunk(image: Image.Image, side: int) -> Image.Image:

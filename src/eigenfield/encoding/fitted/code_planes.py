@@ -138,8 +138,8 @@ def code_basis(basis: Basis, step: float, coder: Coder) -> CodedBasis:
         return PicturePayload(PICTURES_CODEC, data, len(codes), affine)
 
     pictures = tuple(parallel_map(code, range(0, count, each)))
-    made = Basis(stored, scale, np.full_like(scale, ZERO_CODE), basis.weights, basis.grid, basis.corner)
-    return CodedBasis(made, pictures)
+    coded = Basis(stored, scale, np.full_like(scale, ZERO_CODE), basis.weights, basis.grid, basis.corner)
+    return CodedBasis(coded, pictures)
 
 
 def first_pictures(coded: CodedBasis, count: int) -> CodedBasis:

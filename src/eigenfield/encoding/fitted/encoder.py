@@ -42,14 +42,14 @@ class FittedEncoder:
         begin_step(self.progress, "code")
         options = self.plan.options
         coder = {"coder": "libaom"} if self.fits.patient else {}
-        own = {"fit": options.fit, "fitted": {"quality": quality, **coder, "psnr": self.fits.psnr_figures()}}
+        settings = {"fit": options.fit, "fitted": {"quality": quality, **coder, "psnr": self.fits.psnr_figures()}}
         colours = self.data.observations.colours
         if colours is not None:
-            own["harmonise"] = options.harmonise or EXPOSURE_MODEL
+            settings["harmonise"] = options.harmonise or EXPOSURE_MODEL
         planes = self.fits.code_planes(quality, self.plan.views.grid, self.progress)
         return self.plan.scene(
             tuple(plane.value for plane in planes.values()),
-            own,
+            settings,
             payloads=Payloads.merge(plane.payloads for plane in planes.values()),
             colours=None if colours is None else self.plan.views.for_all_cameras(colours),
             to_rgb=to_rgb(),
@@ -75,8 +75,8 @@ def open_encoder(
     begin_step(progress, "fit")
     views, options = plan.views, plan.options
     cameras, observations = views.rig.encoded_cameras, views.observations
-    asked = fitted_textures(len(observations)) if options.textures is None else options.textures
-    textures, preset = component_count(asked, len(observations)), PRESETS[resolved_value(options.preset)]
+    count = fitted_textures(len(observations)) if options.textures is None else options.textures
+    textures, preset = component_count(count, len(observations)), PRESETS[resolved_value(options.preset)]
     size, colours = (plan.atlas[1], plan.atlas[0]), fit_exposures(plan, work, progress)
     scattered = views.scattered and plan.proxy.sheets is None
     with (

@@ -44,20 +44,20 @@ def fit_exposures(
         CaptureError: A photograph cannot be read.
         OutputError: `disk-full`.
     """
-    asked, views = plan.options.harmonise, plan.views
-    if asked == "none" or (asked is None and not is_sparse(plan)):
+    model, views = plan.options.harmonise, plan.views
+    if model == "none" or (model is None and not is_sparse(plan)):
         return None
     atlas = make_atlas(opaque_mesh(plan.proxy), EXPOSURE_ATLAS_SIDE_TEXELS, EXPOSURE_ATLAS_SIDE_TEXELS)
     with texture_maps(atlas, views.rig.encoded_cameras, views.observations, work=work, progress=progress) as maps:
         cells = average_cells(maps)
-    if asked is None:
+    if model is None:
         by_mean, between = _gains_of(cells, plan)
         used = by_mean >= EXPOSURE_MIN_GAIN_DB and between >= -EXPOSURE_MAX_LOSS_DB
         words = "in a common exposure the mean is %.1f dB nearer to the photographs, those left out are %.1f dB: %s"
         log.info(words, by_mean, between, "exposures are brought together" if used else "exposures stay as they are")
         if not used:
             return None
-    return cells.fit(asked or EXPOSURE_MODEL)
+    return cells.fit(model or EXPOSURE_MODEL)
 
 
 def _gains_of(cells: Cells, plan: EncodePlan) -> tuple[float, float]:

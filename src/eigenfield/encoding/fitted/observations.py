@@ -252,8 +252,8 @@ def open_subsampled(
                 if given.masks is not None:
                     masks[part] = given.mask(index)[taken].reshape(-1)
             few = None if given.masks is None else masks
-            made = replace(given, shapes=shapes, codes=codes, offsets=offsets, masks=few, robust=None)
-            yield FitData(made, footprints)
+            subsampled = replace(given, shapes=shapes, codes=codes, offsets=offsets, masks=few, robust=None)
+            yield FitData(subsampled, footprints)
 
 
 @contextlib.contextmanager

@@ -53,7 +53,7 @@ def encode_projected(
     sources = make_atlas(plan.mesh, *plan.atlas), views.rig.encoded_cameras, views.observations
     if workers is not None:
         maps_of_workers = maps_on_workers(workers, *sources, work, max_angle, progress)
-    with texture_maps(*sources, max_angle=max_angle, made=maps_of_workers, work=work, progress=progress) as maps:
+    with texture_maps(*sources, max_angle=max_angle, maps=maps_of_workers, work=work, progress=progress) as maps:
         if options.harmonise not in (None, "none"):
             settings["harmonise"] = options.harmonise
             colours = views.for_all_cameras(harmonise_maps(maps, options.harmonise, progress))

@@ -89,7 +89,7 @@ def texture_maps(
     channels: int = 3,
     *,
     max_angle: int = DEFAULT_MAX_ANGLE,
-    made: Iterable[tuple[NDArray[np.float32], NDArray[np.uint8]]] | None = None,
+    maps: Iterable[tuple[NDArray[np.float32], NDArray[np.uint8]]] | None = None,
     work: Path | None = None,
     progress: Progress | None = None,
 ) -> Iterator[TextureMaps]:
@@ -100,7 +100,7 @@ def texture_maps(
     Args:
         atlas: Of the mesh that is seen at all times.
         observations: Each is decoded once, from several threads.
-        made: The maps in order, where something else makes them (`maps_on_workers`).
+        maps: The maps in order, where something else makes them (`maps_on_workers`).
     """
     total = len(observations)
     with (
@@ -112,9 +112,9 @@ def texture_maps(
             photograph, camera = observations.photograph(index), cameras[observations.camera_of(index)]
             values[index], seen[index] = texture_map(atlas, camera, photograph.pixels, photograph.mask, max_angle)
 
-        if made is None:
+        if maps is None:
             tracked_map(project, range(total), "texture maps", progress)
         else:
-            for index, (row, shown) in enumerate(made):
+            for index, (row, shown) in enumerate(maps):
                 values[index], seen[index] = row, shown
         yield TextureMaps(atlas, values, seen)

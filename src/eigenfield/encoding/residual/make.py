@@ -67,10 +67,10 @@ def with_residual(
 
     order = video_order(cameras)
     frames = track(parallel_stream(planes, order.tolist()), "residual", len(order), progress)
-    made = Residual(b"", (rows, columns), order, scale, full_chroma, smooth_edges=True)
-    video = encode_video(frames, made.frame, crf_of(quality), RESIDUAL_SVT_PRESET)
+    residual = Residual(b"", (rows, columns), order, scale, full_chroma, smooth_edges=True)
+    video = encode_video(frames, residual.frame, crf_of(quality), RESIDUAL_SVT_PRESET)
     settings = {**scene.settings, "residual": {"quality": quality}}
-    return replace(scene, residual=replace(made, video=video), settings=settings)
+    return replace(scene, residual=replace(residual, video=video), settings=settings)
 
 
 def check_residual(cameras: Sequence[Camera], quality: int) -> tuple[int, int]:

@@ -124,17 +124,17 @@ def _lay_out_chart(
     vertices: NDArray[np.float64], faces: NDArray[np.int32], own_uv: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], bool]:
     """The layout of one chart, and whether it is conformal."""
-    own = _scale_to_surface(own_uv, vertices, faces)
+    scaled = _scale_to_surface(own_uv, vertices, faces)
     try:
         uv = conformal_map(vertices, faces)
     except RuntimeError:  # the factorisation meets an exactly singular matrix
-        return own, False
+        return scaled, False
     if not _is_valid(uv, vertices, faces):
-        return own, False
-    if _is_valid(own, vertices, faces):
-        limit = CHART_MAX_STRETCH_RATIO * l2_stretch(vertices, own, faces)
+        return scaled, False
+    if _is_valid(scaled, vertices, faces):
+        limit = CHART_MAX_STRETCH_RATIO * l2_stretch(vertices, scaled, faces)
         if l2_stretch(vertices, uv, faces) > limit:
-            return own, False
+            return scaled, False
     return uv, True
 
 

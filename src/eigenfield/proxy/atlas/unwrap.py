@@ -28,6 +28,7 @@ log = logging.getLogger("eigenfield.proxy")
 
 UNWRAP_MIN_TRIANGLES = 4
 UNWRAP_MAX_LOST_FRACTION = 0.01  # of the surface, in no chart
+UNWRAP_WORTH_SAYING = 1e-3  # of the surface in no chart, from which on a person is told
 
 
 def unwrap_mesh(
@@ -67,7 +68,7 @@ def unwrap_mesh(
     limit = PROXY_DEFAULT_TRIANGLES if triangles is None else triangles
     if len(plain.faces) > limit:
         plain = simplify_mesh(plain, limit)
-        log.warning("the mesh is simplified from %d to %d triangles", len(mesh.faces), len(plain.faces))
+        log.info("the mesh is simplified from %d to %d triangles", len(mesh.faces), len(plain.faces))
     result = _make_atlas(plain, cameras, progress)
     statistics = atlas_statistics(result)
     log.info("atlas: %s", statistics)
@@ -105,13 +106,15 @@ def _apply_xatlas(mesh: Mesh, answer: bytes) -> Mesh:
     held = laid_out[faces].all(axis=1)
     if not held.all():
         area = triangle_areas(mesh.vertices[origin][faces].astype(np.float64))
-        if not held.any() or area[~held].sum() > UNWRAP_MAX_LOST_FRACTION * area.sum():
+        lost, whole = area[~held].sum(), area.sum()
+        if not held.any() or lost > UNWRAP_MAX_LOST_FRACTION * whole:
             raise ProxyError(
                 "proxy-unwrap",
                 f"no chart could be found for {int((~held).sum())} of {len(faces)} triangles",
                 remedy="clean the mesh (double faces, edges with more than two triangles) or give it UVs elsewhere",
             )
-        log.warning("%d of %d triangles could not be laid out: dropped", int((~held).sum()), len(faces))
+        level = logging.WARNING if lost > UNWRAP_WORTH_SAYING * whole else logging.INFO
+        log.log(level, "%d of %d triangles could not be laid out: dropped", int((~held).sum()), len(faces))
         faces = faces[held]
     return remove_unused_vertices(Mesh(mesh.vertices[origin], faces, np.clip(uv, 0, 1)))
 

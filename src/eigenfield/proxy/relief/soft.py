@@ -167,8 +167,8 @@ def _draw_chart(
     at = (grid + moved[tuple(nearest)]).astype(np.float32)
     drawn = cv2.remap(layer, at[..., 0], at[..., 1], cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE)
     into = grid + np.rint(place - 0.5).astype(int)
-    own = chart.mask & (into >= 0).all(axis=-1) & (into < len(atlas)).all(axis=-1)
-    atlas[into[own][:, 1], into[own][:, 0]] = drawn[own]
+    inside = chart.mask & (into >= 0).all(axis=-1) & (into < len(atlas)).all(axis=-1)
+    atlas[into[inside][:, 1], into[inside][:, 0]] = drawn[inside]
 
 
 def _filled(atlas: NDArray[np.float32]) -> NDArray[np.float32]:

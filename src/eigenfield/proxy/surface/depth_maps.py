@@ -112,8 +112,8 @@ def make_depth_maps(
     """
     numbers = {job.index: number for number, job in enumerate(jobs)}
     if parts is None:
-        made = (_first_map(job, pictures) for job in jobs)
-        first = dict(zip(numbers, track(made, f"first {stage}", len(jobs), progress), strict=True))
+        first_maps = (_first_map(job, pictures) for job in jobs)
+        first = dict(zip(numbers, track(first_maps, f"first {stage}", len(jobs), progress), strict=True))
         finished = track((_second_map(job, pictures, first) for job in jobs), stage, len(jobs), progress)
         return _views(jobs, pictures, finished), [first[job.index].tolerance for job in jobs]
     with share(pictures, parts.folder) as shared:
@@ -164,13 +164,13 @@ def _load_second(place: Path) -> tuple[NDArray[np.float32], ...]:
 
 
 def _stack_pictures(job: DepthJob, pictures: Mapping[int, WorkingPicture] | Sequence[WorkingPicture]) -> _Stack:
-    own = pictures[job.index]
-    used = [own, *(pictures[i] for i in job.others)]
-    axis = own.camera.R[2]
-    apart = [picture.camera.centre - own.camera.centre for picture in used[1:]]
+    reference_picture = pictures[job.index]
+    used = [reference_picture, *(pictures[i] for i in job.others)]
+    axis = reference_picture.camera.R[2]
+    apart = [picture.camera.centre - reference_picture.camera.centre for picture in used[1:]]
     across = [np.linalg.norm(step - (step @ axis) * axis) for step in apart]
-    unit = 1 / (own.camera.K[0, 0] * max(float(np.median(across)), 1e-12))
-    reference = ReferenceView.with_margin(own.camera, 0, job.span[0], unit)
+    unit = 1 / (reference_picture.camera.K[0, 0] * max(float(np.median(across)), 1e-12))
+    reference = ReferenceView.with_margin(reference_picture.camera, 0, job.span[0], unit)
     height, width = max(p.pixels.shape[0] for p in used), max(p.pixels.shape[1] for p in used)
     stack = np.zeros((len(used), height, width, 3), np.uint8)
     for slot, part in zip(stack, (picture.pixels for picture in used), strict=True):
@@ -204,7 +204,7 @@ def _second_map(
 
     Each other first map that agrees halves the doubt: the confidence is 1 - DEPTH_DOUBT 2^-n.
     """
-    stack, own, mine = _stack_pictures(job, pictures), pictures[job.index], first[job.index]
+    stack, picture, mine = _stack_pictures(job, pictures), pictures[job.index], first[job.index]
     reference = stack.reference.at_half_resolution()
     size = [(edge + 1) // 2 for edge in stack.pictures.shape[1:3]]
     depths = np.zeros((len(job.others), *size), np.float32)
@@ -225,13 +225,13 @@ def _second_map(
     agreeing = _count_agreeing(reference, planes[..., 0], cameras, depths, tolerance)
     share = agreeing / len(cameras)
     weight = (16.0 ** np.maximum(4 * share - 1, 0) - 1).astype(np.float32)  # half where half of the maps agree
-    guide = unpack_pictures(halve_pictures(own.pixels[None]))[0].astype(np.float32)
+    guide = unpack_pictures(halve_pictures(picture.pixels[None]))[0].astype(np.float32)
     planes[..., 0] = smooth_depth(
         planes[..., 0], weight, guide, half_confidence=15.0, depth_scale=DEPTH_SMOOTHING_SCALE_LABELS
     )
     agreeing = _count_agreeing(reference, planes[..., 0], cameras, depths, tolerance)
     shape = stack.reference.shape
-    w = _inverse_depth(upsample_planes(planes, shape), stack, own, 1)
+    w = _inverse_depth(upsample_planes(planes, shape), stack, picture, 1)
     wide = np.repeat(np.repeat(agreeing, 2, 0), 2, 1)[: shape[0], : shape[1]]
     return w, np.where(w > 0, 1 - DEPTH_DOUBT * 0.5**wide, 0).astype(np.float32)
 

@@ -56,11 +56,11 @@ def choose_neighbours(reference: int, cameras: Sequence[Camera], points: NDArray
     Args:
         points: (n, 3) points that the reference sees.
     """
-    own = cameras[reference]
-    to_own = own.centre - points
+    reference_camera = cameras[reference]
+    to_own = reference_camera.centre - points
     scores = np.zeros(len(cameras))
     for index, camera in enumerate(cameras):
-        if index == reference or camera.R[2] @ own.R[2] < NEIGHBOUR_MIN_AXIS_COSINE:
+        if index == reference or camera.R[2] @ reference_camera.R[2] < NEIGHBOUR_MIN_AXIS_COSINE:
             continue
         seen = inside_frame(camera, points)
         rays = camera.centre - points[seen]
@@ -73,7 +73,7 @@ def choose_neighbours(reference: int, cameras: Sequence[Camera], points: NDArray
         # a narrow array has only small angles: they count by their size, and two cameras at one place not at all
         scores[index] = (np.minimum(bell, angle / NEIGHBOUR_BEST_ANGLE_DEGREES)).sum()
     centres = np.array([camera.centre for camera in cameras])
-    distance = np.linalg.norm(centres - own.centre, axis=1)
+    distance = np.linalg.norm(centres - reference_camera.centre, axis=1)
     chosen: list[int] = []
     worth = scores.copy()
     while len(chosen) < count and worth.max() > 1e-3 * scores.max() > 0:

@@ -206,15 +206,15 @@ class Composer:
         column = group = 0
         appearance = self._scene.appearance
         for plane, channels in zip(appearance.planes, appearance.channel_slices, strict=True):
-            own = self._colours[channels]
+            colours = self._colours[channels]
             for size in plane.sizes:
                 if size not in grids:
                     grids[size] = self._grid(*size)
-            grids[plane.sizes[0]].parts.append(self._mean(plane, own))
+            grids[plane.sizes[0]].parts.append(self._mean(plane, colours))
             for basis in plane.bases:
                 if basis.count:
                     columns = slice(column, column + basis.count)
-                    grids[basis.size].parts.append(self._basis(basis, own, columns, group))
+                    grids[basis.size].parts.append(self._basis(basis, colours, columns, group))
                 column, group = column + basis.count, group - (-basis.count // 4)
         return whole, [grid for grid in grids.values() if grid is not whole]
 
@@ -296,8 +296,8 @@ class Composer:
             set_uniforms(program, texel=2 / np.array(size))
             array.render(instances=len(shifts))
             frame.release()
-        for made in (array, vertices, faces):
-            made.release()
+        for resource in (array, vertices, faces):
+            resource.release()
 
 
 def shader(name: str) -> str:

@@ -15,6 +15,7 @@
 #define LAYERS 64  // most that one draw sums
 #define LEVEL 1e-4 // a height of no more than this is as good as none
 #define MOST 6e4   // halves end at 65504
+#define REACH 2    // texels beside a chart, each way, that the widest filter reads
 
 uniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)
 uniform int firstLayer;
@@ -29,6 +30,7 @@ uniform bool rayWeights;       // look weights up where the ray to the eye meets
 uniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges
 uniform int firstGroup;
 uniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface
+uniform vec2 beside;           // a texel of the target in `own`, if texels beside a chart take what is stored in it; else 0
 uniform vec3 eye;              // X, Y and height above the view plane
 
 uniform sampler2D coarse;      // a grid's sum; or the opacity, in the first channel, at a density of its own
@@ -48,10 +50,19 @@ vec2 viewCoordinates(vec4 place) {
   return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);
 }
 
+// What `beside` adds to the w of a place that lies so many texels beside its chart; and those texels.
+float codeOf(vec2 shift) { return shift.x + float(REACH) + float(2 * REACH + 1) * (shift.y + float(REACH)); }
+vec2 shiftOf(vec4 place) {
+  int code = int(place.w + 0.5) - 1;
+  return code < 0 ? vec2(0.0) : vec2(code % (2 * REACH + 1) - REACH, code / (2 * REACH + 1) - REACH);
+}
+
 // The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.
 vec4 sumTextures(vec2 own) {
   vec2 nodes = vec2(textureSize(weightMaps, 0).xy);
-  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);
+  vec4 place = rayWeights || beside.x > 0.0 ? texelFetch(places, ivec2(gl_FragCoord.xy), 0) : vec4(0.0);
+  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);
+  own -= beside * shiftOf(place);
   vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;
   vec4 weights = vec4(1.0);
   vec3 sum = vec3(0.0);

@@ -103,9 +103,9 @@ def make_composite(scene: Scene, used: NDArray[np.bool_], opacity: NDArray[np.fl
         assert tiled.mean is not None
         return Composite(size, part.number, tiled.mean, matrix, (part,), fourth, True)
     base = np.zeros((len(places), len(matrix), TILE_AREA), np.float32)
-    for plane, own in zip(planes, scene.appearance.channel_slices, strict=True):
-        add_mean(plane.mean, size, places, np.ascontiguousarray(matrix[:, own]), base)
-    parts = tuple(_part(own, bases, size, used) for own, bases in groups)
+    for plane, channels in zip(planes, scene.appearance.channel_slices, strict=True):
+        add_mean(plane.mean, size, places, np.ascontiguousarray(matrix[:, channels]), base)
+    parts = tuple(_part(channels, bases, size, used) for channels, bases in groups)
     return Composite(size, _numbers(used), base, matrix, parts, fourth, False)
 
 
@@ -174,7 +174,7 @@ def _whole(bases: Sequence[Basis], size: tuple[int, int]) -> bool:
     return all(basis.textures.shape[1:3] == size for basis in bases)
 
 
-def _part(own: slice, bases: list[Basis], atlas: tuple[int, int], used: NDArray[np.bool_]) -> Part:
+def _part(channels: slice, bases: list[Basis], atlas: tuple[int, int], used: NDArray[np.bool_]) -> Part:
     size, (row, column) = bases[0].size, bases[0].corner
     upsampler = None if size == atlas else make_tile_upsampler(atlas, size)
     height, width = bases[0].textures.shape[1:3]
@@ -189,8 +189,8 @@ def _part(own: slice, bases: list[Basis], atlas: tuple[int, int], used: NDArray[
         kept = inside & tiles_read(used, upsampler.rows, upsampler.columns, tile_shape(size))
         reached = tiles_reading(inside, upsampler.rows, upsampler.columns)
     weights = tuple(basis.weights.astype(np.float64) for basis in bases)
-    tiled = tile(None, bases, kept, own.stop - own.start)
-    return Part(own, size, tiled, weights, _numbers(kept), upsampler, rectangle, reached.ravel())
+    tiled = tile(None, bases, kept, channels.stop - channels.start)
+    return Part(channels, size, tiled, weights, _numbers(kept), upsampler, rectangle, reached.ravel())
 
 
 def _numbers(kept: NDArray[np.bool_]) -> NDArray[np.int64]:

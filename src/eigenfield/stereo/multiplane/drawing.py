@@ -67,12 +67,12 @@ def draw_layers(
     size = layers.shape[1:3]
 
     def one(index: int) -> None:
-        own = labels[index]
-        start = np.float32(own.mean())
+        field = labels[index]
+        start = np.float32(field.mean())
         if labels.ndim == 1:
             plane_places(*size, rays, start, places[index])
         else:
-            field_places(own, rays, start, PLACE_ITERATIONS, PLACE_TOLERANCE_PIXELS, places[index])
+            field_places(field, rays, start, PLACE_ITERATIONS, PLACE_TOLERANCE_PIXELS, places[index])
         draw_layer(layers[index], places[index], drawn[index])
 
     parallel_map(one, range(len(layers)))

@@ -97,9 +97,9 @@ def _sheet(
     opacity = 1 - through
     wide = (0, 0), COLOUR_FILL_TEXELS
     around = cv2.GaussianBlur(colour, *wide) / np.maximum(cv2.GaussianBlur(opacity, *wide), 1e-4)[..., None]
-    own = np.minimum(opacity / MIN_OPACITY, 1)[..., None]
+    share = np.minimum(opacity / MIN_OPACITY, 1)[..., None]
     own_colour = colour / np.maximum(opacity, MIN_OPACITY)[..., None]
-    return height, np.concatenate([own * own_colour + (1 - own) * around, opacity[..., None]], axis=2)
+    return height, np.concatenate([share * own_colour + (1 - share) * around, opacity[..., None]], axis=2)
 
 
 def _smoothed(values: NDArray[np.float32], weight: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -119,11 +119,11 @@ def _picture(codes: NDArray[np.uint8], image: str) -> bytes:
     if image == "webp" and max(width, height) > WEBP_MAX_SIDE_TEXELS:
         message = f"webp holds {WEBP_MAX_SIDE_TEXELS} texels a side, {max(width, height)} needed"
         raise OptionError("image", message, remedy="use png or jpeg")
-    file, made = io.BytesIO(), Image.fromarray(codes if channels > 1 else codes[..., 0])
+    file, picture = io.BytesIO(), Image.fromarray(codes if channels > 1 else codes[..., 0])
     if image == "jpeg":
-        made.save(file, "JPEG", quality=JPEG_QUALITY, subsampling="4:4:4", optimize=True)
+        picture.save(file, "JPEG", quality=JPEG_QUALITY, subsampling="4:4:4", optimize=True)
     else:
-        made.save(file, "WEBP", quality=WEBP_QUALITY, method=4, exact=True, use_sharp_yuv=True)
+        picture.save(file, "WEBP", quality=WEBP_QUALITY, method=4, exact=True, use_sharp_yuv=True)
     return file.getvalue()
 
 
@@ -143,13 +143,13 @@ def _write_draco(mesh: Mesh, buffer: Buffer) -> dict[str, Any]:
     decoded = DracoPy.decode(data)
     of_type = {one["attribute_type"]: one["unique_id"] for one in decoded.attributes}
     vertices = np.asarray(decoded.points, np.float32)
-    made = Mesh(vertices, np.asarray(decoded.faces, np.int32))
+    decoded_mesh = Mesh(vertices, np.asarray(decoded.faces, np.int32))
     vector = {"componentType": FLOAT, "count": len(vertices)}
     first = len(buffer.accessors)
     buffer.accessors += [
         {**vector, "type": "VEC3", **bounds_of(vertices)},
         {**vector, "type": "VEC2"},
-        {"componentType": index_type(made, small=False), "count": made.faces.size, "type": "SCALAR"},
+        {"componentType": index_type(decoded_mesh, small=False), "count": decoded_mesh.faces.size, "type": "SCALAR"},
     ]
     ids = {"POSITION": of_type[DRACO_POSITION], "TEXCOORD_0": of_type[DRACO_TEXELS]}
     return {
