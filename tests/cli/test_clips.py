@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 
+import av
 import numpy as np
 import pytest
 from PIL import Image
@@ -82,6 +83,41 @@ def test_render_draws_the_frame_of_a_time(clip, run, tmp_path, time, number):
 def test_a_time_outside_the_clip_and_no_time(clip, run, tmp_path, words, line):
     code, _, err = run("render", clip, *words, "-o", tmp_path / "a.png")
     assert code == 2 and line in err and str(clip) in err and not (tmp_path / "a.png").exists()
+
+
+@pytest.mark.parametrize(
+    ("time", "numbers"), [("3:6", [3, 4, 5]), ("0.2s:0.5s", [2, 3, 4]), ("9:", [9, 10, 11]), (":.15s", [0, 1])]
+)
+def test_a_range_of_times_is_a_film(clip, run, tmp_path, time, numbers):
+    words = ["--time", time, "--at", "0,0", "--resolution", "480x400"]
+    assert run("render", clip, *words, "-o", tmp_path / "%02d.png").code == 0
+    drawn = [np.atleast_3d(np.asarray(Image.open(path))) for path in sorted(tmp_path.glob("*.png"))]
+    assert [drawn_number(picture) for picture in drawn] == numbers
+
+
+def test_a_film_has_the_rate_of_the_clip_and_follows_a_path(clip, run, tmp_path):
+    output = tmp_path / "a.mp4"
+    assert run("render", clip, "--time", ":", "--path", "circle", "--resolution", "120x100", "-o", output).code == 0
+    with av.open(output) as film:
+        stream = film.streams.video[0]
+        assert (stream.frames, stream.average_rate) == (12, 10)
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        (["--time", "5:5", "-o", "a.mp4"], "leaves nothing"),
+        (["--time", "5:99", "-o", "a.mp4"], "name frames between 0 and 12"),
+        (["--time", "5:8", "-o", "a.png"], "a path, or a range of times, makes many pictures"),
+        (["--time", "5:8", "--path", "grid", "--frames", "9", "-o", "a.mp4"], "no range of --time"),
+        (["--time", "3:x", "-o", "a.mp4"], "a range: 0s:2s"),
+        (["--time", "3", "-o", "a.mp4"], "one picture makes no film"),
+    ],
+)
+def test_ranges_that_are_none(clip, run, words, line, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    code, _, err = run("render", clip, *words)
+    assert code == 2 and line in err and not list(tmp_path.iterdir())
 
 
 def test_a_scene_has_no_other_time(run, tmp_path, good):

@@ -8,7 +8,6 @@ column is brighter in cameras of high numbers and darker in those of low ones.
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -25,7 +24,7 @@ from eigenfield.core.films import CodedGroup, FilmLayout
 from eigenfield.core.payloads import Affine, Payload
 from eigenfield.core.proxy import Proxy
 from eigenfield.encoding.geometry.coded import coded_cameras, coded_mesh
-from eigenfield.gltf import coded_clip, load_clip, save
+from eigenfield.gltf import coded_clip, load_clip
 from eigenfield.gltf.group import group_bytes
 from support import glb_surgery
 from support.scenes import bumpy_square, tiny_scene
@@ -136,14 +135,3 @@ def read_all(path: Path) -> None:
     clip = load_clip(path)
     for time in clip.timeline.times:
         clip.scene(time)
-
-
-def write(folder: Path) -> None:
-    """Write clip.glb, numbered frames in groups of 5, 7, 1 and 12, and clip.json, what they are."""
-    lengths = (5, 7, 1, 12)
-    clip = numbered_clip(lengths)
-    clip_facts = {
-        "groups": list(lengths), "rate": [10, 1], "bits": BITS, "textures": TEXTURES_COUNT, "luma": list(LUMA),
-    }  # fmt: skip
-    save(clip, folder / "clip.glb", overwrite=True)
-    (folder / "clip.json").write_text(json.dumps(clip_facts), encoding="utf-8")

@@ -2,40 +2,93 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from eigenfield.cli.common import pair_of_numbers, together
 from eigenfield.core.errors import OptionError
 
+if TYPE_CHECKING:
+    from eigenfield.core.clip import Timeline
+
 DEFAULT_FPS = "30"
+TIME_TOLERANCE_FRAMES = 1e-6  # of seconds in decimals
 
 
 @dataclass(frozen=True)
 class ClipTime:
-    """A time in a clip: seconds, or the number of a frame."""
+    """A time in a clip, or all times from one to another: seconds, or numbers of frames (int).
 
-    seconds: float = 0.0
-    frame: int | None = None
+    Attributes:
+        end: Behind the last one; None: to the end of the clip.
+        several: Whether there is a range.
+    """
+
+    first: int | float
+    end: int | float | None = None
+    several: bool = False
 
     def in_clip(self, path: Path) -> float:
-        """The seconds in a file's clip. OptionError `time`: it has no such frame, or is of one instant."""
+        """Seconds of the one time in the clip of a file. OptionError `time`: it has no such frame, or is of one
+        instant; there is a range."""
+        if self.several:
+            remedy = "name one: --time 1.25s"
+            raise OptionError("time", "one frame is drawn, and --time has a range", path=path, remedy=remedy)
+        timeline = self._timeline(path)
+        return self.first if isinstance(self.first, float) else float(timeline.times[self.first])
+
+    def frames(self, path: Path) -> range:
+        """Numbers of the frames of a range in the clip of a file. OptionError `time`, as `in_clip`; it is empty."""
+        timeline = self._timeline(path)
+        first = timeline.frame_at(self.first) if isinstance(self.first, float) else self.first
+        if isinstance(self.end, float):  # the first frame that is shown at this time or later
+            end = max(0, math.ceil((self.end - timeline.first) * timeline.rate - TIME_TOLERANCE_FRAMES))
+        else:
+            end = timeline.frames if self.end is None else self.end
+        if not first < end <= timeline.frames:
+            message = f"--time from frame {first} to {end} leaves nothing, or more than there is"
+            remedy = f"name frames between 0 and {timeline.frames}"
+            raise OptionError("time", message, path=path, remedy=remedy)
+        return range(first, end)
+
+    def _timeline(self, path: Path) -> Timeline:
         from eigenfield.gltf import load_clip, stores_clip
 
         if not stores_clip(path):
             remedy = "leave --time out"
             raise OptionError("time", "is a scene of one instant, and has no other time", path=path, remedy=remedy)
-        if self.frame is None:
-            return self.seconds
         timeline = load_clip(path).timeline
-        if self.frame >= timeline.frames:
+        if isinstance(self.first, int) and self.first >= timeline.frames:
             remedy = f"name one from 0 to {timeline.frames - 1}, or seconds as 1.25s"
-            raise OptionError("time", f"the clip has no frame {self.frame}", path=path, remedy=remedy)
-        return float(timeline.times[self.frame])
+            raise OptionError("time", f"the clip has no frame {self.first}", path=path, remedy=remedy)
+        return timeline
+
+
+def _number_of(text: str) -> int | float | None:
+    """A number of a frame, or seconds; None for nothing. ValueError: neither."""
+    found = re.fullmatch(r"(\d{1,9})|(-?(?:\d{1,9}\.?\d{0,9}|\.\d{1,9}))s", text)
+    if text and found is None:
+        raise ValueError(text)
+    return None if found is None else int(found[1]) if found[1] else float(found[2])
+
+
+def _parse_time(context: click.Context, parameter: click.Parameter, value: str | None) -> ClipTime | None:
+    if value is None:
+        return None
+    first, colon, end = value.strip().partition(":")
+    try:
+        start, stop = _number_of(first), _number_of(end)
+        if start is None and not colon:
+            raise ValueError(value)
+    except ValueError:
+        raise click.BadParameter("seconds as 1.25s, the number of a frame: 37, or a range: 0s:2s") from None
+    return ClipTime(0 if start is None else start, stop, bool(colon))
 
 
 def parse_place(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[float, float] | None:
@@ -47,15 +100,6 @@ def parse_place(context: click.Context, parameter: click.Parameter, value: str |
     except ValueError:
         raise click.BadParameter("two numbers from -1 to 1 with a comma between them: 0.3,-0.2") from None
     return x, y
-
-
-def _parse_time(context: click.Context, parameter: click.Parameter, value: str | None) -> ClipTime | None:
-    found = None if value is None else re.fullmatch(r"(\d{1,9})|(-?\d{0,9}\.?\d{1,9})s", value.strip())
-    if value is not None and found is None:
-        raise click.BadParameter("seconds as 1.25s, or the number of a frame: 37")
-    if found is None:
-        return None
-    return ClipTime(frame=int(found[1])) if found[1] else ClipTime(seconds=float(found[2]))
 
 
 def _parse_colour(context: click.Context, parameter: click.Parameter, value: str) -> tuple[float, ...] | None:
@@ -100,7 +144,10 @@ flight_options = together(
                  help="Pictures a second."),
 )  # fmt: skip
 time_option = click.option(
-    "--time", callback=_parse_time, metavar="TIME", help="Of a clip: seconds (1.25s), or the number of a frame (37)."
+    "--time",
+    callback=_parse_time,
+    metavar="TIME",
+    help="Of a clip: seconds (1.25s), the number of a frame (37), or a range of either for a film (0s:2s).",
 )
 residual_option = click.option(
     "--residual",

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from eigenfield.cli.common import PATH, common_options, note
 from eigenfield.cli.drawing import (
@@ -29,6 +30,7 @@ Examples:
   eigenfield render scene.glb --camera out_08_08.jpg --background transparent -o view.png
   eigenfield render archive.glb --camera out_08_08.jpg --residual -o view.png
   eigenfield render clip.glb --time 1.25s --at 0.3,-0.2 -o view.png
+  eigenfield render clip.glb --time 0s:2s --path circle -o clip.mp4
   eigenfield render scene.glb --path circle --frames 240 -o around.mp4
   eigenfield render scene.glb --path grid --frames 25 -o 'frames/%04d.png'"""
 )
@@ -39,7 +41,7 @@ Examples:
     required=True,
     type=PATH,
     metavar="FILE",
-    help="A .png, an .mp4 for a path, or a .png with %04d in its name for a path's single pictures.",
+    help="A .png; for a path or a range of times an .mp4, or a .png with %04d in its name for single pictures.",
 )
 @click.option("--at", callback=parse_place, metavar="X,Y", help="Viewpoint in the array: 0,0 its middle, ±1 its edges.")
 @click.option("--camera", metavar="NAME", help="A captured camera.  [default: the reference camera]")
@@ -56,25 +58,29 @@ def command(
     """Draw SCENE: one picture, or a fly-through.
 
     The picture is that of a viewpoint in the array (--at), of a captured camera (--camera), or a path's. Of a clip
-    --time names the frame.
+    --time names the frame, or a range of frames: they become a film, along the path if one is given.
     """
     from eigenfield.runtime.files import is_numbered, refuse_existing, write_bytes
 
     given = [name for name, value in (("--at", at), ("--camera", camera), ("--path", path)) if value is not None]
     if len(given) > 1:
         raise OptionError("viewpoint", f"{' and '.join(given)} exclude each other", remedy="give one of them")
-    _check_output(output, path is not None, is_numbered(output))
-    if path is None and frames is not None:
-        raise OptionError("frames", "--frames needs --path", remedy="give a path, or leave it out")
-    if path is not None and not is_numbered(output) and picture["background"] is None:
+    flight = path is not None or (time is not None and time.several)
+    _check_output(output, flight, is_numbered(output))
+    if frames is not None and (path is None or (time is not None and time.several)):
+        raise OptionError("frames", "--frames needs --path, and no range of --time", remedy="leave it out")
+    if flight and not is_numbered(output) and picture["background"] is None:
         raise OptionError("background", "a film cannot be transparent", remedy="name a colour, or write .png pictures")
-    if residual and (at is not None or path is not None):
+    if residual and (at is not None or flight):
         raise OptionError("residual", "only captured views have a residual", remedy="name a --camera, or leave it out")
     from eigenfield.encoding.residual.views import captured_pixels, difference_of
     from eigenfield.gltf import load
     from eigenfield.rendering import FLIGHT_FRAMES, RenderJob, camera_index, path_points, viewpoint, viewpoint_colour
     from eigenfield.rendering.render_jobs import png, refuse_flight, write_flight
 
+    if time is not None and time.several:
+        _render_over_time(scene, time, {"at": at, "camera": camera}, path, output, fps, overwrite, quiet, picture)
+        return
     seconds = None if time is None else time.in_clip(scene)
     if path is not None:
         points = path_points(path, FLIGHT_FRAMES if frames is None else frames)
@@ -96,6 +102,26 @@ def command(
     note(f"wrote {output}", quiet)
 
 
+def _render_over_time(
+    scene: Path, time: ClipTime, place: dict[str, Any], path: str | None, output: Path, fps: Fraction, overwrite: bool,
+    quiet: bool, picture: dict[str, Any],
+) -> None:  # fmt: skip
+    """Draw frames of a clip, from one place or along a path; at the clip's own rate unless --fps says another."""
+    from eigenfield.gltf import load_clip
+    from eigenfield.rendering import path_points
+    from eigenfield.rendering.render_jobs import refuse_flight, write_clip_flight
+
+    frames = time.frames(scene)
+    refuse_flight(output, len(frames), overwrite)
+    clip = load_clip(scene)
+    places = [place] * len(frames) if path is None else [{"at": tuple(at)} for at in path_points(path, len(frames))]
+    given = click.get_current_context().get_parameter_source("fps") is ParameterSource.COMMANDLINE
+    rate = fps if given else clip.timeline.rate
+    with progress_bars(quiet) as progress:
+        write_clip_flight(clip, frames, places, output, rate, overwrite=overwrite, progress=progress, **picture)
+    note(f"wrote {output}: {len(frames)} pictures", quiet)
+
+
 def _check_output(output: Path, flight: bool, numbered: bool) -> None:
     kind = output.suffix.lower()
     if kind not in (".png", ".mp4"):
@@ -105,6 +131,6 @@ def _check_output(output: Path, flight: bool, numbered: bool) -> None:
     if flight and kind == ".png" and not numbered:
         raise OptionError(
             "output-kind",
-            f"{output}: a path makes many pictures",
+            f"{output}: a path, or a range of times, makes many pictures",
             remedy="name an .mp4, or a .png with %04d in its name",
         )

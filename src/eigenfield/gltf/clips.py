@@ -181,7 +181,7 @@ class CodedFrames(Sequence[Frame]):
                 self._films, self._next = self._pictures(), 0
             try:
                 pictures = self._skip(number - self._next)
-            except FormatError:
+            except BaseException:  # an iterator that has raised is at its end
                 self._films, self._next = self._pictures(), 0
                 raise
             self._next, self._last = number + 1, self._frame(pictures)

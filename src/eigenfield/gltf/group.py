@@ -102,7 +102,7 @@ def read_head(group: ByteSource, layout: FilmLayout, where: str) -> GroupHead:
         text = inflate(group.read(HEAD.size, first), limits.MAX_GROUP_JSON, "the head")
         if len(text) > limits.MAX_GROUP_JSON:
             raise FormatError("group-damaged", f"a head of more than {limits.MAX_GROUP_JSON} bytes")
-        head = _head_of(Value(strict_json.parse(text), "/"), first, layout)
+        head = _head_of(Value(strict_json.parse(text)), first, layout)
     except FormatError as error:
         raise FormatError("group-damaged", f"the group cannot be read: {error.message}", where=where) from error
     end = head.first + sum(head.lengths)

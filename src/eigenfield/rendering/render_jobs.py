@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
+from eigenfield.core.clip import Clip
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
@@ -165,11 +166,50 @@ def write_flight(
         OptionError: As `Renderer.draw`.
         OutputError: A file cannot be written.
     """
-    if not is_numbered(output):
+    if is_numbered(output):
+        _write_numbered(job.along(job.png, points, progress), len(points), output, overwrite)
+    else:
         write_video(output, job.along(job.rgb, points, progress), fps, overwrite=overwrite)
-        return
-    with atomic_files(numbered_files(output, len(points)), overwrite=overwrite) as places:
-        for place, data in zip(places, job.along(job.png, points, progress), strict=True):
+
+
+def write_clip_flight(
+    clip: Clip,
+    frames: range,
+    places: Sequence[Mapping[str, Any]],
+    output: Path,
+    fps: Fraction,
+    *,
+    overwrite: bool = False,
+    progress: Progress | None = None,
+    **picture: Any,
+) -> None:
+    """As `write_flight`, of frames of a clip.
+
+    Args:
+        frames: Their numbers.
+        places: For each the place to draw it from: arguments of `viewpoint`.
+        picture: Fields of `RenderJob`.
+    """
+    scenes = (clip.scene(float(time)) for time in clip.timeline.times[frames.start : frames.stop])
+    jobs = ((RenderJob(scene, **picture), place) for scene, place in zip(scenes, places, strict=True))
+    numbered, one_thread = is_numbered(output), picture.get("renderer") == "opengl"
+
+    def draw(item: tuple[RenderJob, Mapping[str, Any]]) -> Any:
+        job, place = item
+        view = viewpoint(job.scene, weights=job.weights, **place)
+        return job.png(*view) if numbered else job.rgb(*view)
+
+    made = map(draw, jobs) if one_thread else parallel_stream(draw, jobs)
+    made = track(made, "drawing", len(frames), progress)
+    if numbered:
+        _write_numbered(made, len(frames), output, overwrite)
+    else:
+        write_video(output, made, fps, overwrite=overwrite)
+
+
+def _write_numbered(pictures: Iterator[bytes], count: int, output: Path, overwrite: bool) -> None:
+    with atomic_files(numbered_files(output, count), overwrite=overwrite) as places:
+        for place, data in zip(places, pictures, strict=True):
             place.write_bytes(data)
 
 

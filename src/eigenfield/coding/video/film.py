@@ -78,8 +78,11 @@ def _check_header(unit: bytes, number: int, size: tuple[int, int], where: str) -
         words = "the first unit has no sequence header" if number == 0 else f"unit {number} begins anew"
         raise FormatError("film-frames", f"the film cannot be decoded: {words}", where=where)
     if number == 0:
-        with decoder_errors("film", where):
+        try:
             found = frame_size(memoryview(unit), where)
+        except FormatError as error:
+            message = "the film cannot be decoded: no AV1 sequence header"
+            raise FormatError("film-damaged", message, where=where) from error
         if found != (size[1], size[0]):
             message = f"a film of {found[0]}x{found[1]}, {size[1]}x{size[0]} is announced"
             raise FormatError("film-size", message, where=where)
