@@ -12,12 +12,25 @@ import numpy as np
 import pytest
 
 from eigenfield.capture import open_any, open_path
+from eigenfield.capture.film import open_film
 from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.photoset import PhotoSet
 from eigenfield.capture.readers.video import decode_video
-from eigenfield.capture.tracks import open_film
-from eigenfield.core.errors import OptionError
-from support.filmed import calibration, folder_a_camera, folder_an_instant, opened, picture, pose, seen, timed
+from eigenfield.core.errors import CaptureError, EigenfieldError, OptionError
+from eigenfield.imaging.png import png_bytes
+from support.filmed import (
+    HEIGHT,
+    WIDTH,
+    calibration,
+    folder_a_camera,
+    folder_an_instant,
+    opened,
+    picture,
+    pose,
+    seen,
+    timed,
+    video,
+)
 from support.named import refused, write_video
 
 
@@ -65,6 +78,53 @@ def test_folders_with_a_calibration_beside_them_or_elsewhere(tmp_path):
     assert all_seen(opened(tmp_path / "take")) == whole(3, range(5))
     footage = opened(tmp_path / "take", calibration=timed(tmp_path / "other") / "transforms.json")
     assert footage.cameras is not None and all_seen(footage) == whole(3, range(5))
+
+
+def test_masks(tmp_path):
+    timed(tmp_path)
+    document = json.loads((tmp_path / "transforms.json").read_text("utf-8"))
+    for frame in document["frames"]:
+        if frame["file_path"] == "cam_1/000002.png":
+            frame["mask_path"] = "masks/second.png"
+    picture(tmp_path / "masks" / "second.png", 0, 0).write_bytes(black_half())
+    (tmp_path / "transforms.json").write_text(json.dumps(document), encoding="utf-8")
+    footage = opened(tmp_path)
+    counts = [[footage.instant(n).photograph(c).mask for c in range(3)] for n in (1, 2)]
+    assert [[mask is None for mask in row] for row in counts] == [[True] * 3, [True, False, True]]
+    assert counts[1][1].mean() == 0.5
+    picture(tmp_path / "static" / "cam_2.png", 0, 0).write_bytes(black_half())
+    footage = opened(tmp_path, masks=tmp_path / "static")
+    assert [footage.instant(4).photograph(c).mask is None for c in range(3)] == [True, True, False]
+
+
+def black_half() -> bytes:
+    mask = np.zeros((HEIGHT, WIDTH), np.uint8)
+    mask[:, : WIDTH // 2] = 255
+    return png_bytes(mask[..., None])
+
+
+def test_a_calibration_of_other_cameras_is_named(tmp_path):
+    folder_a_camera(tmp_path / "take")
+    rig = calibration(tmp_path / "rig.json", {c: [(f"left_{c}.png", None)] for c in range(3)})
+    error = footage_refused("too-few", tmp_path / "take", calibration=rig)
+    assert "cam_0" in str(error) and "left_0.png" in str(error)
+    rig = calibration(tmp_path / "rig.json", {c: [(f"cam_{c + 1}.png", None)] for c in range(3)})
+    footage = opened(tmp_path / "take", calibration=rig)
+    assert footage.names == ("cam_1", "cam_2") and any("cam_3.png" in line for line in footage.problems)
+
+
+def test_instants_that_are_captures_with_a_calibration_each(tmp_path):
+    for frame in range(4):
+        folder = tmp_path / f"frame_{frame + 1:04d}"
+        for camera in range(3):
+            picture(folder / "images" / f"view_00_{camera:02d}.png", camera, frame)
+        calibration(folder / "transforms.json", {c: [(f"images/view_00_{c:02d}.png", None)] for c in range(3)})
+    footage = opened(tmp_path, rate=24)
+    assert footage.names == ("view_00_00", "view_00_01", "view_00_02") and not footage.problems
+    assert all_seen(footage) == whole(3, range(4)) and footage.cameras[1].centre[0] == pytest.approx(0.1)
+    calibration(folder / "transforms.json", {c + 1: [(f"images/view_00_{c:02d}.png", None)] for c in range(3)})
+    assert "frame_0001" in str(footage_refused("footage-moving", tmp_path))
+    assert len(opened(tmp_path, calibration=tmp_path / "frame_0001")) == 4
 
 
 def test_a_zip_of_footage(tmp_path):
@@ -151,6 +211,107 @@ def test_a_camera_that_stops_is_masked_out(tmp_path):
     assert frame_of(last, truth[2]) == 4 and last.mask is not None and not last.mask.any()
     assert footage.instant(10).photograph(0).mask is None
     assert footage.held.sum() == 7
+
+
+def test_uneven_times_and_holes_of_videos(tmp_path):
+    random = np.random.default_rng(0)
+    even = {number: round(number * 1000 / 30) for number in range(30)}
+    video(tmp_path / "cam_0.mkv", 0, even)
+    video(tmp_path / "cam_1.mkv", 1, {n: t + int(random.integers(-9, 10)) if n else t for n, t in even.items()})
+    video(tmp_path / "cam_2.mkv", 2, {n: t for n, t in even.items() if n not in (7, 8, 20)})
+    video(tmp_path / "cam_3.mkv", 3, {n: t + 500 for n, t in even.items()})  # does not begin at 0
+    footage = opened(tmp_path)
+    assert footage.timeline.rate == 30 and len(footage) == 30
+    held = {7: 6, 8: 6, 20: 19}
+    for number in range(30):
+        counts = number not in held
+        assert seen(footage, number) == [
+            (0, number, True), (1, number, True), (2, held.get(number, number), counts), (3, number, True),
+        ]  # fmt: skip
+    assert any("cam_2 (3)" in line for line in footage.problems)
+    video(tmp_path / "cam_2.mkv", 2, {n: t for n, t in even.items() if not 7 <= n <= 10})
+    error = footage_refused("footage-hole", tmp_path)
+    assert "cam_2" in str(error) and "frame 10" in str(error)
+
+
+def test_videos_of_another_size_and_direction(tmp_path):
+    rig(tmp_path)
+    video(tmp_path / "cam_3.mkv", 3, {number: 100 * number for number in range(12)}, (32, 20))
+    data = bytearray((tmp_path / "cam_1.mp4").read_bytes())
+    at = data.index(b"tkhd") + 4 + 40  # the matrix of the track header
+    turn = 0, 1 << 16, 0, -1 << 16, 0, 0, 0, 0, 1 << 30
+    data[at : at + 36] = b"".join(value.to_bytes(4, "big", signed=True) for value in turn)
+    (tmp_path / "cam_1.mp4").write_bytes(data)
+    (tmp_path / "transforms.json").unlink()
+    footage = opened(tmp_path)
+    assert footage.sizes == [(64, 48), (48, 64), (64, 48), (32, 20)]
+    assert [footage.instant(5).photograph(camera).pixels.shape[:2] for camera in range(4)] == [
+        (48, 64), (64, 48), (48, 64), (20, 32),
+    ]  # fmt: skip
+
+
+def test_a_video_that_is_damaged_in_the_middle_is_masked_out_there(tmp_path):
+    truth = [write_video(tmp_path / f"cam_{i}.mp4", 40, camera=i) for i in range(3)]
+    data = bytearray((tmp_path / "cam_1.mp4").read_bytes())
+    start = data.index(b"mdat") + 4
+    middle = start + (len(data) - start) // 3
+    data[middle : middle + 400] = bytes(400)
+    (tmp_path / "cam_1.mp4").write_bytes(data)
+    footage, masked = opened(tmp_path), 0
+    for number in range(len(footage)):
+        try:
+            photograph = footage.instant(number).photograph(1)
+        except CaptureError as error:
+            assert "cam_1.mp4" in str(error)
+            continue
+        if photograph.mask is not None:
+            masked += 1
+            assert not photograph.mask.any()
+        else:
+            assert frame_of(photograph, truth[1]) == number
+    assert masked
+
+
+def test_any_folders_are_footage_or_refused(tmp_path):
+    random = np.random.default_rng(3)
+    words = ["cam", "frame", "", "0", "00", "view_", "images", "masks", "t", "é", "cam_1"]
+    opened_at_all = 0
+    for trial in range(60):
+        root = tmp_path / str(trial)
+        folder, name = random.choice(words, 2)
+        for outer in range(4):
+            for inner in range(4):
+                if random.random() < 0.85:
+                    stray = random.choice(words) if random.random() < 0.05 else name
+                    picture(root / f"{folder}{outer}" / f"{stray}{inner}.png", inner, outer)
+        try:
+            footage = opened(root)
+        except EigenfieldError as error:
+            assert error.remedy and "\n" not in str(error)
+        else:
+            opened_at_all += 1
+            assert footage.frames.shape == (len(footage.names), len(footage)) and seen(footage, len(footage) - 1)
+    assert opened_at_all > 20
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_videos_changed_at_random_are_read_or_refused(tmp_path, seed):
+    random = np.random.default_rng(seed)
+    rig(tmp_path)
+    data = bytearray((tmp_path / "cam_1.mp4").read_bytes())
+    for place in random.integers(0, len(data), 1 + seed):
+        data[place] = random.integers(0, 256)
+    (tmp_path / "cam_1.mp4").write_bytes(data[: len(data) - int(random.integers(0, 3)) * 200])
+    try:
+        footage = opened(tmp_path)
+        for instant in footage.instants():
+            assert instant.photograph(1).pixels.shape == (48, 64, 3)
+    except EigenfieldError as error:
+        assert error.remedy and "cam_1" in str(error)
+
+
+def test_stills_of_footage_are_said_so(tmp_path):
+    assert any("--clip" in line for line in open_any(timed(tmp_path)).problems)
 
 
 # ranges and offsets

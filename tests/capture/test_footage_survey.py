@@ -52,6 +52,13 @@ def test_nothing_moves(tmp_path):
     assert not any(lag.known for lag in find_lags([np.zeros(FRAMES)] * 3))
 
 
+def test_two_cameras_and_one_frame(tmp_path, run):
+    film(tmp_path, [0, 0])
+    calibration(tmp_path / CALIBRATION_FILE, {c: [(f"cam_{c}.png", None)] for c in range(2)}, w=SIDE, h=SIDE)
+    code, out, err = run("inspect", tmp_path, "--clip", "0:1")
+    assert code == 0 and "one frame shows no motion" in out and "too few" not in out, out + err
+
+
 def test_light_that_drifts(tmp_path):
     watched = watch(opened(film(tmp_path, [0, 0, 0], light=np.linspace(1, 0.7, FRAMES))))
     assert all(one.stops == pytest.approx(2.2 * np.log2(1 / 0.7), abs=0.15) and one.still < 0.2 for one in watched)

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 from pathlib import Path
 
+import av
+import numpy as np
 from PIL import Image
 
 from eigenfield.capture import Footage, open_path
@@ -71,6 +74,21 @@ def timed(root: Path, cameras: int = 3, frames: int = 5, rate: float = 25.0, **t
     files = {c: [(f"cam_{c}/{f:06d}.png", f / rate) for f in range(frames)] for c in range(cameras)}
     calibration(root / CALIBRATION_FILE, files, **top)
     return root
+
+
+def video(path: Path, camera: int, times: dict[int, int], size: tuple[int, int] = (WIDTH, HEIGHT)) -> Path:
+    """A video without loss whose frames are shown at given milliseconds, by their numbers."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with av.open(str(path), "w") as container:
+        stream = container.add_stream("ffv1", rate=1000, options={"g": "4"})
+        (stream.width, stream.height), stream.pix_fmt, stream.time_base = size, "bgr0", Fraction(1, 1000)
+        for number, time in times.items():
+            pixels = np.full((size[1], size[0], 3), colour(camera, number), np.uint8)
+            frame = av.VideoFrame.from_ndarray(pixels, format="rgb24")
+            frame.pts, frame.time_base = time, Fraction(1, 1000)
+            container.mux(stream.encode(frame))
+        container.mux(stream.encode(None))
+    return path
 
 
 def opened(path: Path, clip: str = ":", **options: object) -> Footage:

@@ -14,12 +14,13 @@ from eigenfield.calibration.known import read_known_lenses
 from eigenfield.calibration.motion.report import describe_motion
 from eigenfield.calibration.motion.result import SfmResult
 from eigenfield.calibration.motion.sfm import structure_from_motion
-from eigenfield.capture import PhotoSet, open_photographs
+from eigenfield.capture import Footage, PhotoSet, open_footage, open_photographs
 from eigenfield.capture.archive import is_zip
 from eigenfield.capture.writers.save import refuse_folder, save_calibration
 from eigenfield.core.arguments import checked
 from eigenfield.core.errors import OptionError
 from eigenfield.core.notebook import notebook_progress
+from eigenfield.core.open_options import OpenOptions
 from eigenfield.core.progress import Progress
 
 CALIBRATION_REPORT_FILE = "report.json"
@@ -27,7 +28,7 @@ CALIBRATION_REPORT_FILE = "report.json"
 
 @overload
 def calibrate(
-    photographs: str | os.PathLike[str] | PhotoSet,
+    photographs: str | os.PathLike[str] | PhotoSet | Footage,
     output: str | os.PathLike[str] | None = None,
     *,
     chart: None = None,
@@ -43,7 +44,7 @@ def calibrate(
 ) -> ChartCalibration: ...
 @checked
 def calibrate(
-    photographs: str | os.PathLike[str] | PhotoSet,
+    photographs: str | os.PathLike[str] | PhotoSet | Footage,
     output: str | os.PathLike[str] | None = None,
     *,
     intrinsics: str | os.PathLike[str] | None = None,
@@ -68,8 +69,9 @@ def calibrate(
         ef.calibrate("charts/", "rig/", chart="checkerboard", board="9x6", square="25mm")
 
     Args:
-        photographs: Their folder, or what `open_photographs` returns; a calibration beside them is not read. With a
-            chart the folder of its pictures or videos, by camera.
+        photographs: Their folder, or what `open_photographs` returns; a calibration beside them is not read. Footage,
+            or its folder with `clip`, of which up to three instants are looked at. With a chart the folder of its
+            pictures or videos, by camera.
         output: Folder for transforms.json, a COLMAP model, points and report.json; None: nothing is written.
         intrinsics: A file of known lenses, which are kept as they are.
         camera_per_photo: Estimate each photograph's lens alone.
@@ -86,7 +88,8 @@ def calibrate(
         seed: Of all random choices.
         overwrite: Whether an earlier calibration in `output` is replaced.
         progress: Called in every stage; by default bars in a notebook.
-        names: Arguments of `open_photographs` for a folder: masks, format, grid, pattern, frame, walk_frames.
+        names: Arguments of `open_path` for a folder: masks, format, grid, pattern, frame, walk_frames, clip, offset,
+            rate.
 
     Returns:
         Of photographs: cameras, points, and what became of each photograph. Of a chart: the rig, and how well each of
@@ -100,7 +103,7 @@ def calibrate(
     """
     place, folder = (None if each is None else Path(each) for each in (output, work))
     described = ChartOptions(chart, board, square, marker, dictionary, inverted, legacy)
-    given = {name: value for name, value in names.items() if value is not None}
+    given = {name: value for name, value in names.items() if value not in (None, ())}
     if place is not None:
         refuse_folder(place, overwrite)
     if described.chart is not None:
@@ -108,13 +111,7 @@ def calibrate(
             given["matching"] = matching
         given |= {"intrinsics": intrinsics, "camera-per-photo": camera_per_photo or None, "work": work}
         return _by_chart(photographs, place, described, given, overwrite, progress)
-    if isinstance(photographs, PhotoSet):
-        _refuse(given, "photographs that are opened already")
-        photos = photographs
-    else:
-        photos = open_photographs(photographs, strict=False, work=work, **given)
-        if place is not None:
-            refuse_passing(photos, Path(photographs), folder)
+    photos, *also = _instants(photographs, folder, place, given)
     motion = structure_from_motion(
         photos,
         intrinsics=None if intrinsics is None else read_known_lenses(Path(intrinsics), photos),
@@ -123,6 +120,7 @@ def calibrate(
         work=folder,
         seed=seed,
         progress=progress,
+        also=also,
     )
     if place is not None:
         more = {CALIBRATION_REPORT_FILE: _report(describe_motion(motion))}
@@ -130,13 +128,33 @@ def calibrate(
     return motion
 
 
+def _instants(
+    photographs: str | os.PathLike[str] | PhotoSet | Footage, work: Path | None, place: Path | None,
+    given: Mapping[str, Any],
+) -> list[PhotoSet]:  # fmt: skip
+    """The photographs without cameras: one set, or of footage one for each instant that is looked at."""
+    if isinstance(photographs, PhotoSet | Footage):
+        _refuse(given, "photographs that are opened already")
+        opened = photographs
+    elif given.get("clip") is not None:
+        opened = open_footage(photographs, options=OpenOptions(work=work, **given))
+    else:
+        opened = open_photographs(photographs, strict=False, work=work, **given)
+        if place is not None:
+            refuse_passing(opened, Path(photographs), work)
+    if isinstance(opened, PhotoSet):
+        return [opened]
+    last = len(opened) - 1
+    return [opened.photographs(number) for number in sorted({0, last // 2, last})]
+
+
 def _by_chart(
-    folder: str | os.PathLike[str] | PhotoSet, place: Path | None, described: ChartOptions,
+    folder: str | os.PathLike[str] | PhotoSet | Footage, place: Path | None, described: ChartOptions,
     others: Mapping[str, Any], overwrite: bool, progress: Progress | None,
 ) -> ChartCalibration:  # fmt: skip
     """The rig whose chart is in a folder, written to `place`."""
     _refuse(others, "charts")
-    if isinstance(folder, PhotoSet):
+    if isinstance(folder, PhotoSet | Footage):
         raise OptionError("chart", "opened photographs are no pictures of a chart", remedy="name their folder")
     found = calibrate_charts(folder, board_of(described, Path(folder)), progress=progress)
     if place is not None:

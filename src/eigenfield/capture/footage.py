@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.capture.photographs.lens import Lens
-from eigenfield.capture.photoset import Capture
+from eigenfield.capture.photoset import Capture, PhotoSet, Shot
 from eigenfield.capture.tracks import Track, VideoTrack
 from eigenfield.core.brief import brief_repr
 from eigenfield.core.camera import Camera
@@ -96,6 +96,14 @@ class Footage:
         if not 0 <= number < len(self):
             raise IndexError(f"instant {number} of {len(self)}")
         return at_frames(self.still, self.tracks, self.frames[:, number], self.held[:, number])
+
+    def photographs(self, number: int) -> PhotoSet:
+        """All cameras at an instant, without what is known of them."""
+        instant = self.instant(number)
+        if instant.light_field is None:
+            return instant
+        shots = tuple(map(Shot.of, instant.views))
+        return PhotoSet(self.root, shots, instant.layout, self.problems, instant.format)
 
     def instants(self, first: int = 0, last: int | None = None) -> Iterator[Capture]:
         """The instants from `first` up to, and without, `last`, in order: the way in which videos decode fastest."""

@@ -15,17 +15,16 @@ from pathlib import Path, PurePosixPath
 import numpy as np
 
 from eigenfield.capture.calibration import Calibration, Entry
+from eigenfield.capture.film import RATE_DEFAULT, RATE_TOLERANCE, as_rate, open_film
 from eigenfield.capture.locate import IMAGES_FOLDER, PhotographFinder, photographs_in
 from eigenfield.capture.messages import Note, count_phrase, list_names, natural_key
+from eigenfield.capture.pairing import find_own_mask
 from eigenfield.capture.readers.video import videos_of
-from eigenfield.capture.tracks import Film, PictureTrack, Track, VideoTrack, open_film
-from eigenfield.core.errors import CaptureError
+from eigenfield.capture.tracks import PictureTrack, Track, VideoTrack
+from eigenfield.core.errors import CaptureError, one_line
+from eigenfield.core.open_options import RATE_MAX
 from eigenfield.runtime.parallel import parallel_map
 
-RATE_DEFAULT = Fraction(30)  # of pictures that do not state one
-RATE_MAX = 1000
-RATE_MAX_DENOMINATOR = 1001
-RATE_TOLERANCE = 0.003  # by which the rate of a camera's frames may differ from the one that its file states
 FORM_MIN_CAMERAS = 2
 CAMERA_WORDS = ("cam", "camera", "view", "cameras", "kamera", "c", "v")
 INSTANT_WORDS = ("frame", "time", "instant", "frames", "t", "f")
@@ -39,12 +38,14 @@ class Found:
     Attributes:
         rate: Frames a second of the clock that the tracks' times count.
         calibration: Of footage whose frames are entries: an entry for each camera, with its name as the file.
+        instants: The folders of instants, where they are such.
     """
 
     tracks: tuple[Track, ...]
     rate: Fraction
     problems: tuple[str, ...] = ()
     calibration: Calibration | None = None
+    instants: tuple[Path, ...] = ()
 
 
 def find_footage(root: Path, rate: float | None) -> Found | None:
@@ -66,9 +67,10 @@ def find_footage(root: Path, rate: float | None) -> Found | None:
 def _of_videos(videos: Sequence[Path], rate: float | None) -> Found:
     films = parallel_map(open_film, videos)
     times = Counter(path.stem for path in videos)
-    names = [path.stem if times[path.stem] == 1 else path.name for path in videos]
-    rates = [_rate_of(film) for film in films]
-    clock = min(rates) if rate is None else _as_rate(rate)
+    names = [one_line(path.stem if times[path.stem] == 1 else path.name) for path in videos]
+    rates = [film.rate for film in films]
+    slowest = [one for one in rates if one / min(rates) - 1 <= RATE_TOLERANCE]
+    clock = Counter(slowest).most_common(1)[0][0] if rate is None else as_rate(rate)
     problems = []
     other = [name for name, one in zip(names, rates, strict=True) if abs(one / clock - 1) > RATE_TOLERANCE]
     if other and rate is None:
@@ -78,22 +80,6 @@ def _of_videos(videos: Sequence[Path], rate: float | None) -> Found:
         )
     tracks = [VideoTrack(*known, known[1].seconds * float(clock)) for known in zip(names, films, strict=True)]
     return Found(tuple(tracks), clock, tuple(problems))
-
-
-def _rate_of(film: Film) -> Fraction:
-    """Frames a second: as the file states it, if its frames come so; else the mean of what they do."""
-    span = film.seconds[-1] - film.seconds[0]
-    if span <= 0:
-        return film.rate or RATE_DEFAULT
-    mean = (len(film.stamps) - 1) / span
-    if film.rate and abs(mean / film.rate - 1) <= RATE_TOLERANCE:
-        return film.rate
-    middle = 1 / np.median(np.diff(film.seconds))  # of one with holes
-    return _as_rate(float(middle if abs(middle / mean - 1) < 1 else mean))
-
-
-def _as_rate(rate: float) -> Fraction:
-    return Fraction(min(rate, RATE_MAX)).limit_denominator(RATE_MAX_DENOMINATOR)
 
 
 # folders of pictures
@@ -106,23 +92,28 @@ def _picture_folders(root: Path) -> list[Path]:
             continue
         with os.scandir(place) as entries:
             inner = [Path(e.path) for e in entries if e.is_dir() and not _is_other(e.name)]
-        found = [one for one in sorted(inner, key=lambda path: natural_key(path.name)) if photographs_in(one)]
+        found = [one for one in sorted(inner, key=lambda path: natural_key(path.name)) if _pictures_of(one)]
         if len(found) >= FORM_MIN_CAMERAS:
             return found
     return []
+
+
+def _pictures_of(folder: Path) -> list[Path]:
+    return photographs_in(folder) or photographs_in(folder / IMAGES_FOLDER)
 
 
 def _is_other(name: str) -> bool:
     return name.startswith((".", "@", "__MACOSX")) or OTHER_FOLDERS.fullmatch(name) is not None
 
 
-def _of_folders(folders: Sequence[Path], rate: float | None) -> Found:
-    pictures = {folder: photographs_in(folder) for folder in folders}
+def _of_folders(folders: Sequence[Path], rate: float | None) -> Found | None:
+    pictures = {folder: _pictures_of(folder) for folder in folders}
     by_folder, lines = _folders_are_cameras(pictures)
     frames: dict[str, dict[int, Path]] = defaultdict(dict)
     for folder, files in pictures.items():
         for file in files:
-            name, number = (folder.name, _number(file.stem)) if by_folder else (file.stem, _number(folder.name))
+            camera, instant = (folder.name, file.stem) if by_folder else (file.stem, folder.name)
+            name, number = one_line(camera), _number(instant)
             if number is None:
                 lines.append(f"{file} has no number, and is left out")
             elif (other := frames[name].setdefault(number, file)) != file:
@@ -134,8 +125,9 @@ def _of_folders(folders: Sequence[Path], rate: float | None) -> Found:
                 )
     frames = {name: found for name, found in frames.items() if found}
     if len(frames) < FORM_MIN_CAMERAS:
-        return _refuse_form(folders[0].parent)
-    return _of_numbers(frames, rate, lines)
+        return None
+    found = _of_numbers(frames, rate, lines)
+    return found if by_folder else replace(found, instants=tuple(folders))
 
 
 def _of_numbers(frames: dict[str, dict[int, Path]], rate: float | None, lines: list[str]) -> Found:
@@ -150,7 +142,7 @@ def _of_numbers(frames: dict[str, dict[int, Path]], rate: float | None, lines: l
         order = sorted(frames[name])
         times = (np.array(order, np.float64) - numbers[0]) / step
         tracks.append(PictureTrack(name, tuple(frames[name][number] for number in order), times))
-    return Found(tuple(tracks), RATE_DEFAULT if rate is None else _as_rate(rate), tuple(lines))
+    return Found(tuple(tracks), RATE_DEFAULT if rate is None else as_rate(rate), tuple(lines))
 
 
 def _number(name: str) -> int | None:
@@ -182,15 +174,6 @@ def _is_camera(names: Sequence[str]) -> bool | None:
     return False if words <= set(INSTANT_WORDS) else None
 
 
-def _refuse_form(root: Path) -> Found:
-    raise CaptureError(
-        "footage-missing",
-        "holds no footage: neither a video a camera, nor a folder of numbered pictures a camera or an instant",
-        path=root,
-        remedy="put the video of each camera into one folder, or leave out --clip",
-    )
-
-
 # entries of a calibration
 
 
@@ -208,7 +191,7 @@ def one_camera_each(read: Calibration) -> tuple[Calibration, list[list[Entry]]]:
         groups[pose, entry.intrinsics, str(entry.lens)].append(entry)
     known = list(groups.values())
     names = _names_of_groups(known)
-    entries = [replace(group[0], file=name, label=name) for group, name in zip(known, names, strict=True)]
+    entries = [replace(group[0], file=name, label=name, mask=None) for group, name in zip(known, names, strict=True)]
     return replace(read, entries=tuple(entries)), known
 
 
@@ -223,7 +206,7 @@ def _names_of_groups(groups: Sequence[Sequence[Entry]]) -> list[str]:
     ):
         names = [{part(path) for path in own} for own in paths]
         if all(len(own) == 1 for own in names) and len(set.union(*names)) == len(names) and "" not in set.union(*names):
-            return [own.pop() for own in names]
+            return [one_line(own.pop()) for own in names]
     width = len(str(len(groups) - 1))
     return [f"camera_{number:0{width}d}" for number in range(len(groups))]
 
@@ -244,14 +227,17 @@ def of_entries(read: Calibration, root: Path, *, apart: bool, rate: float | None
         )
     stated = rate if rate is not None else read.rate
     times = sorted({entry.time for entry in read.entries if entry.time is not None})
-    clock = _as_rate(1 / float(np.median(np.diff(times))) if stated is None or not 0 < stated <= RATE_MAX else stated)
+    clock = as_rate(1 / float(np.median(np.diff(times))) if stated is None or not 0 < stated <= RATE_MAX else stated)
     finder = PhotographFinder(root, read.path if read.path.is_dir() else read.path.parent, apart)
     tracks, lost = [], []
     for entry, group in zip(single.entries, groups, strict=True):
-        found = sorted((one.time or 0.0, path) for one in group if (path := finder.find(one.file)) is not None)
-        lost += [one.file for one in group if finder.find(one.file) is None]
+        placed = [(one, finder.find(one.file)) for one in sorted(group, key=lambda one: one.time or 0.0)]
+        lost += [one.file for one, path in placed if path is None]
+        found = [(one, path) for one, path in placed if path is not None]
         if found:
-            at = np.round((np.array([time for time, _ in found]) - times[0]) * float(clock), 3)
-            tracks.append(PictureTrack(entry.file, tuple(path for _, path in found), at))
+            at = np.round((np.array([one.time or 0.0 for one, _ in found]) - times[0]) * float(clock), 3)
+            masks = tuple(find_own_mask(one, finder, read.path) for one, _ in found)
+            files = tuple(path for _, path in found)
+            tracks.append(PictureTrack(entry.file, files, at, masks if any(masks) else ()))
     problems = [f"{count_phrase(lost, 'entry has', 'entries have')} no picture: {list_names(lost)}"] if lost else []
     return Found(tuple(tracks), clock, tuple(problems), single)

@@ -77,7 +77,8 @@ def _watch_one(footage: Footage, camera: int, count: int) -> Watched:
     shown = [number for number in range(count) if not footage.held[camera, number]]
     energy, middle, damaged = np.zeros(count), [], 0
     before: NDArray[np.float32] | None = None
-    low = high = squares = np.zeros((1, 1))
+    low = high = np.zeros((1, 1), np.float32)
+    squares = np.zeros((1, 1))
     for number in shown:
         grey = footage.tracks[camera].small(int(footage.frames[camera, number]), SURVEY_SIDE)
         if grey is None:
@@ -159,7 +160,8 @@ def _settled(table: NDArray[np.float64], most: int, first: int) -> NDArray[np.in
     for _ in range(OFFSET_ROUNDS):
         before = lags.copy()
         for one in range(len(lags)):
-            lags[one] = max(choices, key=lambda lag, one=one: (_score(table, lags, one, lag), -abs(lag)))
+            scores = [(_score(table, lags, one, lag), -abs(lag), lag) for lag in choices]
+            lags[one] = max(scores)[2]
         if np.array_equal(before, lags):
             break
     return lags

@@ -32,6 +32,7 @@ def capture_identity(capture: Capture, of_file: Callable[[Path], Any] = file_dig
 
     def digest(source: PhotographSource) -> list[Any]:
         mask = None if source.mask is None else of_file(source.mask)
-        return [source.name, of_file(source.path), mask, source.upright, source.exposure]
+        which = [] if source.picture is None else source.picture.identity()
+        return [source.name, of_file(source.path), mask, source.upright, source.exposure, *which]
 
     return [parallel_map(digest, capture.sources), own]

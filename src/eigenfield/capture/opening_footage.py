@@ -17,13 +17,13 @@ import numpy as np
 from PIL import Image, PngImagePlugin
 
 from eigenfield.capture.archive import is_zip, unpack
-from eigenfield.capture.calibration import Calibration
+from eigenfield.capture.calibration import Calibration, Entry
 from eigenfield.capture.clip_range import ClipRange, offsets_by_camera, parse_clip, parse_offsets
 from eigenfield.capture.clock import Extent, common_range, extent_of, place_on_clock, refuse_long_holes
 from eigenfield.capture.footage import Footage, at_frames
 from eigenfield.capture.footage_forms import Found, find_footage, is_timed, of_entries, one_camera_each
 from eigenfield.capture.formats import FORMATS, Claim, format_by_name
-from eigenfield.capture.messages import count_phrase, list_names
+from eigenfield.capture.messages import describe, list_names
 from eigenfield.capture.pairing import pair_photographs
 from eigenfield.capture.photographs.kinds import VIDEO_EXTENSIONS
 from eigenfield.capture.photoset import Capture
@@ -77,6 +77,8 @@ def open_footage(
     claim = _find_calibration(root, options)
     root = root.parent if root.is_file() else root
     found, read = _find_tracks(root, claim, options)
+    if claim is None and found.instants:
+        claim, read = _calibration_of_instants(found.instants, options)
     still, tracks = _open_cameras(found, claim, read, root, options)
     return _on_clock(root, found, still, tracks, asked, offsets)
 
@@ -120,6 +122,35 @@ def _find_tracks(root: Path, claim: Claim | None, options: OpenOptions) -> tuple
     return found, one_camera_each(read)[0] if timed and read is not None else read
 
 
+def _calibration_of_instants(
+    folders: Sequence[Path], options: OpenOptions
+) -> tuple[Claim, Calibration] | tuple[None, None]:
+    """The calibration in the first instant's folder, as programs write it that render each frame as a capture.
+
+    Raises CaptureError `footage-moving` where that of the last instant has other poses.
+    """
+    first, last = (_read_beside(folder, options) for folder in (folders[0], folders[-1]))
+    if first is None:
+        return None, None
+    if last is not None:
+        poses = {PurePosixPath(entry.file).name: (entry.R, entry.centre) for entry in first[1].entries}
+        for entry in last[1].entries:
+            R, centre = poses.get(PurePosixPath(entry.file).name, (entry.R, entry.centre))
+            if not (np.allclose(entry.R, R, atol=1e-5) and np.allclose(entry.centre, centre, rtol=1e-4, atol=1e-6)):
+                message = f"{entry.label} has another pose here than in {folders[0].name}: the cameras move"
+                remedy = "film with cameras that stand still; of one that moves with all others, encode each instant"
+                raise CaptureError("footage-moving", message, path=last[1].path, remedy=remedy)
+    return first
+
+
+def _read_beside(folder: Path, options: OpenOptions) -> tuple[Claim, Calibration] | None:
+    claim = _find_calibration(folder, options)
+    if claim is None:
+        return None
+    assert claim.format.read_cameras is not None
+    return claim, claim.format.read_cameras(claim.found, folder)
+
+
 # cameras
 
 
@@ -127,27 +158,41 @@ def _open_cameras(
     found: Found, claim: Claim | None, read: Calibration | None, root: Path, options: OpenOptions
 ) -> tuple[Capture, tuple[Track, ...]]:
     """The cameras at their first frames, and their tracks in the same order."""
-    fewest = FOOTAGE_MIN_BARE_CAMERAS if claim is None else FOOTAGE_MIN_CAMERAS
     with _stand_ins(found.tracks, root) as (folder, by_file):
         if claim is None:
-            if len(found.tracks) < fewest:
-                what = "holds footage of two cameras without a calibration"
-                raise _too_few(root, what, fewest, "name one with --calibration, or add cameras")
-            source = find_source(folder, replace(options, clip=None, offset=(), rate=None), NAME_FORMATS)
-            assert source is not None
-            opened = open_source(source)
+            opened = _by_names(folder, len(by_file), root, options)
         else:
             assert claim.format.read_cameras is not None
             read = found.calibration or read or claim.format.read_cameras(claim.found, folder)
-            named = _by_stand_in(replace(read, problems=(*claim.problems, *read.problems)), by_file)
-            opened = pair_photographs(
-                named, folder, apart=True, masks=masks_folder(options), strict=options.strict, fewest=fewest
-            )
+            read = replace(read, problems=(*claim.problems, *read.problems))
+            opened = _by_calibration(read, folder, by_file, root, options)
         opened = finish(opened)
         tracks = tuple(by_file[source.path.name] for source in opened.sources)
     first = np.zeros(len(tracks), np.int64)
     still = at_frames(opened, tracks, first, first > 0)
     return replace(still, root=root, problems=(*found.problems, *still.problems)), tracks
+
+
+def _by_names(folder: Path, cameras: int, root: Path, options: OpenOptions) -> Capture:
+    if cameras < FOOTAGE_MIN_BARE_CAMERAS:
+        what = "holds footage of two cameras without a calibration"
+        raise _too_few(root, what, FOOTAGE_MIN_BARE_CAMERAS, "name one with --calibration, or add cameras")
+    source = find_source(folder, replace(options, clip=None, offset=(), rate=None), NAME_FORMATS)
+    assert source is not None
+    return open_source(source)
+
+
+def _by_calibration(
+    read: Calibration, folder: Path, by_file: Mapping[str, Track], root: Path, options: OpenOptions
+) -> Capture:
+    named = _by_stand_in(read, by_file)
+    if len(named.entries) < FOOTAGE_MIN_CAMERAS and not read.errors:
+        here = list_names([track.name for track in by_file.values()])
+        there = list_names([entry.file for entry in read.entries])
+        what = f"{len(named.entries)} cameras of the footage ({here}) are among those of {read.path.name} ({there})"
+        raise _too_few(root, what, FOOTAGE_MIN_CAMERAS, "name videos or folders as the calibration does")
+    masks, strict = masks_folder(options), options.strict
+    return pair_photographs(named, folder, apart=False, masks=masks, strict=strict, fewest=FOOTAGE_MIN_CAMERAS)
 
 
 @contextmanager
@@ -183,22 +228,27 @@ def _stand_in(track: Track, folder: Path) -> Path:
 
 
 def _by_stand_in(read: Calibration, by_file: Mapping[str, Track]) -> Calibration:
-    """A calibration whose entries name the stand-ins of their cameras: by their file or their folder, with or without
-    the number of a frame."""
+    """The entries of a calibration that are of the footage's cameras, with the names of their stand-ins.
+
+    They name a camera by their file or their folder, with or without the number of a frame.
+    """
     keys = {name_key(track.name): file for file, track in by_file.items()}
-    entries, taken, twice = [], set(), []
+    entries: list[Entry] = []
+    taken: set[str] = set()
+    twice: list[str] = []
+    lost: list[str] = []
     for entry in read.entries:
         path = PurePosixPath(entry.file)
         words = (entry.file, path.name, path.stem, path.parent.name, NUMBER_AT_END.sub("", path.stem))
-        file = next((keys[key] for word in words if (key := name_key(word)) in keys), entry.file)
-        if file in taken:
-            twice.append(entry.file)
+        file = next((keys[key] for word in words if (key := name_key(word)) in keys), None)
+        if file is None or file in taken:
+            (lost if file is None else twice).append(entry.file)
             continue
         taken.add(file)
         entries.append(replace(entry, file=file))
-    which = count_phrase(twice, "entry is of a camera", "entries are of cameras")
-    lines = [f"{which} that has one already, and not used: {list_names(twice)}"] if twice else []
-    return replace(read, entries=tuple(entries), problems=(*read.problems, *lines))
+    again = describe(twice, "calibration entry is", "calibration entries are", "of a camera that has one already")
+    none = describe(lost, "calibration entry is", "calibration entries are", "of no camera of the footage")
+    return replace(read, entries=tuple(entries), problems=(*read.problems, *again, *none))
 
 
 def _too_few(

@@ -214,7 +214,7 @@ def _make_view(entry: Entry, path: Path, finder: PhotographFinder, calibration: 
         _refuse_too_wide(entry, camera, focals, calibration)
     if scaled:
         camera = scale_camera(camera, width, height)
-    mask = _find_own_mask(entry, finder, calibration)
+    mask = find_own_mask(entry, finder, calibration)
     view = View(path.name, path, camera, entry.lens, mask, upright, entry.bounds)
     rotation, pose_scale = split_scale(entry.R)
     return _Made(view, scaled, focals, None not in claimed, pose_scale, rotation is not entry.R)
@@ -252,7 +252,7 @@ def scale_camera(camera: Camera, width: int, height: int) -> Camera:
     return replace(camera, K=scale @ camera.K, width=width, height=height)
 
 
-def _find_own_mask(entry: Entry, finder: PhotographFinder, calibration: Path) -> Path | None:
+def find_own_mask(entry: Entry, finder: PhotographFinder, calibration: Path) -> Path | None:
     """The mask that the calibration names."""
     if entry.mask is None:
         return None

@@ -10,6 +10,7 @@ from typing import TypeVar
 from eigenfield.capture.archive import is_zip, unpack
 from eigenfield.capture.arrangement import Arrangement
 from eigenfield.capture.calibration import Calibration, Entry
+from eigenfield.capture.footage_forms import is_timed
 from eigenfield.capture.formats import FORMATS, Claim, Format, claim_of_file, detect_format, format_by_name
 from eigenfield.capture.inspect_photographs import common_focal_length, make_photo_set
 from eigenfield.capture.lightfield import LightField
@@ -150,6 +151,8 @@ def open_source(source: CaptureSource) -> Capture:
             frames = read_videos(root, options)
             root, lines = frames.files[0].parent, (*lines, *frames.problems)
         read = row.read_cameras(source.claim.found, root)
+        if is_timed(read):
+            lines = (*lines, "its entries are of several times, and each is taken for a camera; --clip reads footage")
         read = replace(read, problems=(*lines, *read.problems))
         if source.videos:
             read = _of_frames(read, {name_key(file.stem) for file in frames.files})

@@ -20,6 +20,7 @@ from eigenfield.cli.common import (
 )
 from eigenfield.cli.progress import progress_bars
 from eigenfield.core.errors import OptionError
+from eigenfield.core.open_options import OpenOptions
 
 CALIBRATION_SUFFIX = "-calibration"
 MATCHING_WAYS = ("auto", "exhaustive", "similar", "grid", "positions")
@@ -38,6 +39,7 @@ def _one_folder(context: click.Context, parameter: click.Parameter, value: tuple
     epilog="""\b
 Examples:
   eigenfield calibrate photos/
+  eigenfield calibrate videos/ --clip -o rig/
   eigenfield calibrate photos/ --intrinsics lens.yml -o cameras/
   eigenfield calibrate photos/ --masks masks/ --camera-per-photo --json
   eigenfield calibrate charts/ --chart checkerboard --board 9x6 --square 25mm
@@ -75,7 +77,7 @@ Examples:
 )
 @place_options("masks")
 @click.option("--format", metavar="NAME", help="What the names of the photographs mean, as `encode` takes it.")
-@place_options("grid", "pattern", "frame", "walk_frames")
+@place_options("grid", "pattern", "frame", "walk_frames", "clip", "offset", "rate")
 @chart_options
 @click.option("--overwrite", is_flag=True, help="Replace an earlier calibration in DIR; other files there stay.")
 @click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")
@@ -102,7 +104,7 @@ def command(
     from eigenfield.calibration.charts.description import ChartOptions
     from eigenfield.calibration.motion.report import describe_motion, report_lines
     from eigenfield.calibration.whole import calibrate, refuse_passing
-    from eigenfield.capture import open_photographs
+    from eigenfield.capture import Footage, PhotoSet, open_footage, open_photographs
     from eigenfield.capture.writers.save import refuse_folder
 
     started = time.monotonic()
@@ -123,8 +125,12 @@ def command(
         click.echo("\n".join([*table(rig), f"{place}: {summary(rig)}, {time.monotonic() - started:.0f} s"]))
         return
 
-    photos = open_photographs(folder, strict=False, work=work, **names)
-    refuse_passing(photos, folder, work)
+    photos: PhotoSet | Footage
+    if names["clip"] is not None:
+        photos = open_footage(folder, options=OpenOptions(work=work, **names))
+    else:
+        photos = open_photographs(folder, strict=False, work=work, **names)
+        refuse_passing(photos, folder, work)
     note_all(photos.problems, quiet)
     with progress_bars(quiet) as progress:
         motion = calibrate(photos, place, progress=progress, **options)

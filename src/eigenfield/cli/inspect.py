@@ -115,7 +115,7 @@ def command(
         harms = find_harmful(opened, looks, progress)
         filmed = None if footage is None else describe_footage(footage, progress)
     refusal = _refusal(capture, place, opened, damaged, proxy)
-    report = describe(opened, damaged)
+    report = describe(opened, damaged, 3 if footage is None else 2)
     if not place.also and capture.exists() and not _lies_in(opened.root, capture):  # unpacked into another folder
         report["root"] = str(capture)
     if footage is not None:
@@ -171,8 +171,12 @@ def _error(error: CaptureError) -> dict[str, Any]:
     return {"file": error.path, "code": error.code, "message": error.message, "remedy": error.remedy}
 
 
-def describe(capture: Capture, damaged: list[CaptureError]) -> dict[str, Any]:
-    """The report, as `--json` prints it; `docs/capture-formats.md` documents the keys."""
+def describe(capture: Capture, damaged: list[CaptureError], fewest: int = 3) -> dict[str, Any]:
+    """The report, as `--json` prints it; `docs/capture-formats.md` documents the keys.
+
+    Args:
+        fewest: Photographs that are enough.
+    """
     import numpy as np
 
     from eigenfield.capture.messages import Note, count_phrase
@@ -186,10 +190,10 @@ def describe(capture: Capture, damaged: list[CaptureError]) -> dict[str, Any]:
         low, high = np.min(list(sizes), axis=0), np.max(list(sizes), axis=0)
         alike = bool(((high - low) <= SIZES_MAX_SPREAD * high).all())
         (notes if alike else problems).append(f"the photographs have {len(sizes)} different sizes")
-    if len(capture) < 3:
+    if len(capture) < fewest:
         bare = count_phrase(capture.sources, "photograph is", "photographs are")
         what = f"{len(views)} photographs with a camera are" if capture.light_field is not None else bare
-        problems.append(f"{what} too few, at least 3 are needed")
+        problems.append(f"{what} too few, at least {fewest} are needed")
     array = measure_array([view.camera for view in views]) if len(views) >= 3 else None
     if array is not None and capture.light_field is not None and in_one_place(capture.light_field):
         problems.append("all cameras stand in one place")

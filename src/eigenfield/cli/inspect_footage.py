@@ -62,12 +62,15 @@ def footage_lines(footage: dict[str, Any], offsets: Mapping[str, int]) -> list[s
         lines.append(f"  missing    frames, in whose place the one before is held and masked out: {missing}")
     if damaged := _named(cameras, "damaged", "{}"):
         lines.append(f"  damaged    frames, which are masked out: {damaged}")
+    if footage["looked_at"] < 2:
+        return [*lines, "  in step    not told: one frame shows no motion"]
     lines += _step_lines(cameras, offsets)
     drifting = [camera for camera in cameras if camera["stops"] > DRIFT_MIN_STOPS]
     most = max(camera["stops"] for camera in cameras)
     drift = f"changes by up to {most:.2f} stops over time"
     if drifting:
-        drift += f", in {_named(drifting, 'stops', '{:.2f}')}: fix exposure and white balance, or the light flickers"
+        named = _named(drifting, "stops", "{:.2f}")
+        drift += f", in {named}: fix exposure and white balance, unless what moves fills the picture"
     return [*lines, f"  light      {drift}", f"  still      {_still_text(footage['still'])}"]
 
 

@@ -57,7 +57,8 @@ def _identity(shot: Shot) -> list[Any]:
     """What a photograph's features depend on. A file that cannot be read is identified by that."""
     try:
         mask = None if shot.mask is None else file_digest(shot.mask)
-        return [file_digest(shot.path), mask, shot.width, shot.height, shot.upright, shot.exposure]
+        which = [] if shot.picture is None else shot.picture.identity()
+        return [file_digest(shot.path), mask, shot.width, shot.height, shot.upright, shot.exposure, *which]
     except OSError:
         return [str(shot.path), "unreadable"]
 

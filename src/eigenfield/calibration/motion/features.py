@@ -30,6 +30,7 @@ FEATURE_LUMA_WEIGHTS = np.array([0.299, 0.587, 0.114], np.float32)
 FEATURE_MASK_THRESHOLD = 0.5
 # each extraction takes half a gigabyte, however many processors there are
 FEATURE_EXTRACTION_SLOTS = threading.BoundedSemaphore(4)
+FEATURE_SAME_PIXELS = 3.0  # between features of one camera at two instants that are the same
 FEATURE_MIN_MEDIAN_COUNT = 2500  # in the median photograph: below, weaker features are searched
 
 
@@ -133,6 +134,26 @@ def extract_features_of(shot: Shot, options: FeatureOptions) -> Features:
     order = order[counts[order]][: options.max_features]
     colours = np.rint(pixels[row, column] * 255).astype(np.uint8)
     return Features(points[order], np.ascontiguousarray(descriptors[order]), colours[order])
+
+
+def join_features(instants: Sequence[Features]) -> Features:
+    """The features of one camera at several instants, each of what stands still once.
+
+    A feature within `FEATURE_SAME_PIXELS` of one of an instant before is taken for the same: two of one descriptor
+    would hide each other from every match.
+    """
+    from scipy.spatial import KDTree
+
+    joined = instants[0]
+    for more in instants[1:]:
+        distances = KDTree(joined.points).query(more.points)[0] if len(joined) else np.full(len(more), np.inf)
+        new = np.asarray(distances > FEATURE_SAME_PIXELS)
+        joined = Features(
+            np.concatenate([joined.points, more.points[new]]),
+            np.concatenate([joined.descriptors, more.descriptors[new]]),
+            np.concatenate([joined.colours, more.colours[new]]),
+        )
+    return joined
 
 
 def _sift(grey: NDArray[np.uint8], options: FeatureOptions) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from eigenfield.calibration.lenses import KnownLens
 from eigenfield.calibration.motion.cache import cached_features, cached_matches
 from eigenfield.calibration.motion.colmap_core import pycolmap
-from eigenfield.calibration.motion.features import NO_FEATURES, Features, undistort_features
+from eigenfield.calibration.motion.features import NO_FEATURES, Features, join_features, undistort_features
 from eigenfield.calibration.motion.mapping import MAPPING_MIN_VIEWS, SparseModel, map_views
 from eigenfield.calibration.motion.matching import (
     MATCHING_MIN_INLIERS,
@@ -38,7 +38,7 @@ from eigenfield.capture.photoset import PhotoSet, Shot
 from eigenfield.core.errors import CaptureError, OptionError, one_line
 from eigenfield.core.progress import Progress
 from eigenfield.runtime.parts import Parts
-from eigenfield.runtime.stages import Stages
+from eigenfield.runtime.stages import Stages, stage_key
 
 T = TypeVar("T")
 
@@ -57,6 +57,7 @@ def structure_from_motion(
     parts: Parts | None = None,
     progress: Progress | None = None,
     blind: Collection[int] = (),
+    also: Sequence[PhotoSet] = (),
 ) -> SfmResult:
     """Estimate the cameras of photographs, and points of the scene.
 
@@ -68,6 +69,7 @@ def structure_from_motion(
         work: A folder that stores features and matches for the next run.
         parts: Workers that find features and compare pairs; None: this process does.
         blind: Indices of photographs that take no part in cameras and points: each only registers its own camera.
+        also: The same cameras at other instants, in the same order, whose features are joined to those of `photos`.
 
     Raises:
         CaptureError: `too-few`: too few photographs. `planar-rectified`: a two-plane capture, which has no perspective
@@ -82,6 +84,10 @@ def structure_from_motion(
     check_matching(matching, part.layout)
     stages = None if work is None else Stages(work)
     found, key = cached_features(stages, photos, parts, progress, sorted(out))
+    if also:
+        instants = [(found, key), *(cached_features(stages, one, parts, progress, sorted(out)) for one in also)]
+        found = [_joined(one) for one in zip(*(each for each, _ in instants), strict=True)]
+        key = stage_key([own for _, own in instants])
     undistorted, features = _undistort_features([f if isinstance(f, Features) else NO_FEATURES for f in found], known)
     cameras, shared = _cameras(photos.shots, known, camera_per_photo, [*shown, *sorted(out)])
     each = [cameras[k] for k in shared]
@@ -110,6 +116,12 @@ def structure_from_motion(
     matches = match(undistorted, each, pairs, seed, progress)
     waiting = {index: _blind_report(index, photos, found[index], matches) for index in sorted(out)}
     return register_photographs(photos, motion, model, shown, undistorted, each, known, matches, waiting, seed)
+
+
+def _joined(instants: Sequence[Features | CaptureError]) -> Features | CaptureError:
+    """What a camera shows at all of its instants; the first one's error where it can be read at none."""
+    seen = [one for one in instants if isinstance(one, Features)]
+    return join_features(seen) if seen else instants[0]
 
 
 def _check_intrinsics(intrinsics: KnownLens | Sequence[KnownLens] | None, photos: PhotoSet) -> list[KnownLens] | None:

@@ -20,6 +20,9 @@ class PixelSource(Protocol):
     def decode(self) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
         """(H, W, 3) sRGB-coded pixels of 0..1, and (H, W) how far they count; None where all do."""
 
+    def identity(self) -> list[int]:
+        """Which they are of what the source's file holds."""
+
 
 class PhotographSource(Protocol):
     """What a photograph is read from, whether or not its camera is known: a `View` or a `Shot`.

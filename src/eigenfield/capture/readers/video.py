@@ -209,12 +209,13 @@ def find_film(container: av.container.InputContainer) -> av.VideoStream | None:
     """The video stream of the most pixels, of equal ones the default or the first: others are previews. An attached
     picture is none; None where there is none."""
     picture, default = av.stream.Disposition.attached_pic, av.stream.Disposition.default
-    streams = [stream for stream in container.streams.video if not stream.disposition & picture]
+    known = (stream for stream in container.streams.video if stream.codec_context is not None)  # there is a decoder
+    streams = [stream for stream in known if not stream.disposition & picture]
     return max(streams, key=lambda one: (one.width * one.height, bool(one.disposition & default)), default=None)
 
 
 def _decode_frames(path: Path, frame: int | float) -> Iterator[Shown]:
-    with av.open(str(path)) as container:
+    with av.open(str(path), metadata_errors="replace") as container:
         stream = find_film(container)
         if stream is None:
             return
