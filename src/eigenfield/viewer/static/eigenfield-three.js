@@ -194,7 +194,7 @@ async function be(e, t, n, r) {
 	return s;
 }
 // eigenfield-three/src/limits.ts
-var xe = "EIGENFIELD_eigen_textures", Se = 64 * 2 ** 20, Ce = 16384, we = 16384, Te = 1024, Ee = 2 ** 27, De = 4096, Oe = 8 * 2 ** 30, ke = 1e5, Ae = 65535, je = 2 ** 29, I = 1024, Me = 2 ** 25, Ne = 2 ** 26, Pe = 2 ** 27, Fe = 8192, Ie = 2 ** 24, Le = 2 ** 20, Re = 2 ** 16, ze = 2 ** 30, Be = 1024, Ve = 2 ** 22, He = 2 ** 31 - 1, Ue = 2 ** 28, We = 1e30, L = 65536, Ge = 126, R = 64, Ke = 0, qe = 1, Je = 2, Ye = 24, Xe = 44, Ze = 21, Qe = 26214, $e = 4, et = Float64Array.from({ length: 4095 }, (e, t) => Math.round(L / (1 + Math.exp((2047 - t) / 256)))), tt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), nt = Float64Array.from({ length: 127 }, (e, t) => Math.round(L / (t + 1.5)));
+var xe = "EIGENFIELD_eigen_textures", Se = 64 * 2 ** 20, Ce = 16384, we = 16384, Te = 1024, Ee = 2 ** 27, De = 4096, Oe = 8 * 2 ** 30, I = 1e5, ke = 65535, Ae = 2 ** 29, L = 1024, je = 2 ** 25, Me = 2 ** 26, Ne = 2 ** 27, Pe = 8192, Fe = 2 ** 24, Ie = 2 ** 20, Le = 2 ** 16, Re = 2 ** 30, ze = 1024, Be = 2 ** 22, Ve = 2 ** 31 - 1, He = 2 ** 28, Ue = 1e30, R = 65536, We = 126, Ge = 64, Ke = 0, qe = 1, Je = 2, Ye = 24, Xe = 44, Ze = 21, Qe = 26214, $e = 4, et = Float64Array.from({ length: 4095 }, (e, t) => Math.round(R / (1 + Math.exp((2047 - t) / 256)))), tt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), nt = Float64Array.from({ length: 127 }, (e, t) => Math.round(R / (t + 1.5)));
 function z(e) {
 	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + z(Math.floor(e / 4294967296));
 }
@@ -208,7 +208,7 @@ var rt = class {
 	seen;
 	weights;
 	constructor(e, t, n) {
-		this.bytes = e, this.probability = new Uint16Array(t * R).fill(L / 2), this.seen = new Uint8Array(t * R), this.weights = new Float64Array(n * R * 3).fill(Qe);
+		this.bytes = e, this.probability = new Uint16Array(t * Ge).fill(R / 2), this.seen = new Uint8Array(t * Ge), this.weights = new Float64Array(n * Ge * 3).fill(Qe);
 		for (let e = 0; e < $e; e++) this.code = this.code * 256 + this.next();
 	}
 	checkEnd(e) {
@@ -219,7 +219,7 @@ var rt = class {
 	}
 	raw(e) {
 		let t = 0;
-		for (let n = 0; n < e; n++) t = t * 2 + this.split(L / 2);
+		for (let n = 0; n < e; n++) t = t * 2 + this.split(R / 2);
 		return t;
 	}
 	integer(e, t, n, r) {
@@ -234,23 +234,23 @@ var rt = class {
 		let a = 1;
 		for (let o = i - 2; o >= 0; o--) {
 			let s;
-			s = o === i - 2 ? this.node(e, t, n, r, Ye + i) : o === i - 3 ? this.node(e, t, n, r, Xe + 2 * Math.min(i, 9) + (a & 1)) : this.split(L / 2), a = a * 2 + s;
+			s = o === i - 2 ? this.node(e, t, n, r, Ye + i) : o === i - 3 ? this.node(e, t, n, r, Xe + 2 * Math.min(i, 9) + (a & 1)) : this.split(R / 2), a = a * 2 + s;
 		}
 		return a + 1;
 	}
 	node(e, t, n, r, i) {
-		return this.bit(e * R + i, t * R + i, n * R + i, (r * R + i) * 3);
+		return this.bit(e * Ge + i, t * Ge + i, n * Ge + i, (r * Ge + i) * 3);
 	}
 	bit(e, t, n, r) {
-		let { probability: i, weights: a } = this, o = tt[i[e] >> 4], s = tt[i[t] >> 4], c = tt[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / L), u = et[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? L - u : -u;
+		let { probability: i, weights: a } = this, o = tt[i[e] >> 4], s = tt[i[t] >> 4], c = tt[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / R), u = et[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? R - u : -u;
 		return a[r] += o * f >> 14, a[r + 1] += s * f >> 14, a[r + 2] += c * f >> 14, this.learn(e, d), this.learn(t, d), this.learn(n, d), d;
 	}
 	learn(e, t) {
 		let [n, r] = [this.probability[e], this.seen[e]];
-		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * nt[r] / L), r < Ge && (this.seen[e] = r + 1);
+		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * nt[r] / R), r < We && (this.seen[e] = r + 1);
 	}
 	split(e) {
-		let t = this.low + Math.floor((this.high - this.low) * e / L), n = +(this.code <= t);
+		let t = this.low + Math.floor((this.high - this.low) * e / R), n = +(this.code <= t);
 		for (n ? this.high = t : this.low = t + 1; !((this.low ^ this.high) >>> 24);) this.low = this.low << 8 >>> 0, this.high = (this.high << 8 | 255) >>> 0, this.code = (this.code << 8 | this.next()) >>> 0;
 		return n;
 	}
@@ -318,7 +318,7 @@ function Ct(e, t, n, r) {
 	return i;
 }
 // eigenfield-three/src/camera-decoder.ts
-var wt = 130, B = 11, Tt = 1, Et = 2, Dt = 2, Ot = 44 * ke + 1024;
+var wt = 130, B = 11, Tt = 1, Et = 2, Dt = 2, Ot = 44 * I + 1024;
 async function kt(e, t) {
 	if (e[0] !== Dt) throw M(t, `version ${e[0]}`);
 	let n = await be(Uint8Array.from(e.subarray(1)), "deflate-raw", Ot, t);
@@ -328,7 +328,7 @@ function At(e, t) {
 	let n = it(e, wt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Tt) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
 	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw M(t, "cameras that cannot be");
 	if (i > 1e5 || a && o * s < i) throw M(t, `${i} cameras`);
-	at(e, Math.max(B * i, o * s), B * ke, t);
+	at(e, Math.max(B * i, o * s), B * I, t);
 	let l = wt + (a ? 132 : 0);
 	it(e, l, t);
 	let u = (e, t) => a ? n.getFloat32(wt + 4 * (e * B + t), !0) : 0, d = vt(e.subarray(l)), f = a ? Ct(d, o * s, i, t) : null, p = St(d, i, B, (r & Et) !== 0);
@@ -974,8 +974,8 @@ function cr(e, t, n) {
 		8,
 		12
 	].map((e) => r.getUint32(e, !0)), u = Float64Array.from({ length: 16 }, (e, t) => r.getFloat64(16 + 8 * t, !0));
-	if (s > Ne || l > Ne || c > Pe) throw M(t, `${l} vertices and ${c} faces`);
-	if (at(e, Math.max(s, c, l), Pe, t), i > 1 || o > ar * i || a < 1 || a > ir || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
+	if (s > Me || l > Me || c > Ne) throw M(t, `${l} vertices and ${c} faces`);
+	if (at(e, Math.max(s, c, l), Ne, t), i > 1 || o > ar * i || a < 1 || a > ir || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
 	let d = new rt(e.subarray(tr), Wn, 16), f = xn(d, s, c, {
 		flat: i === 1,
 		fine: o
@@ -1012,14 +1012,14 @@ function ur(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) 
 	};
 }
 function dr(e, t) {
-	let n = (e) => Math.abs(e) <= We;
+	let n = (e) => Math.abs(e) <= Ue;
 	if (!e.positions.every(n) || !e.uv.every(n)) throw M(t, "positions or texture coordinates that are not finite");
 	return e;
 }
 // eigenfield-three/src/name-decoder.ts
-var fr = 4 * I;
+var fr = 4 * L;
 async function pr(e, t, n) {
-	let r = Math.min(Me, fr * t), i = await be(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
+	let r = Math.min(je, fr * t), i = await be(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
 	if (a === 0 || !Number.isInteger(a)) throw M(n, `${i.length} bytes of ${t} names`);
 	let o = new TextDecoder("utf-8", {
 		fatal: !0,
@@ -1225,7 +1225,7 @@ async function Or(e, t, n) {
 var kr = 5;
 function Ar(e, t) {
 	let n = it(e, kr, t).getUint32(1, !0);
-	at(e, 3 * n, 6 * ke, t);
+	at(e, 3 * n, 6 * I, t);
 	let r = vt(e.subarray(kr)), i = St(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
@@ -1237,7 +1237,7 @@ var jr = 14, Mr = 2 ** 20;
 function Nr(e, t) {
 	let n = it(e, jr, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
 	if (n.getUint8(1) > 1 || i === 0) throw M(t, "weights of no camera, or of an unknown kind");
-	at(e, o * s * Math.max(a, 1), Ue, t), it(e, jr + 4 * a, t);
+	at(e, o * s * Math.max(a, 1), He, t), it(e, jr + 4 * a, t);
 	let c = o * s;
 	if (c < i) throw M(t, "a grid with too few cells");
 	let l = vt(e.subarray(jr + 4 * a)), u = r ? Ct(l, c, i, t) : null, d = u !== null && i === c, f = [
@@ -1375,7 +1375,7 @@ var U = {
 	weights: "weights-1"
 };
 function Rr(e, t, n) {
-	let r = t.exists ? t.text(I) : n, i = Object.hasOwn(U, r) ? U[r] : null;
+	let r = t.exists ? t.text(L) : n, i = Object.hasOwn(U, r) ? U[r] : null;
 	if (i?.kind === e) return i;
 	throw new j("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
 }
@@ -1417,7 +1417,7 @@ var W = class e {
 		if (this.raw.length > e) throw this.wrong(`longer than ${e} characters`);
 		return this.raw;
 	}
-	number(e = -We, t = We) {
+	number(e = -Ue, t = Ue) {
 		if (typeof this.raw != "number") throw this.wrong("no number");
 		if (!(this.raw >= e && this.raw <= t)) throw this.wrong(`${this.raw} is not in ${e}..${t}`);
 		return this.raw;
@@ -1427,7 +1427,7 @@ var W = class e {
 		if (!Number.isInteger(n)) throw this.wrong(`${n} is no whole number`);
 		return n;
 	}
-	numbers(e, t = -We, n = We) {
+	numbers(e, t = -Ue, n = Ue) {
 		let r = this.items(e);
 		if (r.length !== e) throw this.wrong(`${e} numbers are needed`);
 		return r.map((e) => e.number(t, n));
@@ -1487,7 +1487,7 @@ function Jr(e, t) {
 		if (o.key("sparse").exists) throw o.wrong("sparse");
 		let c = o.key("normalized");
 		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = Gr[n] ?? 1, u = o.key("count").integer(1, Ue);
+		let l = Gr[n] ?? 1, u = o.key("count").integer(1, He);
 		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
 		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
 		if (!f) throw o.wrong("no such buffer view");
@@ -1611,7 +1611,7 @@ function ii(e, t, n, r, i, a = !1) {
 	};
 }
 function ai(e) {
-	let t = e.key("mimeType").text(I);
+	let t = e.key("mimeType").text(L);
 	if (!zr(t)) throw e.key("mimeType").wrong("an unknown type");
 	let n = e.key("bits"), r = n.exists ? n.integer(1, Qr) : K, i = zr(t, r);
 	if (!i) throw n.wrong(`${r} bits of ${t}`);
@@ -1621,7 +1621,7 @@ function ai(e) {
 }
 function oi(e, t, n) {
 	let r = e.key("at").items(De * t).map((e) => {
-		let [t = 0, n = 0] = e.numbers(2, 0, Fe);
+		let [t = 0, n = 0] = e.numbers(2, 0, Pe);
 		if (!Number.isInteger(t) || !Number.isInteger(n)) throw e.wrong("no whole numbers");
 		return [t, n];
 	});
@@ -1778,7 +1778,7 @@ function gi(e, t, [n, r]) {
 // eigenfield-three/src/sheets.ts
 function _i(e, t) {
 	if (!e.exists) return null;
-	let n = e.key("faces").items(32).map((e) => e.integer(1, Pe));
+	let n = e.key("faces").items(32).map((e) => e.integer(1, Ne));
 	if (!n.length) throw e.key("faces").wrong("no sheet");
 	return {
 		faces: n,
@@ -1806,9 +1806,9 @@ function xi(e, t) {
 		if (e) throw M(e.where, "a texture in a film, and no timeline");
 		return null;
 	}
-	let [n = 1, r = 1] = e.key("rate").numbers(2, 1, He), i = n / r;
+	let [n = 1, r = 1] = e.key("rate").numbers(2, 1, Ve), i = n / r;
 	if (!(Number.isInteger(n) && Number.isInteger(r)) || i > 1e3 || i < 1 / 1e3) throw e.key("rate").wrong("no rate");
-	let a = e.key("first"), o = e.key("films").items(4).map(Si), s = e.key("frames").integer(1, Le);
+	let a = e.key("first"), o = e.key("films").items(4).map(Si), s = e.key("frames").integer(1, Ie);
 	return Ei(t, o), {
 		rate: i,
 		first: a.exists ? a.number() : 0,
@@ -1818,8 +1818,8 @@ function xi(e, t) {
 	};
 }
 function Si(e) {
-	let t = Rr("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, yi, Fe);
-	if (n % yi || r % yi || n * r > Ie) throw e.key("size").wrong(`a film of ${n} x ${r}`);
+	let t = Rr("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, yi, Pe);
+	if (n % yi || r % yi || n * r > Fe) throw e.key("size").wrong(`a film of ${n} x ${r}`);
 	return {
 		codec: t,
 		size: [n, r],
@@ -1827,8 +1827,8 @@ function Si(e) {
 	};
 }
 function Ci(e, t) {
-	let [n, r] = [0, 0], i = e.key("groups").items(Re).map((e) => {
-		let t = e.key("frames").integer(1, Be), i = e.key("length").integer(1, ze), a = e.key("offset").integer(r, 2 ** 53 - 1), o = e.key("sha256").text(64);
+	let [n, r] = [0, 0], i = e.key("groups").items(Le).map((e) => {
+		let t = e.key("frames").integer(1, ze), i = e.key("length").integer(1, Re), a = e.key("offset").integer(r, 2 ** 53 - 1), o = e.key("sha256").text(64);
 		if (!bi.test(o)) throw e.key("sha256").wrong("no SHA-256");
 		if (a % 4) throw e.key("offset").wrong("no multiple of 4");
 		return [n, r] = [n + t, a + i], {
@@ -1909,7 +1909,7 @@ function Li(e) {
 	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), x = n.key("mesh");
 	return {
 		version: r,
-		generator: b.exists ? b.text(I) : "",
+		generator: b.exists ? b.text(L) : "",
 		planes: p,
 		colours: m,
 		names: u,
@@ -1919,7 +1919,7 @@ function Li(e) {
 		sizes: Xi(c, l, a),
 		colour: g.exists ? Yr("weights", g, o) : h.exists ? a(h, "SCALAR", [G], 6 * l) : null,
 		...Zi(_),
-		triangles: y.exists ? Yr("triangles", y, o) : v.exists ? Ui(a(v, "SCALAR", [Vr, Hr], null), 2 * ke) : null,
+		triangles: y.exists ? Yr("triangles", y, o) : v.exists ? Ui(a(v, "SCALAR", [Vr, Hr], null), 2 * I) : null,
 		settings: Qi(n.key("settings")),
 		scores: Qi(n.key("scores")),
 		views: i,
@@ -1935,24 +1935,24 @@ function Ri(e, t) {
 	if (r.exists && r.integer(0, 6) !== 4) throw r.wrong("no triangles");
 	let [i, a] = [n.key("attributes"), n.key("indices")];
 	return {
-		position: Hi(t(i.key("POSITION"), "VEC3", [G], null), Ne),
-		uv: Hi(t(i.key("TEXCOORD_0"), "VEC2", [G], null), Ne),
+		position: Hi(t(i.key("POSITION"), "VEC3", [G], null), Me),
+		uv: Hi(t(i.key("TEXCOORD_0"), "VEC2", [G], null), Me),
 		indices: Ui(t(a, "SCALAR", [
 			Br,
 			Vr,
 			Hr
-		], null), Pe)
+		], null), Ne)
 	};
 }
 function zi({ planes: e, sheets: t }) {
 	return t ? [...e, t.opacity] : e;
 }
 function Bi(e) {
-	let t = e.key("version").text(I);
+	let t = e.key("version").text(L);
 	if (!/^1\.\d+$/.test(t)) throw new j("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
 	for (let e of n.exists ? n.items(Ce) : []) {
-		let t = e.text(I);
+		let t = e.text(L);
 		if (!Mi.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
@@ -1989,10 +1989,10 @@ function Wi(e, t) {
 function Gi(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
-		count: n.key("count").integer(1, ke),
+		count: n.key("count").integer(1, I),
 		names: Yr("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? qi(r) : i.items(ke).map((e) => e.text(I));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? qi(r) : i.items(I).map((e) => e.text(L));
 	if (!a.length) throw i.wrong("no cameras");
 	let o = Ki(a);
 	if (o) throw i.wrong(o);
@@ -2005,13 +2005,13 @@ function Ki(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
 function qi(e) {
-	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, ke));
+	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, I));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
 	let r = e.key("parts").items(Ni).map((e) => {
-		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(I))];
+		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(L))];
 		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
 		if (a.exists) {
-			let e = a.items(i).map((e) => e.text(I));
+			let e = a.items(i).map((e) => e.text(L));
 			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
 			return [r, e];
 		}
@@ -2020,7 +2020,7 @@ function qi(e) {
 	});
 	return Array.from({ length: t * n }, (t, i) => {
 		let a = [Math.floor(i / n), i % n], o = r.map(([e, t]) => t[a[e] ?? 0]).join("");
-		if (o.length > 1024) throw e.wrong(`names of more than ${I} characters`);
+		if (o.length > 1024) throw e.wrong(`names of more than ${L} characters`);
 		return o;
 	});
 }
@@ -2045,7 +2045,7 @@ function Yi(e, t, n, r) {
 function Xi(e, t, n) {
 	let r = e.key("size");
 	if (!r.exists) return n(e.key("sizes"), "SCALAR", [Hr], 2 * t);
-	let [i = 0, a = 0] = r.numbers(2, 1, Ae);
+	let [i = 0, a = 0] = r.numbers(2, 1, ke);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
@@ -2080,7 +2080,7 @@ async function ea(e, t) {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
 		if (!(s > $i && c > $i)) throw M(r.where, `focal lengths of "${t}"`);
 		let { R: f, t: p } = oa([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
-		if (!m || !h || Math.max(m, h) > 65535 || m * h > je) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
+		if (!m || !h || Math.max(m, h) > 65535 || m * h > Ae) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
 				s,
@@ -2648,15 +2648,19 @@ function no(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var ro = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", io = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", ao = 2, oo = `
+var ro = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\n#define REACH 2\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec2 beside;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nfloat codeOf(vec2 shift) { return shift.x + float(REACH) + float(2 * REACH + 1) * (shift.y + float(REACH)); }\nvec2 shiftOf(vec4 place) {\n  int code = int(place.w + 0.5) - 1;\n  return code < 0 ? vec2(0.0) : vec2(code % (2 * REACH + 1) - REACH, code / (2 * REACH + 1) - REACH);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec4 place = rayWeights || beside.x > 0.0 ? texelFetch(places, ivec2(gl_FragCoord.xy), 0) : vec4(0.0);\n  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);\n  own -= beside * shiftOf(place);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", io = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", ao = 2, oo = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${io}${ro}`, so = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", co = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", lo = `${oo}
+${io}${ro}`, so = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", co = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nflat out vec2 shift;\nvoid main() {\n  point = onPlane;\n  shift = shifts[gl_InstanceID];\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shift, 0.0, 1.0);\n}\n", lo = `${oo}
 in vec3 point;
+flat in vec2 shift;
 out vec4 place;
-void main() { place = placeOf(point); }
+void main() {
+  place = placeOf(point);
+  place.w += codeOf(shift);
+}
 `, uo = "sumTextures", fo = "finerValue", po = "finerOpacity";
 function mo(n, r, i) {
 	let o = new O({
@@ -2773,28 +2777,29 @@ var xo = {
 }, So = class {
 	opacity;
 	down;
+	snaps;
 	surface;
 	plane;
 	grids;
 	composed = null;
 	opacityDrawn = 0;
 	camera = new n();
-	constructor(e, t, n, r, i, a) {
-		this.opacity = n, this.down = r, this.surface = i, this.plane = a;
-		let [o, ...s] = Ga({
+	constructor(e, t, n, r, i, a, o) {
+		this.opacity = n, this.down = r, this.snaps = i, this.surface = a, this.plane = o;
+		let [s, ...c] = Ga({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
-		}), c = (e, n) => {
-			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(wo), a = new k();
-			return i.forEach(({ quad: e }, t) => a.add(Object.assign(e, { renderOrder: t }))), {
+		}), l = (e, n) => {
+			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => wo(t, i ? X(e, r) : null)), o = new k();
+			return a.forEach(({ quad: e }, t) => o.add(Object.assign(e, { renderOrder: t }))), {
 				target: ho(X(e, r), n),
-				scene: a,
-				steps: i,
+				scene: o,
+				steps: a,
 				places: null
 			};
-		}, l = c(o ?? e, !0);
-		this.grids = s.map((e) => c(e, !1));
+		}, u = l(s ?? e, !0);
+		this.grids = c.map((e) => l(e, !1));
 		for (let { target: e } of this.grids) {
 			let t = mo(fo, [
 				0,
@@ -2802,9 +2807,9 @@ var xo = {
 				1,
 				1
 			], { coarse: { value: e.texture } });
-			l.scene.add(Object.assign(t, { renderOrder: l.scene.children.length }));
+			u.scene.add(Object.assign(t, { renderOrder: u.scene.children.length }));
 		}
-		this.grids.push(l);
+		this.grids.push(u);
 	}
 	get texture() {
 		return this.grids.at(-1)?.target.texture ?? null;
@@ -2813,7 +2818,7 @@ var xo = {
 		this.composed && Do(this.composed, n) || (this.composed = n, bo(e, t, () => {
 			n.opacity > this.opacityDrawn && this.drawOpacity(e, n.opacity);
 			for (let t of this.grids) {
-				n.eye && t.steps.some(({ part: e }) => e.basis) && this.findPlaces(e, t, n.places);
+				(n.eye !== null && t.steps.some(({ part: e }) => e.basis) || this.snaps) && this.findPlaces(e, t, n.places);
 				for (let e of t.steps) To(e, t.places?.target.texture ?? null, n);
 				this.draw(e, t.scene, t.target, this.opacityDrawn > 0 && t === this.grids.at(-1));
 			}
@@ -2825,7 +2830,7 @@ var xo = {
 	drawOpacity(e, t) {
 		let n = this.grids.at(-1);
 		if (!this.opacity || !n) return;
-		let r = ho(X(this.opacity.grid, this.down), !1), i = wo(this.opacity);
+		let r = ho(X(this.opacity.grid, this.down), !1), i = wo(this.opacity, null);
 		for (let e of i) To(e, null, xo);
 		let [a, o] = [new k(), new k()];
 		a.add(...i.map(({ quad: e }) => e)), o.add(mo(po, [
@@ -2854,36 +2859,37 @@ var xo = {
 function Co(e) {
 	for (let { geometry: t, material: n } of e.children) t.dispose(), n.dispose();
 }
-function wo(e) {
-	let t = e.colours.length, [n, r] = [e.scale.length / (4 * t), Math.floor(64 / t)], i = [];
-	for (let a = 0; a < n; a += r) {
-		let o = Array.from({ length: 64 }, (t, n) => new A(...e.colours[n] ?? [
+function wo(e, t) {
+	let [n, r, i, a] = e.rectangle, o = t && new ie(1 / ((i - n) * t[0]), 1 / ((a - r) * t[1])), s = e.colours.length, [c, l] = [e.scale.length / (4 * s), Math.floor(64 / s)], u = [];
+	for (let t = 0; t < c; t += l) {
+		let n = Array.from({ length: 64 }, (t, n) => new A(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), s = e.basis ? 1 : 4, c = mo(uo, e.rectangle, {
+		])), r = e.basis ? 1 : 4, i = mo(uo, e.rectangle, {
 			stored: { value: e.stored },
-			firstLayer: { value: Math.floor(a * t / s) },
-			sharing: { value: s },
-			channels: { value: t },
+			firstLayer: { value: Math.floor(t * s / r) },
+			sharing: { value: r },
+			channels: { value: s },
 			entries: { value: 0 },
 			scale: { value: /* @__PURE__ */ new Float32Array(256) },
 			bias: { value: /* @__PURE__ */ new Float32Array(256) },
-			colours: { value: o },
+			colours: { value: n },
 			rayWeights: { value: !1 },
 			weightMaps: { value: null },
-			firstGroup: { value: (e.basis?.group ?? 0) + a },
+			firstGroup: { value: (e.basis?.group ?? 0) + t },
 			places: { value: null },
+			beside: { value: o ?? new ie() },
 			eye: { value: new A() }
 		});
-		i.push({
+		u.push({
 			part: e,
-			first: a,
-			groups: Math.min(r, n - a),
-			quad: c
+			first: t,
+			groups: Math.min(l, c - t),
+			quad: i
 		});
 	}
-	return i;
+	return u;
 }
 function To({ part: e, first: t, groups: n, quad: r }, i, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
@@ -2894,7 +2900,7 @@ function To({ part: e, first: t, groups: n, quad: r }, i, a) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
-	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", u ? i : null), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
+	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", i), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
 function Eo(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
@@ -3376,7 +3382,7 @@ async function ks(e, { where: t }) {
 	if (e.length < Ts) throw M(t, "no head");
 	let n = Ts + new DataView(e.buffer).getUint32(0, !0);
 	if (n > e.length) throw M(t, "a head longer than the group");
-	let r = await be(e.subarray(Ts, n), "deflate-raw", Ve, t);
+	let r = await be(e.subarray(Ts, n), "deflate-raw", Be, t);
 	return {
 		head: new W(gs(new TextDecoder("utf-8").decode(r), t), t),
 		at: n
@@ -4395,7 +4401,7 @@ var Sc = 1.5, Cc = .001, wc = class extends f {
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
 		if (!s) {
 			let { parts: e, opacity: t } = this.summed;
-			s = new So(i, e, t, o, this.surface, a), this.composers.set(o, s);
+			s = new So(i, e, t, o, this.coarser > 1, this.surface, a), this.composers.set(o, s);
 		}
 		s.compose(e, t, n);
 		let { composed: c, finest: l } = this.surface.material.uniforms;
@@ -4415,7 +4421,7 @@ var Sc = 1.5, Cc = .001, wc = class extends f {
 			count: n === Mo.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
 			eye: t && go(this.info.viewPlane, t),
-			places: t ? this.surface.version : 0,
+			places: t || this.coarser > 1 ? this.surface.version : 0,
 			maps: t && this.weights.maps(this.mixing, this.usable)
 		};
 	}
