@@ -85,6 +85,8 @@ CASES = {
     "fern": Case("image000.png,image008.png,image016.png"),
     "cube": Case("every:4"),
     "fountain": Case("every:4"),
+    "fox": Case("every:8"),
+    "temple": Case("every:5"),
 }
 
 
