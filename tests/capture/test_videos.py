@@ -57,6 +57,14 @@ def test_videos_that_are_too_short_or_none(tmp_path):
     refused("video-unreadable", tmp_path)
 
 
+def test_notes_in_a_video_that_are_no_utf8_do_not_matter(tmp_path):
+    truth = write_video(tmp_path / "a.mp4", 3)
+    data = (tmp_path / "a.mp4").read_bytes()
+    assert b"Lavf" in data
+    (tmp_path / "a.mp4").write_bytes(data.replace(b"Lavf", b"L\xa2vf"))
+    assert np.abs(read_frame(tmp_path / "a.mp4", 1).astype(float) - truth[1]).mean() < 1.5
+
+
 @pytest.mark.parametrize("word", ["-1", "2.5", "s", "1e3s", "x", "", "1:20"])
 def test_frames_that_are_none(word):
     with pytest.raises(OptionError, match="--frame"):

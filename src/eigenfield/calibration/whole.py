@@ -103,7 +103,7 @@ def calibrate(
     """
     place, folder = (None if each is None else Path(each) for each in (output, work))
     described = ChartOptions(chart, board, square, marker, dictionary, inverted, legacy)
-    given = {name: value for name, value in names.items() if value is not None}
+    given = {name: value for name, value in names.items() if value not in (None, ())}
     if place is not None:
         refuse_folder(place, overwrite)
     if described.chart is not None:

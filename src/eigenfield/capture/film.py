@@ -133,7 +133,7 @@ def open_film(path: Path) -> Film:
     Raises CaptureError: `video-unreadable`.
     """
     try:
-        with av.open(str(path)) as container:
+        with av.open(str(path), metadata_errors="replace") as container:
             stream = find_film(container)
             found = [] if stream is None else _stamps(container, stream)
             if stream is not None and found and stream.time_base is not None:

@@ -124,7 +124,7 @@ def decode_frames(camera: ChartCamera) -> Iterator[tuple[int, NDArray[np.uint8]]
     wanted = dict(zip(camera.frames, camera.moments, strict=True))
     path = camera.paths[0]
     try:
-        with av.open(str(path)) as container:
+        with av.open(str(path), metadata_errors="replace") as container:
             for index, frame in enumerate(container.decode(find_film(container))):
                 if index in wanted:
                     yield wanted[index], frame.to_ndarray(format="gray")
@@ -283,7 +283,7 @@ def _from_videos(root: Path, videos: dict[str, Path]) -> ChartPictures:
 def _video_length(path: Path) -> tuple[int, tuple[int, int]]:
     """Number of frames, by counting packets (headers are often wrong), and size."""
     try:
-        with av.open(str(path)) as container:
+        with av.open(str(path), metadata_errors="replace") as container:
             stream = find_film(container)
             if stream is None:
                 raise _unreadable_video(path, "it has no pictures")

@@ -215,7 +215,7 @@ def find_film(container: av.container.InputContainer) -> av.VideoStream | None:
 
 
 def _decode_frames(path: Path, frame: int | float) -> Iterator[Shown]:
-    with av.open(str(path)) as container:
+    with av.open(str(path), metadata_errors="replace") as container:
         stream = find_film(container)
         if stream is None:
             return

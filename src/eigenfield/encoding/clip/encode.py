@@ -9,13 +9,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eigenfield.core.clip import Clip
 from eigenfield.core.errors import OptionError, one_line
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.observations import CalibratedObservations
 from eigenfield.core.progress import Progress, begin_step
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.version import __version__
@@ -71,7 +73,8 @@ def encode_clip(
     if work is not None:
         with output_errors(work):
             work.mkdir(parents=True, exist_ok=True)
-    plan = plan_encoding(footage.instant(len(footage) // 2), proxy, asked, work, progress)
+    middle = cast("CalibratedObservations", footage.instant(len(footage) // 2))
+    plan = plan_encoding(middle, proxy, asked, work, progress)
     identity = stage_key([_footage_digest(footage), asked, _plan_digest(plan)], SCENE_ROOMS)
     spans = even_pieces(len(footage), -(-len(footage) // length))
     begin_step(progress, "fit")
@@ -182,9 +185,13 @@ def _footage_digest(footage: Footage) -> list[Any]:
     """What stands for footage: its clock, its bytes, and the pixels of three instants."""
     digest = hashlib.sha256()
     for number in (0, len(footage) // 2, len(footage) - 1):
-        instant = footage.instant(number)
-        for codes in parallel_map(lambda index, of=instant: to_codes(of.photograph(index).pixels), range(len(instant))):
-            digest.update(codes.data)
+        instant = cast("CalibratedObservations", footage.instant(number))
+
+        def codes(index: int, instant: CalibratedObservations = instant) -> NDArray[np.uint8]:
+            return to_codes(instant.photograph(index).pixels)
+
+        for found in parallel_map(codes, range(len(instant))):
+            digest.update(found.data)
     return [list(footage.names), str(footage.timeline), footage.bytes, digest.hexdigest()]
 
 

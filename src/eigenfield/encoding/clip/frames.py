@@ -118,7 +118,8 @@ class GroupFrames:
 
 def save_arrays(folder: Path, arrays: Arrays) -> None:
     """Arrays as a file of a stage."""
-    np.savez(folder / ARRAYS_FILE, **dict(arrays))
+    named: dict[str, Any] = dict(arrays)
+    np.savez(folder / ARRAYS_FILE, **named)
 
 
 def load_arrays(folder: Path) -> Arrays:

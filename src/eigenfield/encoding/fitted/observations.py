@@ -247,13 +247,13 @@ def open_subsampled(
             scratch_array((0 if given.masks is None else int(offsets[-1]),), np.uint8, work) as masks,
         ):
             for index in range(len(data)):
-                part, taken = slice(offsets[index], offsets[index + 1]), sample_corner(given.camera_of(index), step)
-                codes[part] = given.codes_of(index)[taken].reshape(-1, 3)
+                part, corner = slice(offsets[index], offsets[index + 1]), sample_corner(given.camera_of(index), step)
+                codes[part] = given.codes_of(index)[corner].reshape(-1, 3)
                 if given.masks is not None:
-                    masks[part] = given.mask(index)[taken].reshape(-1)
+                    masks[part] = given.mask(index)[corner].reshape(-1)
             few = None if given.masks is None else masks
-            made = replace(given, shapes=shapes, codes=codes, offsets=offsets, masks=few, robust=None)
-            yield FitData(made, footprints)
+            taken = replace(given, shapes=shapes, codes=codes, offsets=offsets, masks=few, robust=None)
+            yield FitData(taken, footprints)
 
 
 @contextlib.contextmanager

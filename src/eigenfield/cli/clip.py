@@ -1,0 +1,74 @@
+"""`eigenfield encode --clip`: footage in, a clip out."""
+
+from __future__ import annotations
+
+import logging
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from eigenfield.cli.common import note, note_all
+from eigenfield.cli.progress import progress_bars
+from eigenfield.core.errors import OptionError
+from eigenfield.core.open_options import OpenOptions
+from eigenfield.core.shell import shell_word
+from eigenfield.encoding import EncodeOptions
+
+if TYPE_CHECKING:
+    from eigenfield.core.clip import Clip
+
+log = logging.getLogger("eigenfield.encode")
+
+
+def refuse_for_clips(given: dict[str, Any]) -> None:
+    """Raise OptionError `clip-option` for an option that is for one instant."""
+    for name, value in given.items():
+        if value:
+            remedy = "leave it out, or encode one instant without --clip"
+            raise OptionError("clip-option", f"--{name} is for scenes of one instant", remedy=remedy)
+
+
+def encode_clip(
+    capture: Path,
+    proxy: Path | None,
+    place: OpenOptions,
+    options: EncodeOptions,
+    work: Path,
+    output: Path,
+    overwrite: bool,
+    quiet: bool,
+) -> None:
+    """Footage in, a clip out."""
+    from eigenfield.capture import open_footage
+    from eigenfield.encoding import encode_footage
+    from eigenfield.encoding.clip.encode import refuse_no_proxy, refuse_still_options
+    from eigenfield.gltf import save
+
+    started = time.monotonic()
+    refuse_still_options(options)
+    refuse_no_proxy(proxy)
+    with progress_bars(quiet) as progress:
+        footage = open_footage(capture, options=replace(place, work=work / "frames"))
+        note_all(footage.problems, quiet)
+        note(f"{len(footage.names)} cameras, {len(footage)} frames at {float(footage.timeline.rate):g} a second", quiet)
+        note("Ctrl-C stops it; the same command goes on after the last finished frame", quiet)
+        clip = encode_footage(footage, proxy, options, work=work, progress=progress)
+        save(clip, output, overwrite=overwrite, progress=progress)
+    log.info("%.0f s", time.monotonic() - started)
+    click.echo("\n".join(clip_lines(output, clip)))
+
+
+def clip_lines(output: Path, clip: Clip) -> list[str]:
+    """How small a clip is, and the command that comes next."""
+    from eigenfield.runtime.objects import address_of
+
+    size, seconds = output.stat().st_size, clip.timeline.frames / float(clip.timeline.rate)
+    frames = clip.timeline.frames
+    return [
+        f"{output}: {size / 1e3:,.0f} kB, {frames} frames of {size / frames / 1e3:.1f} kB, "
+        f"{8 * size / seconds / 1e6:.2f} Mbit/s",
+        f"look around in it: eigenfield view {shell_word(address_of(output))}",
+    ]
