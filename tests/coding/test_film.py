@@ -30,10 +30,9 @@ def textured():
     return np.clip(500 + np.cumsum(rng.normal(0, 12, SIZE), 1), 0, 1023).astype(np.uint16)
 
 
-@pytest.mark.parametrize("low_delay", [False, True])
 @pytest.mark.parametrize("count", [1, 2, 37])
-def test_a_unit_shows_its_own_frame_as_soon_as_it_is_there(low_delay, count):
-    made = encode_film(numbered(count), SIZE, 20, 8, low_delay)
+def test_a_unit_shows_its_own_frame_as_soon_as_it_is_there(count):
+    made = encode_film(numbered(count), SIZE, 20, 8)
     taken = []
 
     def arriving():
@@ -51,9 +50,8 @@ def test_the_first_unit_alone_has_a_sequence_header_and_none_has_a_delimiter():
     assert not any(TEMPORAL_DELIMITER in some for some in kinds)
 
 
-@pytest.mark.parametrize("low_delay", [False, True])
-def test_a_frame_that_is_repeated_costs_about_twenty_bytes(low_delay):
-    made = encode_film([textured()] * 60, SIZE, 30, 6, low_delay)
+def test_a_frame_that_is_repeated_costs_about_twenty_bytes():
+    made = encode_film([textured()] * 60, SIZE, 30, 6)
     assert len(made) == 60 and sum(map(len, made[1:])) / 59 < 25
     frames = list(decode_film(made, SIZE, "here"))
     assert all(np.array_equal(frame, frames[0]) for frame in frames)

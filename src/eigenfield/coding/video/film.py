@@ -24,12 +24,12 @@ from eigenfield.coding.pictures.pictures_10bit import (
 from eigenfield.coding.video.av1 import Planes, encode_units
 from eigenfield.core.errors import FormatError
 
-_LOW_DELAY, _RANDOM_ACCESS = 1, 2  # SVT-AV1's `pred-struct`
+# SVT-AV1's: random access with three levels of prediction takes 5 % fewer bytes than its own choice of levels, and 30 %
+# fewer than prediction from earlier frames alone, whose quality also pulses more: decision 45
+STRUCTURE = "scd=0:pred-struct=2:hierarchical-levels=3"
 
 
-def encode_film(
-    frames: Iterable[NDArray[np.uint16]], size: tuple[int, int], crf: int, preset: int, low_delay: bool = False
-) -> list[bytes]:
+def encode_film(frames: Iterable[NDArray[np.uint16]], size: tuple[int, int], crf: int, preset: int) -> list[bytes]:
     """The temporal unit of each frame, without its delimiter; the same bytes each time.
 
     Args:
@@ -37,16 +37,14 @@ def encode_film(
         size: Rows and columns, multiples of 64.
         crf: 1..63, the coarser the higher.
         preset: SVT-AV1's, 0 the slowest.
-        low_delay: Whether each frame is predicted from those before it alone; otherwise from those behind it too.
     """
-    structure = _LOW_DELAY if low_delay else _RANDOM_ACCESS
     flat = np.full((size[0] // 2, size[1] // 2), MIDDLE_CODE, np.uint16)
 
     def planes() -> Iterator[Planes]:
         for codes in frames:
             yield codes, flat, flat
 
-    made = encode_units(planes(), size, crf, preset, f"scd=0:pred-struct={structure}")
+    made = encode_units(planes(), size, crf, preset, STRUCTURE)
     return [picture_units(unit) for unit in made]
 
 
