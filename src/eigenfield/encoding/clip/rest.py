@@ -94,7 +94,8 @@ def camera_at_rest(photographs: Iterable[Photograph], frames: int) -> CameraAtRe
     low = high = before = change = np.zeros(0, np.float32)
     for number, one in enumerate(photographs):
         smooth = cv2.blur(one.pixels, (WINDOW_PIXELS, WINDOW_PIXELS))
-        seen = np.ones((*smooth.shape[:2], 1), np.float32) if one.mask is None else one.mask[..., None] > 0.5
+        mask = np.ones(smooth.shape[:2], np.float32) if one.mask is None else one.mask
+        seen = mask[..., None] > 0.5
         if not totals:
             height, width, _ = smooth.shape
             totals = [np.zeros((height, width, 4), np.float32) for _ in range(2)]
