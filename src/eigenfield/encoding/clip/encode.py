@@ -124,9 +124,10 @@ def _make_group(frames: GroupFrames, number: int, counts: tuple[int, ...] | None
     clip = frames.clip
 
     def build(folder: Path) -> None:
-        opened = fit_group(frames, PRESETS[resolved_value(clip.plan.options.preset)].rounds)
+        group = frames.averaged()
+        opened = fit_group(group, PRESETS[resolved_value(clip.plan.options.preset)].rounds)
         kept = texture_counts(clip, opened) if counts is None else counts
-        coded, psnr = code_group(frames, opened, clip.layout(kept))
+        coded, psnr = code_group(group, opened, clip.layout(kept))
         (folder / GROUP_FILE).write_bytes(group_bytes(coded))
         save_arrays(folder, {"counts": np.array(kept), "psnr": np.array(psnr)})
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 from eigenfield.core.progress import Progress, track
 from eigenfield.encoding.clip.plan import ClipPlan
+from eigenfield.encoding.clip.rest import MIN_FRAMES, camera_at_rest
+from eigenfield.runtime.parallel import tracked_map
 from eigenfield.runtime.stages import SCENE_ROOMS, Stages, stage_key
 
 ARRAYS_FILE = "frame.npz"
@@ -58,6 +60,7 @@ class GroupFrames:
         numbers: Of the frames, in the clip.
         identity: What all passes depend on.
         title: Of the group, for reports of progress.
+        rest: The stage of what stands still; None: nothing is averaged.
         made: Folders of passes, which `clear` removes.
     """
 
@@ -68,10 +71,28 @@ class GroupFrames:
     identity: str
     title: str
     progress: Progress | None = None
+    rest: Path | None = None
     made: list[Path] = field(default_factory=list)
 
     def __len__(self) -> int:
         return len(self.numbers)
+
+    def averaged(self) -> GroupFrames:
+        """The same with photographs whose still pixels are averaged over the group."""
+        if len(self) < MIN_FRAMES:
+            return self
+
+        def build(folder: Path) -> None:
+            def find(camera: int) -> None:
+                each = (self.clip.observations(self.instant(number)).photograph(camera) for number in self.numbers)
+                camera_at_rest(each, len(self)).save(folder, camera)
+
+            tracked_map(find, range(len(self.clip.cameras)), f"{self.title}: what stands still", self.progress)
+
+        key = stage_key([self.identity, "rest"], SCENE_ROOMS)
+        folder = self.stages.run(f"rest-{self.numbers.start:05d}", key, build)
+        self.made.append(folder)
+        return replace(self, rest=folder)
 
     def run(
         self, name: str, make: Callable[..., Arrays], given: Iterable[Any] | None = None, after: FramePass | None = None
@@ -91,7 +112,7 @@ class GroupFrames:
         for number, one in track(steps, f"{self.title}: {name}", len(self), self.progress):
 
             def build(folder: Path, number: int = number, one: tuple[Any, ...] = one) -> None:
-                with self.clip.open_frame(self.instant(number)) as pixels:
+                with self.clip.open_frame(self.instant(number), self.rest) as pixels:
                     save_arrays(folder, make(pixels, *one))
 
             folders.append(self.stages.run(f"{name}-{number:05d}", key, build))

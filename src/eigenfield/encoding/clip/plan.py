@@ -13,6 +13,7 @@ from eigenfield.coding.video.film_layout import PlaneSizes, film_layout
 from eigenfield.core.camera import Camera
 from eigenfield.core.films import FilmLayout
 from eigenfield.core.observations import CalibratedObservations, Observations, select_cameras
+from eigenfield.encoding.clip.rest import AtRest
 from eigenfield.encoding.fitted.fit import PlaneSettings
 from eigenfield.encoding.fitted.footprints import Footprints, offsets_of, subsampled_footprints
 from eigenfield.encoding.fitted.model import AtlasComposer, Rectangle, make_composer
@@ -124,10 +125,16 @@ class ClipPlan:
         return film_layout([PlaneSizes(len(one.matrix), one.mean, ((one.grid, count),)) for one, count in pairs])
 
     @contextlib.contextmanager
-    def open_frame(self, instant: CalibratedObservations) -> Iterator[FramePixels]:
-        """The photographs of an instant, decoded."""
+    def open_frame(self, instant: CalibratedObservations, rest: Path | None = None) -> Iterator[FramePixels]:
+        """The photographs of an instant, decoded.
+
+        Args:
+            rest: The stage of what stands still, which is averaged (`AtRest`); None: all pixels are as they are.
+        """
+        own = self.observations(instant)
+        seen = own if rest is None else AtRest(own, rest)
         with (
-            open_on_footprints(self.cameras, self.observations(instant), self.footprints, self.work) as data,
+            open_on_footprints(self.cameras, seen, self.footprints, self.work) as data,
             open_subsampled(data, THINNED_STEP, self.work, self.thinned) as some,
         ):
             yield FramePixels(data, some, self.few, self.work)

@@ -1,0 +1,68 @@
+"""What stands still in photographs over time is averaged, and nothing else is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eigenfield.core.observations import Photograph
+from eigenfield.encoding.clip.rest import camera_at_rest
+from support.scenes import smooth_pictures
+
+PICTURE = 0.5 + 0.3 * smooth_pictures(1, 60, 80, 3, 4)[0]
+FRAMES = 16
+
+
+def filmed(change, noise=2.0):
+    """Frames with noise of so many grey levels, after `change(number, pixels)`."""
+    random, made = np.random.default_rng(1), []
+    for number in range(FRAMES):
+        pixels = PICTURE.copy()
+        change(number, pixels)
+        pixels += random.normal(0, noise / 255, pixels.shape)
+        made.append(Photograph(np.clip(pixels, 0, 1).astype(np.float32), None))
+    return made
+
+
+def nothing(number, pixels):
+    pass
+
+
+def square(number, pixels):
+    pixels[20:30, 10 + 2 * number : 20 + 2 * number] = 0.9
+
+
+def drift(number, pixels):
+    pixels[:, 40:] += 0.012 * number / FRAMES  # 3 grey levels
+
+
+def flicker(number, pixels):
+    pixels *= 1 + 0.05 * (-1) ** number
+
+
+def test_noise_of_what_stands_still_is_averaged_away():
+    frames = filmed(nothing)
+    found = camera_at_rest(frames, FRAMES)
+    assert (found.share == 255).mean() > 0.98
+    left = np.std(found.shown(frames[3]).pixels - PICTURE) * 255
+    assert left < 1.3 * np.hypot(2 / np.sqrt(FRAMES), 0.29)
+
+
+def test_what_moves_keeps_its_own_pixels():
+    frames = filmed(square)
+    found = camera_at_rest(frames, FRAMES)
+    assert not found.share[18:32, 8:52].any() and (found.share[40:] == 255).all()
+    np.testing.assert_array_equal(found.shown(frames[5]).pixels[20:30, 20:30], frames[5].pixels[20:30, 20:30])
+
+
+@pytest.mark.parametrize("change", [drift, flicker])
+def test_a_slow_drift_and_a_lamp_that_flickers_are_no_noise(change):
+    found = camera_at_rest(filmed(change), FRAMES)
+    assert found.share[:, 50:].mean() < 0.1 * 255
+
+
+def test_frames_that_are_masked_out_do_not_count():
+    frames = filmed(nothing, 0.5)
+    frames[2] = Photograph(np.zeros_like(PICTURE, np.float32), np.zeros(PICTURE.shape[:2], np.float32))
+    found = camera_at_rest(frames, FRAMES)
+    np.testing.assert_allclose(found.average / 255, PICTURE, atol=1.5 / 255)
