@@ -93,7 +93,7 @@ def camera_at_rest(photographs: Iterable[Photograph], frames: int) -> CameraAtRe
     totals: list[NDArray[np.float32]] = []
     low = high = before = change = np.zeros(0, np.float32)
     for number, one in enumerate(photographs):
-        smooth = cv2.blur(one.pixels, (WINDOW_PIXELS, WINDOW_PIXELS))
+        smooth = np.asarray(cv2.blur(one.pixels, (WINDOW_PIXELS, WINDOW_PIXELS)), np.float32)
         mask = np.ones(smooth.shape[:2], np.float32) if one.mask is None else one.mask
         seen = mask[..., None] > 0.5
         if not totals:
