@@ -106,7 +106,7 @@ def export(
     drawn = {name: value for name, value in options.items() if name in PICTURE_OPTIONS}
     loaded = scene if isinstance(scene, Scene | Clip) else load_any(scene)
     if chosen == "html" and time is None and isinstance(loaded, Clip):  # the page plays it
-        options["glb"] = encode_scene(scene) if isinstance(scene, Clip) else Path(scene).read_bytes()
+        options["glb"] = encode_scene(scene) if isinstance(scene, Scene | Clip) else Path(scene).read_bytes()
         time = loaded.timeline.first
     job = RenderJob(as_scene(loaded, time), **drawn)
     return _write(chosen, job, points, output, options, overwrite, progress)
