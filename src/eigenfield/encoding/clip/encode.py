@@ -162,7 +162,7 @@ def refuse_still_options(asked: EncodeOptions) -> None:
 def refuse_no_proxy(proxy: object) -> None:
     """Raise OptionError `clip-proxy` where no mesh is given."""
     if proxy is None:
-        remedy = "make one of an instant (`eigenfield proxy`), and give it as --proxy"
+        remedy = "give a mesh as --proxy; the command proxy makes one of the photographs of an instant"
         raise OptionError("clip-proxy", "a clip is encoded on a mesh that is given", remedy=remedy)
 
 
@@ -173,7 +173,7 @@ def _checked_proxy(
     refuse_no_proxy(proxy)
     assert proxy is not None
     if footage.cameras is None:
-        remedy = "calibrate an instant (`eigenfield calibrate`), and give the result as --calibration"
+        remedy = "find them with calibrate --clip, and give the result as --calibration"
         raise OptionError("clip-cameras", "the cameras of this footage are not known", remedy=remedy)
     if isinstance(proxy, str | os.PathLike):
         refuse_no_mesh(Path(proxy))
