@@ -14,7 +14,8 @@ import pytest
 from eigenfield.core.clip import Clip
 from eigenfield.core.errors import FormatError, OptionError
 from eigenfield.core.films import CodedGroup
-from eigenfield.gltf import load, load_clip, save
+from eigenfield.core.payloads import mesh_key
+from eigenfield.gltf import load, load_clip, parts, save
 from eigenfield.gltf.clips import CodedGroups
 from eigenfield.gltf.container import parse_glb
 from eigenfield.gltf.group import group_bytes, read_group
@@ -78,6 +79,15 @@ def test_a_group_reads_as_it_was(made):
     assert isinstance(coded, CodedGroup) and len(coded.units) == 7 and group_bytes(coded) == data
 
 
+def test_the_mesh_is_stored_once(path):
+    clip = load_clip(path)
+    first, last = (clip.scene(time) for time in clip.timeline.times[[0, -1]])
+    (stream,) = first.payloads[mesh_key(first.mesh)]
+    assert last.mesh is first.mesh and path.read_bytes().count(stream.data) == 1
+    save(last, path.with_name("last.glb"))  # with the same stream
+    assert parts(path)["mesh"] == parts(path.with_name("last.glb"))["mesh"] > len(stream.data)
+
+
 def test_a_clip_travels_to_another_process(path):
     clip = pickle.loads(pickle.dumps(load_clip(path)))
     assert number_of(clip.scene(clip.timeline.times[6])) == 6
@@ -138,7 +148,7 @@ def test_a_damaged_group_costs_its_own_frames_alone(path, tmp_path):
     data = bytearray(path.read_bytes())
     clip = load_clip(path)
     first = clip.groups.stored[1].data.first
-    data[first + 900] ^= 1
+    data[first + 400] ^= 1
     target = tmp_path / "damaged.glb"
     target.write_bytes(data)
     clip = load_clip(target)
@@ -161,7 +171,7 @@ def test_a_group_cut_anywhere_is_damaged(made):
 
 def test_a_group_of_other_frames_than_announced(made):
     stored = [replace(made.groups.stored[0], frames=6)]
-    groups = CodedGroups(made.groups.layout, stored, made.rig, None, made.groups.payloads)
+    groups = CodedGroups(made.groups.layout, stored, made.rig, made.groups.mesh, None, made.groups.payloads)
     with pytest.raises(FormatError, match="5 frames, 6 are announced"):
         groups.coded(0)
 

@@ -45,22 +45,21 @@ def numbered_clip(
     surface = coded_mesh(Proxy(bumpy_square()), plain.rig.cameras, plain.rig.reference)
     views = coded_cameras(plain.rig.cameras, surface.value.mesh, None)
     rig = replace(plain.rig, cameras=views.value)
-    (mesh,) = next(iter(surface.payloads.values()))
     layout = film_layout([PlaneSizes(1, LUMA, ((BASIS, TEXTURES_COUNT),)), PlaneSizes(2, CHROMA, ())])
     starts = np.cumsum([0, *lengths])
     groups = [
-        group_bytes(numbered_group(layout, mesh, range(start, start + count), cameras, crf))
+        group_bytes(numbered_group(layout, range(start, start + count), cameras, crf))
         for start, count in zip(starts[:-1].tolist(), lengths, strict=True)
     ]
     timeline = Timeline(rate, int(starts[-1]), first)
     return coded_clip(
-        rig, timeline, layout, groups, list(lengths),
+        rig, surface.value.mesh, timeline, layout, groups, list(lengths),
         to_rgb=TO_RGB, settings={"clip": {"group": 0.5}}, scores={}, generator="eigenfield test",
-        payloads=views.payloads,
+        payloads=surface.payloads | views.payloads,
     )  # fmt: skip
 
 
-def numbered_group(layout: FilmLayout, mesh: Payload, numbers: range, cameras: int, crf: int) -> CodedGroup:
+def numbered_group(layout: FilmLayout, numbers: range, cameras: int, crf: int) -> CodedGroup:
     """The group of the frames with these numbers."""
     own = np.tile(np.linspace(-1, 1, cameras, dtype=np.float32)[:, None], (1, TEXTURES_COUNT))
     stream, _ = encoder("weights-1")(own, 0.01)
@@ -70,7 +69,6 @@ def numbered_group(layout: FilmLayout, mesh: Payload, numbers: range, cameras: i
     films = [encode_film(own, size, crf, 8) for own, size in zip(frames, layout.sizes, strict=True)]
     zeros, ones = np.full(TEXTURES_COUNT, float(EMPTY_CODE)), np.full(TEXTURES_COUNT, TEXTURE_SCALE)
     return CodedGroup(
-        mesh=mesh,
         weights=((Payload("weights-1", stream),), ()),
         means=(Affine(np.array([1 / 1023]), np.zeros(1)), Affine(np.full(2, 1 / 1023), np.full(2, float(EMPTY_CODE)))),
         bases=((Affine(ones, zeros),), ()),

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from eigenfield.core.mesh import Mesh
     from eigenfield.gltf.layout import Surroundings
     from eigenfield.gltf.layout_planes import PlaneLayout
     from eigenfield.gltf.layout_sheets import SheetsLayout
@@ -57,27 +56,24 @@ def _scene_facts(file: Path) -> dict[str, Any]:
     from eigenfield.gltf import describe
 
     layout, parts = describe(file)
-    assert layout.mesh is not None
     sheets = None if layout.sheets is None else _sheet_facts(layout.sheets)
-    return _facts(layout, parts, [_plane_facts(plane) for plane in layout.planes or ()], layout.mesh, sheets)
+    return _facts(layout, parts, [_plane_facts(plane) for plane in layout.planes or ()], sheets)
 
 
 def _clip_facts(file: Path) -> dict[str, Any]:
-    from eigenfield.gltf import describe_clip, load_clip
+    from eigenfield.gltf import describe_clip
 
     layout, heads, parts = describe_clip(file)
     assert layout.films is not None
-    mesh = load_clip(file).groups.group(0).proxy.mesh
-    facts = _facts(layout, parts, [film_plane_facts(plane) for plane in layout.films.planes], mesh, None)
+    facts = _facts(layout, parts, [film_plane_facts(plane) for plane in layout.films.planes], None)
     return {**facts, "clip": clip_facts(layout, heads)}
 
 
 def _facts(
-    layout: Surroundings, parts: dict[str, int], planes: list[dict[str, Any]], mesh: Mesh,
-    sheets: dict[str, Any] | None,
-) -> dict[str, Any]:  # fmt: skip
-    cameras, plane = layout.cameras, layout.view_plane
-    assert cameras is not None and plane is not None and layout.reference is not None
+    layout: Surroundings, parts: dict[str, int], planes: list[dict[str, Any]], sheets: dict[str, Any] | None
+) -> dict[str, Any]:
+    mesh, cameras, plane = layout.mesh, layout.cameras, layout.view_plane
+    assert mesh is not None and cameras is not None and plane is not None and layout.reference is not None
     held_out = [name for name, held in zip(cameras.names, cameras.held_out, strict=True) if held]
     sizes = Counter((camera.width, camera.height) for camera in cameras.cameras)
     return {

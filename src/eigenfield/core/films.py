@@ -66,14 +66,12 @@ class CodedGroup:
     """A group of frames as a file has it.
 
     Attributes:
-        mesh: The proxy of all its frames.
         weights: Of each basis of each plane.
         means: Of each plane, from codes to numbers for each channel.
         bases: Of each basis of each plane, likewise for each channel of each texture.
         units: For each frame the temporal unit of each film; the first of a film is a key picture.
     """
 
-    mesh: Payload
     weights: tuple[tuple[Payload, ...], ...]
     means: tuple[Affine, ...]
     bases: tuple[tuple[Affine, ...], ...]

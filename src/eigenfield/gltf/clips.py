@@ -22,7 +22,7 @@ from eigenfield.core.clip import Clip, Frame, Group, Timeline
 from eigenfield.core.errors import FormatError
 from eigenfield.core.films import CodedGroup, FilmLayout, FilmPart
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.payloads import Payload, Payloads, mesh_key, weights_key
+from eigenfield.core.payloads import Payload, Payloads, weights_key
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
 from eigenfield.gltf.group import read_group
@@ -50,6 +50,7 @@ class StoredGroup:
 
 def coded_clip(
     rig: Rig,
+    mesh: Mesh,
     timeline: Timeline,
     layout: FilmLayout,
     groups: Sequence[ByteSource | bytes],
@@ -59,18 +60,19 @@ def coded_clip(
     settings: Mapping[str, Any],
     scores: Mapping[str, Any],
     generator: str,
-    payloads: Payloads | None = None,
+    payloads: Payloads,
 ) -> Clip:
     """A clip of coded groups.
 
     Args:
+        mesh: As its stream decodes.
         groups: Bytes of each (`group.group_bytes`).
         lengths: Frames of each.
-        payloads: What the rig's cameras were coded to, under their key.
+        payloads: What the mesh, and maybe the rig's cameras, were coded to.
     """
     sources = [HeldBytes(one) if isinstance(one, bytes) else one for one in groups]
     stored = [StoredGroup(source, frames) for source, frames in zip(sources, lengths, strict=True)]
-    made = CodedGroups(layout, stored, rig, to_rgb, payloads or Payloads())
+    made = CodedGroups(layout, stored, rig, mesh, to_rgb, payloads)
     return Clip(rig, timeline, made, settings, scores, generator)
 
 
@@ -79,12 +81,13 @@ class CodedGroups:
     """The groups of a clip as they are coded. The one that was decoded last is kept.
 
     Attributes:
-        payloads: Of what is the same in all groups.
+        payloads: Of what is the same in all groups: the mesh, and maybe the cameras.
     """
 
     layout: FilmLayout
     stored: Sequence[StoredGroup]
     rig: Rig
+    mesh: Mesh
     to_rgb: NDArray[np.float32] | None
     payloads: Payloads
     _kept: dict[int, Group] = field(default_factory=dict, init=False, repr=False)
@@ -122,11 +125,8 @@ class CodedGroups:
 
     def _decode(self, index: int) -> Group:
         coded, where = self.coded(index), group_place(index)
-        mesh: Mesh = CODECS[coded.mesh.codec].decode(coded.mesh.data, where)
-        if not len(mesh.faces):
-            raise FormatError("coded-damaged", "a mesh without faces", where=where)
         frames = CodedFrames(coded, self.layout, where, self.stored[index])
-        first, planes, payloads = frames[0], [], self.payloads | {mesh_key(mesh): [coded.mesh]}
+        first, planes, payloads = frames[0], [], self.payloads
         parts = zip(first.means, first.textures, coded.bases, coded.weights, strict=True)
         for mean, own, affines, streams in parts:
             bases = []
@@ -137,7 +137,7 @@ class CodedGroups:
                 bases.append(Basis(textures, scale, zero, weights))
                 payloads |= {weights_key(weights): [stream]}
             planes.append(Plane(mean, tuple(bases)))
-        return Group(Proxy(mesh), Appearance(tuple(planes), self.to_rgb), frames, payloads)
+        return Group(Proxy(self.mesh), Appearance(tuple(planes), self.to_rgb), frames, payloads)
 
     def _weights(self, stream: Payload, count: int, where: str) -> NDArray[np.float32]:
         weights: NDArray[np.float32] = CODECS[stream.codec].decode(stream.data, where)

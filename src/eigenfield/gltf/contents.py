@@ -58,7 +58,6 @@ def describe_clip(path: str | os.PathLike[str]) -> tuple[ClipLayout, list[GroupH
         assert layout.films is not None
         means = {plane.mean.film for plane in layout.films.planes}
         for head in heads:
-            made["mesh"] += head.mesh[1]
             made["weights"] += sum(map(sum, head.weights))
             for units in head.frames:
                 for film, length in enumerate(units):

@@ -1,7 +1,7 @@
 """A group of frames as bytes (`group-1`): a deflated JSON head, then its streams one behind the other.
 
-First come the mesh and the weights, then frame by frame a unit of each film. A group that is still arriving can be
-shown as far as it is there.
+First come the weights, then frame by frame a unit of each film. A group that is still arriving can be shown as far as
+it is there.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ from itertools import accumulate, chain, pairwise
 from typing import Any
 
 from eigenfield.coding import limits
-from eigenfield.coding.codecs import CODECS
 from eigenfield.core.errors import FormatError
 from eigenfield.core.films import CodedGroup, FilmLayout
 from eigenfield.core.payloads import Affine, Payload
@@ -22,7 +21,7 @@ from eigenfield.gltf.container import json_bytes
 from eigenfield.gltf.deflate import deflate, inflate
 from eigenfield.gltf.layout_planes import read_affine
 from eigenfield.gltf.source import ByteSource, HeldBytes
-from eigenfield.gltf.strict_json import Value, quote
+from eigenfield.gltf.strict_json import Value
 
 HEAD = struct.Struct("<I")  # bytes of the deflated JSON, which follows
 WEIGHTS_CODEC = "weights-1"
@@ -34,13 +33,11 @@ class GroupHead:
 
     Attributes:
         first: The first byte of the streams.
-        mesh: Codec and length.
         weights: Lengths, of each basis of each plane.
         frames: Lengths: for each frame the unit of each film.
     """
 
     first: int
-    mesh: tuple[str, int]
     weights: tuple[tuple[int, ...], ...]
     means: tuple[Affine, ...]
     bases: tuple[tuple[Affine, ...], ...]
@@ -49,14 +46,13 @@ class GroupHead:
     @property
     def lengths(self) -> list[int]:
         """Of all streams, in their order."""
-        return [self.mesh[1], *chain.from_iterable(self.weights), *chain.from_iterable(self.frames)]
+        return [*chain.from_iterable(self.weights), *chain.from_iterable(self.frames)]
 
 
 def group_bytes(group: CodedGroup) -> bytes:
     """The bytes of a group, the same each time."""
     assert all(weights.codec == WEIGHTS_CODEC for plane in group.weights for weights in plane)
     head = {
-        "mesh": {"codec": group.mesh.codec, "length": len(group.mesh.data)},
         "weights": [[len(weights.data) for weights in plane] for plane in group.weights],
         "means": [_affine(mean, len(mean.scale)) for mean in group.means],
         "bases": [
@@ -67,7 +63,7 @@ def group_bytes(group: CodedGroup) -> bytes:
     }
     text = deflate(json_bytes(head).rstrip(b" "))
     weights = [weights.data for plane in group.weights for weights in plane]
-    return b"".join([HEAD.pack(len(text)), text, group.mesh.data, *weights, *chain.from_iterable(group.units)])
+    return b"".join([HEAD.pack(len(text)), text, *weights, *chain.from_iterable(group.units)])
 
 
 def _affine(affine: Affine, channels: int) -> dict[str, Any]:
@@ -82,7 +78,6 @@ def read_group(data: bytes, layout: FilmLayout, where: str) -> CodedGroup:
     ends = accumulate(head.lengths, initial=head.first)
     streams = (data[start:end] for start, end in pairwise(ends))
     return CodedGroup(
-        mesh=Payload(head.mesh[0], next(streams)),
         weights=tuple(tuple(Payload(WEIGHTS_CODEC, next(streams)) for _ in plane) for plane in head.weights),
         means=head.means,
         bases=head.bases,
@@ -113,14 +108,11 @@ def read_head(group: ByteSource, layout: FilmLayout, where: str) -> GroupHead:
 
 
 def _head_of(entry: Value, first: int, layout: FilmLayout) -> GroupHead:
-    codec, planes = entry["mesh"]["codec"].text(), len(layout.planes)
-    if codec not in CODECS or CODECS[codec].kind != "mesh":
-        entry["mesh"]["codec"].fail("codec-unknown", f"no codec of a mesh is called {quote(codec)} here")
+    planes = len(layout.planes)
     weights, means, bases = (list(entry[key].items(planes, planes)) for key in ("weights", "means", "bases"))
     films, frames = len(layout.sizes), entry["frames"].items(limits.MAX_GROUP_FRAMES, 1)
     return GroupHead(
         first=first,
-        mesh=(codec, _length(entry["mesh"]["length"])),
         weights=tuple(
             tuple(map(_length, own.items(len(plane.bases), len(plane.bases))))
             for own, plane in zip(weights, layout.planes, strict=True)

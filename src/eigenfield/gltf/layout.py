@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.payloads import Payload
+from eigenfield.core.payloads import Payload, Payloads, cameras_key, mesh_key
 from eigenfield.core.rig import Rig
 from eigenfield.core.scene import Residual
 from eigenfield.core.viewplane import ViewPlane
@@ -45,11 +45,14 @@ class Surroundings:
     """What files of scenes and of clips have in common; a part that could not be read is None (only while validating).
 
     Attributes:
+        mesh_payload: Its stream; None where it is plain.
         triangles: (T, 3) of encoded cameras.
         to_rgb: (3, K) from the channels of all planes; None: they are R, G, B.
     """
 
     version: str
+    mesh: Mesh | None
+    mesh_payload: Payload | None
     cameras: geometry.CameraList | None
     view_plane: ViewPlane | None
     triangles: NDArray[np.int32] | None
@@ -66,18 +69,23 @@ class Surroundings:
         assert given is not None and plane is not None and triangles is not None and self.reference is not None
         return Rig(given.names, given.cameras, given.held_out, self.reference, plane, triangles)
 
+    @property
+    def payloads(self) -> Payloads:
+        """The streams of the mesh and the cameras of a file that was read strictly, where they are coded."""
+        assert self.mesh is not None and self.cameras is not None
+        cameras = self.cameras.payload
+        mesh = {} if self.mesh_payload is None else {mesh_key(self.mesh): [self.mesh_payload]}
+        return Payloads(mesh | ({} if cameras is None else {cameras_key(self.cameras.cameras): [cameras]}))
+
 
 @dataclass(frozen=True, eq=False)
 class FileLayout(Surroundings):
     """The whole file of a scene; a part that could not be read is None (only while validating).
 
     Attributes:
-        mesh_payload: Its stream; None where it is plain.
         sheets: Of the proxy; None: it is one opaque surface.
     """
 
-    mesh: Mesh | None
-    mesh_payload: Payload | None
     sheets: SheetsLayout | None
     planes: tuple[PlaneLayout, ...] | None
     residual: Residual | None
@@ -117,25 +125,17 @@ def read_layout(document: Document, findings: Findings) -> FileLayout | None:
         return None
     check_container(document, extension, findings)
     sheets = attempt(lambda: read_sheets(document, extension["sheets"]) if extension.has("sheets") else None)
-    mesh = mesh_payload = None
-    with findings.part():
-        if document.root.has("meshes") or not extension.has("mesh"):
-            mesh = geometry.read_mesh(document)  # of a coded one the coarse one, which is checked too
-        if extension.has("mesh"):
-            mesh, mesh_payload = geometry.read_coded_mesh(document, extension["mesh"])
-    attempt(lambda: check_sheets(extension["sheets"], sheets, mesh) if extension.has("sheets") else None)
     cameras = attempt(lambda: geometry.read_cameras(document, extension["cameras"]))
     planes = attempt(lambda: read_planes(document, extension["planes"], cameras, findings))
     channels = None if planes is None else [plane.mean.channels for plane in planes]
     around = read_surroundings(document, extension, cameras, channels, findings)
+    attempt(lambda: check_sheets(extension["sheets"], sheets, around.mesh) if extension.has("sheets") else None)
     with findings.part():
         if not findings.strict and any(plane.lost for plane in planes or ()):
             raise document.glb.cut_off()  # a fault, though what is left can be drawn
     residual = attempt(lambda: read_residual(document, extension, cameras, findings))
     attempt(document.check_addresses)
-    return FileLayout(
-        **vars(around), mesh=mesh, mesh_payload=mesh_payload, sheets=sheets, planes=planes, residual=residual
-    )
+    return FileLayout(**vars(around), sheets=sheets, planes=planes, residual=residual)
 
 
 def check_container(document: Document, extension: Value, findings: Findings) -> None:
@@ -166,6 +166,7 @@ def read_surroundings(
         planes: Channels of each.
     """
     attempt = findings.attempt
+    mesh, mesh_payload = attempt(lambda: _read_mesh(document, extension)) or (None, None)
     to_rgb = attempt(lambda: read_matrix(extension, None if planes is None else sum(planes)))
     attempt(lambda: check_colours(extension["cameras"], cameras, planes, to_rgb))
     view_plane = attempt(lambda: geometry.read_view_plane(extension["viewPlane"]))
@@ -176,7 +177,18 @@ def read_surroundings(
     scores = attempt(lambda: extension["scores"].mapping() if extension.has("scores") else {}) or {}
     generator = attempt(lambda: extension["generator"].text() if extension.has("generator") else "") or ""
     version = extension["version"].text()
-    return Surroundings(version, cameras, view_plane, triangles, reference, to_rgb, settings, scores, generator)
+    return Surroundings(
+        version, mesh, mesh_payload, cameras, view_plane, triangles, reference, to_rgb, settings, scores, generator
+    )
+
+
+def _read_mesh(document: Document, extension: Value) -> tuple[Mesh, Payload | None]:
+    """The proxy, and its stream where it is coded."""
+    coded = extension.has("mesh") or is_clip(extension)
+    if coded and not document.root.has("meshes"):
+        return geometry.read_coded_mesh(document, extension["mesh"])
+    shown = geometry.read_mesh(document)  # beside a coded one the coarse one, which is checked too
+    return geometry.read_coded_mesh(document, extension["mesh"]) if coded else (shown, None)
 
 
 def find_extension(document: Document) -> Value:

@@ -20,9 +20,7 @@ from eigenfield.core.payloads import (
     Coded,
     Payload,
     Payloads,
-    cameras_key,
     mean_key,
-    mesh_key,
     opacity_key,
     payloads_of,
     preview_key,
@@ -137,13 +135,9 @@ def _scene(
 ) -> Scene:
     mesh, given = layout.mesh, layout.cameras
     assert mesh is not None and given is not None
-    payloads = Payloads.merge(plane.payloads for plane in planes)
-    if layout.mesh_payload is not None:
-        payloads |= {mesh_key(mesh): [layout.mesh_payload]}
+    payloads = Payloads.merge(plane.payloads for plane in planes) | layout.payloads
     if sheets is not None:
         payloads |= sheets.payloads
-    if given.payload is not None:
-        payloads |= {cameras_key(given.cameras): [given.payload]}
     if planes and preview is not None and layout.mesh_payload is None:
         sources = [next(key for key in plane.payloads if key[0] == "mean") for plane in planes]
         sources += [] if sheets is None else [*sheets.payloads]

@@ -11,7 +11,6 @@ from eigenfield.core.arguments import checked
 from eigenfield.core.clip import Clip, Timeline
 from eigenfield.core.errors import FormatError
 from eigenfield.core.films import FilmLayout
-from eigenfield.core.payloads import Payloads, cameras_key
 from eigenfield.gltf.clips import CodedGroups, StoredGroup, group_place
 from eigenfield.gltf.container import GROUPS_CHUNK
 from eigenfield.gltf.document import Document
@@ -84,8 +83,8 @@ def check_clip(document: Document, findings: Findings) -> bool:
     layout = read_clip_layout(document, findings)
     if layout is None:
         return False
-    parts = layout.cameras, layout.view_plane, layout.triangles, layout.reference, layout.films, layout.groups
-    if any(part is None for part in parts):
+    rig = layout.cameras, layout.view_plane, layout.triangles, layout.reference
+    if any(part is None for part in (*rig, layout.mesh, layout.films, layout.groups)):
         return True
     groups = _groups_of(layout, document.glb.source)
     for index in range(len(groups.stored)):
@@ -162,13 +161,11 @@ def _clip_of(layout: ClipLayout, place: ByteSource | Path) -> Clip:
 
 def _groups_of(layout: ClipLayout, place: ByteSource | Path) -> CodedGroups:
     """The groups, none of which is read. place: the file, or its path where it is opened for each read."""
-    given = layout.cameras
-    assert layout.films is not None and given is not None
-    payloads = Payloads() if given.payload is None else Payloads({cameras_key(given.cameras): [given.payload]})
+    assert layout.films is not None and layout.mesh is not None
     stored = []
     for entry in layout.groups or ():
         first = layout.first + entry.offset
         last = first + entry.length
         data = StoredBytes(place, first, last) if isinstance(place, Path) else ByteRange(place, first, last)
         stored.append(StoredGroup(data, entry.frames, entry.digest))
-    return CodedGroups(layout.films, stored, layout.rig, layout.to_rgb, payloads)
+    return CodedGroups(layout.films, stored, layout.rig, layout.mesh, layout.to_rgb, layout.payloads)

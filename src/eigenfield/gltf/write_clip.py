@@ -1,4 +1,4 @@
-"""Clip to GLB: what viewers without a decoder of ours show, cameras, then the groups as they are."""
+"""Clip to GLB: what viewers without a decoder of ours show, cameras and mesh, then the groups as they are."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from eigenfield.gltf.read_clip import read_clip_layout
 from eigenfield.gltf.source import ByteRange, HeldBytes
 from eigenfield.gltf.streams import FEATURES, minor
 from eigenfield.gltf.writable import check_writable
-from eigenfield.gltf.write_geometry import write_cameras, write_view_plane
+from eigenfield.gltf.write_geometry import write_cameras, write_stream, write_view_plane
 from eigenfield.gltf.write_root import write_drawn, write_rest, write_root
 
 FILM_CODEC = "film-1"
@@ -96,14 +96,17 @@ def check_readable(text: bytes, binary: bytes, length: int) -> None:
 def _head(clip: Clip, groups: CodedGroups, scene: Scene, chunk: _GroupsChunk) -> tuple[bytes, bytes]:
     """The JSON and the binary chunk; scene: of the first frame, which other viewers are shown."""
     poses = cached_payloads(scene).one("cameras")
+    mesh = next(stream for (kind, _), (stream, *_) in groups.payloads.items() if kind == "mesh")
     buffer = Buffer(packed=None if poses is None else [])
-    shown = make_fallback(scene, shown_mean(scene), groups.stored[0].data.size)
+    shown = make_fallback(scene, shown_mean(scene), groups.stored[0].data.size + len(mesh.data))
     drawn = {} if shown is None else write_drawn(scene, *shown, buffer, True)
     cameras = write_cameras(scene, buffer, poses)
+    proxy = write_stream(mesh, "mesh", buffer)
     view_plane = write_view_plane(scene, buffer, poses is not None)
     needs = _needs(groups, {codec for _, codec in buffer.codecs}, cameras, bool(drawn))
     extension = {
         "needs": needs,
+        "mesh": proxy,
         "planes": [_plane(plane) for plane in groups.layout.planes],
         **write_rest(scene, cameras, view_plane),
         TIMELINE: _timeline(clip, groups, chunk),
@@ -115,7 +118,7 @@ def _head(clip: Clip, groups: CodedGroups, scene: Scene, chunk: _GroupsChunk) ->
 def _needs(groups: CodedGroups, codecs: Iterable[str], cameras: Mapping[str, Any], fallback: bool) -> list[str]:
     """The features that a reader must know to draw this clip; codecs: of streams beside those of groups."""
     coded = groups.coded(0)
-    named = {FILM_CODEC, coded.mesh.codec, *(weights.codec for plane in coded.weights for weights in plane), *codecs}
+    named = {FILM_CODEC, *(weights.codec for plane in coded.weights for weights in plane), *codecs}
     found = {
         TIMELINE: True,
         "namePattern": "pattern" in cameras,

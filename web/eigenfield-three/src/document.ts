@@ -103,7 +103,7 @@ export function readDocument(json: Json): SceneDocument {
   const viewPlane = extension.key("viewPlane");
   const [triangles, codedTriangles] = [viewPlane.key("triangles"), viewPlane.key("codedTriangles")];
   const generator = extension.key("generator");
-  const mesh = extension.key("mesh");
+  const [mesh, timeline] = [extension.key("mesh"), extension.key("timeline")];
   return {
     version,
     generator: generator.exists ? generator.text(limits.MAX_NAME) : "",
@@ -128,11 +128,11 @@ export function readDocument(json: Json): SceneDocument {
     settings: freeForm(extension.key("settings")),
     scores: freeForm(extension.key("scores")),
     views,
-    mesh: mesh.exists ? streamOf("mesh", mesh, viewOf) : null,
+    mesh: mesh.exists || timeline.exists ? streamOf("mesh", mesh, viewOf) : null,
     sheets: readSheets(extension.key("sheets"), viewOf),
     shown: mesh.exists && !root.key("meshes").exists ? null : readShown(root, accessor),
     preview,
-    timeline: readTimeline(extension.key("timeline"), planes),
+    timeline: readTimeline(timeline, planes),
   };
 }
 

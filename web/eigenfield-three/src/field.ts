@@ -221,7 +221,6 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     const { scene } = this.parts;
     const { plan } = this.textures;
     this.group = group;
-    if (group.geometry !== this.surface.geometry) this.surface.setGeometry(group.geometry);
     this.weights.dispose();
     this.weights = this.weightsOf(group.omega);
     setScales(scene, group);

@@ -1,7 +1,6 @@
 // The groups of a clip: each is fetched, checked and opened when one of its frames is wanted.
 
-import type { BufferGeometry } from "three";
-import { codecOf, CODECS } from "./codecs.js";
+import { CODECS } from "./codecs.js";
 import { parseJson } from "./container.js";
 import type { SceneDocument } from "./document.js";
 import { damaged } from "./errors.js";
@@ -11,7 +10,6 @@ import { Value } from "./json.js";
 import * as limits from "./limits.js";
 import type { ByteReader } from "./packed.js";
 import { numbersOf, type Picture } from "./planes.js";
-import { geometryOf } from "./proxy.js";
 import type { AffineJson, GroupHeadJson } from "./schema.js";
 import type { GroupPlace, Timeline } from "./timeline.js";
 
@@ -26,7 +24,6 @@ export interface Group {
   index: number;
   first: number; // frame
   frames: number;
-  geometry: BufferGeometry; // that of the group before, where it is the same
   omega: Float32Array; // (encoded cameras) x (eigen textures of all bases)
   means: Affine[]; // of each plane
   bases: Affine[]; // of all planes
@@ -35,7 +32,6 @@ export interface Group {
 
 export class Groups {
   private readonly kept = new Map<number, Promise<Group>>(); // that was wanted last is the last
-  private mesh: { bytes: Uint8Array; geometry: BufferGeometry } | null = null; // of the group opened last
 
   /** `read`: bytes of the chunk of groups. */
   constructor(
@@ -60,27 +56,10 @@ export class Groups {
     await checkDigest(bytes, place);
     const { head, at } = await readHead(bytes, place);
     const streams = takeStreams(bytes, at, place);
-    const mesh = head.key("mesh");
-    const geometry = this.geometryOf(streams(mesh.key("length")), codecOf("mesh", mesh.key("codec"), "mesh-2").decode, mesh.where);
     const omega = this.weightsOf(head, streams);
     const { first, frames } = place;
     const units = unitsOf(head, place, this.timeline.films.length, streams);
-    return { index, first, frames, geometry, omega, ...this.scalesOf(head), units };
-  }
-
-  /** Groups of a still proxy have the same mesh, which is decoded once. */
-  private geometryOf(
-    bytes: Uint8Array,
-    decode: (typeof CODECS)["mesh-2"]["decode"],
-    where: string,
-  ): BufferGeometry {
-    const before = this.mesh;
-    if (before && before.bytes.length === bytes.length && before.bytes.every((byte, i) => byte === bytes[i])) {
-      return before.geometry;
-    }
-    const geometry = geometryOf(decode(bytes, where), where);
-    this.mesh = { bytes, geometry };
-    return geometry;
+    return { index, first, frames, omega, ...this.scalesOf(head), units };
   }
 
   private weightsOf(head: Value<GroupHeadJson>, streams: Streams): Float32Array {

@@ -87,8 +87,8 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
       return data;
     };
     const clip = scene.timeline && (await this.openClip(scene, scene.timeline));
-    const proxy = clip ? clip.group.geometry : scene.mesh && (await readCodedMesh(scene.mesh, bytes));
-    if (proxy) {
+    if (scene.mesh) {
+      const proxy = await readCodedMesh(scene.mesh, bytes);
       mesh.geometry.dispose();
       for (const each of meshes) each.geometry = proxy;
     }

@@ -5,7 +5,6 @@ import type { Stream, ViewBytes } from "./accessors.js";
 import type { SceneDocument } from "./document.js";
 import { SceneError, damaged } from "./errors.js";
 import { MAX_NUMBER } from "./limits.js";
-import type { DecodedMesh } from "./mesh-decoder.js";
 
 const SHORT = 65535; // vertices up to which indices have 16 bits: index 65535 itself begins a new strip
 
@@ -29,10 +28,7 @@ export function checkGeometry(geometry: BufferGeometry, shown: NonNullable<Scene
 
 /** The proxy of a scene whose glTF mesh is a coarse one, for viewers that know nothing of ours. */
 export async function readCodedMesh({ view, codec, where }: Stream<"mesh">, bytes: ViewBytes): Promise<BufferGeometry> {
-  return geometryOf(codec.decode(new Uint8Array(await bytes(view)), where), where);
-}
-
-export function geometryOf({ positions, uv, indices }: DecodedMesh, where: string): BufferGeometry {
+  const { positions, uv, indices } = codec.decode(new Uint8Array(await bytes(view)), where);
   if (!indices.length) throw damaged(where, "a mesh without faces");
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(positions, 3));

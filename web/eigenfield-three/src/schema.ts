@@ -362,8 +362,6 @@ export interface GroupJson {
 
 /** The JSON at the beginning of a group: lengths of its streams, and what its codes stand for. */
 export interface GroupHeadJson {
-  /** The proxy of a group, coded. */
-  mesh: GroupMeshJson;
   /** Bytes of the coded weights of each basis of each plane. */
   weights: number[][];
   /** What the codes of the mean of each plane stand for. */
@@ -372,14 +370,6 @@ export interface GroupHeadJson {
   bases: AffineJson[][];
   /** For each frame the bytes of each film's unit. */
   frames: number[][];
-}
-
-/** The proxy of a group, coded. */
-export interface GroupMeshJson {
-  /** Codecs of a mesh. */
-  codec: MeshCodec;
-  /** Bytes of a stream. */
-  length: number;
 }
 
 /** value = (code - zero) * scale. */

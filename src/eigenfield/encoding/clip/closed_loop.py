@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from eigenfield.coding.codecs import encoder
 from eigenfield.coding.video.film_layout import MEANS, TEXTURES
 from eigenfield.core.films import CodedGroup, FilmLayout
-from eigenfield.core.payloads import Payload, mesh_key
+from eigenfield.core.payloads import Payload
 from eigenfield.encoding.clip.films import CodedFilm, code_film, film_scale, range_of
 from eigenfield.encoding.clip.frames import Arrays, FramePass, GroupFrames
 from eigenfield.encoding.clip.open_loop import OpenGroup, equation_arrays, summed_equations
@@ -59,14 +59,12 @@ def code_group(group: GroupFrames, opened: OpenGroup, layout: FilmLayout) -> tup
     Args:
         layout: Says how many textures are kept of each plane: the first ones.
     """
-    plan, parts = group.clip.plan, layout.planes
-    kept = _kept_textures(opened, layout)
+    kept, parts = _kept_textures(opened, layout), layout.planes
     textures = _code_textures(group, opened, kept, layout)
     weights = _code_weights(group, opened, kept, textures)
     closed = _close(group, opened, weights, textures)
     means = _code_means(group, closed, layout)
     coded = CodedGroup(
-        mesh=plan.payloads[mesh_key(plan.mesh)][0],
         weights=tuple((one.payload,) for one in weights),
         means=tuple(means.scale.affine(number, plane.channels) for number, plane in enumerate(parts)),
         bases=tuple((textures.scale.affine(number, len(plane.bases[0].at)),) for number, plane in enumerate(parts)),

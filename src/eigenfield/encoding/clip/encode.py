@@ -89,6 +89,7 @@ def encode_clip(
         layout = clip.layout(made[0].counts)
     return coded_clip(
         plan.views.rig,
+        plan.mesh,
         footage.timeline,
         layout,
         [one.data for one in made],

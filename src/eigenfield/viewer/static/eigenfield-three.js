@@ -194,7 +194,7 @@ async function be(e, t, n, r) {
 	return s;
 }
 // eigenfield-three/src/limits.ts
-var xe = "EIGENFIELD_eigen_textures", Se = 64 * 2 ** 20, Ce = 16384, we = 16384, Te = 1024, Ee = 2 ** 27, De = 4096, Oe = 8 * 2 ** 30, I = 1e5, ke = 65535, Ae = 2 ** 29, L = 1024, je = 2 ** 25, Me = 2 ** 26, Ne = 2 ** 27, Pe = 8192, Fe = 2 ** 24, Ie = 2 ** 20, Le = 2 ** 16, Re = 2 ** 30, ze = 1024, Be = 2 ** 22, Ve = 2 ** 31 - 1, He = 2 ** 28, Ue = 1e30, R = 65536, We = 126, Ge = 64, Ke = 0, qe = 1, Je = 2, Ye = 24, Xe = 44, Ze = 21, Qe = 26214, $e = 4, et = Float64Array.from({ length: 4095 }, (e, t) => Math.round(R / (1 + Math.exp((2047 - t) / 256)))), tt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), nt = Float64Array.from({ length: 127 }, (e, t) => Math.round(R / (t + 1.5)));
+var xe = "EIGENFIELD_eigen_textures", Se = 64 * 2 ** 20, I = 16384, Ce = 16384, we = 1024, Te = 2 ** 27, Ee = 4096, De = 8 * 2 ** 30, Oe = 1e5, ke = 65535, Ae = 2 ** 29, L = 1024, je = 2 ** 25, Me = 2 ** 26, Ne = 2 ** 27, Pe = 8192, Fe = 2 ** 24, Ie = 2 ** 20, Le = 2 ** 16, Re = 2 ** 30, ze = 1024, Be = 2 ** 22, Ve = 2 ** 31 - 1, He = 2 ** 28, Ue = 1e30, R = 65536, We = 126, Ge = 64, Ke = 0, qe = 1, Je = 2, Ye = 24, Xe = 44, Ze = 21, Qe = 26214, $e = 4, et = Float64Array.from({ length: 4095 }, (e, t) => Math.round(R / (1 + Math.exp((2047 - t) / 256)))), tt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), nt = Float64Array.from({ length: 127 }, (e, t) => Math.round(R / (t + 1.5)));
 function z(e) {
 	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + z(Math.floor(e / 4294967296));
 }
@@ -318,7 +318,7 @@ function Ct(e, t, n, r) {
 	return i;
 }
 // eigenfield-three/src/camera-decoder.ts
-var wt = 130, B = 11, Tt = 1, Et = 2, Dt = 2, Ot = 44 * I + 1024;
+var wt = 130, B = 11, Tt = 1, Et = 2, Dt = 2, Ot = 44 * Oe + 1024;
 async function kt(e, t) {
 	if (e[0] !== Dt) throw M(t, `version ${e[0]}`);
 	let n = await be(Uint8Array.from(e.subarray(1)), "deflate-raw", Ot, t);
@@ -328,7 +328,7 @@ function At(e, t) {
 	let n = it(e, wt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Tt) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
 	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw M(t, "cameras that cannot be");
 	if (i > 1e5 || a && o * s < i) throw M(t, `${i} cameras`);
-	at(e, Math.max(B * i, o * s), B * I, t);
+	at(e, Math.max(B * i, o * s), B * Oe, t);
 	let l = wt + (a ? 132 : 0);
 	it(e, l, t);
 	let u = (e, t) => a ? n.getFloat32(wt + 4 * (e * B + t), !0) : 0, d = vt(e.subarray(l)), f = a ? Ct(d, o * s, i, t) : null, p = St(d, i, B, (r & Et) !== 0);
@@ -1152,7 +1152,7 @@ function Sr(e, t, n) {
 	if (n && (i !== n[0] || a !== n[1])) throw M(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
 	if (t.codec.bits !== 8 && t.codec.bits !== o) throw M(t.where, `no picture of ${t.codec.bits} bits`);
 	let s = i * a;
-	if (!s || i > 16384 || a > 32768 || s > Ee) throw M(t.where, `a picture of ${i} x ${a}`);
+	if (!s || i > 16384 || a > 32768 || s > Te) throw M(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
 var Cr = async (e, t, n) => {
@@ -1225,7 +1225,7 @@ async function Or(e, t, n) {
 var kr = 5;
 function Ar(e, t) {
 	let n = it(e, kr, t).getUint32(1, !0);
-	at(e, 3 * n, 6 * I, t);
+	at(e, 3 * n, 6 * Oe, t);
 	let r = vt(e.subarray(kr)), i = St(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
@@ -1461,7 +1461,7 @@ function Kr(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
-	return e.key("bufferViews").items(Ce).map((e) => {
+	return e.key("bufferViews").items(I).map((e) => {
 		let t = e.key("byteOffset"), r = e.key("byteStride");
 		e.key("buffer").integer(0, 0);
 		let i = {
@@ -1477,7 +1477,7 @@ function qr(e) {
 	return (t) => t.integer(0, e.length - 1);
 }
 function Jr(e, t) {
-	let n = e.key("accessors"), r = n.exists ? n.items(Ce) : [];
+	let n = e.key("accessors"), r = n.exists ? n.items(I) : [];
 	return (e, n, i, a) => {
 		let o = r[e.integer(0, r.length - 1)];
 		if (!o) throw e.wrong("no such accessor");
@@ -1528,10 +1528,10 @@ var K = 8, Qr = 16, $r = "av1-10bit-2";
 function ei(e, t) {
 	return new j("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function ti(e, t = we) {
+function ti(e, t = Ce) {
 	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
 	if (!n || !r) throw e.wrong("two numbers are needed");
-	if (n * r > Ee) throw e.wrong(`more than ${Ee} texels`);
+	if (n * r > Te) throw e.wrong(`more than ${Te} texels`);
 	return [n, r];
 }
 function ni(e, t, n, r, i) {
@@ -1552,8 +1552,8 @@ function ni(e, t, n, r, i) {
 			s += t[0] * t[1] * e * n, c += r;
 		}
 	}
-	if (c > 4096) throw e.key("planes").wrong(`more than ${De} textures`);
-	if (s > Oe) throw e.key("planes").wrong("too large when it is decoded");
+	if (c > 4096) throw e.key("planes").wrong(`more than ${Ee} textures`);
+	if (s > De) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
 function ri(e, t) {
@@ -1620,7 +1620,7 @@ function ai(e) {
 	return o;
 }
 function oi(e, t, n) {
-	let r = e.key("at").items(De * t).map((e) => {
+	let r = e.key("at").items(Ee * t).map((e) => {
 		let [t = 0, n = 0] = e.numbers(2, 0, Pe);
 		if (!Number.isInteger(t) || !Number.isInteger(n)) throw e.wrong("no whole numbers");
 		return [t, n];
@@ -1722,7 +1722,7 @@ function pi(e, t) {
 function mi(e, t, n) {
 	if (!e.exists) return null;
 	if (t.codec.bits === K) throw e.wrong(`of a mean of ${K} bits`);
-	let r = ti(e.key("size"), Te), i = Rr("picture", e.key("codec"), "png");
+	let r = ti(e.key("size"), we), i = Rr("picture", e.key("codec"), "png");
 	if (i !== U.png) throw e.key("codec").wrong("no PNG");
 	return {
 		view: n(e.key("bufferView")),
@@ -1734,13 +1734,13 @@ function mi(e, t, n) {
 	};
 }
 function hi(e, t, n, r, i) {
-	let a = ti(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? ti(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, we) : [];
+	let a = ti(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? ti(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, Ce) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
 	let d = e.where;
 	if (e.key("film").exists) {
 		let n = oi(e, t, a), { textures: r } = n;
-		if (r > 4096) throw e.wrong(`more than ${De} textures`);
+		if (r > 4096) throw e.wrong(`more than ${Ee} textures`);
 		return {
 			size: a,
 			grid: c,
@@ -1751,14 +1751,14 @@ function hi(e, t, n, r, i) {
 			where: d
 		};
 	}
-	let f = 0, p = e.key("picture"), m = p.exists ? p.object() : {}, h = e.key("textures").items(De).map((e) => {
+	let f = 0, p = e.key("picture"), m = p.exists ? p.object() : {}, h = e.key("textures").items(Ee).map((e) => {
 		let n = new W({
 			...m,
 			...e.object()
-		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, De) : 1;
+		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, Ee) : 1;
 		return f += o, ii(n, t, o, a, i);
 	});
-	if (f > 4096) throw e.wrong(`more than ${De} textures`);
+	if (f > 4096) throw e.wrong(`more than ${Ee} textures`);
 	let g = e.key("codedWeights"), _ = f ? g.exists ? Yr("weights", g, i) : r(e.key("weights"), "SCALAR", [G], n * f) : null;
 	return {
 		size: a,
@@ -1773,7 +1773,7 @@ function hi(e, t, n, r, i) {
 function gi(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
-	if (n * i > Ee) throw e.wrong(`more than ${Ee} texels`);
+	if (n * i > Te) throw e.wrong(`more than ${Te} texels`);
 }
 // eigenfield-three/src/sheets.ts
 function _i(e, t) {
@@ -1906,7 +1906,7 @@ function Li(e) {
 	Vi(t);
 	let s = Wi(t, o), c = n.key("cameras"), { count: l, names: u } = Gi(c, o), d = Ji(c, l), f = d.filter((e) => !e).length, p = ni(n, f, s, a, o), m = ri(n, p), h = c.key("colour"), g = c.key("codedColour");
 	if ((h.exists || g.exists) && m.length < 3) throw h.wrong("needs three channels");
-	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), x = n.key("mesh");
+	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), [x, S] = [n.key("mesh"), n.key("timeline")];
 	return {
 		version: r,
 		generator: b.exists ? b.text(L) : "",
@@ -1919,15 +1919,15 @@ function Li(e) {
 		sizes: Xi(c, l, a),
 		colour: g.exists ? Yr("weights", g, o) : h.exists ? a(h, "SCALAR", [G], 6 * l) : null,
 		...Zi(_),
-		triangles: y.exists ? Yr("triangles", y, o) : v.exists ? Ui(a(v, "SCALAR", [Vr, Hr], null), 2 * I) : null,
+		triangles: y.exists ? Yr("triangles", y, o) : v.exists ? Ui(a(v, "SCALAR", [Vr, Hr], null), 2 * Oe) : null,
 		settings: Qi(n.key("settings")),
 		scores: Qi(n.key("scores")),
 		views: i,
-		mesh: x.exists ? Yr("mesh", x, o) : null,
+		mesh: x.exists || S.exists ? Yr("mesh", x, o) : null,
 		sheets: _i(n.key("sheets"), o),
 		shown: x.exists && !t.key("meshes").exists ? null : Ri(t, a),
 		preview: s,
-		timeline: xi(n.key("timeline"), p)
+		timeline: xi(S, p)
 	};
 }
 function Ri(e, t) {
@@ -1951,14 +1951,14 @@ function Bi(e) {
 	let t = e.key("version").text(L);
 	if (!/^1\.\d+$/.test(t)) throw new j("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
-	for (let e of n.exists ? n.items(Ce) : []) {
+	for (let e of n.exists ? n.items(I) : []) {
 		let t = e.text(L);
 		if (!Mi.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
 function Vi(e) {
-	let t = e.key("nodes").items(Ce), n = Array(t.length).fill(!1);
+	let t = e.key("nodes").items(I), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
 		for (let e of r.exists ? r.items(t.length) : []) {
@@ -1967,7 +1967,7 @@ function Vi(e) {
 			n[r] = !0;
 		}
 	}
-	for (let r of e.key("scenes").items(Ce)) {
+	for (let r of e.key("scenes").items(I)) {
 		let e = r.key("nodes");
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
@@ -1989,10 +1989,10 @@ function Wi(e, t) {
 function Gi(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
-		count: n.key("count").integer(1, I),
+		count: n.key("count").integer(1, Oe),
 		names: Yr("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? qi(r) : i.items(I).map((e) => e.text(L));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? qi(r) : i.items(Oe).map((e) => e.text(L));
 	if (!a.length) throw i.wrong("no cameras");
 	let o = Ki(a);
 	if (o) throw i.wrong(o);
@@ -2005,7 +2005,7 @@ function Ki(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
 function qi(e) {
-	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, I));
+	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, Oe));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
 	let r = e.key("parts").items(Ni).map((e) => {
 		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(L))];
@@ -3279,79 +3279,40 @@ function _s(e) {
 function vs(e) {
 	return new j("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
-// eigenfield-three/src/proxy.ts
-var ys = 65535;
-function bs(e, t) {
-	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
-	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
-	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
-	for (let e = 0; e < n.count; e++) {
-		if (!(Math.max(Math.abs(n.getX(e)), Math.abs(n.getY(e)), Math.abs(n.getZ(e))) <= 1e30)) throw M(t.position.where, `vertex ${e} is not finite`);
-		if (!(Math.max(Math.abs(r.getX(e)), Math.abs(r.getY(e))) <= 1e30)) throw M(t.uv.where, `texture coordinates of vertex ${e} are not finite`);
-	}
-	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
-}
-async function xs({ view: e, codec: t, where: n }, r) {
-	return Ss(t.decode(new Uint8Array(await r(e)), n), n);
-}
-function Ss({ positions: n, uv: r, indices: i }, a) {
-	if (!i.length) throw M(a, "a mesh without faces");
-	let o = new t();
-	o.setAttribute("position", new e(n, 3)), o.setAttribute("uv", new e(r, 2));
-	let s = n.length / 3 <= ys;
-	return o.setIndex(new e(s ? Uint16Array.from(i) : i, 1)), o;
-}
-function Cs(e) {
-	return {
-		vertices: e.getAttribute("position").count,
-		triangles: (e.index?.count ?? 0) / 3
-	};
-}
 // eigenfield-three/src/groups.ts
-var ws = 3, Ts = 4, Es = class {
+var ys = 3, bs = 4, xs = class {
 	scene;
 	timeline;
 	read;
 	kept = /* @__PURE__ */ new Map();
-	mesh = null;
 	constructor(e, t, n) {
 		this.scene = e, this.timeline = t, this.read = n;
 	}
 	open(e) {
 		let t = this.kept.get(e) ?? this.opened(e);
 		this.kept.delete(e), this.kept.set(e, t);
-		for (let [e] of this.kept) this.kept.size > ws && this.kept.delete(e);
+		for (let [e] of this.kept) this.kept.size > ys && this.kept.delete(e);
 		return t;
 	}
 	async opened(e) {
 		let t = this.timeline.groups[e];
 		if (!t) throw RangeError(`no group ${e}`);
 		let n = new Uint8Array(await this.read(t.offset, t.length));
-		await Os(n, t);
-		let { head: r, at: i } = await ks(n, t), a = As(n, i, t), o = r.key("mesh"), s = this.geometryOf(a(o.key("length")), Rr("mesh", o.key("codec"), "mesh-2").decode, o.where), c = this.weightsOf(r, a), { first: l, frames: u } = t, d = js(r, t, this.timeline.films.length, a);
+		await Cs(n, t);
+		let { head: r, at: i } = await ws(n, t), a = Ts(n, i, t), o = this.weightsOf(r, a), { first: s, frames: c } = t, l = Es(r, t, this.timeline.films.length, a);
 		return {
 			index: e,
-			first: l,
-			frames: u,
-			geometry: s,
-			omega: c,
+			first: s,
+			frames: c,
+			omega: o,
 			...this.scalesOf(r),
-			units: d
+			units: l
 		};
 	}
-	geometryOf(e, t, n) {
-		let r = this.mesh;
-		if (r && r.bytes.length === e.length && r.bytes.every((t, n) => t === e[n])) return r.geometry;
-		let i = Ss(t(e, n), n);
-		return this.mesh = {
-			bytes: e,
-			geometry: i
-		}, i;
-	}
 	weightsOf(e, t) {
-		let n = this.scene.heldOut.filter((e) => !e).length, r = Ns(e.key("weights"), this.scene.planes.length);
+		let n = this.scene.heldOut.filter((e) => !e).length, r = Os(e.key("weights"), this.scene.planes.length);
 		return la(n, this.scene.planes.flatMap(({ bases: e }, i) => {
-			let a = r[i] && Ns(r[i], e.length);
+			let a = r[i] && Os(r[i], e.length);
 			return e.map(({ count: e }, r) => {
 				let i = a[r];
 				return da(U["weights-1"].decode(t(i), i.where), n, e, i.where);
@@ -3361,34 +3322,34 @@ var ws = 3, Ts = 4, Es = class {
 	scalesOf(e) {
 		let { planes: t } = this.scene;
 		return {
-			means: Ns(e.key("means"), t.length).map((e, n) => Ms(e, t[n].mean)),
-			bases: Ns(e.key("bases"), t.length).flatMap((e, n) => {
+			means: Os(e.key("means"), t.length).map((e, n) => Ds(e, t[n].mean)),
+			bases: Os(e.key("bases"), t.length).flatMap((e, n) => {
 				let { bases: r } = t[n];
-				return Ns(e, r.length).map((e, t) => Ms(e, r[t].pictures[0]));
+				return Os(e, r.length).map((e, t) => Ds(e, r[t].pictures[0]));
 			})
 		};
 	}
 };
-function Ds(e, { means: t, bases: n }) {
+function Ss(e, { means: t, bases: n }) {
 	e.planes.forEach(({ mean: e }, n) => Object.assign(e, t[n])), J(e).forEach(({ pictures: [e] }, t) => e && Object.assign(e, n[t]));
 }
-async function Os(e, { sha256: t, where: n }) {
+async function Cs(e, { sha256: t, where: n }) {
 	let r = globalThis.crypto?.subtle;
 	if (!r) return;
 	let i = new Uint8Array(await r.digest("SHA-256", e));
 	if (Array.from(i, (e) => e.toString(16).padStart(2, "0")).join("") !== t) throw M(n, "other bytes than its SHA-256 says");
 }
-async function ks(e, { where: t }) {
-	if (e.length < Ts) throw M(t, "no head");
-	let n = Ts + new DataView(e.buffer).getUint32(0, !0);
+async function ws(e, { where: t }) {
+	if (e.length < bs) throw M(t, "no head");
+	let n = bs + new DataView(e.buffer).getUint32(0, !0);
 	if (n > e.length) throw M(t, "a head longer than the group");
-	let r = await be(e.subarray(Ts, n), "deflate-raw", Be, t);
+	let r = await be(e.subarray(bs, n), "deflate-raw", Be, t);
 	return {
 		head: new W(gs(new TextDecoder("utf-8").decode(r), t), t),
 		at: n
 	};
 }
-function As(e, t, n) {
+function Ts(e, t, n) {
 	let r = t;
 	return (t) => {
 		let i = r;
@@ -3396,22 +3357,22 @@ function As(e, t, n) {
 		return e.subarray(i, r);
 	};
 }
-function js(e, t, n, r) {
-	return Ns(e.key("frames"), t.frames).map((e) => Ns(e, n).map((e) => r(e)));
+function Es(e, t, n, r) {
+	return Os(e.key("frames"), t.frames).map((e) => Os(e, n).map((e) => r(e)));
 }
-function Ms(e, { pieces: t, textures: n }) {
+function Ds(e, { pieces: t, textures: n }) {
 	let r = e;
 	return {
 		scale: di(r.key("scale"), t, n),
 		zero: di(r.key("zero"), t, n)
 	};
 }
-function Ns(e, t) {
+function Os(e, t) {
 	let n = e.items(t);
 	if (n.length !== t) throw e.wrong(`${t} entries are needed`);
 	return n;
 }
-var Ps = 3, Fs = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", Is = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", Ls = `#version 300 es
+var ks = 3, As = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", js = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", Ms = `#version 300 es
 precision highp float;
 precision highp int;
 uniform highp sampler2D picture; // values, and whether they are of a chart
@@ -3421,7 +3382,7 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec2 own = texelFetch(picture, at, 0).rg;
   vec2 sum = vec2(own.r * own.g, own.g);
-  for (int far = 1; far <= ${Ps} && sum.y == 0.0; far++) {
+  for (int far = 1; far <= ${ks} && sum.y == 0.0; far++) {
     for (int y = -far; y <= far; y++) {
       for (int x = -far; x <= far; x++) {
         vec2 near = texelFetch(picture, clamp(at + ivec2(x, y), ivec2(0), size - 1), 0).rg;
@@ -3431,9 +3392,9 @@ void main() {
   }
   stored = vec4(sum.y > 0.0 ? sum.x / sum.y : own.r);
 }
-`, Rs = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
+`, Ns = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
 // eigenfield-three/src/parts.ts
-function zs(e, t, n) {
+function Ps(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -3443,7 +3404,7 @@ function zs(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = Hs(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = Ls(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -3471,7 +3432,7 @@ function zs(e, t, n) {
 						a + e[1] / i[1]
 					],
 					colours: f,
-					...Us(l, u, h, n.halves && ci(l)),
+					...Rs(l, u, h, n.halves && ci(l)),
 					basis: {
 						ready: m,
 						column: o,
@@ -3483,13 +3444,13 @@ function zs(e, t, n) {
 		}
 	}), r;
 }
-function Bs(e, t, n, r) {
-	zs(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
+function Fs(e, t, n, r) {
+	Ps(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
 		scale: t,
 		bias: n
 	}));
 }
-function Vs({ planes: e, sheets: t }, { means: n, needs: r }) {
+function Is({ planes: e, sheets: t }, { means: n, needs: r }) {
 	let i = n[e.length], a = r.means[e.length]?.size;
 	return !t || !i || !a ? null : {
 		stored: i,
@@ -3505,11 +3466,11 @@ function Vs({ planes: e, sheets: t }, { means: n, needs: r }) {
 			0,
 			0
 		]],
-		...Hs(t.opacity),
+		...Ls(t.opacity),
 		basis: null
 	};
 }
-function Hs({ mean: e, channels: t, precision: n }) {
+function Ls({ mean: e, channels: t, precision: n }) {
 	let { scale: r, zero: i } = e, a = n ? 4 : 1 / ui(e, ci([e])), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
@@ -3520,7 +3481,7 @@ function Hs({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function Us(e, t, n, r) {
+function Rs(e, t, n, r) {
 	let i = e.flatMap((e) => Array(e.textures).fill(ui(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * Wa(n), c = {
 		scale: new Float32Array(s),
 		bias: new Float32Array(s)
@@ -3532,7 +3493,7 @@ function Us(e, t, n, r) {
 	return c;
 }
 // eigenfield-three/src/player.ts
-var Ws = .25, Gs = class extends f {
+var zs = .25, Bs = class extends f {
 	timeline;
 	user;
 	first;
@@ -3612,7 +3573,7 @@ var Ws = .25, Gs = class extends f {
 	}
 	update(e = performance.now()) {
 		if (this.disposed) return;
-		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, Ws);
+		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, zs);
 		if (this.last = this.plays && this.goal === null ? e : null, this.goal === null && !this.plays) return;
 		this.goal === null && (this.clock = this.advanced(t));
 		let n = this.ring.take(this.goal ?? Math.floor(this.clock));
@@ -3662,19 +3623,19 @@ var Ws = .25, Gs = class extends f {
 		let n = this.goal !== null && ki(this.timeline, this.goal % this.frames);
 		n === !1 || t !== null && n !== t || (this.goal = this.following = null, this.settle());
 	}
-}, Ks = 256;
-function qs(e, t, n) {
+}, Vs = 256;
+function Hs(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / Ks)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / Vs)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Js(t, i.getX(e), i.getY(e), i.getZ(e))), l = Ys(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Us(t, i.getX(e), i.getY(e), i.getZ(e))), l = Ws(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = Ys(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = Ws(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -3684,7 +3645,7 @@ function qs(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function Js({ K: e, R: t, t: n }, r, i, a) {
+function Us({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -3692,12 +3653,12 @@ function Js({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function Ys(e) {
+function Ws(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/sheet-stack.ts
-var Xs = "sheets", Zs = 16, Qs = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", $s = `${Fo}${Io}
+var Gs = "sheets", Ks = 16, qs = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Js = `${Fo}${Io}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -3722,7 +3683,7 @@ void main() {
   gl_FragDepth = depth;
   fragment = colour;
 }
-`, ec = new ae(), tc = class {
+`, Ys = new ae(), Xs = class {
 	material;
 	scene = new k();
 	camera = new n();
@@ -3738,10 +3699,10 @@ void main() {
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
 		let { shown: n, photograph: r, toPhotograph: i } = t.uniforms;
 		this.screen = new O({
-			name: Xs,
+			name: Gs,
 			glslVersion: h,
-			vertexShader: Qs,
-			fragmentShader: $s,
+			vertexShader: qs,
+			fragmentShader: Js,
 			uniforms: {
 				shown: n,
 				photograph: r,
@@ -3771,7 +3732,7 @@ void main() {
 		this.everywhere.setAttribute("position", new e(a, 3));
 	}
 	get bytes() {
-		return this.target ? Zs * this.target.width * this.target.height : 0;
+		return this.target ? Ks * this.target.width * this.target.height : 0;
 	}
 	setGeometry(e, t) {
 		e.clearGroups();
@@ -3789,7 +3750,7 @@ void main() {
 	attach(e, t) {
 		for (let t of [e.material].flat()) t.visible = !1;
 		let n = new S(this.everywhere, this.screen);
-		n.name = Xs, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
+		n.name = Gs, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
 			t(n, i), this.draw(n, i, e);
 		}, e.add(n);
 	}
@@ -3800,9 +3761,9 @@ void main() {
 		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
 	}
 	draw(e, t, n) {
-		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(ec);
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Ys);
 		if (!a || !o) return;
-		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = nc(a, o));
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Zs(a, o));
 		let { target: s } = this;
 		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), bo(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
@@ -3811,7 +3772,7 @@ void main() {
 		this.set("sheets", s.textures[0]), this.set("solid", s.textures[1]), this.set("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
 	}
 };
-function nc(e, t) {
+function Zs(e, t) {
 	let n = new l(e, t, re);
 	n.format = c;
 	let r = new oe(e, t, {
@@ -3825,7 +3786,7 @@ function nc(e, t) {
 	return i && (i.type = ne), r;
 }
 // eigenfield-three/src/surface.ts
-var rc = class {
+var Qs = class {
 	meshes;
 	faces;
 	reference;
@@ -3840,7 +3801,7 @@ var rc = class {
 		if (!i) throw Error("a field needs a mesh");
 		this.mesh = i;
 		let a = [i.material].flat().some((e) => e.side !== m);
-		this.material = Uo(a, t !== null), this.stack = t && new tc(this.material);
+		this.material = Uo(a, t !== null), this.stack = t && new Xs(this.material);
 		for (let t of e) {
 			let e = (e, n) => r(e, n, t);
 			this.stack ? this.stack.attach(t, e) : (t.material = this.material, t.onBeforeRender = (t, n, r) => e(t, r));
@@ -3867,52 +3828,52 @@ var rc = class {
 		e.boundingBox = e.boundingSphere = null, this.faces = t, this.version += 1, this.show(t);
 	}
 	show(e) {
-		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? qs(this.geometry, this.reference, [1, 1]) : 0;
+		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? Hs(this.geometry, this.reference, [1, 1]) : 0;
 	}
 	dispose() {
 		this.stack?.dispose(), this.material.dispose(), this.geometry.dispose();
 	}
 };
 // eigenfield-three/src/gpu.ts
-function ic(e) {
+function $s(e) {
 	let t = e.getContext();
 	if (!(t instanceof WebGL2RenderingContext)) throw new j("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
 	if ((t.getExtension("EXT_color_buffer_float") ?? t.getExtension("EXT_color_buffer_half_float")) || t.isContextLost()) return t;
 	throw new j("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
 }
-function ac(e, t) {
+function ec(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function oc(e, { components: t, halves: n }) {
+function tc(e, { components: t, halves: n }) {
 	return t > 2 ? n ? e.RGBA16F : e.RGBA8 : t > 1 ? n ? e.RG16F : e.RG8 : n ? e.R16F : e.R8;
 }
-function sc(e, [t, n], r, i, a) {
-	return uc(e, e.TEXTURE_2D_ARRAY, () => {
-		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, oc(e, a), t, n, r);
+function nc(e, [t, n], r, i, a) {
+	return ac(e, e.TEXTURE_2D_ARRAY, () => {
+		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, tc(e, a), t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function cc(e, t, n, r) {
+function rc(e, t, n, r) {
 	let { width: i, height: a } = n, o = r > 2 ? e.RGBA : r > 1 ? e.RG : e.RED;
-	dc(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
+	oc(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
 }
-function lc(e, [t, n], r) {
-	return uc(e, e.TEXTURE_2D, () => {
-		e.texStorage2D(e.TEXTURE_2D, 1, oc(e, r), t, n);
+function ic(e, [t, n], r) {
+	return ac(e, e.TEXTURE_2D, () => {
+		e.texStorage2D(e.TEXTURE_2D, 1, tc(e, r), t, n);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D, t, e.NEAREST);
 	});
 }
-function uc(e, t, n) {
+function ac(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return dc(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return oc(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function dc(e, t, n, r) {
+function oc(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -3926,7 +3887,7 @@ function dc(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-function fc(e, t, n) {
+function sc(e, t, n) {
 	let r = e.createProgram();
 	for (let [i, a] of [[e.VERTEX_SHADER, t], [e.FRAGMENT_SHADER, n]]) {
 		let t = e.createShader(i);
@@ -3934,7 +3895,7 @@ function fc(e, t, n) {
 	}
 	return e.linkProgram(r), r;
 }
-function pc(e, t, n, r) {
+function cc(e, t, n, r) {
 	if (!n) {
 		r();
 		return;
@@ -3942,9 +3903,9 @@ function pc(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), dc(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), oc(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function mc(e, t) {
+function lc(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -3959,13 +3920,13 @@ function mc(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r && e.isProgram(r) ? r : null), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/charts.ts
-function hc(e, t) {
-	let n = fc(e, ...Rs), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
+function uc(e, t) {
+	let n = sc(e, ...Ns), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
 		let { index: o } = t, s = t.getAttribute("uv"), c = Float32Array.from({ length: 2 * (o?.count ?? 0) }, (e, t) => {
 			let n = o?.getX(t >> 1) ?? 0;
 			return t % 2 ? s.getY(n) : s.getX(n);
 		}), [l, u] = [e.createVertexArray(), e.createBuffer()], d = e.getParameter(e.ARRAY_BUFFER_BINDING);
-		mc(e, () => {
+		lc(e, () => {
 			e.useProgram(n), e.bindVertexArray(l), e.bindBuffer(e.ARRAY_BUFFER, u), e.bufferData(e.ARRAY_BUFFER, c, e.STREAM_DRAW);
 			let t = e.getAttribLocation(n, "uv");
 			e.enableVertexAttribArray(t), e.vertexAttribPointer(t, 2, e.FLOAT, !1, 0, 0), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, a, 0), e.viewport(0, 0, ...i), e.colorMask(!0, !0, !0, !0), e.drawArrays(e.TRIANGLES, 0, c.length / 2);
@@ -3976,7 +3937,7 @@ function hc(e, t) {
 			let { geometry: r } = t;
 			if (i?.grid.join() !== n.join() || i.geometry !== r) {
 				e.deleteTexture(i?.texture ?? null);
-				let t = lc(e, n, {
+				let t = ic(e, n, {
 					components: 1,
 					halves: !1
 				});
@@ -3994,8 +3955,8 @@ function hc(e, t) {
 	};
 }
 // eigenfield-three/src/packing.ts
-function gc(e, t, n, r) {
-	let [i, a] = [fc(e, Fs, Is), fc(e, Fs, Ls)], [o, s] = [e.createFramebuffer(), e.createVertexArray()], c = t.smaller && hc(e, r), l = !1, u = (t) => e.getUniformLocation(i, t), d = Object.fromEntries([
+function dc(e, t, n, r) {
+	let [i, a] = [sc(e, As, js), sc(e, As, Ms)], [o, s] = [e.createFramebuffer(), e.createVertexArray()], c = t.smaller && uc(e, r), l = !1, u = (t) => e.getUniformLocation(i, t), d = Object.fromEntries([
 		"precisions",
 		"covered",
 		"factors",
@@ -4007,7 +3968,7 @@ function gc(e, t, n, r) {
 		"zero"
 	].map((e) => [e, u(e)])), f = ({ picture: t, rows: n }, r, i, a, o, s) => {
 		let { size: c, corner: l, unit: u, codes: f } = i;
-		_c(t) ? e.uniform4f(d.factors, 255 * u, 65280 * u, 0, 0) : e.uniform4fv(d.factors, [
+		fc(t) ? e.uniform4f(d.factors, 255 * u, 65280 * u, 0, 0) : e.uniform4fv(d.factors, [
 			0,
 			1,
 			2,
@@ -4019,30 +3980,30 @@ function gc(e, t, n, r) {
 		p(t, n), e.colorMask(r === 0, r === 1, r === 2, r === 3);
 	}, h = (r, o, u, h, g, _) => {
 		let { picture: v, row: y, rows: b } = r, [x, S] = g.size, C = x < v.width || S < b ? t.smaller : null, w = Math.max(1, Math.floor((C ? n - 2 : n) * S / b)), T = l && o === t.codes;
-		pc(e, 2, (C && c?.covered(g.grid)) ?? null, () => pc(e, 0, T ? null : o, () => {
+		cc(e, 2, (C && c?.covered(g.grid)) ?? null, () => cc(e, 0, T ? null : o, () => {
 			for (let t = 0; t < S; t += w) {
 				let n = Math.min(w, S - t), a = Math.floor(t * b / S), o = Math.ceil((t + n) * b / S);
-				_c(v) ? yc(e, v, y + a, o - a) : vc(e, v, y + a, o - a);
+				fc(v) ? mc(e, v, y + a, o - a) : pc(e, v, y + a, o - a);
 				let c = () => {
 					e.useProgram(i), e.bindVertexArray(s), e.uniform1i(d.precisions, +!!_), e.uniform1i(d.covered, C ? 2 : 0), e.uniform2i(d.nodes, _?.precision.width ?? 0, _?.precision.height ?? 0), e.uniform1f(d.zero, _?.zero ?? 0), C ? (p(C, null), e.colorMask(!0, !0, !0, !0)) : m(u, h), f(r, h.channel, g, a, t, n);
 				};
-				T ? c() : mc(e, c);
+				T ? c() : lc(e, c);
 			}
-		})), C && pc(e, 0, C, () => mc(e, () => {
+		})), C && cc(e, 0, C, () => lc(e, () => {
 			e.useProgram(a), e.bindVertexArray(s), e.uniform2i(e.getUniformLocation(a, "size"), x, S), m(u, h), e.viewport(0, 0, x, S), e.drawArrays(e.TRIANGLES, 0, 3);
 		}));
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let s = _c(n.picture) ? t.codes : t.picture;
+			let s = fc(n.picture) ? t.codes : t.picture;
 			if (!s) return;
 			let c = () => i.forEach((e) => h(n, s, r, e, a, o));
-			o ? pc(e, 1, t.precision, () => {
-				vc(e, o.precision, 0, o.precision.height), c();
+			o ? cc(e, 1, t.precision, () => {
+				pc(e, o.precision, 0, o.precision.height), c();
 			}) : c();
 		},
 		together(n) {
-			pc(e, 0, t.codes, () => mc(e, () => {
+			cc(e, 0, t.codes, () => lc(e, () => {
 				l = !0;
 				try {
 					n();
@@ -4057,17 +4018,17 @@ function gc(e, t, n, r) {
 		}
 	};
 }
-function _c(e) {
+function fc(e) {
 	return "data" in e;
 }
-function vc(e, t, n, r) {
+function pc(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function yc(e, { data: t, width: n, stride: r }, i, a) {
+function mc(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
 // eigenfield-three/src/textures.ts
-var bc = class {
+var hc = class {
 	parts;
 	source;
 	surface;
@@ -4107,7 +4068,7 @@ var bc = class {
 			means: c,
 			bases: s,
 			rays: a.facesPlane,
-			geometry: xc(n.geometry)
+			geometry: gc(n.geometry)
 		}, this.means = c.map(() => new p()), this.bases = s.map(() => new p()), this.ready = s.map(({ count: e }) => Array(e).fill(!1)), this.stillVersions = c.map(() => 0);
 	}
 	get hasMeans() {
@@ -4121,7 +4082,7 @@ var bc = class {
 		return Math.min(t, ...e);
 	}
 	get bytes() {
-		return this.plan ? this.plan.bytes - this.needs.geometry + xc(this.surface.geometry) : 0;
+		return this.plan ? this.plan.bytes - this.needs.geometry + gc(this.surface.geometry) : 0;
 	}
 	get attached() {
 		return this.renderer !== null || this.disposed;
@@ -4151,7 +4112,7 @@ var bc = class {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		let n = ic(e);
+		let n = $s(e);
 		if (n.isContextLost()) return;
 		let { packer: r, plan: i } = this.makeRoom(n);
 		this.plan = i, this.packer = r, this.onPlan(i), await this.source.fill(this.filling(n, i, t)), t.aborted || this.onComplete();
@@ -4206,7 +4167,7 @@ var bc = class {
 		this.stillVersions[n] = this.version += 1;
 		let { mean: l, channels: u } = o, d = X(s, t.meanDown), [f] = r;
 		if (f && r.length === 1 && "close" in f.picture && !c && d.join() === s.join()) {
-			cc(e, a, f.picture, u);
+			rc(e, a, f.picture, u);
 			return;
 		}
 		let p = {
@@ -4240,15 +4201,15 @@ var bc = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs;
-		this.needs.geometry = xc(this.surface.geometry);
+		this.needs.geometry = gc(this.surface.geometry);
 		let r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
 		for (let i = this.options.memory ?? za();; i /= 2) {
-			let a = qa(this.needs, ac(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => sc(e, X(t, o), Ha(n), !1, {
+			let a = qa(this.needs, ec(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => nc(e, X(t, o), Ha(n), !1, {
 				components: n,
 				halves: r
 			})), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return sc(e, a ? X(t, s) : [1, 1], a ? Ua(a, n) : 1, u, {
+				return nc(e, a ? X(t, s) : [1, 1], a ? Ua(a, n) : 1, u, {
 					components: Math.max(1, a),
 					halves: l && i
 				});
@@ -4256,9 +4217,9 @@ var bc = class {
 				f.picture,
 				f.codes,
 				f.smaller
-			].map((t) => t ? lc(e, t.size, t.format) : null), g = lc(e, Za(r), Ma);
+			].map((t) => t ? ic(e, t.size, t.format) : null), g = ic(e, Za(r), Ma);
 			if (p && g && (m || !f.codes) && (h || !f.smaller) && !d.includes(null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = d[t] ?? null), {
-				packer: gc(e, {
+				packer: dc(e, {
 					picture: p,
 					codes: m ?? null,
 					precision: g,
@@ -4277,11 +4238,11 @@ var bc = class {
 		}
 	}
 };
-function xc({ attributes: e, index: t }) {
+function gc({ attributes: e, index: t }) {
 	return Object.values(e).reduce((e, t) => e + t.array.byteLength, 0) + (t?.array.byteLength ?? 0);
 }
 // eigenfield-three/src/field.ts
-var Sc = 1.5, Cc = .001, wc = class extends f {
+var _c = 1.5, vc = .001, yc = class extends f {
 	parts;
 	source;
 	mesh;
@@ -4316,7 +4277,7 @@ var Sc = 1.5, Cc = .001, wc = class extends f {
 	constructor(e, t, n = {}) {
 		super(), this.parts = e, this.source = t;
 		let { scene: r, info: i } = e, a = r.sheets?.faces ?? null;
-		this.surface = new rc(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = fa(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.textures = new bc(e, t, this.surface, n), this.complete = new Promise((e, t) => {
+		this.surface = new Qs(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = fa(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.textures = new hc(e, t, this.surface, n), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0), this.listen(), n.renderer && this.textures.attach(n.renderer);
 	}
@@ -4360,20 +4321,20 @@ var Sc = 1.5, Cc = .001, wc = class extends f {
 		this.textures.onPlan = (e) => {
 			let { scene: t } = this.parts;
 			this.freeComposers(), this.summed = {
-				parts: zs(t, this.textures, e),
-				opacity: Vs(t, this.textures)
+				parts: Ps(t, this.textures, e),
+				opacity: Is(t, this.textures)
 			}, e.limitation && queueMicrotask(() => this.dispatchEvent({ type: "limited" }));
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return Sc * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
+		return _c * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
 	}
 	weightsOf(e) {
 		let { scene: t, info: n, weights: r } = this.parts;
 		return new ko(n, J(t).map(({ count: e }) => e), e, r);
 	}
 	makePlayer({ timeline: e, ring: t }) {
-		return new Gs(e, t, {
+		return new Bs(e, t, {
 			show: (e) => this.showFrame(e),
 			failed: (e) => this.dispatchEvent({
 				type: "error",
@@ -4386,11 +4347,11 @@ var Sc = 1.5, Cc = .001, wc = class extends f {
 	}
 	enter(e) {
 		let { scene: t } = this.parts, { plan: n } = this.textures;
-		this.group = e, e.geometry !== this.surface.geometry && this.surface.setGeometry(e.geometry), this.weights.dispose(), this.weights = this.weightsOf(e.omega), Ds(t, e), n && Bs(this.summed.parts, t, this.textures, n);
+		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), Ss(t, e), n && Fs(this.summed.parts, t, this.textures, n);
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = Dc(t, n), [i, a] = va(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
+		let r = Sc(t, n), [i, a] = va(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
 		this.setView(), this.setExposure(o, [i, a]);
 		let u = jo[this.filter];
 		l.defines.BICUBIC !== u && (l.defines.BICUBIC = u, l.needsUpdate = !0), l.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
@@ -4459,29 +4420,29 @@ var Sc = 1.5, Cc = .001, wc = class extends f {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= Cc * Math.max(...r);
+		return Math.abs(i) <= vc * Math.max(...r);
 	}
 	fail(e) {
-		if (Oc(e)) return;
+		if (Cc(e)) return;
 		let t = de(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
 		this.dispatchEvent({
 			type: "error",
 			error: new j(t.code, r, t.where)
 		});
 	}
-}, Tc = new x(), Ec = new A();
-function Dc(e, t) {
-	return Ec.setFromMatrixPosition(e.matrixWorld).applyMatrix4(Tc.copy(t.matrixWorld).invert()), [
-		Ec.x,
-		Ec.y,
-		Ec.z
+}, bc = new x(), xc = new A();
+function Sc(e, t) {
+	return xc.setFromMatrixPosition(e.matrixWorld).applyMatrix4(bc.copy(t.matrixWorld).invert()), [
+		xc.x,
+		xc.y,
+		xc.z
 	];
 }
-function Oc(e) {
+function Cc(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var kc = class {
+var wc = class {
 	received = 0;
 	chunks = [];
 	waiters = [];
@@ -4524,7 +4485,7 @@ var kc = class {
 		}
 		return n.buffer;
 	}
-}, Ac = 8, jc = class {
+}, Tc = 8, Ec = class {
 	timeline;
 	groups;
 	user;
@@ -4557,7 +4518,7 @@ var kc = class {
 		return this.decoders.reduce((e, t) => e + t.open, 0);
 	}
 	get reach() {
-		return Math.max(this.newest, this.from) + Ac / 2;
+		return Math.max(this.newest, this.from) + Tc / 2;
 	}
 	isOver(e) {
 		return this.newest >= e && ![...this.slots.keys()].some((t) => t <= e);
@@ -4605,7 +4566,7 @@ var kc = class {
 		return e % this.timeline.frames;
 	}
 	get hasRoom() {
-		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = Math.max(this.from, this.wanted) + Ac;
+		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = Math.max(this.from, this.wanted) + Tc;
 		return this.next < Math.min(n, t) && this.decoders.every(({ ready: e }) => e);
 	}
 	async feedAll() {
@@ -4672,23 +4633,23 @@ var kc = class {
 	reuseOne(e, { room: t }) {
 		t && this.rooms[e]?.push(t);
 	}
-}, Mc = {
+}, Dc = {
 	mimeType: "video/AV1",
 	bits: 10
 };
-async function Nc(e, t, n) {
-	let r = new Es(e, t, n), i = await r.open(0);
-	return Ds(e, i), {
+async function Oc(e, t, n) {
+	let r = new xs(e, t, n), i = await r.open(0);
+	return Ss(e, i), {
 		timeline: t,
 		group: i,
-		films: await Promise.all(t.films.map((e, t) => Pc(i.units[0][t], e))),
-		ring: (e) => new jc(t, r, e)
+		films: await Promise.all(t.films.map((e, t) => kc(i.units[0][t], e))),
+		ring: (e) => new Ec(t, r, e)
 	};
 }
-async function Pc(e, { size: t, where: n }) {
+async function kc(e, { size: t, where: n }) {
 	let r = {
 		view: -1,
-		codec: Mc,
+		codec: Dc,
 		textures: 1,
 		pieces: 1,
 		where: n
@@ -4698,37 +4659,37 @@ async function Pc(e, { size: t, where: n }) {
 	return o.drawImage(a, 0, 0), ts(i), $o(o.getImageData(0, 0, ...t).data, 4 * t[0], 4, t);
 }
 // eigenfield-three/src/means.ts
-async function Fc(e, t) {
-	let { mean: n, meanSize: r } = e, i = e.precision && await Ic(await t(e.precision.view), e.precision);
+async function Ac(e, t) {
+	let { mean: n, meanSize: r } = e, i = e.precision && await jc(await t(e.precision.view), e.precision);
 	return {
 		pieces: await n.codec.decode(await t(n.view), n, r),
 		precision: i
 	};
 }
-async function Ic(e, t) {
+async function jc(e, t) {
 	let { type: n } = mr(e) ?? {}, { mimeType: r } = t.codec;
 	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
 	if (!i) throw M(t.where, "no picture");
 	return i.picture;
 }
-function Lc({ pieces: e, precision: t }) {
+function Mc({ pieces: e, precision: t }) {
 	ts(e), t?.close();
 }
 // eigenfield-three/src/packed.ts
-var Rc = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", zc = 4;
-async function Bc(e, t) {
+var Nc = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Pc = 4;
+async function Fc(e, t) {
 	let n = new W(e, ""), r = n.key("extensions").key(xe), i = r.key("packed");
 	if (!i.exists) return e;
 	Bi(r);
 	let a = Kr(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < zc) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, zc)).getUint32(0, !0);
-	if (zc + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new W(gs(await Hc(await t(o.offset + zc, s), i.where), i.where), i.where).object(), u = Vc(new W(c, `${i.where}/lengths`), o, zc + s), { packed: d, ...f } = r.object();
+	if (!o || o.length < Pc) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, Pc)).getUint32(0, !0);
+	if (Pc + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new W(gs(await Lc(await t(o.offset + Pc, s), i.where), i.where), i.where).object(), u = Ic(new W(c, `${i.where}/lengths`), o, Pc + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
-		bufferViews: [...n.key("bufferViews").items(Ce).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
+		bufferViews: [...n.key("bufferViews").items(I).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
 		extensions: {
 			...n.key("extensions").object(),
 			[xe]: {
@@ -4738,8 +4699,8 @@ async function Bc(e, t) {
 		}
 	};
 }
-function Vc(e, t, n) {
-	let r = n, i = e.items(Ce).map((e) => {
+function Ic(e, t, n) {
+	let r = n, i = e.items(I).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
 			buffer: 0,
@@ -4750,8 +4711,8 @@ function Vc(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function Hc(e, t) {
-	let n = new TextEncoder().encode(Rc), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function Lc(e, t) {
+	let n = new TextEncoder().encode(Nc), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -4769,9 +4730,35 @@ async function Hc(e, t) {
 		throw M(t, "its JSON is not UTF-8");
 	}
 }
+// eigenfield-three/src/proxy.ts
+var Rc = 65535;
+function zc(e, t) {
+	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
+	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
+	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
+	for (let e = 0; e < n.count; e++) {
+		if (!(Math.max(Math.abs(n.getX(e)), Math.abs(n.getY(e)), Math.abs(n.getZ(e))) <= 1e30)) throw M(t.position.where, `vertex ${e} is not finite`);
+		if (!(Math.max(Math.abs(r.getX(e)), Math.abs(r.getY(e))) <= 1e30)) throw M(t.uv.where, `texture coordinates of vertex ${e} are not finite`);
+	}
+	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
+}
+async function Bc({ view: n, codec: r, where: i }, a) {
+	let { positions: o, uv: s, indices: c } = r.decode(new Uint8Array(await a(n)), i);
+	if (!c.length) throw M(i, "a mesh without faces");
+	let l = new t();
+	l.setAttribute("position", new e(o, 3)), l.setAttribute("uv", new e(s, 2));
+	let u = o.length / 3 <= Rc;
+	return l.setIndex(new e(u ? Uint16Array.from(c) : c, 1)), l;
+}
+function Vc(e) {
+	return {
+		vertices: e.getAttribute("position").count,
+		triangles: (e.index?.count ?? 0) / 3
+	};
+}
 // eigenfield-three/src/still-textures.ts
-var Uc = 3;
-function Wc(e) {
+var Hc = 3;
+function Uc(e) {
 	return J(e).flatMap((e, t) => {
 		let n = 0;
 		return e.pictures.map((r) => {
@@ -4785,22 +4772,22 @@ function Wc(e) {
 		});
 	}).sort((e, t) => e.first - t.first || e.number - t.number);
 }
-function Gc(e, t, n) {
-	let r = Wc(e), i = n, a = ({ basis: e, picture: n }) => {
+function Wc(e, t, n) {
+	let r = Uc(e), i = n, a = ({ basis: e, picture: n }) => {
 		let r = t(n.view).then((t) => n.codec.decode(t, n, e.size));
 		return r.catch(() => void 0), r;
 	};
 	return {
 		async fill(n) {
-			let { plan: o, signal: s } = n, c = i ?? await Promise.all(zi(e).map((e) => Fc(e, t)));
+			let { plan: o, signal: s } = n, c = i ?? await Promise.all(zi(e).map((e) => Ac(e, t)));
 			i = null, c.forEach((e, t) => {
-				n.putMean(t, e), Lc(e);
+				n.putMean(t, e), Mc(e);
 			});
 			let l = r.filter(({ first: e }) => e < o.usable), u = [], d = 0;
 			try {
 				for (let { number: e, first: t, picture: r } of l) {
 					if (s.aborted) return;
-					for (let e of l.slice(d, d + Uc - u.length)) u.push(a(e)), d += 1;
+					for (let e of l.slice(d, d + Hc - u.length)) u.push(a(e)), d += 1;
 					let i = await u[0] ?? [];
 					u.shift(), n.putTextures(e, t, i, r), ts(i), n.announce();
 				}
@@ -4818,36 +4805,36 @@ function Gc(e, t, n) {
 			return Promise.resolve(1);
 		},
 		dispose() {
-			i?.forEach(Lc), i = null;
+			i?.forEach(Mc), i = null;
 		}
 	};
 }
 // eigenfield-three/src/grid.ts
-function Kc(e) {
+function Gc(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = qc(e, n, r) ?? (n === r ? null : qc(e, r, n));
+		let r = t / n, i = Kc(e, n, r) ?? (n === r ? null : Kc(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function qc(e, t, n) {
-	let [r, i] = [Yc(e, 0), Yc(e, 1)];
-	if (t === 1 && Xc(i) > 0 || n === 1 && Xc(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => Zc(i, e) - Zc(i, t));
+function Kc(e, t, n) {
+	let [r, i] = [Jc(e, 0), Jc(e, 1)];
+	if (t === 1 && Yc(i) > 0 || n === 1 && Yc(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => Xc(i, e) - Xc(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Zc(r, e) - Zc(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Xc(r, e) - Xc(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return Jc(n, t, (e, t) => Zc(r, o(t, e))) && Jc(t, n, (e, t) => Zc(i, o(e, t))) ? {
+	return qc(n, t, (e, t) => Xc(r, o(t, e))) && qc(t, n, (e, t) => Xc(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function Jc(e, t, n) {
+function qc(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -4857,33 +4844,33 @@ function Jc(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function Yc(e, t) {
+function Jc(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function Xc(e) {
+function Yc(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var Zc = (e, t) => e[t] ?? 0, Qc = 1e-6, $c = 32, el = class {
+var Xc = (e, t) => e[t] ?? 0, Zc = 1e-6, Qc = 32, $c = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = Kc(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = Gc(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(tl(e), this.isLine ? 0 : tl(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(el(e), this.isLine ? 0 : el(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => dl(e, t, this.places) : e === "bilinear" && this.grid ? pl(this.places, this.grid) : il(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => ul(e, t, this.places) : e === "bilinear" && this.grid ? fl(this.places, this.grid) : rl(this.places, this.triangles);
 	}
 };
-function tl(e) {
+function el(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function nl(e) {
+function tl(e) {
 	let t = {
 		camera: [
 			0,
@@ -4903,7 +4890,7 @@ function nl(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function rl(e, t, n, r, i, a) {
+function nl(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -4911,49 +4898,49 @@ function rl(e, t, n, r, i, a) {
 		m
 	];
 }
-function il(e, t) {
+function rl(e, t) {
 	if (!t.length) {
-		let t = ul(e, ll(e));
-		return (n, r) => cl(n, r, e, t);
+		let t = ll(e, cl(e));
+		return (n, r) => sl(n, r, e, t);
 	}
-	let n = ol(e, t, 3), r = sl(t);
+	let n = al(e, t, 3), r = ol(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * $c + $(i)] ?? []) {
+		for (let r of n[$(a) * Qc + $(i)] ?? []) {
 			let [n, l, u] = [
-				al(t, r, 0),
-				al(t, r, 1),
-				al(t, r, 2)
-			], d = rl(i, a, e, n, l, u), f = Math.min(...d);
+				il(t, r, 0),
+				il(t, r, 1),
+				il(t, r, 2)
+			], d = nl(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? cl(i, a, e, r) : nl(c.map((e, n) => [al(t, o, n), e]));
+		return s < -1e-9 ? sl(i, a, e, r) : tl(c.map((e, n) => [il(t, o, n), e]));
 	};
 }
-var al = (e, t, n) => e[3 * t + n] ?? 0;
+var il = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * $c)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * Qc)));
 }
-function ol(e, t, n) {
+function al(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * $c + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * Qc + t]?.push(i);
 	}
 	return r;
 }
-function sl(e) {
+function ol(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [al(e, n, r), al(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [il(e, n, r), il(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -4962,7 +4949,7 @@ function sl(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function cl(e, t, n, r) {
+function sl(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -4977,12 +4964,12 @@ function cl(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return nl([[o, 1 - c], [s, c]]);
+	return tl([[o, 1 - c], [s, c]]);
 }
-function ll(e) {
+function cl(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function ul(e, t) {
+function ll(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -5003,7 +4990,7 @@ function ul(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function dl(e, t, n) {
+function ul(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -5017,12 +5004,12 @@ function dl(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || fl(n, r, i, a) <= Qc) return cl(e, t, n, ul(n, [
+	if (a < 0 || dl(n, r, i, a) <= Zc) return sl(e, t, n, ll(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = rl(e, t, n, r, i, a);
+	let [l, u, d] = nl(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -5038,15 +5025,15 @@ function dl(e, t, n) {
 		]
 	};
 }
-function fl(e, t, n, r) {
+function dl(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function pl(e, t) {
+function fl(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = ul(e, ll(e));
-		return (n, r) => cl(n, r, e, t);
+		let t = ll(e, cl(e));
+		return (n, r) => sl(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -5055,7 +5042,7 @@ function pl(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = ol(e, o.flat(), 4), c = [];
+	let s = al(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -5063,12 +5050,12 @@ function pl(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * $c + $(t)] ?? []) {
-			let s = o[a], c = s ? ml(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * Qc + $(t)] ?? []) {
+			let s = o[a], c = s ? pl(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return cl(t, n, e, l);
-		let [a, c] = hl(t, n, e, r);
+		if (!r || i < -1e-9) return sl(t, n, e, l);
+		let [a, c] = ml(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -5080,7 +5067,7 @@ function pl(e, t) {
 		};
 	};
 }
-function ml(e, t, n, r) {
+function pl(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -5088,7 +5075,7 @@ function ml(e, t, n, r) {
 	}
 	return i;
 }
-function hl(e, t, n, r) {
+function ml(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -5106,14 +5093,14 @@ function hl(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = gl(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [gl(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = hl(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [hl(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function gl(e) {
+function hl(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var _l = class {
+var gl = class {
 	parser;
 	options;
 	name = xe;
@@ -5124,11 +5111,11 @@ var _l = class {
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
-		this.options.renderer && ic(this.options.renderer);
+		this.options.renderer && $s(this.options.renderer);
 		let { json: e } = this.parser;
-		me(e), Object.assign(e, await Bc(e, (e, t) => this.read(e, t)));
+		me(e), Object.assign(e, await Fc(e, (e, t) => this.read(e, t)));
 		let t = Li(e);
-		(!t.timeline || this.options.stream?.readGroups) && (this.scene = t, this.scene.shown || vl(e));
+		(!t.timeline || this.options.stream?.readGroups) && (this.scene = t, this.scene.shown || _l(e));
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
@@ -5149,37 +5136,38 @@ var _l = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = yl(e, this.parser), [r] = n;
+		let n = vl(e, this.parser), [r] = n;
 		if (!r) throw M("/meshes/0", "no node shows it");
-		t.shown && bs(r.geometry, t.shown);
+		t.shown && zc(r.geometry, t.shown);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
 			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ue(`/bufferViews/${e}`);
 			return n;
-		}, a = t.timeline && await this.openClip(t, t.timeline), o = a ? a.group.geometry : t.mesh && await xs(t.mesh, i);
-		if (o) {
+		}, a = t.timeline && await this.openClip(t, t.timeline);
+		if (t.mesh) {
+			let e = await Bc(t.mesh, i);
 			r.geometry.dispose();
-			for (let e of n) e.geometry = o;
+			for (let t of n) t.geometry = e;
 		}
 		t.sheets && vi(t.sheets, r.geometry);
-		let [s, c, l, u] = await Promise.all([
-			Promise.all(a ? [] : zi(t).map((e) => Fc(e, i))),
+		let [o, s, c, l] = await Promise.all([
+			Promise.all(a ? [] : zi(t).map((e) => Ac(e, i))),
 			ea(t, i),
 			a ? a.group.omega : ca(t, i),
 			ma(t, i)
-		]), d = c.filter((e, n) => !t.heldOut[n]), f = new el(Float64Array.from(d.flatMap((e) => va(t, e.centre))), u, t.extent[1] === 0), p = a ? t.planes.map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
+		]), u = s.filter((e, n) => !t.heldOut[n]), d = new $c(Float64Array.from(u.flatMap((e) => va(t, e.centre))), l, t.extent[1] === 0), f = a ? t.planes.map(({ meanSize: e }) => e ?? [1, 1]) : o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = {
 			scene: t,
-			info: ga(t, c, p, f.grid, this.fileBytes(), Cs(r.geometry)),
+			info: ga(t, s, f, d.grid, this.fileBytes(), Vc(r.geometry)),
 			meshes: n,
-			meanSizes: p,
-			omega: l,
-			weights: f,
+			meanSizes: f,
+			omega: c,
+			weights: d,
 			clip: a
-		}, h = a ? new os(t, a.films) : Gc(t, i, s);
-		e.userData.eigenfield = new wc(m, h, this.options);
+		}, m = a ? new os(t, a.films) : Wc(t, i, o);
+		e.userData.eigenfield = new yc(p, m, this.options);
 	}
 	openClip(e, t) {
-		return Nc(e, t, (...e) => this.options.stream.readGroups(...e));
+		return Oc(e, t, (...e) => this.options.stream.readGroups(...e));
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -5187,50 +5175,50 @@ var _l = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function vl(e) {
+function _l(e) {
 	let [t] = e.nodes;
 	t && (t.mesh = 0), e.meshes = [{ primitives: [{
 		attributes: {},
 		material: 0
 	}] }], e.materials = [{ doubleSided: !0 }];
 }
-function yl(e, t) {
+function vl(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		bl(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		yl(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function bl(e) {
+function yl(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function xl(e, t = {}) {
+async function bl(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new kc(), i = new AbortController(), a = () => {
+	let r = new wc(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = wl(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = Cl(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
 		let e = await ps(r);
 		if (!Ii(e.json)) return {
-			gltf: await Cl(r, e, o),
+			gltf: await Sl(r, e, o),
 			field: null
 		};
-		let i = await Sl(r, e, t);
+		let i = await xl(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
 			gltf: i,
-			field: a instanceof wc ? a : null
+			field: a instanceof yc ? a : null
 		};
 	} catch (e) {
 		throw i.abort(), n?.throwIfAborted(), de(e);
 	}
 }
-async function Sl(e, t, n) {
+async function xl(e, t, n) {
 	let r = new ce(), i = (t) => async (n, r) => {
 		let i = await t + n;
 		return e.read(i, i + r);
@@ -5241,12 +5229,12 @@ async function Sl(e, t, n) {
 		read: i(a),
 		readGroups: (...e) => i(t.groups())(...e)
 	};
-	return r.register((e) => new _l(e, {
+	return r.register((e) => new gl(e, {
 		...n,
 		stream: o
 	})), r.parseAsync(t.text, "");
 }
-async function Cl(e, t, n) {
+async function Sl(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -5258,25 +5246,25 @@ async function Cl(e, t, n) {
 		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function wl(e, t, n, r) {
+async function Cl(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? Tl(e) : await El(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? wl(e) : await Tl(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : Dl(t.received, e);
+			throw n.aborted ? e : El(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function Tl(e) {
+function wl(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function El(e, t) {
+async function Tl(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -5287,7 +5275,7 @@ async function El(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function Dl(e, t) {
+function El(e, t) {
 	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { wc as EigenField, _l as EigenfieldPlugin, Gs as Player, Xs as SHEETS, j as SceneError, za as defaultMemory, xl as loadEigenfield, xa as novelCamera, Ta as placeCamera, pe as refuseAddresses };
+export { yc as EigenField, gl as EigenfieldPlugin, Bs as Player, Gs as SHEETS, j as SceneError, za as defaultMemory, bl as loadEigenfield, xa as novelCamera, Ta as placeCamera, pe as refuseAddresses };
