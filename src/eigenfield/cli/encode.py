@@ -192,8 +192,8 @@ def command(
     if place.clip is not None:
         refuse_for_clips({"draft": draft, "view": look, "blind": blind, "without": without})
         surface_to_make(options, from_fields(SurfaceOptions, settings), False, True, {})
-        kept = work or whole.with_suffix(".work")
-        encode_clip(capture, proxy, place, options, kept, output, overwrite, quiet, workers, cluster)
+        stages = work or whole.with_suffix(".work")
+        encode_clip(capture, proxy, place, options, stages, output, overwrite, quiet, workers, cluster)
         return
     projected = options.resolved().fit == "none"
     surface = surface_to_make(
