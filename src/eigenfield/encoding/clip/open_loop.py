@@ -128,7 +128,8 @@ def _fit_textures(
         with pixels.weighed(fitted, shared.variance) as data:
             textures = before.get(f"textures{number}")
             if textures is None:
-                textures = _projection(clip, plane, data, model, shared.weights)
+                seen = data if first is None or pixels.active is None else pixels.active[number].data(data)
+                textures = _projection(clip, plane, seen, scales, model, shared.weights)
             model.blocks = [Block(plane.rectangle, _rotated(textures, shared.rotation), shared.weights)]
             _fit(pixels, data, model, scales, iterations, number, first, shared.variance)
         if not last:
@@ -166,10 +167,14 @@ def _fit(
 
 
 def _projection(
-    clip: ClipPlan, plane: ClipPlane, data: FitData, model: PlaneModel, weights: NDArray[np.float32]
+    clip: ClipPlan, plane: ClipPlane, data: FitData, scales: Scales, model: PlaneModel, weights: NDArray[np.float32]
 ) -> NDArray[np.float32]:
-    """(n, C, h, w): what the mean leaves, projected on the weights."""
-    scales = plane.scales_of(data)
+    """(n, C, h, w): what the mean leaves, projected on the weights.
+
+    Args:
+        data: All pixels that see the texels for which it is asked.
+        scales: Of all pixels.
+    """
     with open_residual_maps(data, model, scales, plane.rectangle, plane.settings.scattered, clip.work) as maps:
         return maps.textures(weights.astype(np.float64))
 
