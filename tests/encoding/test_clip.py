@@ -2,61 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
 
 import eigenfield as ef
-from eigenfield.core.clip import Timeline
 from eigenfield.core.errors import OptionError
 from eigenfield.encoding import EncodeOptions, encode_footage
 from eigenfield.encoding.clip.encode import group_length
 from eigenfield.gltf import load_clip, save, validate
 from eigenfield.imaging.metrics import psnr, to_codes
 from eigenfield.rendering import Renderer, camera_weights, draw_texture
+from eigenfield.runtime.executor import open_executor
 from support.captures import backdrop, shaded_texture
+from support.moving_clips import FootageInMemory
 from support.observations import CalibratedInMemory, InMemory
 from support.scenes import row_grid
 
 CAMERAS, MESH = row_grid(9, 64, 56), backdrop()
-
-
-@dataclass(frozen=True, eq=False)
-class FootageInMemory:
-    """Footage whose instants are in memory, in place of `capture.footage.Footage`.
-
-    Attributes:
-        asked: Numbers of the instants that were asked for, in order.
-    """
-
-    frames: list[CalibratedInMemory]
-    asked: list[int]
-    rate: Fraction = Fraction(4)
-
-    def __len__(self):
-        return len(self.frames)
-
-    @property
-    def timeline(self):
-        return Timeline(self.rate, len(self.frames))
-
-    @property
-    def names(self):
-        return self.frames[0].names
-
-    @property
-    def cameras(self):
-        return self.frames[0].cameras
-
-    @property
-    def bytes(self):
-        return 0
-
-    def instant(self, number):
-        self.asked.append(number)
-        return self.frames[number]
 
 
 def photographs(level: float) -> CalibratedInMemory:
@@ -77,6 +42,10 @@ def measured(scene, instant) -> float:
         drawn = Renderer(scene).draw(scene.rig.cameras[index], camera_weights(scene, index))
         found.append(psnr(drawn.image, to_codes(instant.photograph(index).pixels), drawn.covered))
     return float(np.mean(found))
+
+
+def stored_bytes(group) -> bytes:
+    return bytes(group.data.read(0, group.data.size))
 
 
 OPTIONS = EncodeOptions(quality=90)
@@ -127,10 +96,19 @@ def test_finished_groups_are_taken_up_and_nothing_else_is_kept(lit):
     assert sorted(one.name[:10] for one in (work / "clip").iterdir()) == ["group-0000", "group-0001"]
     again = replace(seen, asked=[])
     made = encode_footage(again, MESH, OPTIONS, group="3", work=work)
-    assert [bytes(one.data.read(0, one.data.size)) for one in made.groups.stored] == [
-        bytes(one.data.read(0, one.data.size)) for one in clip.groups.stored
-    ]
+    assert list(map(stored_bytes, made.groups.stored)) == list(map(stored_bytes, clip.groups.stored))
     assert again.asked == [3, 0, 3, 5]  # the mesh by the middle one, and what tells this footage from another
+
+
+@pytest.mark.parametrize("count", [None, pytest.param(2, marks=pytest.mark.slow)])
+def test_workers_make_the_same_groups(tmp_path, count):
+    seen = footage(1.0, 0.8, 0.7, 0.7)
+    alone = encode_footage(seen, MESH, OPTIONS, group="2")
+    with open_executor(count) as workers:
+        seen.asked.clear()
+        spread = encode_footage(seen, MESH, OPTIONS, group="2", work=tmp_path, workers=workers)
+    assert set(seen.asked[4:]) == {0, 1}  # this process has made the first group alone
+    assert list(map(stored_bytes, spread.groups.stored)) == list(map(stored_bytes, alone.groups.stored))
 
 
 def test_a_run_that_was_stopped_goes_on_after_the_last_finished_frame(tmp_path):

@@ -8,6 +8,7 @@ from fractions import Fraction
 import numpy as np
 
 from eigenfield.core.clip import Clip, Frame, Group, Timeline
+from support.observations import CalibratedInMemory
 from support.redrawn import write_capture
 from support.scenes import tiny_scene
 
@@ -24,6 +25,42 @@ class Groups:
 
     def group(self, index):
         return self.made[index]
+
+
+@dataclass(frozen=True, eq=False)
+class FootageInMemory:
+    """Footage whose instants are in memory, in place of `capture.footage.Footage`.
+
+    Attributes:
+        asked: Numbers of the instants that were asked for, in order.
+    """
+
+    frames: list[CalibratedInMemory]
+    asked: list[int]
+    rate: Fraction = Fraction(4)
+
+    def __len__(self):
+        return len(self.frames)
+
+    @property
+    def timeline(self):
+        return Timeline(self.rate, len(self.frames))
+
+    @property
+    def names(self):
+        return self.frames[0].names
+
+    @property
+    def cameras(self):
+        return self.frames[0].cameras
+
+    @property
+    def bytes(self):
+        return 0
+
+    def instant(self, number):
+        self.asked.append(number)
+        return self.frames[number]
 
 
 @dataclass(frozen=True, eq=False)

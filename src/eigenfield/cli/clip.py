@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eigenfield.cli.common import note, note_all
+from eigenfield.cli.common import chosen_workers, note, note_all
 from eigenfield.cli.progress import progress_bars
 from eigenfield.core.errors import OptionError
 from eigenfield.core.open_options import OpenOptions
@@ -40,6 +40,8 @@ def encode_clip(
     output: Path,
     overwrite: bool,
     quiet: bool,
+    workers: int | None,
+    cluster: str | None,
 ) -> None:
     """Footage in, a clip out."""
     from eigenfield.capture import open_footage
@@ -50,12 +52,12 @@ def encode_clip(
     started = time.monotonic()
     refuse_still_options(options)
     refuse_no_proxy(proxy)
-    with progress_bars(quiet) as progress:
+    with chosen_workers(workers, cluster) as reached, progress_bars(quiet) as progress:
         footage = open_footage(capture, options=replace(place, work=work / "frames"))
         note_all(footage.problems, quiet)
         note(f"{len(footage.names)} cameras, {len(footage)} frames at {float(footage.timeline.rate):g} a second", quiet)
         note("Ctrl-C stops it; the same command goes on after the last finished frame", quiet)
-        clip = encode_footage(footage, proxy, options, work=work, progress=progress)
+        clip = encode_footage(footage, proxy, options, work=work, workers=reached, progress=progress)
         save(clip, output, overwrite=overwrite, progress=progress)
     log.info("%.0f s", time.monotonic() - started)
     click.echo("\n".join(clip_lines(output, clip)))

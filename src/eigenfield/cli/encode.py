@@ -191,10 +191,9 @@ def command(
         raise OptionError("group-unused", "--group is about clips", remedy="say --clip, or leave it out")
     if place.clip is not None:
         refuse_for_clips({"draft": draft, "view": look, "blind": blind, "without": without})
-        surface_to_make(
-            options, from_fields(SurfaceOptions, settings), False, True, {"workers": workers, "cluster": cluster}
-        )
-        encode_clip(capture, proxy, place, options, work or whole.with_suffix(".work"), output, overwrite, quiet)
+        surface_to_make(options, from_fields(SurfaceOptions, settings), False, True, {})
+        stages = work or whole.with_suffix(".work")
+        encode_clip(capture, proxy, place, options, stages, output, overwrite, quiet, workers, cluster)
         return
     projected = options.resolved().fit == "none"
     surface = surface_to_make(

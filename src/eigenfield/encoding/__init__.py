@@ -137,6 +137,7 @@ def encode_footage(
     options: EncodeOptions | None = None,
     *,
     work: str | os.PathLike[str] | None = None,
+    workers: Workers | None = None,
     progress: Progress | None = notebook_progress,
     **changes: Any,
 ) -> Clip:
@@ -147,6 +148,8 @@ def encode_footage(
         proxy: A triangle mesh in the world of the cameras, or its file.
         options: What is asked for; None for the defaults. Those that are for one instant are refused.
         work: Folder that keeps finished stages, so that the same call goes on from there. None: a temporary one.
+        workers: Of `open_executor`: they make the groups after the first, with the same bytes. They see `work` and the
+            footage.
         progress: Reports each pass by frames; by default bars in a notebook. None: nothing is reported.
         changes: Fields of `EncodeOptions` by name, in place of those of `options`.
 
@@ -160,4 +163,4 @@ def encode_footage(
     refuse_unknown(changes, OPTION_NAMES, "encode")
     options = replace(options or EncodeOptions(), **changes)
     folder = None if work is None or find_objects(work) else Path(work)
-    return encode_clip(footage, proxy, options, folder, progress)
+    return encode_clip(footage, proxy, options, folder, progress, workers)

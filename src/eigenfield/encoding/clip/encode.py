@@ -6,7 +6,6 @@ import hashlib
 import os
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -21,21 +20,19 @@ from eigenfield.core.observations import CalibratedObservations
 from eigenfield.core.progress import Progress, begin_step
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.version import __version__
-from eigenfield.encoding.clip.closed_loop import code_group, texture_counts
-from eigenfield.encoding.clip.frames import GroupFrames, load_arrays, save_arrays
-from eigenfield.encoding.clip.open_loop import fit_group
+from eigenfield.encoding.clip.groups import Groups, MadeGroup
 from eigenfield.encoding.clip.plan import open_clip_plan
 from eigenfield.encoding.fitted.colour import to_rgb
-from eigenfield.encoding.options import PRESETS, EncodeOptions, resolved_value
+from eigenfield.encoding.options import EncodeOptions
 from eigenfield.encoding.plan import EncodePlan
 from eigenfield.encoding.prepare import plan_encoding
 from eigenfield.gltf.clips import coded_clip
-from eigenfield.gltf.group import group_bytes
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.proxy import refuse_no_mesh
 from eigenfield.runtime.files import output_errors
 from eigenfield.runtime.parallel import even_pieces, parallel_map
 from eigenfield.runtime.stages import SCENE_ROOMS, Stages, stage_key
+from eigenfield.runtime.tasks import Workers
 
 if TYPE_CHECKING:
     from eigenfield.capture.footage import Footage
@@ -43,7 +40,6 @@ if TYPE_CHECKING:
 DEFAULT_GROUP = "1s"
 GROUP_PATTERN = re.compile(r"(\d{1,9})|(\d{1,9}(?:\.\d*)?|\.\d+)s")  # frames, or seconds
 GROUP_LIMITS = 1, 1024  # frames
-GROUP_FILE = "group.bin"
 STILL_OPTIONS = (  # that have no meaning for clips
     "uv_ssim", "align", "max_angle", "codec", "keep_maps", "residual", "target", "harmonise",
 )  # fmt: skip
@@ -55,6 +51,7 @@ def encode_clip(
     asked: EncodeOptions,
     work: Path | None = None,
     progress: Progress | None = None,
+    workers: Workers | None = None,
 ) -> Clip:
     """A clip on one still proxy: its frames share the weights of their group (equation 6, summed over its frames).
 
@@ -62,6 +59,8 @@ def encode_clip(
         proxy: Opaque. None is refused: nothing estimates the surface of a clip yet.
         asked: Options; those that clips have no use for are refused.
         work: Folder that keeps finished stages; None: nothing is kept.
+        workers: That make all groups but the first, which says how many textures there are; they see `work` and the
+            footage. None: this process makes all.
 
     Raises:
         OptionError: `clip-proxy`, `clip-cameras`, `clip-option`, `group-unknown`.
@@ -77,16 +76,15 @@ def encode_clip(
     plan = plan_encoding(middle, proxy, asked, work, progress)
     identity = stage_key([_footage_digest(footage), asked, _plan_digest(plan)], SCENE_ROOMS)
     spans = even_pieces(len(footage), -(-len(footage) // length))
+    groups = Groups(footage, plan, identity, tuple(spans), work)
     begin_step(progress, "fit")
     with Stages(None if work is None else work / "clip") as stages, open_clip_plan(plan, work) as clip:
-        made: list[_MadeGroup] = []
-        for number, span in enumerate(spans):
-            clip = clip if not made else clip.with_textures(made[0].counts)
-            title = f"group {number + 1} of {len(spans)}"
-            key = stage_key([identity, *span, made[0].counts if made else None], SCENE_ROOMS)
-            frames = GroupFrames(clip, footage.instant, range(*span), stages, key, title, progress)
-            made.append(_make_group(frames, number, made[0].counts if made else None))
-        layout = clip.layout(made[0].counts)
+        made = [groups.make(clip, stages, 0, None, progress)]
+        counts = made[0].counts
+        if workers is not None and len(spans) > 1:
+            groups.make_on_workers(clip, stages, counts, workers, progress)
+        made += [groups.make(clip, stages, number, counts, progress) for number in range(1, len(spans))]
+        layout = clip.layout(counts)
     return coded_clip(
         plan.views.rig,
         plan.mesh,
@@ -99,44 +97,6 @@ def encode_clip(
         scores={},
         generator=f"eigenfield {__version__}",
         payloads=plan.payloads,
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class _MadeGroup:
-    """A group as it lies in a file.
-
-    Attributes:
-        counts: Eigen textures of each plane.
-        psnr: dB of each frame's luma, before its mean was coded.
-    """
-
-    data: bytes
-    counts: tuple[int, ...]
-    psnr: tuple[float, ...]
-
-
-def _make_group(frames: GroupFrames, number: int, counts: tuple[int, ...] | None) -> _MadeGroup:
-    """A group, made or taken up from an earlier run.
-
-    Args:
-        counts: Eigen textures of each plane; None: as many as pay in this group.
-    """
-    clip = frames.clip
-
-    def build(folder: Path) -> None:
-        group = frames.averaged()
-        opened = fit_group(group, PRESETS[resolved_value(clip.plan.options.preset)].rounds)
-        kept = texture_counts(clip, opened) if counts is None else counts
-        coded, psnr = code_group(group, opened, clip.layout(kept))
-        (folder / GROUP_FILE).write_bytes(group_bytes(coded))
-        save_arrays(folder, {"counts": np.array(kept), "psnr": np.array(psnr)})
-
-    folder = frames.stages.run(f"group-{number:04d}", frames.identity, build)
-    frames.clear()
-    found = load_arrays(folder)
-    return _MadeGroup(
-        (folder / GROUP_FILE).read_bytes(), tuple(found["counts"].tolist()), tuple(found["psnr"].tolist())
     )
 
 
@@ -203,7 +163,7 @@ def _plan_digest(plan: EncodePlan) -> list[Any]:
     return [streams, plan.atlas]
 
 
-def _settings(plan: EncodePlan, made: Sequence[_MadeGroup], asked: EncodeOptions) -> dict[str, Any]:
+def _settings(plan: EncodePlan, made: Sequence[MadeGroup], asked: EncodeOptions) -> dict[str, Any]:
     """What the file says about how it was made."""
     counts, options = made[0].counts, plan.options
     psnr = [round(value, 2) for one in made for value in one.psnr]

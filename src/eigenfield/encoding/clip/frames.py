@@ -3,6 +3,7 @@ frame of one pass at most, and memory has one frame at a time."""
 
 from __future__ import annotations
 
+import contextlib
 import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.progress import Progress, track
+from eigenfield.encoding.clip.active import ActivePlane
 from eigenfield.encoding.clip.plan import ClipPlan
 from eigenfield.encoding.clip.rest import MIN_FRAMES, camera_at_rest
 from eigenfield.runtime.parallel import tracked_map
@@ -61,6 +63,7 @@ class GroupFrames:
         identity: What all passes depend on.
         title: Of the group, for reports of progress.
         rest: The stage of what stands still; None: nothing is averaged.
+        active: The part of each plane that changes, which is what frames after the first are fitted to; None: all is.
         made: Folders of passes, which `clear` removes.
     """
 
@@ -72,15 +75,18 @@ class GroupFrames:
     title: str
     progress: Progress | None = None
     rest: Path | None = None
+    active: tuple[ActivePlane, ...] | None = None
     made: list[Path] = field(default_factory=list)
 
     def __len__(self) -> int:
         return len(self.numbers)
 
-    def averaged(self) -> GroupFrames:
+    @contextlib.contextmanager
+    def averaged(self) -> Iterator[GroupFrames]:
         """The same with photographs whose still pixels are averaged over the group."""
         if len(self) < MIN_FRAMES:
-            return self
+            yield self
+            return
 
         def build(folder: Path) -> None:
             def find(camera: int) -> None:
@@ -92,10 +98,17 @@ class GroupFrames:
         key = stage_key([self.identity, "rest"], SCENE_ROOMS)
         folder = self.stages.run(f"rest-{self.numbers.start:05d}", key, build)
         self.made.append(folder)
-        return replace(self, rest=folder)
+        with self.clip.open_active(folder) as active:
+            yield replace(self, rest=folder, active=active)
 
     def run(
-        self, name: str, make: Callable[..., Arrays], given: Iterable[Any] | None = None, after: FramePass | None = None
+        self,
+        name: str,
+        make: Callable[..., Arrays],
+        given: Iterable[Any] | None = None,
+        after: FramePass | None = None,
+        *,
+        with_first: bool = False,
     ) -> FramePass:
         """A pass over all frames.
 
@@ -104,16 +117,19 @@ class GroupFrames:
             make: From a frame's pixels, and what is given for it, to the arrays that are kept.
             given: Something for each frame; None: nothing.
             after: The pass before it.
+            with_first: Whether `make` also gets, last, what it made of the first frame; None for that frame itself.
         """
         key = stage_key([self.identity, name, None if after is None else after.key], SCENE_ROOMS)
         inputs = ((one,) for one in given) if given is not None else (() for _ in self.numbers)
-        folders = []
+        folders: list[Path] = []
         steps = zip(self.numbers, inputs, strict=True)
         for number, one in track(steps, f"{self.title}: {name}", len(self), self.progress):
 
             def build(folder: Path, number: int = number, one: tuple[Any, ...] = one) -> None:
-                with self.clip.open_frame(self.instant(number), self.rest) as pixels:
-                    save_arrays(folder, make(pixels, *one))
+                first = (load_arrays(folders[0]) if folders else None,) if with_first else ()
+                active = self.active if folders else None
+                with self.clip.open_frame(self.instant(number), self.rest, active) as pixels:
+                    save_arrays(folder, make(pixels, *one, *first))
 
             folders.append(self.stages.run(f"{name}-{number:05d}", key, build))
         self.made.extend(folders)

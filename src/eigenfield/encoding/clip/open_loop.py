@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 from eigenfield.encoding.clip.frames import Arrays, FramePass, GroupFrames
 from eigenfield.encoding.clip.plan import ClipPlan, ClipPlane, FramePixels
 from eigenfield.encoding.fitted.coverage import fill_unseen
-from eigenfield.encoding.fitted.fit import FIT_SIGMA_RATIO, fit_mean
+from eigenfield.encoding.fitted.fit import FIT_MEAN_ITERATIONS, FIT_SIGMA_RATIO
 from eigenfield.encoding.fitted.model import Block, PlaneModel
 from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.encoding.fitted.planes import FEW_TEXTURE_ITERATIONS, MANY_TEXTURE_ITERATIONS
 from eigenfield.encoding.fitted.products import combine
-from eigenfield.encoding.fitted.solve import fit_textures, residual, texture_gram, whitening
+from eigenfield.encoding.fitted.solve import Scales, fit_textures, residual, texture_gram, whitening
 from eigenfield.encoding.fitted.start import open_residual_maps, principal_weights
 from eigenfield.encoding.fitted.tied_weights import WeightEquations, weight_equations
 
@@ -62,28 +62,37 @@ def fit_group(group: GroupFrames, rounds: int) -> OpenGroup:
         rounds: Of fitting frames and weights in turns.
     """
     clip = group.clip
-    done = group.run("mean", lambda pixels: _fit_means(clip, pixels))
+    done = group.run("mean", lambda pixels, first: _fit_means(clip, pixels, first), with_first=True)
     weights = tuple(_principal(done, plane, number) for number, plane in enumerate(clip.planes))
     for turn in range(max(rounds, FIRST_ROUNDS)):
-        now = weights
+        now, last = weights, turn == max(rounds, FIRST_ROUNDS) - 1
 
-        def make(pixels: FramePixels, before: Arrays, now: tuple[SharedWeights, ...] = now) -> Arrays:
-            return _fit_textures(clip, pixels, before, now)
+        def make(
+            pixels: FramePixels,
+            before: Arrays,
+            first: Arrays | None,
+            now: tuple[SharedWeights, ...] = now,
+            last: bool = last,
+        ) -> Arrays:
+            return _fit_textures(clip, pixels, before, first, now, last)
 
-        last = turn == max(rounds, FIRST_ROUNDS) - 1
-        done = group.run(f"textures-{turn}", make, done, done)
+        done = group.run(f"textures-{turn}", make, done, done, with_first=True)
         if not last:
             weights = tuple(_solved(done, number, one) for number, one in enumerate(now))
     return OpenGroup(done, weights)
 
 
-def _fit_means(clip: ClipPlan, pixels: FramePixels) -> Arrays:
-    """The mean alone of each plane, and the Gram matrix of what it leaves."""
+def _fit_means(clip: ClipPlan, pixels: FramePixels, first: Arrays | None) -> Arrays:
+    """The mean alone of each plane, and the Gram matrix of what it leaves.
+
+    Args:
+        first: What was found of the group's first frame; None: this is it.
+    """
     found: dict[str, NDArray[np.float32] | NDArray[np.float64]] = {}
     for number, plane in enumerate(clip.planes):
         data, model = pixels.fitted(plane), plane.settings.grey_model()
         scales = plane.scales_of(data)
-        fit_mean(data, model, scales)
+        _fit(pixels, data, model, scales, FIT_MEAN_ITERATIONS, number, first)
         found[f"mean{number}"] = model.mean
         with open_residual_maps(data, model, scales, plane.rectangle, plane.settings.scattered, clip.work) as maps:
             found[f"gram{number}"] = maps.gram()
@@ -97,8 +106,21 @@ def _principal(done: FramePass, plane: ClipPlane, number: int) -> SharedWeights:
     return SharedWeights(np.ascontiguousarray(weights), np.eye(count, dtype=np.float32))
 
 
-def _fit_textures(clip: ClipPlan, pixels: FramePixels, before: Arrays, weights: tuple[SharedWeights, ...]) -> Arrays:
-    """Mean and textures of each plane of a frame for given weights, and the frame's part in the next weights."""
+def _fit_textures(
+    clip: ClipPlan,
+    pixels: FramePixels,
+    before: Arrays,
+    first: Arrays | None,
+    weights: tuple[SharedWeights, ...],
+    last: bool,
+) -> Arrays:
+    """Mean and textures of each plane of a frame for given weights, and the frame's part in the next weights.
+
+    Args:
+        first: What this function made of the group's first frame; None: this is it.
+        last: Whether there are no next weights.
+    """
+    iterations = FEW_TEXTURE_ITERATIONS if clip.few else MANY_TEXTURE_ITERATIONS
     found: dict[str, NDArray[np.float32] | NDArray[np.float64]] = {}
     for number, (plane, shared) in enumerate(zip(clip.planes, weights, strict=True)):
         model, fitted = plane.settings.grey_model(), pixels.fitted(plane)
@@ -106,24 +128,53 @@ def _fit_textures(clip: ClipPlan, pixels: FramePixels, before: Arrays, weights: 
         with pixels.weighed(fitted, shared.variance) as data:
             textures = before.get(f"textures{number}")
             if textures is None:
-                textures = _projection(clip, plane, data, model, shared.weights)
+                seen = data if first is None or pixels.active is None else pixels.active[number].data(data)
+                textures = _projection(clip, plane, seen, scales, model, shared.weights)
             model.blocks = [Block(plane.rectangle, _rotated(textures, shared.rotation), shared.weights)]
-            equations = residual(data, model, variance=shared.variance)
-            iterations = FEW_TEXTURE_ITERATIONS if clip.few else MANY_TEXTURE_ITERATIONS
-            fit_textures(data, model, scales, iterations, equations=equations)
-        with pixels.weighed(pixels.thinned, shared.variance) as some:
-            found |= equation_arrays(weight_equations(some, model, shared.variance), number)
-        found[f"energy{number}"] = texture_gram(model.blocks[0], scales)
+            _fit(pixels, data, model, scales, iterations, number, first, shared.variance)
+        if not last:
+            with pixels.weighed(pixels.thinned, shared.variance) as some:
+                found |= equation_arrays(weight_equations(some, model, shared.variance), number)
+            found[f"energy{number}"] = texture_gram(model.blocks[0], scales)
         fill_unseen(model, scales, clip.footprints.surface)
         found[f"mean{number}"], found[f"textures{number}"] = model.mean, model.blocks[0].textures
     return found
 
 
+def _fit(
+    pixels: FramePixels,
+    data: FitData,
+    model: PlaneModel,
+    scales: Scales,
+    iterations: int,
+    number: int,
+    first: Arrays | None,
+    variance: float | None = None,
+) -> None:
+    """Fit mean and textures of a plane of a frame, or the mean alone where the model has no textures.
+
+    Args:
+        data: Of the plane, all pixels; those that see nothing that changes are left out here.
+        number: Of the plane.
+        first: What the same fit has found of the group's first frame; None: this is it, and all of it is fitted.
+    """
+    if first is not None and pixels.active is not None:
+        active = pixels.active[number]
+        data, scales = active.data(data), active.scales(scales)
+        active.put_rest(model, first[f"mean{number}"], first.get(f"textures{number}"))
+    equations = residual(data, model, (True, bool(model.blocks), False), variance=variance)
+    fit_textures(data, model, scales, iterations, mean_only=not model.blocks, equations=equations)
+
+
 def _projection(
-    clip: ClipPlan, plane: ClipPlane, data: FitData, model: PlaneModel, weights: NDArray[np.float32]
+    clip: ClipPlan, plane: ClipPlane, data: FitData, scales: Scales, model: PlaneModel, weights: NDArray[np.float32]
 ) -> NDArray[np.float32]:
-    """(n, C, h, w): what the mean leaves, projected on the weights."""
-    scales = plane.scales_of(data)
+    """(n, C, h, w): what the mean leaves, projected on the weights.
+
+    Args:
+        data: All pixels that see the texels for which it is asked.
+        scales: Of all pixels.
+    """
     with open_residual_maps(data, model, scales, plane.rectangle, plane.settings.scattered, clip.work) as maps:
         return maps.textures(weights.astype(np.float64))
 

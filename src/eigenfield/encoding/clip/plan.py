@@ -8,14 +8,16 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eigenfield.coding.video.film_layout import PlaneSizes, film_layout
 from eigenfield.core.camera import Camera
 from eigenfield.core.films import FilmLayout
 from eigenfield.core.observations import CalibratedObservations, Observations, select_cameras
-from eigenfield.encoding.clip.rest import AtRest
+from eigenfield.encoding.clip.active import ActivePlane, open_active_plane
+from eigenfield.encoding.clip.rest import AtRest, CameraAtRest
 from eigenfield.encoding.fitted.fit import PlaneSettings
-from eigenfield.encoding.fitted.footprints import Footprints, offsets_of, subsampled_footprints
+from eigenfield.encoding.fitted.footprints import Footprints, offsets_of, sample_corner, subsampled_footprints
 from eigenfield.encoding.fitted.model import AtlasComposer, Rectangle, make_composer
 from eigenfield.encoding.fitted.observations import (
     DecodedObservations,
@@ -69,12 +71,14 @@ class FramePixels:
         every: All their pixels.
         thinned: Every THINNED_STEP-th.
         few: As in `ClipPlan`.
+        active: The part of each plane that changes within the group; None: all is fitted.
     """
 
     every: FitData
     thinned: FitData
     few: bool
     work: Path | None
+    active: tuple[ActivePlane, ...] | None = None
 
     def fitted(self, plane: ClipPlane) -> FitData:
         """What mean and textures of a plane are fitted to."""
@@ -125,11 +129,39 @@ class ClipPlan:
         return film_layout([PlaneSizes(len(one.matrix), one.mean, ((one.grid, count),)) for one, count in pairs])
 
     @contextlib.contextmanager
-    def open_frame(self, instant: CalibratedObservations, rest: Path | None = None) -> Iterator[FramePixels]:
+    def open_active(self, rest: Path) -> Iterator[tuple[ActivePlane, ...]]:
+        """The part of each plane that changes within a group.
+
+        Args:
+            rest: The stage of what stands still.
+        """
+
+        def moves(camera: int) -> NDArray[np.bool_]:
+            return np.asarray(CameraAtRest.load(rest, camera).share < 255)
+
+        def thinned_moves(camera: int) -> NDArray[np.bool_]:
+            return moves(camera)[sample_corner(camera, THINNED_STEP)]
+
+        with contextlib.ExitStack() as kept:
+            found = []
+            for plane in self.planes:
+                fewer = plane.preset.subsampled and not self.few
+                footprints, own = (self.thinned, thinned_moves) if fewer else (self.footprints, moves)
+                found.append(kept.enter_context(open_active_plane(footprints, plane.settings, own, self.work)))
+            yield tuple(found)
+
+    @contextlib.contextmanager
+    def open_frame(
+        self,
+        instant: CalibratedObservations,
+        rest: Path | None = None,
+        active: tuple[ActivePlane, ...] | None = None,
+    ) -> Iterator[FramePixels]:
         """The photographs of an instant, decoded.
 
         Args:
             rest: The stage of what stands still, which is averaged (`AtRest`); None: all pixels are as they are.
+            active: As in `FramePixels`.
         """
         own = self.observations(instant)
         seen = own if rest is None else AtRest(own, rest)
@@ -137,7 +169,7 @@ class ClipPlan:
             open_on_footprints(self.cameras, seen, self.footprints, self.work) as data,
             open_subsampled(data, THINNED_STEP, self.work, self.thinned) as some,
         ):
-            yield FramePixels(data, some, self.few, self.work)
+            yield FramePixels(data, some, self.few, self.work, active)
 
 
 @contextlib.contextmanager

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import accumulate, pairwise
@@ -164,8 +164,45 @@ def _part_of(surface: Surface, faces: slice) -> Surface:
 @contextlib.contextmanager
 def subsampled_footprints(footprints: Footprints, step: int, work: Path | None = None) -> Iterator[Footprints]:
     """Those of every `step`-th pixel each way, from `sample_corner` on."""
-    cameras = range(len(footprints))
-    fewer = [footprints.of(camera)[0][sample_corner(camera, step)] for camera in cameras]
+    fewer = [footprints.of(camera)[0][sample_corner(camera, step)] for camera in range(len(footprints))]
+
+    def taken(camera: int) -> NDArray[np.bool_]:
+        found = np.zeros(footprints.shapes[camera], np.bool_)
+        found[sample_corner(camera, step)] = True
+        return found
+
+    with _chosen_footprints(footprints, fewer, taken, work) as chosen:
+        yield chosen
+
+
+@contextlib.contextmanager
+def masked_footprints(
+    footprints: Footprints, seen: Callable[[int], NDArray[np.bool_]], work: Path | None = None
+) -> Iterator[Footprints]:
+    """Those of some pixels; the others show nothing.
+
+    Args:
+        seen: From the number of a camera to (h, w), which of its pixels these are.
+    """
+    masks = parallel_map(seen, range(len(footprints)))
+    fewer = [footprints.of(camera)[0] * mask for camera, mask in enumerate(masks)]
+    with _chosen_footprints(footprints, fewer, masks.__getitem__, work) as chosen:
+        yield chosen
+
+
+@contextlib.contextmanager
+def _chosen_footprints(
+    footprints: Footprints,
+    fewer: Sequence[NDArray[np.uint8]],
+    taken: Callable[[int], NDArray[np.bool_]],
+    work: Path | None,
+) -> Iterator[Footprints]:
+    """Those of some pixels.
+
+    Args:
+        fewer: The counts that are left of each camera.
+        taken: From the number of a camera to (h, w), which of its pixels' points are kept.
+    """
     pixels, offsets = offsets_of([few.size for few in fewer]), offsets_of([int(few.sum()) for few in fewer])
     with (
         scratch_array((int(pixels[-1]),), np.uint8, work) as counts,
@@ -175,14 +212,13 @@ def subsampled_footprints(footprints: Footprints, step: int, work: Path | None =
         def put(camera: int) -> None:
             counts[pixels[camera] : pixels[camera + 1]] = fewer[camera].reshape(-1)
             every, points, weights = footprints.of(camera)
-            taken = np.zeros(every.shape, np.bool_)
-            taken[sample_corner(camera, step)] = True
-            kept, into = np.repeat(taken.reshape(-1), every.reshape(-1)), slice(offsets[camera], offsets[camera + 1])
+            kept = np.repeat(taken(camera).reshape(-1), every.reshape(-1))
+            into = slice(offsets[camera], offsets[camera + 1])
             coordinates[into] = points[kept]
             if len(shares):
                 shares[into] = weights[kept]
 
-        parallel_map(put, cameras)
+        parallel_map(put, range(len(footprints)))
         shapes = tuple(few.shape for few in fewer)
         yield Footprints(shapes, counts, pixels, coordinates, shares, offsets, footprints.surface, footprints.detail)
 

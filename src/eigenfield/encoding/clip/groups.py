@@ -1,0 +1,121 @@
+"""The groups of a clip. Each is made by itself, in this process or on a worker, and is a finished stage when it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from eigenfield.core.progress import Progress, track
+from eigenfield.encoding.clip.closed_loop import code_group, texture_counts
+from eigenfield.encoding.clip.frames import GroupFrames, load_arrays, save_arrays
+from eigenfield.encoding.clip.open_loop import fit_group
+from eigenfield.encoding.clip.plan import ClipPlan, open_clip_plan
+from eigenfield.encoding.options import PRESETS, resolved_value
+from eigenfield.encoding.plan import EncodePlan
+from eigenfield.gltf.group import group_bytes
+from eigenfield.runtime.executor import refuse_unshared, spread
+from eigenfield.runtime.shared import Shared, share
+from eigenfield.runtime.stages import SCENE_ROOMS, Stages, stage_key
+from eigenfield.runtime.tasks import Task, Workers
+
+if TYPE_CHECKING:
+    from eigenfield.capture.footage import Footage
+
+GROUP_FILE = "group.bin"
+# Of a worker. Measured: 0.7 GB for the passes of twenty views of 512 x 512, and 0.9 GB more for films of 6.4 megapixels
+PASSES_MEMORY_BYTES = 1e9
+FILM_PIXEL_MEMORY_BYTES = 150.0
+
+
+@dataclass(frozen=True, eq=False)
+class MadeGroup:
+    """A group as it lies in a file.
+
+    Attributes:
+        counts: Eigen textures of each plane.
+        psnr: dB of each frame's luma, before its mean was coded.
+    """
+
+    data: bytes
+    counts: tuple[int, ...]
+    psnr: tuple[float, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Groups:
+    """What the groups of a clip are made of. It is the same in all processes.
+
+    Attributes:
+        identity: What every group depends on.
+        spans: The first frame of each group, and the one after its last.
+        work: Folder for scratch files; None: the system's.
+    """
+
+    footage: Footage
+    plan: EncodePlan
+    identity: str
+    spans: tuple[tuple[int, int], ...]
+    work: Path | None
+
+    def key(self, number: int, counts: tuple[int, ...] | None) -> str:
+        """Of the stage of a group."""
+        return stage_key([self.identity, *self.spans[number], counts], SCENE_ROOMS)
+
+    def make(
+        self, clip: ClipPlan, stages: Stages, number: int, counts: tuple[int, ...] | None, progress: Progress | None
+    ) -> MadeGroup:
+        """A group, made or taken up from an earlier run.
+
+        Args:
+            counts: Eigen textures of each plane; None: as many as pay in this group.
+        """
+        title, key = f"group {number + 1} of {len(self.spans)}", self.key(number, counts)
+        clip = clip if counts is None else clip.with_textures(counts)
+        frames = GroupFrames(clip, self.footage.instant, range(*self.spans[number]), stages, key, title, progress)
+
+        def build(folder: Path) -> None:
+            with frames.averaged() as group:
+                opened = fit_group(group, PRESETS[resolved_value(clip.plan.options.preset)].rounds)
+                kept = texture_counts(clip, opened) if counts is None else counts
+                coded, psnr = code_group(group, opened, clip.layout(kept))
+            (folder / GROUP_FILE).write_bytes(group_bytes(coded))
+            save_arrays(folder, {"counts": np.array(kept), "psnr": np.array(psnr)})
+
+        folder = stages.run(_name(number), key, build)
+        frames.clear()
+        found = load_arrays(folder)
+        return MadeGroup(
+            (folder / GROUP_FILE).read_bytes(), tuple(found["counts"].tolist()), tuple(found["psnr"].tolist())
+        )
+
+    def make_on_workers(
+        self, clip: ClipPlan, stages: Stages, counts: tuple[int, ...], workers: Workers, progress: Progress | None
+    ) -> None:
+        """Have workers make all groups but the first, as finished stages.
+
+        Raises:
+            OutputError: `folder-not-shared`, a worker does not see the stages.
+        """
+        refuse_unshared(workers, stages.folder)
+        films = sum(width * height for width, height in clip.layout(counts).sizes)
+        task = Task(make_group, PASSES_MEMORY_BYTES + FILM_PIXEL_MEMORY_BYTES * films)
+        with share([self], stages.folder) as (shared,):
+            calls = [(task, stages.folder, shared, number, counts) for number in range(1, len(self.spans))]
+            for _ in track(spread(workers, calls), "groups on workers", len(calls), progress):
+                pass
+
+
+def make_group(folder: Path, shared: Shared[Groups], number: int, counts: tuple[int, ...]) -> None:
+    """Make the stage of one group in a folder, on a worker."""
+    groups = shared.value()
+    with Stages(folder) as stages:
+        if stages.find(_name(number), groups.key(number, counts)) is None:
+            with open_clip_plan(groups.plan, groups.work) as clip:
+                groups.make(clip, stages, number, counts, None)
+
+
+def _name(number: int) -> str:
+    return f"group-{number:04d}"
