@@ -43,7 +43,7 @@ test("the slider: fewer textures, fewer bytes, another picture, its SSIM where t
   assert.equal(two.bytes, sizes.total - sizes.textures.slice(2).reduce((a, b) => a + b, 0));
   const { curve } = await page.evaluate(() => window.eigenfield.field.info.scores);
   assert.equal(two.uvSsim, curve.find(({ textures }) => textures === 2).uv_ssim);
-  assert.match(await page.locator(".figures").innerText(), /kB · UV SSIM 0\.\d{4}/);
+  assert.match(await page.locator("p.figures").innerText(), /kB · UV SSIM 0\.\d{4}/);
   assert.ok(apart(full, await picture(page)) > 0.2);
   await set(page, { count: 0 });
   const none = await picture(page);
@@ -54,7 +54,7 @@ test("the slider: fewer textures, fewer bytes, another picture, its SSIM where t
     window.eigenfield.set({ count: 4 });
   });
   assert.equal((await state(page)).uvSsim, null);
-  assert.doesNotMatch(await page.locator(".figures").innerText(), /UV SSIM/);
+  assert.doesNotMatch(await page.locator("p.figures").innerText(), /UV SSIM/);
   await close();
 });
 
