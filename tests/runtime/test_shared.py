@@ -55,6 +55,7 @@ def test_nothing_else_hands_values_to_workers():
     users = {name for name, text in files.items() if re.search(r"\bwith share\(", text)}
     assert users == {
         "calibration/motion/on_workers.py",
+        "encoding/clip/groups.py",
         "encoding/projected/maps_on_workers.py",
         "evaluation/spread.py",
         "proxy/surface/depth_maps.py",
