@@ -16,7 +16,7 @@ import av.error
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.readers.video import Shown, decode_video, find_film, to_rgb
+from eigenfield.capture.readers.video import Shown, decode_video, find_film, to_rgb, video_errors
 from eigenfield.core.errors import CaptureError
 
 RATE_DEFAULT = Fraction(30)  # of what does not state one
@@ -132,24 +132,16 @@ def open_film(path: Path) -> Film:
 
     Raises CaptureError: `video-unreadable`.
     """
-    try:
-        with av.open(str(path), metadata_errors="replace") as container:
-            stream = find_film(container)
-            found = [] if stream is None else _stamps(container, stream)
-            if stream is not None and found and stream.time_base is not None:
-                start = stream.start_time or 0
-                order = sorted({(stamp - start, key) for stamp, key in found})
-                keys = {0, *(number for number, (_, key) in enumerate(order) if key)}
-                stamps = tuple(stamp for stamp, _ in order)
-                rate = _rate_of(stream, np.diff(np.array(stamps, np.float64)) * float(stream.time_base))
-                return Film(path, stamps, tuple(sorted(keys)), stream.time_base, rate)
-    except (av.error.FFmpegError, OSError) as error:
-        raise CaptureError(
-            "video-unreadable",
-            f"is damaged or no video ({str(error).splitlines()[0][:120]})",
-            path=path,
-            remedy="copy it again, or take it out of the folder",
-        ) from error
+    with video_errors(path), av.open(str(path), metadata_errors="replace") as container:
+        stream = find_film(container)
+        found = [] if stream is None else _stamps(container, stream)
+        if stream is not None and found and stream.time_base is not None:
+            start = stream.start_time or 0
+            order = sorted({(stamp - start, key) for stamp, key in found})
+            keys = {0, *(number for number, (_, key) in enumerate(order) if key)}
+            stamps = tuple(stamp for stamp, _ in order)
+            rate = _rate_of(stream, np.diff(np.array(stamps, np.float64)) * float(stream.time_base))
+            return Film(path, stamps, tuple(sorted(keys)), stream.time_base, rate)
     raise CaptureError(
         "video-unreadable", "holds no frame whose time is stated", path=path, remedy="take it out of the folder"
     )

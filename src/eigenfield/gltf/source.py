@@ -153,7 +153,7 @@ class StoredBytes:
     def read(self, first: int, last: int) -> memoryview:
         """As of `ByteSource`."""
         with name_file_in_errors(self.path), open_source(self.path) as source:
-            return source.read(self.first + first, min(self.first + last, self.last))
+            return ByteRange(source, self.first, self.last).read(first, last)
 
 
 def read_file(path: Path) -> bytes:

@@ -7,6 +7,7 @@ of interpolating it).
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 from collections import Counter
@@ -194,8 +195,15 @@ def decode_video(path: Path, frame: int | float = 0) -> Iterator[Shown]:
 
     Raises CaptureError: `video-unreadable`, `video-large`, `video-colours`.
     """
-    try:
+    with video_errors(path):
         yield from _decode_frames(path, frame)
+
+
+@contextlib.contextmanager
+def video_errors(path: Path) -> Iterator[None]:
+    """Turn what a decoder raises on a damaged video into CaptureError `video-unreadable`."""
+    try:
+        yield
     except (av.error.FFmpegError, OSError) as error:
         raise CaptureError(
             "video-unreadable",
