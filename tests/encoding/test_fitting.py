@@ -163,7 +163,7 @@ def test_drawing_and_its_transpose(height, width, channels, opaque, seed):
     forward(counts, points, shares, size, np.ones_like(texture), np.float32(1), ones)
     np.testing.assert_allclose(ones, np.broadcast_to(parts, ones.shape), atol=1e-5)
     aimed = np.zeros((3, 7, 9), np.float32)
-    target(counts, points, shares, np.full((7, 9, 3), 200, np.uint8), RGB, aimed)
+    target(counts, points, shares, np.full((7, 9, 3), 200, np.uint8), np.eye(3, 4, dtype=np.float32), aimed)
     np.testing.assert_allclose(aimed, 200 * ones[:1].repeat(3, axis=0), rtol=1e-4)
 
 
