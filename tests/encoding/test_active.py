@@ -76,7 +76,7 @@ def test_a_group_is_as_good_as_one_that_is_fitted_as_a_whole(waving, monkeypatch
     options = EncodeOptions(quality=90)
     quick = encode_footage(waving, MESH, options, group="4")
     open_frame = ClipPlan.open_frame
-    monkeypatch.setattr(ClipPlan, "open_frame", lambda plan, instant, rest, active: open_frame(plan, instant, rest))
+    monkeypatch.setattr(ClipPlan, "open_frame", lambda plan, photographs, active: open_frame(plan, photographs))
     whole = encode_footage(waving, MESH, options, group="4")
     before, after = (np.mean(one.settings["clip"]["psnr"]) for one in (whole, quick))
     sizes = [sum(len(unit) for frame in one.groups.coded(0).units for unit in frame) for one in (whole, quick)]

@@ -10,7 +10,12 @@ import pytest
 from eigenfield.core.proxy import Proxy
 from eigenfield.encoding.fitted.kernels import forward
 from eigenfield.encoding.fitted.model import Block, PlaneModel
-from eigenfield.encoding.fitted.observations import open_camera_footprints, open_on_footprints, open_subsampled
+from eigenfield.encoding.fitted.observations import (
+    FitData,
+    decode_observations,
+    open_camera_footprints,
+    open_subsampled,
+)
 from eigenfield.encoding.fitted.solve import measure_scales, texture_gram, whiten, whitening
 from eigenfield.encoding.fitted.start import residual_image
 from eigenfield.encoding.fitted.tied_weights import weight_equations
@@ -41,7 +46,8 @@ def frames():
         for frame in range(3):
             pictures = list(0.5 + 0.3 * smooth_pictures(6, 60, 72, 3, frame))
             seen = InMemory(pictures, [mask if frame == 1 and index == 2 else None for index in range(6)])
-            opened.append(kept.enter_context(open_on_footprints(CAMERAS, seen, footprints)))
+            codes, masks = np.zeros((6 * 60 * 72, 3), np.uint8), np.zeros(6 * 60 * 72, np.uint8)
+            opened.append(FitData(decode_observations(CAMERAS, seen, codes, masks), footprints))
         yield opened, [kept.enter_context(open_subsampled(one, 2)) for one in opened]
 
 

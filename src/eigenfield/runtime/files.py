@@ -10,7 +10,7 @@ import shutil
 import sys
 import tempfile
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import IO, Any
 
@@ -239,19 +239,35 @@ def scratch_array(shape: tuple[int, ...], dtype: DTypeLike, folder: Path | None 
     Args:
         folder: Where the file is made; None: the system's temporary folder.
     """
+    with scratch_arrays(1, shape, dtype, folder) as array:
+        yield array(0)
+
+
+@contextlib.contextmanager
+def scratch_arrays(
+    count: int, shape: tuple[int, ...], dtype: DTypeLike, folder: Path | None = None
+) -> Iterator[Callable[[int], NDArray[Any]]]:
+    """As `scratch_array`, arrays of one shape in one file: from a number below `count` to one of them.
+
+    Each call maps an array anew, so that memory has only those that are held.
+    """
     place = Path(folder) if folder is not None else Path(tempfile.gettempdir())
     size = int(np.prod(shape, dtype=np.int64)) * np.dtype(dtype).itemsize
     if size == 0:
-        yield np.zeros(shape, dtype)
+        yield lambda _: np.zeros(shape, dtype)
         return
     with contextlib.ExitStack() as opened:
         with output_errors(place):  # what goes wrong in the caller's block is not about this folder
             file = opened.enter_context(tempfile.TemporaryFile(prefix=".eigenfield-", dir=place))
             if hasattr(os, "posix_fallocate"):
-                os.posix_fallocate(file.fileno(), 0, size)
+                os.posix_fallocate(file.fileno(), 0, count * size)
             else:
-                if shutil.disk_usage(place).free < size:
+                if shutil.disk_usage(place).free < count * size:
                     raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-                file.truncate(size)
-            array = np.memmap(file, dtype=dtype, mode="r+", shape=shape)
-        yield array
+                file.truncate(count * size)
+
+        def mapped(number: int) -> NDArray[Any]:
+            with output_errors(place):
+                return np.memmap(file, dtype=dtype, mode="r+", offset=number * size, shape=shape)
+
+        yield mapped

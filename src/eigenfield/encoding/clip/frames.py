@@ -13,10 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.observations import Observations
 from eigenfield.core.progress import Progress, track
 from eigenfield.encoding.clip.active import ActivePlane
-from eigenfield.encoding.clip.plan import ClipPlan
-from eigenfield.encoding.clip.rest import MIN_FRAMES, camera_at_rest
+from eigenfield.encoding.clip.plan import ClipPlan, KeptPhotographs
+from eigenfield.encoding.clip.rest import MIN_FRAMES, AtRest, camera_at_rest
 from eigenfield.runtime.parallel import tracked_map
 from eigenfield.runtime.stages import SCENE_ROOMS, Stages, stage_key
 
@@ -64,6 +65,7 @@ class GroupFrames:
         title: Of the group, for reports of progress.
         rest: The stage of what stands still; None: nothing is averaged.
         active: The part of each plane that changes, which is what frames after the first are fitted to; None: all is.
+        kept: Their photographs, which are decoded once for all passes; None: not `opened`.
         made: Folders of passes, which `clear` removes.
     """
 
@@ -76,30 +78,37 @@ class GroupFrames:
     progress: Progress | None = None
     rest: Path | None = None
     active: tuple[ActivePlane, ...] | None = None
+    kept: KeptPhotographs | None = None
     made: list[Path] = field(default_factory=list)
 
     def __len__(self) -> int:
         return len(self.numbers)
 
     @contextlib.contextmanager
-    def averaged(self) -> Iterator[GroupFrames]:
-        """The same with photographs whose still pixels are averaged over the group."""
-        if len(self) < MIN_FRAMES:
-            yield self
-            return
+    def opened(self) -> Iterator[GroupFrames]:
+        """The same with room for its photographs; what stands still is averaged over the group in them."""
+        with self.clip.open_photographs(len(self)) as kept:
+            if len(self) < MIN_FRAMES:
+                yield replace(self, kept=kept)
+                return
 
-        def build(folder: Path) -> None:
-            def find(camera: int) -> None:
-                each = (self.clip.observations(self.instant(number)).photograph(camera) for number in self.numbers)
-                camera_at_rest(each, len(self)).save(folder, camera)
+            def build(folder: Path) -> None:
+                def find(camera: int) -> None:
+                    each = (self._observations(number).photograph(camera) for number in self.numbers)
+                    camera_at_rest(each, len(self)).save(folder, camera)
 
-            tracked_map(find, range(len(self.clip.cameras)), f"{self.title}: what stands still", self.progress)
+                tracked_map(find, range(len(self.clip.cameras)), f"{self.title}: what stands still", self.progress)
 
-        key = stage_key([self.identity, "rest"], SCENE_ROOMS)
-        folder = self.stages.run(f"rest-{self.numbers.start:05d}", key, build)
-        self.made.append(folder)
-        with self.clip.open_active(folder) as active:
-            yield replace(self, rest=folder, active=active)
+            key = stage_key([self.identity, "rest"], SCENE_ROOMS)
+            folder = self.stages.run(f"rest-{self.numbers.start:05d}", key, build)
+            self.made.append(folder)
+            with self.clip.open_active(folder) as active:
+                yield replace(self, rest=folder, active=active, kept=kept)
+
+    def _observations(self, number: int) -> Observations:
+        """The photographs of a frame, as they are or with what stands still averaged."""
+        own = self.clip.observations(self.instant(number))
+        return own if self.rest is None else AtRest(own, self.rest)
 
     def run(
         self,
@@ -128,7 +137,9 @@ class GroupFrames:
             def build(folder: Path, number: int = number, one: tuple[Any, ...] = one) -> None:
                 first = (load_arrays(folders[0]) if folders else None,) if with_first else ()
                 active = self.active if folders else None
-                with self.clip.open_frame(self.instant(number), self.rest, active) as pixels:
+                assert self.kept is not None
+                photographs = self.kept.frame(number - self.numbers.start, lambda: self._observations(number))
+                with self.clip.open_frame(photographs, active) as pixels:
                     save_arrays(folder, make(pixels, *one, *first))
 
             folders.append(self.stages.run(f"{name}-{number:05d}", key, build))

@@ -77,7 +77,7 @@ class Groups:
         frames = GroupFrames(clip, self.footage.instant, range(*self.spans[number]), stages, key, title, progress)
 
         def build(folder: Path) -> None:
-            with frames.averaged() as group:
+            with frames.opened() as group:
                 opened = fit_group(group, PRESETS[resolved_value(clip.plan.options.preset)].rounds)
                 kept = texture_counts(clip, opened) if counts is None else counts
                 coded, psnr = code_group(group, opened, clip.layout(kept))

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,15 +15,15 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.films import FilmLayout
 from eigenfield.core.observations import CalibratedObservations, Observations, select_cameras
 from eigenfield.encoding.clip.active import ActivePlane, open_active_plane
-from eigenfield.encoding.clip.rest import AtRest, CameraAtRest
+from eigenfield.encoding.clip.rest import CameraAtRest
 from eigenfield.encoding.fitted.fit import PlaneSettings
 from eigenfield.encoding.fitted.footprints import Footprints, offsets_of, sample_corner, subsampled_footprints
 from eigenfield.encoding.fitted.model import AtlasComposer, Rectangle, make_composer
 from eigenfield.encoding.fitted.observations import (
     DecodedObservations,
     FitData,
+    decode_observations,
     open_camera_footprints,
-    open_on_footprints,
     open_subsampled,
     with_robust_weights,
 )
@@ -33,6 +33,7 @@ from eigenfield.encoding.fitted.solve import Scales, measure_scales
 from eigenfield.encoding.options import SUBSAMPLE_MIN_OBSERVATIONS, resolved_value
 from eigenfield.encoding.plan import EncodePlan, component_count
 from eigenfield.encoding.views import nothing_seen_error
+from eigenfield.runtime.files import scratch_arrays
 
 MAX_TEXTURES = 12  # of luma, unless more are asked for: players sum all of them for each frame
 THINNED_STEP = 2  # pixels, each way, to one that weights are fitted to: all frames of a group have a part in them
@@ -89,6 +90,35 @@ class FramePixels:
         variance, once a residual is drawn with it."""
         robust = self.few and variance is not None
         return with_robust_weights(data, self.work) if robust else contextlib.nullcontext(data)
+
+
+@dataclass(frozen=True, eq=False)
+class KeptPhotographs:
+    """The photographs of a group as 8-bit codes, each frame's decoded when it is first asked for.
+
+    Attributes:
+        codes: From the place of a frame in the group to its array, see `decode_observations`.
+        masks: Likewise.
+        masked: By place of what is decoded, whether some of its pixels do not count.
+    """
+
+    cameras: Sequence[Camera]
+    codes: Callable[[int], NDArray[np.uint8]]
+    masks: Callable[[int], NDArray[np.uint8]]
+    masked: dict[int, bool] = field(default_factory=dict)
+
+    def frame(self, place: int, observations: Callable[[], Observations]) -> DecodedObservations:
+        """A frame, decoded.
+
+        Args:
+            observations: Its photographs, a camera each; asked for once.
+        """
+        codes, masks = self.codes(place), self.masks(place)
+        if place not in self.masked:
+            decoded = decode_observations(self.cameras, observations(), codes, masks)
+            self.masked[place] = decoded.masks is not None
+            return decoded
+        return _of_cameras(self.cameras, codes, masks if self.masked[place] else None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,24 +181,26 @@ class ClipPlan:
             yield tuple(found)
 
     @contextlib.contextmanager
+    def open_photographs(self, frames: int) -> Iterator[KeptPhotographs]:
+        """Room for the photographs of a group of frames, in scratch files of 4 bytes a pixel."""
+        pixels = int(self.footprints.pixel_offsets[-1])
+        with (
+            scratch_arrays(frames, (pixels, 3), np.uint8, self.work) as codes,
+            scratch_arrays(frames, (pixels,), np.uint8, self.work) as masks,
+        ):
+            yield KeptPhotographs(self.cameras, codes, masks)
+
+    @contextlib.contextmanager
     def open_frame(
-        self,
-        instant: CalibratedObservations,
-        rest: Path | None = None,
-        active: tuple[ActivePlane, ...] | None = None,
+        self, photographs: DecodedObservations, active: tuple[ActivePlane, ...] | None = None
     ) -> Iterator[FramePixels]:
-        """The photographs of an instant, decoded.
+        """The pixels of a frame.
 
         Args:
-            rest: The stage of what stands still, which is averaged (`AtRest`); None: all pixels are as they are.
             active: As in `FramePixels`.
         """
-        own = self.observations(instant)
-        seen = own if rest is None else AtRest(own, rest)
-        with (
-            open_on_footprints(self.cameras, seen, self.footprints, self.work) as data,
-            open_subsampled(data, THINNED_STEP, self.work, self.thinned) as some,
-        ):
+        data = FitData(photographs, self.footprints)
+        with open_subsampled(data, THINNED_STEP, self.work, self.thinned) as some:
             yield FramePixels(data, some, self.few, self.work, active)
 
 
@@ -190,7 +222,7 @@ def open_clip_plan(plan: EncodePlan, work: Path | None = None) -> Iterator[ClipP
         open_camera_footprints(cameras, plan.proxy, size, work, views.rig.encoded_reference) as footprints,
         subsampled_footprints(footprints, THINNED_STEP, work) as thinned,
     ):
-        whole = _without_photographs(cameras, footprints)
+        whole = FitData(_of_cameras(cameras, np.zeros((0, 3), np.uint8), None), footprints)  # all count, none is known
 
         def plane_of(preset: PlanePreset) -> ClipPlane:
             settings = preset.settings(size, plan.density, textures, views.scattered)
@@ -204,12 +236,11 @@ def open_clip_plan(plan: EncodePlan, work: Path | None = None) -> Iterator[ClipP
         yield ClipPlan(plan, planes, count < SUBSAMPLE_MIN_OBSERVATIONS, footprints, thinned, work)
 
 
-def _without_photographs(cameras: Sequence[Camera], footprints: Footprints) -> FitData:
-    """A frame of which all pixels count and none is known."""
-    shapes = footprints.shapes
-    offsets = offsets_of([h * w for h, w in shapes])
-    none = DecodedObservations(np.arange(len(cameras)), shapes, np.zeros((0, 3), np.uint8), offsets)
-    return FitData(none, footprints)
+def _of_cameras(
+    cameras: Sequence[Camera], codes: NDArray[np.uint8], masks: NDArray[np.uint8] | None
+) -> DecodedObservations:
+    shapes = tuple((camera.height, camera.width) for camera in cameras)
+    return DecodedObservations(np.arange(len(cameras)), shapes, codes, offsets_of([h * w for h, w in shapes]), masks)
 
 
 def _scales(data: FitData, settings: PlaneSettings) -> Scales:

@@ -147,9 +147,9 @@ def open_fit_data(
     """
     with (
         open_camera_footprints(cameras, proxy, atlas, work, reference) as footprints,
-        open_on_footprints(cameras, observations, footprints, work, progress, colours) as data,
+        _open_observations(cameras, observations, colours, work, progress) as decoded,
     ):
-        yield data
+        yield FitData(decoded, footprints)
 
 
 @contextlib.contextmanager
@@ -164,20 +164,6 @@ def open_camera_footprints(
 
 
 @contextlib.contextmanager
-def open_on_footprints(
-    cameras: Sequence[Camera],
-    observations: Observations,
-    footprints: Footprints,
-    work: Path | None = None,
-    progress: Progress | None = None,
-    colours: NDArray[np.float32] | None = None,
-) -> Iterator[FitData]:
-    """As `open_fit_data`, of cameras whose footprints are there already."""
-    with _open_observations(cameras, observations, colours, work, progress) as decoded:
-        yield FitData(decoded, footprints)
-
-
-@contextlib.contextmanager
 def _open_observations(
     cameras: Sequence[Camera],
     observations: Observations,
@@ -185,24 +171,43 @@ def _open_observations(
     work: Path | None,
     progress: Progress | None,
 ) -> Iterator[DecodedObservations]:
+    pixels = sum(cameras[camera].height * cameras[camera].width for camera in cameras_of(observations))
+    with scratch_array((pixels, 3), np.uint8, work) as codes, scratch_array((pixels,), np.uint8, work) as masks:
+        yield decode_observations(cameras, observations, codes, masks, colours, progress)
+
+
+def decode_observations(
+    cameras: Sequence[Camera],
+    observations: Observations,
+    codes: NDArray[np.uint8],
+    masks: NDArray[np.uint8],
+    colours: NDArray[np.float32] | None = None,
+    progress: Progress | None = None,
+) -> DecodedObservations:
+    """Decode every photograph into arrays.
+
+    Args:
+        codes: (pixels of all, 3), is filled.
+        masks: (pixels of all,), is filled.
+        colours: As of `DecodedObservations`.
+
+    Raises:
+        CaptureError: A photograph cannot be read.
+    """
     by, total = cameras_of(observations), len(observations)
     shapes = tuple((cameras[camera].height, cameras[camera].width) for camera in by)
     offsets, whole = offsets_of([h * w for h, w in shapes]), _whole_weights(total, colours)
-    with (
-        scratch_array((int(offsets[-1]), 3), np.uint8, work) as codes,
-        scratch_array((int(offsets[-1]),), np.uint8, work) as masks,
-    ):
 
-        def put(index: int) -> bool:
-            photograph = observations.photograph(index)
-            mask, part = photograph.mask, slice(offsets[index], offsets[index + 1])
-            codes[part] = to_codes(photograph.pixels).reshape(-1, 3)
-            masks[part] = whole[index] if mask is None else np.where(mask > 0.5, whole[index], 0).reshape(-1)
-            return mask is not None
+    def put(index: int) -> bool:
+        photograph = observations.photograph(index)
+        mask, part = photograph.mask, slice(offsets[index], offsets[index + 1])
+        codes[part] = to_codes(photograph.pixels).reshape(-1, 3)
+        masks[part] = whole[index] if mask is None else np.where(mask > 0.5, whole[index], 0).reshape(-1)
+        return mask is not None
 
-        masked = tracked_map(put, range(total), "photographs", progress)
-        few = any(masked) or bool((whole < 255).any())
-        yield DecodedObservations(by, shapes, codes, offsets, masks if few else None, colours=colours)
+    masked = tracked_map(put, range(total), "photographs", progress)
+    few = any(masked) or bool((whole < 255).any())
+    return DecodedObservations(by, shapes, codes, offsets, masks if few else None, colours=colours)
 
 
 def _whole_weights(count: int, colours: NDArray[np.float32] | None) -> NDArray[np.uint8]:
