@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from eigenfield.capture.footage import Footage
 
 GROUP_FILE = "group.bin"
-# Of a worker. Measured: 0.7 GB for the passes of twenty views of 512 x 512, and 0.9 GB more for films of 6.4 megapixels
+# Of a worker. Measured: 0.7 GB for the passes of twenty views of 512 x 512, and 0.69 GB for a film of 3.1 megapixels
 PASSES_MEMORY_BYTES = 1e9
-FILM_PIXEL_MEMORY_BYTES = 150.0
+FILM_PIXEL_MEMORY_BYTES = 220.0
 
 
 @dataclass(frozen=True, eq=False)
