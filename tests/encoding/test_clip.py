@@ -12,10 +12,12 @@ import eigenfield as ef
 from eigenfield.core.errors import OptionError
 from eigenfield.encoding import EncodeOptions, encode_footage
 from eigenfield.encoding.clip.encode import group_length
+from eigenfield.encoding.clip.plan import KeptPhotographs
 from eigenfield.gltf import load_clip, save, validate
 from eigenfield.imaging.metrics import psnr, to_codes
 from eigenfield.rendering import Renderer, camera_weights, draw_texture
 from eigenfield.runtime.executor import open_executor
+from eigenfield.runtime.files import scratch_arrays
 from support.captures import backdrop, shaded_texture
 from support.moving_clips import FootageInMemory
 from support.observations import CalibratedInMemory, InMemory
@@ -109,6 +111,27 @@ def test_workers_make_the_same_groups(tmp_path, count):
         spread = encode_footage(seen, MESH, OPTIONS, group="2", work=tmp_path, workers=workers)
     assert set(seen.asked[4:]) == {0, 1}  # this process has made the first group alone
     assert list(map(stored_bytes, spread.groups.stored)) == list(map(stored_bytes, alone.groups.stored))
+
+
+def test_a_frame_is_decoded_once_and_keeps_its_mask():
+    hidden = np.ones((56, 64), np.float32)
+    hidden[:, :32] = 0
+    pictures = [np.full((56, 64, 3), level / 255, np.float32) for level in range(40, 49)]
+    seen = [InMemory(pictures), InMemory(pictures, [hidden if camera == 2 else None for camera in range(9)])]
+    with (
+        scratch_arrays(2, (9 * 56 * 64, 3), np.uint8) as codes,
+        scratch_arrays(2, (9 * 56 * 64,), np.uint8) as masks,
+    ):
+        kept = KeptPhotographs(CAMERAS, codes, masks)
+        first = [kept.frame(place, lambda place=place: seen[place]) for place in range(2)]
+        again = [kept.frame(place, lambda place=place: seen[place]) for place in range(2)]
+        assert [sorted(one.decoded) for one in seen] == [list(range(9))] * 2
+        for before, after in zip(first, again, strict=True):
+            np.testing.assert_array_equal(after.codes, before.codes)
+            assert after.shapes == before.shapes and after.codes_of(3).min() == after.codes_of(3).max() == 43
+        assert again[0].masks is None
+        np.testing.assert_array_equal(again[1].mask(2) > 0, hidden > 0)
+        assert again[1].mask(3).all()
 
 
 def test_a_run_that_was_stopped_goes_on_after_the_last_finished_frame(tmp_path):

@@ -7,13 +7,21 @@ import os
 import shutil
 import subprocess
 import sys
+import weakref
 
 import numpy as np
 import pytest
 
 from eigenfield.core.errors import EigenfieldError, OptionError, OutputError
 from eigenfield.runtime import files
-from eigenfield.runtime.files import atomic_writer, refuse_existing, scratch_array, scratch_rows, write_bytes
+from eigenfield.runtime.files import (
+    atomic_writer,
+    refuse_existing,
+    scratch_array,
+    scratch_arrays,
+    scratch_rows,
+    write_bytes,
+)
 from eigenfield.runtime.parallel import parallel_map, parallel_stream, set_threads
 
 
@@ -108,6 +116,19 @@ def test_a_missing_folder_and_a_folder_as_output_are_said(tmp_path):
 def test_an_error_inside_a_scratch_arrays_block_stays_what_it_is(tmp_path):
     with pytest.raises(FileNotFoundError), scratch_array((3,), np.float32, tmp_path):
         (tmp_path / "nothing").read_bytes()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_memory_has_only_those_scratch_arrays_that_are_held(tmp_path):
+    with scratch_arrays(3, (1000, 3), np.uint8, tmp_path) as array:
+        for number in range(3):
+            one = array(number)
+            assert one.shape == (1000, 3) and not one.any()
+            one[:] = number + 1
+            held = weakref.ref(one)
+            del one
+            assert held() is None
+        assert [int(array(number).min()) for number in (2, 0, 1)] == [3, 1, 2]
     assert list(tmp_path.iterdir()) == []
 
 
