@@ -38,5 +38,11 @@ def distances_to(points: NDArray[np.floating[Any]]) -> Callable[[int], NDArray[n
 
 def halve_picture(picture: NDArray[np.float32]) -> NDArray[np.float32]:
     """(h / 2, w / 2, ...) means of four pixels of (h, w, ...), h and w even."""
-    height, width, *channels = picture.shape
-    return np.asarray(picture.reshape(height // 2, 2, width // 2, 2, *channels).mean(axis=(1, 3)), np.float32)
+    above = picture[0::2, 0::2], picture[0::2, 1::2]
+    below = picture[1::2, 0::2], picture[1::2, 1::2]
+    # Added in the order of numpy's mean over both axes, which takes ten times as long: results go into files
+    if picture.shape[1] > 2 and picture.size == picture.shape[0] * picture.shape[1]:
+        total = (above[0] + above[1]) + (below[0] + below[1])
+    else:
+        total = above[0] + above[1] + below[0] + below[1]
+    return np.asarray(total * np.float32(0.25), np.float32)
