@@ -74,7 +74,9 @@ def film_scale(steps: Sequence[float], ranges: Sequence[tuple[float, float]], si
     ]
     codes = min(step / unit for step, unit in zip(steps, least, strict=True))
     units = tuple(math.ceil(step / codes * 1e6) / 1e6 for step in steps)
-    return FilmScale(crf_of(FILM_STEP_RATIO * codes), units, tuple(ZERO_CODE if both else LEAST_CODE for both in signed))
+    return FilmScale(
+        crf_of(FILM_STEP_RATIO * codes), units, tuple(ZERO_CODE if both else LEAST_CODE for both in signed)
+    )
 
 
 def range_of(arrays: Iterable[NDArray[np.float32]]) -> tuple[float, float]:

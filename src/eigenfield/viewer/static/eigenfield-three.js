@@ -2299,14 +2299,15 @@ function _a(e, t) {
 			}
 		}
 	}
-	let c = i(J(e).flatMap((e) => e.weights ? [e.weights.view] : [])), l = i([...Object.values(e.shown ?? {}), ...e.mesh ? [e.mesh] : []].map(({ view: e }) => e)), u = e.sheets ? r(e.sheets.opacity.mean.view) : 0;
+	let c = i(J(e).flatMap((e) => e.weights ? [e.weights.view] : [])), l = i([...Object.values(e.shown ?? {}), ...e.mesh ? [e.mesh] : []].map(({ view: e }) => e)), u = e.sheets ? r(e.sheets.opacity.mean.view) : 0, d = e.timeline?.groups.reduce((e, { length: t }) => e + t, 0) ?? 0;
 	return {
 		total: t,
 		mesh: l,
 		opacity: u,
 		mean: o,
 		weights: c,
-		other: t - o - c - l - u - s.reduce((e, t) => e + t, 0),
+		groups: d,
+		other: t - o - c - l - u - d - s.reduce((e, t) => e + t, 0),
 		textures: s
 	};
 }
@@ -3535,6 +3536,14 @@ var Bs = .25, Vs = class extends f {
 	}
 	get waiting() {
 		return this.goal !== null;
+	}
+	get group() {
+		let { groups: e } = this.timeline, t = ki(this.timeline, this.shown.number);
+		return {
+			index: t,
+			count: e.length,
+			bytes: e[t]?.length ?? 0
+		};
 	}
 	get late() {
 		return this.ring.late;
