@@ -2,7 +2,8 @@
 
 The upper half of the mean has n as black and white blocks, the lowest bit on the left. Below, the atlas has a column
 for each eigen texture, and of frame n the texture n modulo their number alone is not zero, there and nowhere else: that
-column is brighter in cameras of high numbers and darker in those of low ones.
+column differs in the last camera from its ground by the group's strength. Groups take turns in strengths, weights and
+scales, so that no frame looks right with what another group has.
 """
 
 from __future__ import annotations
@@ -33,8 +34,12 @@ BITS = 8  # of a frame's number
 TEXTURES_COUNT = 4
 LUMA, CHROMA, BASIS = (128, 128), (64, 64), (128, 128)
 TO_RGB = np.array([[1, 0, 1.5748], [1, -0.187324, -0.468124], [1, 1.8556, 0]], np.float32)
-BLACK, WHITE, GREY, CONTRAST = 40, 980, 512, 600  # codes
+BLACK, WHITE, GREY, CONTRAST = 160, 930, 512, 590  # codes, within those that encoders use
 TEXTURE_SCALE = 0.5 / CONTRAST  # a weight of 1 is half of the range
+STRENGTHS = 1.0, -1.0, 0.4, -0.4  # of groups in turn: the product of the next two
+WEIGHTS = 1.0, -2.0, 0.4, -0.8  # of the last camera
+SCALES = 1.0, 0.5, 1.0, 0.5  # of textures
+MEAN_STEPS = 1, 2, 1, 2  # codes that a code of the mean stands for
 
 
 def numbered_clip(
@@ -48,8 +53,8 @@ def numbered_clip(
     layout = film_layout([PlaneSizes(1, LUMA, ((BASIS, TEXTURES_COUNT),)), PlaneSizes(2, CHROMA, ())])
     starts = np.cumsum([0, *lengths])
     groups = [
-        group_bytes(numbered_group(layout, range(start, start + count), cameras, crf))
-        for start, count in zip(starts[:-1].tolist(), lengths, strict=True)
+        group_bytes(numbered_group(layout, index % len(STRENGTHS), range(start, start + count), cameras, crf))
+        for index, (start, count) in enumerate(zip(starts[:-1].tolist(), lengths, strict=True))
     ]
     timeline = Timeline(rate, int(starts[-1]), first)
     return coded_clip(
@@ -59,18 +64,22 @@ def numbered_clip(
     )  # fmt: skip
 
 
-def numbered_group(layout: FilmLayout, numbers: range, cameras: int, crf: int) -> CodedGroup:
-    """The group of the frames with these numbers."""
-    own = np.tile(np.linspace(-1, 1, cameras, dtype=np.float32)[:, None], (1, TEXTURES_COUNT))
+def numbered_group(layout: FilmLayout, turn: int, numbers: range, cameras: int, crf: int) -> CodedGroup:
+    """The group of the frames with these numbers. turn: of its strength, weights and scales."""
+    across = WEIGHTS[turn] * np.linspace(-1, 1, cameras, dtype=np.float32)
+    own = np.tile(across[:, None], (1, TEXTURES_COUNT))
     stream, _ = encoder("weights-1")(own, 0.01)
     chroma = np.full((2, *CHROMA), EMPTY_CODE, np.uint16)
-    frames = [(join_parts(layout, MEANS, [mean_of(n)[None], chroma]) for n in numbers)]
+    frames = [(join_parts(layout, MEANS, [mean_of(n)[None] // MEAN_STEPS[turn], chroma]) for n in numbers)]
     frames += [(join_parts(layout, TEXTURES, [textures_of(n)]) for n in numbers)]
     films = [encode_film(own, size, crf, 8) for own, size in zip(frames, layout.sizes, strict=True)]
-    zeros, ones = np.full(TEXTURES_COUNT, float(EMPTY_CODE)), np.full(TEXTURES_COUNT, TEXTURE_SCALE)
+    zeros, ones = np.full(TEXTURES_COUNT, float(EMPTY_CODE)), np.full(TEXTURES_COUNT, SCALES[turn] * TEXTURE_SCALE)
     return CodedGroup(
         weights=((Payload("weights-1", stream),), ()),
-        means=(Affine(np.array([1 / 1023]), np.zeros(1)), Affine(np.full(2, 1 / 1023), np.full(2, float(EMPTY_CODE)))),
+        means=(
+            Affine(np.array([MEAN_STEPS[turn] / 1023]), np.zeros(1)),
+            Affine(np.full(2, 1 / 1023), np.full(2, float(EMPTY_CODE))),
+        ),
         bases=((Affine(ones, zeros),), ()),
         units=tuple(zip(*films, strict=True)),
     )

@@ -5,8 +5,9 @@
 writes into FOLDER
 
     clip.glb     frames that show their numbers (`support.clips`), in groups of 5, 7, 1 and 12
-    clip.json    {"groups": frames of each, "rate", "bits" of a number, "textures", "codes": for each frame the SHA-256
-                 of the codes of each film, two bytes a code, the lower first}
+    clip.json    {"groups": frames of each, "strengths" of each, "places": first byte of each and that behind it,
+                 "rate", "bits" of a number, "textures", "codes": for each frame the SHA-256 of the codes of each film,
+                 two bytes a code, the lower first}
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from eigenfield.coding.video.film import decode_film
 from eigenfield.core.clip import Clip
 from eigenfield.gltf import save
 from eigenfield.gltf.clips import CodedGroups
-from support.clips import BITS, TEXTURES_COUNT, numbered_clip
+from support.clips import BITS, STRENGTHS, TEXTURES_COUNT, groups_of, numbered_clip
 
 GROUPS = (5, 7, 1, 12)
 
@@ -32,11 +33,13 @@ def write(folder: Path) -> None:
     """Write both files into a folder that is there."""
     clip = numbered_clip(GROUPS)
     rate = clip.timeline.rate
-    facts = {
-        "groups": list(GROUPS), "rate": [rate.numerator, rate.denominator], "bits": BITS, "textures": TEXTURES_COUNT,
-        "codes": digests(clip),
-    }  # fmt: skip
     save(clip, folder / "clip.glb", overwrite=True)
+    data = (folder / "clip.glb").read_bytes()
+    places = [(data.index(group), data.index(group) + len(group)) for group in groups_of(data)]
+    facts = {
+        "groups": list(GROUPS), "strengths": STRENGTHS[: len(GROUPS)], "places": places,
+        "rate": [rate.numerator, rate.denominator], "bits": BITS, "textures": TEXTURES_COUNT, "codes": digests(clip),
+    }  # fmt: skip
     (folder / "clip.json").write_text(json.dumps(facts), encoding="utf-8")
 
 

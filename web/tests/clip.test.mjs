@@ -277,5 +277,8 @@ test("frames of eight bits, and those of colours, become codes of ten", async ()
   assert.deepEqual(codes(luma), [0, 341, 1023, 514]);
   const colours = Array.from({ length: 17 }, (_, i) => (i % 4 === 2 ? 85 : 1));
   assert.deepEqual(codes(await built.codesOf(frame("BGRX", colours, 8), null)), [341, 341, 341, 341]);
+  const greys = Array.from({ length: 17 }, (_, i) => (i % 4 === 2 ? [80, 0, 130, 255][(i - 2) / 4] : 1));
+  const stretched = { ...frame("BGRX", greys, 8), colorSpace: { fullRange: false } };
+  assert.deepEqual(codes(await built.codesOf(stretched, null)), [341, 64, 514, 943]); // made of 85, 16, 128 and 235
   await assert.rejects(built.codesOf(frame(null, [], 0), null), { code: "unsupported" });
 });

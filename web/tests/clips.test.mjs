@@ -1,20 +1,45 @@
-// Clips in Chromium: each frame that is played shows its number in two ways, whatever is sought and however fast it
-// plays; its codes are those that Python decodes; and no frame of the browser's decoder stays open.
+// Clips in Chromium: each frame that is played shows its number by its mean and by its textures, and its group by weights
+// and scales, whatever is sought, however fast it plays, and however slowly or badly its file comes; its codes are those
+// that Python decodes; and no frame of the browser's decoder stays open.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, before, test } from "node:test";
-import { scenePath, startLab } from "./harness.mjs";
+import { sceneBytes, scenePath, startLab } from "./harness.mjs";
 
-const { groups, rate, bits, textures, codes } = JSON.parse(readFileSync(scenePath("clip.json"), "utf8"));
+const { groups, strengths, places, rate, bits, textures, codes } = JSON.parse(readFileSync(scenePath("clip.json"), "utf8"));
 const FRAMES = groups.reduce((a, b) => a + b);
+const STARTS = groups.map((_, i) => groups.slice(0, i).reduce((a, b) => a + b, 0));
+const groupOf = (frame) => STARTS.findLastIndex((start) => start <= frame);
 const DURATION = (1000 * FRAMES * rate[1]) / rate[0]; // milliseconds
+const SLOW = 400; // milliseconds between two pieces of a slow file
+const bytes = sceneBytes("clip.glb");
+const middleOf = ([start, end]) => (start + end) >> 1;
+const head = { "Content-Type": "model/gltf-binary", "Content-Length": bytes.length };
+
+/** The clip as servers give it that are slow, break off within the third group, or have other bytes in the second. */
+const ROUTES = {
+  "/slow.glb": async (request, response) => {
+    response.writeHead(200, head);
+    const cuts = [0, places[0][1], middleOf(places[1]), places[1][1] + 3, middleOf(places[3]), bytes.length];
+    for (const [i, cut] of cuts.slice(1).entries()) {
+      response.write(bytes.subarray(cuts[i], cut));
+      await new Promise((resolve) => setTimeout(resolve, SLOW));
+    }
+    response.end();
+  },
+  "/cut.glb": (request, response) => {
+    response.writeHead(200, head);
+    response.write(bytes.subarray(0, middleOf(places[2])), () => setTimeout(() => response.destroy(), SLOW));
+  },
+  "/damaged.glb": bytes.map((byte, at) => (at === middleOf(places[1]) ? byte ^ 1 : byte)),
+};
 let lab;
-before(async () => (lab = await startLab()));
+before(async () => (lab = await startLab(ROUTES)));
 after(() => lab?.close());
 
-/** Loads the clip as `window.field`; `window.read` draws and tells the number of the player, of the mean and of the
- * textures; `window.played` collects that of each frame. */
+/** Loads the clip as `window.field`; `window.read` draws and tells the number of the player, that of the mean, that of the
+ * textures, and the strength of theirs; `window.played` collects that of each frame, `window.errors` what the field says. */
 async function openClip(name = "clip.glb", options = {}) {
   const opened = await lab.open(options);
   await opened.page.evaluate(
@@ -34,10 +59,13 @@ async function openClip(name = "clip.glb", options = {}) {
       window.read = () => {
         view();
         const shades = lab.greens(lab.pixelsOf(field, places));
-        const columns = shades.slice(bits);
+        const strengths = shades.slice(bits).map((shade) => (shade - 128) / 127);
         const byMean = shades.slice(0, bits).reduce((sum, shade, bit) => sum + (shade > 128 ? 2 ** bit : 0), 0);
-        return [field.player.frame, byMean, columns.indexOf(Math.max(...columns)), shades.join()];
+        const strongest = strengths.reduce((best, own) => (Math.abs(own) > Math.abs(best) ? own : best));
+        return [field.player.frame, byMean, strengths.indexOf(strongest), strongest, shades.join()];
       };
+      window.errors = [];
+      field.addEventListener("error", ({ error }) => window.errors.push(error.code));
       window.played = [];
       field.player.addEventListener("frame", () => window.played.push(window.read()));
     },
@@ -46,8 +74,27 @@ async function openClip(name = "clip.glb", options = {}) {
   return opened;
 }
 
-function assertSame([frame, byMean, texture, shades]) {
-  assert.deepEqual([byMean, texture], [frame, frame % textures], `frame ${frame} shows ${byMean}, ${texture}: ${shades}`);
+function assertSame([frame, byMean, texture, strength, shades]) {
+  const shown = `frame ${frame} shows ${byMean}, ${texture}, ${strength}: ${shades}`;
+  assert.deepEqual([byMean, texture], [frame, frame % textures], shown);
+  const nearest = strengths.toSorted((a, b) => Math.abs(a - strength) - Math.abs(b - strength))[0];
+  assert.equal(nearest, strengths[groupOf(frame)], shown);
+}
+
+/** Plays until so many frames were shown and the first followed the last; what was shown. */
+async function playThrough(page, pace, frames) {
+  await page.evaluate((pace) => {
+    window.field.player.speed = pace;
+    window.field.player.play();
+  }, pace);
+  const turned = (frames) => {
+    const { played } = window;
+    return played.length >= frames && played.some(([frame], i) => i && frame < played[i - 1][0]);
+  };
+  await page.waitForFunction(turned, frames, { timeout: 60_000 });
+  await page.evaluate(() => window.field.player.pause());
+  await page.waitForFunction(() => window.field.player.open === 0);
+  return page.evaluate(() => ({ played: window.played, errors: window.errors }));
 }
 
 test("the first frame is there before anything plays", async () => {
@@ -63,32 +110,91 @@ test("the first frame is there before anything plays", async () => {
   await close();
 });
 
-for (const speed of [1, 2, 0.5]) {
-  test(`every frame that is played at speed ${speed} shows its number two ways, across groups and from the end on`, async () => {
+for (const speed of [0.25, 0.5, 1, 2, 4]) {
+  test(`every frame that is played at speed ${speed} shows its number three ways, across groups and from the end on`, async () => {
     const { page, close } = await openClip();
-    const { played, open } = await page.evaluate(
-      async ([pace, frames]) => {
-        const { player } = window.field;
-        player.speed = pace;
-        player.play();
-        const turns = () => window.played.filter(([frame], i) => i && frame < window.played[i - 1][0]).length;
-        while (turns() < 1 || window.played.length < frames) await new Promise((resolve) => setTimeout(resolve, 50));
-        player.pause();
-        while (player.open) await new Promise((resolve) => setTimeout(resolve, 50));
-        return { played: window.played, open: player.open };
-      },
-      [speed, 16],
-    );
+    if (speed < 0.5) await page.evaluate((frame) => window.field.player.toFrame(frame), STARTS[3] - 2);
+    const { played, errors } = await playThrough(page, speed, 16);
     played.forEach(assertSame);
     const steps = played.slice(1).map(([frame], i) => (frame - played[i][0] + FRAMES) % FRAMES);
     assert.ok(steps.every((step) => step > 0 && step < FRAMES / 2), `steps of ${steps}`);
-    const starts = groups.map((_, i) => groups.slice(0, i).reduce((a, b) => a + b, 0));
-    const seen = new Set(played.map(([frame]) => starts.findLastIndex((start) => start <= frame)));
+    const seen = new Set(played.map(([frame]) => groupOf(frame)));
     assert.ok(seen.size >= groups.length - 1, `groups ${[...seen]}`); // one of them has a single frame
-    assert.equal(open, 0);
+    assert.deepEqual(errors, []);
     await close();
   });
 }
+
+test("a file that comes slowly, a group in pieces, is played as far as it is there, and all of it in the end", async () => {
+  const { page, close } = await openClip("slow.glb");
+  const { played, errors } = await playThrough(page, 2, FRAMES);
+  played.forEach(assertSame);
+  assert.ok(played.some(([frame]) => groupOf(frame) === 3));
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+const LOSSES = { "/cut.glb": ["network", [0, 1]], "/damaged.glb": ["damaged", [0, 2, 3]] };
+for (const [path, [code, left]] of Object.entries(LOSSES)) {
+  test(`${path}: what is wrong is said, and the groups that are whole are played again and again`, async () => {
+    const { page, close } = await openClip(path, { allowed: /ERR_INCOMPLETE_CHUNKED|ERR_CONTENT_LENGTH/ });
+    const { played, errors } = await playThrough(page, 2, FRAMES);
+    played.forEach(assertSame);
+    const seen = [...new Set(played.map(([frame]) => groupOf(frame)))].sort();
+    assert.deepEqual(seen.filter((group) => groups[group] > 1), left.filter((group) => groups[group] > 1));
+    assert.deepEqual([...new Set(errors)], [code]);
+    const sought = STARTS.find((_, group) => !left.includes(group));
+    assert.notEqual(await page.evaluate((frame) => window.field.player.toFrame(frame).then(() => window.field.player.frame), sought), sought);
+    await close();
+  });
+}
+
+test("a decoder that ends while it is played is made anew", async () => {
+  const init = () => {
+    const made = (window.decoders = []);
+    window.VideoDecoder = class extends VideoDecoder {
+      constructor(given) {
+        super(given);
+        made.push(this);
+      }
+    };
+  };
+  const { page, close } = await openClip("clip.glb", { init });
+  await page.evaluate(async () => {
+    window.field.player.play();
+    while (window.played.length < 3) await new Promise((resolve) => setTimeout(resolve, 20));
+    window.decoders.forEach((one) => one.close());
+  });
+  const { played, errors } = await playThrough(page, 1, FRAMES);
+  played.forEach(assertSame);
+  assert.deepEqual(errors, []);
+  assert.ok((await page.evaluate(() => window.decoders.length)) > 2);
+  await close();
+});
+
+test("a page that was asleep goes on where it was", async () => {
+  const { page, close } = await openClip();
+  const session = await page.context().newCDPSession(page);
+  await page.evaluate(() => {
+    const { player } = window.field;
+    let last = performance.now();
+    window.longest = 0; // milliseconds from a frame to the next
+    player.addEventListener("frame", () => {
+      window.longest = Math.max(window.longest, performance.now() - last);
+      last = performance.now();
+    });
+    player.play();
+  });
+  await page.waitForFunction(() => window.played.length > 2);
+  await session.send("Page.setWebLifecycleState", { state: "frozen" });
+  await new Promise((resolve) => setTimeout(resolve, 1500));
+  await session.send("Page.setWebLifecycleState", { state: "active" });
+  const { played, errors } = await playThrough(page, 1, FRAMES);
+  played.forEach(assertSame);
+  assert.deepEqual(errors, []);
+  assert.ok((await page.evaluate(() => window.longest)) > 1200, "it was asleep");
+  await close();
+});
 
 test("after fifty random seeks, steps both ways and scrubbing, the frame that was asked for is shown", async () => {
   const { page, close } = await openClip();
@@ -165,7 +271,7 @@ test("a clip that does not repeat ends with its last frame, and begins anew", as
   await close();
 });
 
-test("a graphics context that was lost comes back with the frame that was shown", async () => {
+test("a graphics context that was lost comes back with the frame that was shown, and plays on", async () => {
   const { page, close } = await openClip("clip.glb", { allowed: /Context (Lost|Restored)/ });
   const found = await page.evaluate(async () => {
     await window.field.player.toFrame(14);
@@ -174,5 +280,13 @@ test("a graphics context that was lost comes back with the frame that was shown"
   });
   assert.equal(found[0], 14);
   assertSame(found);
+  await page.evaluate(async () => {
+    window.field.player.play();
+    await window.lab.loseContext(window.field);
+    window.played = []; // meanwhile nothing could be read
+  });
+  const { played, errors } = await playThrough(page, 2, FRAMES);
+  played.forEach(assertSame);
+  assert.deepEqual(errors, []);
   await close();
 });

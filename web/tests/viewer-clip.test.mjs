@@ -52,6 +52,12 @@ for (const ui of ["plain", "full"]) {
     await place.fill("7");
     await until(page, () => window.eigenfield.field.player.frame === 7);
     assert.equal(await place.getAttribute("aria-valuetext"), "0.70\u00a0s");
+    const [start, end] = JSON.parse(readFileSync(scenePath("clip.json"), "utf8")).places[1];
+    const facts = [["frame", "8 of 25\u00a0· 10\u00a0Hz"], ["group", `2 of 4\u00a0· ${end - start}\u00a0B`]];
+    for (const [name, value] of facts) {
+      const row = page.getByRole("row", { name: `${name} ${value}` });
+      await row.waitFor({ state: ui === "full" ? "visible" : "hidden" }); // guests see no words
+    }
     await place.press("ArrowRight");
     await until(page, () => window.eigenfield.field.player.frame === 8);
     await page.keyboard.press(",");
@@ -91,19 +97,24 @@ test("a still scene has no bar, and its keys do what they did", async () => {
   await close();
 });
 
-test("without a decoder of videos the first frame is shown in full, and a line says why it does not play", async () => {
-  const init = () => delete globalThis.VideoDecoder;
-  const { page, close } = await openViewer(browser, CLIP, { init, width: 800 });
-  await opened(page);
-  assert.equal(await page.evaluate(() => window.eigenfield.field.loaded), 4);
-  await page.keyboard.press(" ");
-  await until(page, () => window.eigenfield.state().message !== null);
-  const { message, playing, status } = await state(page);
-  assert.equal(message.code, "codec");
-  assert.match(message.text, /decodes no AV1 of 10 bits.*The first frame is shown/);
-  assert.deepEqual([playing, status], [false, "ready"]);
-  await close();
-});
+const LACKS = {
+  "without a decoder of videos": () => delete globalThis.VideoDecoder,
+  "with a decoder that refuses AV1": () => (globalThis.VideoDecoder.isConfigSupported = async () => ({ supported: false })),
+};
+for (const [name, init] of Object.entries(LACKS)) {
+  test(`${name} the first frame is shown in full, and a line says why it does not play`, async () => {
+    const { page, close } = await openViewer(browser, CLIP, { init, width: 800 });
+    await opened(page);
+    assert.equal(await page.evaluate(() => window.eigenfield.field.loaded), 4);
+    await page.keyboard.press(" ");
+    await until(page, () => window.eigenfield.state().message !== null);
+    const { message, playing, status } = await state(page);
+    assert.equal(message.code, "codec");
+    assert.match(message.text, /decodes no AV1 of 10 bits.*The first frame is shown/);
+    assert.deepEqual([playing, status], [false, "ready"]);
+    await close();
+  });
+}
 
 test("a page that `export` wrote plays from the disk", async () => {
   const file = scenePath("clip-page.html");

@@ -11,6 +11,8 @@ const GREEN = 1; // of a texel's bytes
 
 /** Codes of ten bits that stand for those of eight: 85 is 341 exactly. */
 const GROWN = Uint16Array.from({ length: 256 }, (_, code) => Math.round((code * 1023) / 255));
+/** The same, of a grey that was made as if luma were 16 to 235; films hold no other. */
+const STRETCHED = Uint16Array.from({ length: 256 }, (_, grey) => GROWN[16 + Math.round((grey * 219) / 255)]!);
 
 /** The codes of a frame. `room`: of a frame that is needed no more. Raises SceneError `unsupported`. */
 export async function codesOf(frame: VideoFrame, room: Uint8Array<ArrayBuffer> | null): Promise<Codes> {
@@ -24,8 +26,10 @@ export async function codesOf(frame: VideoFrame, room: Uint8Array<ArrayBuffer> |
   const [first] = await frame.copyTo(data);
   const { offset, stride } = first ?? { offset: 0, stride: 0 };
   if (TEN_BITS.has(format)) return { data: data.subarray(offset), width, height, stride, room: data };
-  const [step, from] = COLOURED.has(format) ? [4, offset + GREEN] : [1, offset];
-  return grownCodes(data.subarray(from), stride, step, [width, height]);
+  const coloured = COLOURED.has(format);
+  const [step, from] = coloured ? [4, offset + GREEN] : [1, offset];
+  const table = coloured && frame.colorSpace?.fullRange === false ? STRETCHED : GROWN; // films are full, whatever it says
+  return grownCodes(data.subarray(from), stride, step, [width, height], table);
 }
 
 /** Every `step`-th byte of rows of `stride` bytes as a code of ten bits. */
@@ -34,11 +38,12 @@ export function grownCodes(
   stride: number,
   step: number,
   [width, height]: [number, number],
+  table = GROWN,
 ): Codes {
   const codes = new Uint16Array(width * height);
   for (let row = 0; row < height; row++) {
     for (let column = 0; column < width; column++) {
-      codes[row * width + column] = GROWN[data[row * stride + step * column]!]!;
+      codes[row * width + column] = table[data[row * stride + step * column]!]!;
     }
   }
   return { data: new Uint8Array(codes.buffer), width, height, stride: 2 * width };

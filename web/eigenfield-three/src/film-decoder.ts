@@ -58,6 +58,7 @@ export class FilmDecoder {
 
   /** Only after `start`, and while `ready`. `key`: the first unit of a group. */
   decode(unit: Uint8Array, position: number, key: boolean): void {
+    if (this.decoder?.state === "closed") return this.user.lost();
     this.onTheWay += 1;
     this.decoder?.decode(new EncodedVideoChunk({ type: key ? "key" : "delta", timestamp: position, data: unit }));
   }

@@ -9,6 +9,7 @@ import type { Codes } from "./pieces.js";
 import { groupOf, type Timeline } from "./timeline.js";
 
 const AHEAD = 8; // frames that are kept
+const OF_A_GROUP = new Set(["damaged", "truncated", "network"]); // errors that leave the other groups as they are
 
 /** A frame of which all films are there. */
 export interface ClipFrame {
@@ -209,8 +210,7 @@ export class FrameRing {
   }
 
   private fail(reason: unknown): void {
-    const ofTheFile = reason instanceof SceneError && (reason.code === "damaged" || reason.code === "truncated");
-    if (!ofTheFile) {
+    if (!(reason instanceof SceneError) || !OF_A_GROUP.has(reason.code)) {
       this.rest();
       this.hopeless = true;
       return this.user.failed(reason, null);

@@ -54,6 +54,7 @@ export interface SceneInfo {
     opacity: number;
     mean: number;
     weights: number;
+    groups: number; // of a clip: films and weights
     other: number;
     textures: number[]; // by rank
   };
@@ -320,8 +321,9 @@ function countBytes(scene: SceneDocument, total: number): SceneInfo["bytes"] {
   const weights = sum(basesOf(scene).flatMap((basis) => (basis.weights ? [basis.weights.view] : [])));
   const mesh = sum([...Object.values(scene.shown ?? {}), ...(scene.mesh ? [scene.mesh] : [])].map(({ view }) => view));
   const opacity = scene.sheets ? lengthOf(scene.sheets.opacity.mean.view) : 0;
-  const other = total - mean - weights - mesh - opacity - textures.reduce((a, b) => a + b, 0);
-  return { total, mesh, opacity, mean, weights, other, textures };
+  const groups = scene.timeline?.groups.reduce((bytes, { length }) => bytes + length, 0) ?? 0;
+  const other = total - mean - weights - mesh - opacity - groups - textures.reduce((a, b) => a + b, 0);
+  return { total, mesh, opacity, mean, weights, groups, other, textures };
 }
 
 /** X, Y of a world point, dropped onto the view plane. */

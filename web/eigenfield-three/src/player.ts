@@ -79,6 +79,13 @@ export class Player extends EventDispatcher<PlayerEvents> {
     return this.goal !== null;
   }
 
+  /** The group of the frame that is shown: which of how many, from 0, and its bytes. */
+  get group(): { index: number; count: number; bytes: number } {
+    const { groups } = this.timeline;
+    const index = groupOf(this.timeline, this.shown.number);
+    return { index, count: groups.length, bytes: groups[index]?.length ?? 0 };
+  }
+
   /** Frames that were never shown, as later ones were due. */
   get late(): number {
     return this.ring.late;

@@ -1,6 +1,6 @@
 // The information panel: what the file is, what it says of itself, and what it costs here.
 
-import type { EigenField, SceneInfo } from "eigenfield-three";
+import type { EigenField, Player, SceneInfo } from "eigenfield-three";
 import { element } from "./dom";
 import { limitationWords, words } from "./language";
 import { bytes, figure, shown, whole } from "./text";
@@ -42,9 +42,18 @@ export function createInfo(viewer: Viewer): Info {
   };
 }
 
-/** What one wants to know first: how near it comes to its photographs, and what it takes here. */
-export function briefly({ info, gpuBytes }: EigenField): HTMLElement {
-  return rowsOf([...imageQuality(info), [words("gpuMemory"), bytes(gpuBytes)]]);
+/** What one wants to know first: how near it comes to its photographs, what it takes here, and where a clip is. */
+export function briefly({ info, gpuBytes, player }: EigenField): HTMLElement {
+  return rowsOf([...imageQuality(info), [words("gpuMemory"), bytes(gpuBytes)], ...(player ? whereIn(player) : [])]);
+}
+
+function whereIn({ frame, frames, rate, group, late }: Player): Rows {
+  const outOf = (part: number, count: number): string => words("outOf", { part: part + 1, whole: count });
+  return [
+    [words("frame"), `${outOf(frame, frames)}\u00a0· ${shown(rate, Number.isInteger(rate) ? 0 : 2)}\u00a0Hz`],
+    [words("group"), `${outOf(group.index, group.count)}\u00a0· ${bytes(group.bytes)}`],
+    [words("leftOut"), whole(late)],
+  ];
 }
 
 function section(title: string, rows: Rows): Node[] {
@@ -89,13 +98,16 @@ function quality(info: SceneInfo): Rows {
 
 function sizes({ bytes: parts }: SceneInfo): Rows {
   const textures = parts.textures.reduce((a, b) => a + b, 0);
+  const pictures: Rows = [
+    [words("mean"), bytes(parts.mean)],
+    [words("countTextures", { count: parts.textures.length }), bytes(textures)],
+    [words("weights"), bytes(parts.weights)],
+  ];
   return [
     [words("file"), bytes(parts.total)],
     [words("mesh"), bytes(parts.mesh)],
     ...(parts.opacity ? [[words("opacity"), bytes(parts.opacity)] as [string, string]] : []),
-    [words("mean"), bytes(parts.mean)],
-    [words("countTextures", { count: parts.textures.length }), bytes(textures)],
-    [words("weights"), bytes(parts.weights)],
+    ...(parts.groups ? [[words("groups"), bytes(parts.groups)] as [string, string]] : pictures),
     [words("rest"), bytes(parts.other)],
   ];
 }

@@ -198,6 +198,8 @@ export function createPanel(viewer: Viewer): Panel {
       const { scale, linear } = viewer.detail();
       const name = viewer.nearestName();
       const rests = name === null ? words("inFull") : words("inFullNear", { name });
+      const { field } = viewer.scene() ?? {};
+      if (field?.player && !root.hidden) brief.replaceChildren(briefly(field));
       const moves = scale < 1 ? "rateCoarser" : linear ? "rateLinear" : "rate";
       rate.textContent = now === null ? rests : words(moves, { rate: now.toFixed(0) });
     },

@@ -15,14 +15,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.coding.pictures.pictures_10bit import MAX_CODE, crf_of
+from eigenfield.coding.pictures.pictures_10bit import crf_of
 from eigenfield.coding.video.film import decode_film, encode_film
 from eigenfield.coding.video.film_layout import film_parts, join_parts, pictures_of
 from eigenfield.core.films import FilmLayout
 from eigenfield.core.payloads import Affine
 from eigenfield.encoding.clip.frames import load_arrays, save_arrays
-from eigenfield.encoding.fitted.code_planes import ZERO_CODE, code_unit
+from eigenfield.encoding.fitted.code_planes import CODE_MIN_UNIT, ZERO_CODE
 
+LEAST_CODE, MOST_CODE = 64, 940  # others are lost in browsers that take a film for video of limited range: Firefox 153
 FILM_PRESET = 4  # of SVT-AV1, as for stills
 # Of the quantiser step that a film is asked for, to that of pictures. What stays from frame to frame is coded more
 # finely than was asked for, since each later frame gains by it: textures of a moving cloth are 5 dB nearer than
@@ -46,7 +47,7 @@ class FilmScale:
     def codes(self, values: NDArray[np.float32], plane: int) -> NDArray[np.uint16]:
         """Of numbers of a plane."""
         codes = np.rint(values / np.float32(self.units[plane]) + self.zeros[plane])
-        return np.asarray(codes.clip(0, MAX_CODE), np.uint16)
+        return np.asarray(codes.clip(LEAST_CODE, MOST_CODE), np.uint16)
 
     def values(self, codes: NDArray[np.uint16], plane: int) -> NDArray[np.float32]:
         """As decoders compute them."""
@@ -63,15 +64,19 @@ def film_scale(steps: Sequence[float], ranges: Sequence[tuple[float, float]], si
     Args:
         steps: Of the quantiser that each plane wants.
         ranges: The least and the greatest number of each plane, in all frames.
-        signed: Whether numbers of a plane lie to both sides of 0, which then is ZERO_CODE; else it is 0.
+        signed: Whether numbers of a plane lie to both sides of 0, which then is ZERO_CODE; else it is LEAST_CODE.
     """
     least = [
-        code_unit(low, high) if both else min(max(high, 1e-3), 1.0) / MAX_CODE
+        max(CODE_MIN_UNIT, -low / (ZERO_CODE - LEAST_CODE), high / (MOST_CODE - ZERO_CODE))
+        if both
+        else min(max(high, 1e-3), 1.0) / (MOST_CODE - LEAST_CODE)
         for (low, high), both in zip(ranges, signed, strict=True)
     ]
     codes = min(step / unit for step, unit in zip(steps, least, strict=True))
     units = tuple(math.ceil(step / codes * 1e6) / 1e6 for step in steps)
-    return FilmScale(crf_of(FILM_STEP_RATIO * codes), units, tuple(ZERO_CODE if both else 0 for both in signed))
+    return FilmScale(
+        crf_of(FILM_STEP_RATIO * codes), units, tuple(ZERO_CODE if both else LEAST_CODE for both in signed)
+    )
 
 
 def range_of(arrays: Iterable[NDArray[np.float32]]) -> tuple[float, float]:

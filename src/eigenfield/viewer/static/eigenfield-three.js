@@ -67,7 +67,7 @@ function ve(e, t) {
 			0
 		]),
 		...N("colr", [
-			...F("nclx"),
+			...be("nclx"),
 			0,
 			2,
 			0,
@@ -77,15 +77,15 @@ function ve(e, t) {
 			128
 		])
 	]), c = N("ftyp", [
-		...F("avif"),
+		...be("avif"),
 		...P(0),
-		...F("avifmif1miafMA1B")
+		...be("avifmif1miafMA1B")
 	]), l = (t) => N("meta", [
 		...P(0),
 		...N("hdlr", [
 			...P(0),
 			...P(0),
-			...F("pict"),
+			...be("pict"),
 			...Array(13).fill(0)
 		]),
 		...N("pitm", [
@@ -121,7 +121,7 @@ function ve(e, t) {
 				1,
 				0,
 				0,
-				...F("av01"),
+				...be("av01"),
 				0
 			])
 		]),
@@ -140,7 +140,7 @@ function ve(e, t) {
 		...c,
 		...l(u),
 		...P(8 + e.byteLength),
-		...F("mdat")
+		...be("mdat")
 	], f = new Uint8Array(u + e.byteLength);
 	return f.set(d), f.set(new Uint8Array(e), u), f.buffer;
 }
@@ -165,7 +165,7 @@ function ye(e, t) {
 function N(e, t) {
 	return [
 		...P(8 + t.length),
-		...F(e),
+		...be(e),
 		...t
 	];
 }
@@ -177,11 +177,11 @@ function P(e) {
 		0
 	].map((t) => e >>> t & 255);
 }
-function F(e) {
+function be(e) {
 	return Array.from(e, (e) => e.charCodeAt(0));
 }
 // eigenfield-three/src/inflate.ts
-async function be(e, t, n, r) {
+async function xe(e, t, n, r) {
 	let i = [], a = 0, o = new Blob([e]).stream().pipeThrough(new DecompressionStream(t)).getReader();
 	try {
 		for (let e = await o.read(); !e.done && a <= n; e = await o.read()) i.push(e.value), a += e.value.length;
@@ -194,11 +194,11 @@ async function be(e, t, n, r) {
 	return s;
 }
 // eigenfield-three/src/limits.ts
-var xe = "EIGENFIELD_eigen_textures", Se = 64 * 2 ** 20, I = 16384, Ce = 16384, we = 1024, Te = 2 ** 27, Ee = 4096, De = 8 * 2 ** 30, Oe = 1e5, ke = 65535, Ae = 2 ** 29, L = 1024, je = 2 ** 25, Me = 2 ** 26, Ne = 2 ** 27, Pe = 8192, Fe = 2 ** 24, Ie = 2 ** 20, Le = 2 ** 16, Re = 2 ** 30, ze = 1024, Be = 2 ** 22, Ve = 2 ** 31 - 1, He = 2 ** 28, Ue = 1e30, R = 65536, We = 126, Ge = 64, Ke = 0, qe = 1, Je = 2, Ye = 24, Xe = 44, Ze = 21, Qe = 26214, $e = 4, et = Float64Array.from({ length: 4095 }, (e, t) => Math.round(R / (1 + Math.exp((2047 - t) / 256)))), tt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), nt = Float64Array.from({ length: 127 }, (e, t) => Math.round(R / (t + 1.5)));
-function z(e) {
-	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + z(Math.floor(e / 4294967296));
+var Se = "EIGENFIELD_eigen_textures", Ce = 64 * 2 ** 20, F = 16384, we = 16384, Te = 1024, Ee = 2 ** 27, De = 4096, Oe = 8 * 2 ** 30, I = 1e5, ke = 65535, Ae = 2 ** 29, L = 1024, je = 2 ** 25, Me = 2 ** 26, Ne = 2 ** 27, Pe = 8192, Fe = 2 ** 24, Ie = 2 ** 20, Le = 2 ** 16, Re = 2 ** 30, ze = 1024, Be = 2 ** 22, Ve = 2 ** 31 - 1, He = 2 ** 28, Ue = 1e30, R = 65536, We = 126, z = 64, Ge = 0, Ke = 1, qe = 2, Je = 24, Ye = 44, Xe = 21, Ze = 26214, Qe = 4, $e = Float64Array.from({ length: 4095 }, (e, t) => Math.round(R / (1 + Math.exp((2047 - t) / 256)))), et = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), tt = Float64Array.from({ length: 127 }, (e, t) => Math.round(R / (t + 1.5)));
+function B(e) {
+	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + B(Math.floor(e / 4294967296));
 }
-var rt = class {
+var nt = class {
 	bytes;
 	low = 0;
 	high = 4294967295;
@@ -208,11 +208,11 @@ var rt = class {
 	seen;
 	weights;
 	constructor(e, t, n) {
-		this.bytes = e, this.probability = new Uint16Array(t * Ge).fill(R / 2), this.seen = new Uint8Array(t * Ge), this.weights = new Float64Array(n * Ge * 3).fill(Qe);
-		for (let e = 0; e < $e; e++) this.code = this.code * 256 + this.next();
+		this.bytes = e, this.probability = new Uint16Array(t * z).fill(R / 2), this.seen = new Uint8Array(t * z), this.weights = new Float64Array(n * z * 3).fill(Ze);
+		for (let e = 0; e < Qe; e++) this.code = this.code * 256 + this.next();
 	}
 	checkEnd(e) {
-		if (this.at > this.bytes.length + $e) throw ue(e);
+		if (this.at > this.bytes.length + Qe) throw ue(e);
 	}
 	flag(e, t, n, r) {
 		return this.node(e, t, n, r, 0) === 1;
@@ -224,30 +224,30 @@ var rt = class {
 	}
 	integer(e, t, n, r) {
 		let i = this.magnitude(e, t, n, r);
-		return i === 0 ? 0 : this.node(e, t, n, r, qe) ? -i : i;
+		return i === 0 ? 0 : this.node(e, t, n, r, Ke) ? -i : i;
 	}
 	magnitude(e, t, n, r) {
-		if (!this.node(e, t, n, r, Ke)) return 0;
+		if (!this.node(e, t, n, r, Ge)) return 0;
 		let i = 0;
-		for (; i < Ze && this.node(e, t, n, r, Je + i);) i += 1;
+		for (; i < Xe && this.node(e, t, n, r, qe + i);) i += 1;
 		if (i < 2) return i + 1;
 		let a = 1;
 		for (let o = i - 2; o >= 0; o--) {
 			let s;
-			s = o === i - 2 ? this.node(e, t, n, r, Ye + i) : o === i - 3 ? this.node(e, t, n, r, Xe + 2 * Math.min(i, 9) + (a & 1)) : this.split(R / 2), a = a * 2 + s;
+			s = o === i - 2 ? this.node(e, t, n, r, Je + i) : o === i - 3 ? this.node(e, t, n, r, Ye + 2 * Math.min(i, 9) + (a & 1)) : this.split(R / 2), a = a * 2 + s;
 		}
 		return a + 1;
 	}
 	node(e, t, n, r, i) {
-		return this.bit(e * Ge + i, t * Ge + i, n * Ge + i, (r * Ge + i) * 3);
+		return this.bit(e * z + i, t * z + i, n * z + i, (r * z + i) * 3);
 	}
 	bit(e, t, n, r) {
-		let { probability: i, weights: a } = this, o = tt[i[e] >> 4], s = tt[i[t] >> 4], c = tt[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / R), u = et[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? R - u : -u;
+		let { probability: i, weights: a } = this, o = et[i[e] >> 4], s = et[i[t] >> 4], c = et[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / R), u = $e[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? R - u : -u;
 		return a[r] += o * f >> 14, a[r + 1] += s * f >> 14, a[r + 2] += c * f >> 14, this.learn(e, d), this.learn(t, d), this.learn(n, d), d;
 	}
 	learn(e, t) {
 		let [n, r] = [this.probability[e], this.seen[e]];
-		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * nt[r] / R), r < We && (this.seen[e] = r + 1);
+		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * tt[r] / R), r < We && (this.seen[e] = r + 1);
 	}
 	split(e) {
 		let t = this.low + Math.floor((this.high - this.low) * e / R), n = +(this.code <= t);
@@ -258,26 +258,26 @@ var rt = class {
 		return this.bytes[this.at++] ?? 0;
 	}
 };
-function it(e, t, n, r = 1) {
+function rt(e, t, n, r = 1) {
 	if (e.length < t) throw ue(n);
 	if (e[0] !== r) throw M(n, `coded numbers of version ${e[0]}`);
 	return new DataView(e.buffer, e.byteOffset, e.byteLength);
 }
-function at(e, t, n, r) {
+function it(e, t, n, r) {
 	if (t > n || t > 16 * e.length + 1024) throw M(r, `${t} numbers announced`);
 }
 // eigenfield-three/src/table-decoder.ts
-var ot = 12, st = 1, ct = 3, lt = 312, ut = ct * lt, dt = 938, ft = 24, pt = 16, mt = 1722, ht = 1726, gt = 4, _t = 5;
+var at = 12, ot = 1, st = 3, ct = 312, lt = st * ct, ut = 938, dt = 24, ft = 16, pt = 1722, mt = 1726, ht = 4, gt = 5;
+function _t(e) {
+	return new nt(e, mt, 21);
+}
 function vt(e) {
-	return new rt(e, ht, 21);
+	return e.flag(lt, lt, lt, st) ? 2 : e.flag(937, 937, 937, st) ? ot : 0;
 }
 function yt(e) {
-	return e.flag(ut, ut, ut, ct) ? 2 : e.flag(937, 937, 937, ct) ? st : 0;
+	return Math.min(B(e), 11);
 }
-function bt(e) {
-	return Math.min(z(e), 11);
-}
-function xt(e, t, n, r) {
+function bt(e, t, n, r) {
 	let i = new Float64Array(n.length), a = n.length / t, o = (e, n, r) => n < 0 || r < 0 || r >= t ? 0 : e[n * t + r], s = 0;
 	for (let c = 0; c < a; c++) for (let a = 0; a < t; a++) {
 		let [l, u] = [o(i, c, a - 1), o(i, c - 1, a)], [d, f] = [o(i, c - 1, a - 1), o(i, c - 1, a + 1)], [p, m, h] = [
@@ -285,32 +285,32 @@ function xt(e, t, n, r) {
 			0,
 			s
 		];
-		r === st ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
-		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * lt, y = e.integer(v + bt(m) * ot + bt(g), v + 144 + bt(m + h), v + 144 + 24 + _ * ot + bt(g + Math.abs(l)), r);
+		r === ot ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
+		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * ct, y = e.integer(v + yt(m) * at + yt(g), v + 144 + yt(m + h), v + 144 + 24 + _ * at + yt(g + Math.abs(l)), r);
 		i[c * t + a] = p + y, s = Math.abs(y);
 	}
 	return i;
 }
-function St(e, t, n, r) {
+function xt(e, t, n, r) {
 	let i = new Float64Array(t * n), a = new Float64Array(n);
 	for (let o = 0; o < t; o++) {
 		let t = 0;
 		for (let s = 0; s < n; s++) {
-			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(z(a[s]), 23), d = Math.min(z(t), 23), f = e.integer(dt + l * ft + u, dt + (pt + l) * ft + d, 1706 + l, _t + l);
+			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(B(a[s]), 23), d = Math.min(B(t), 23), f = e.integer(ut + l * dt + u, ut + (ft + l) * dt + d, 1706 + l, gt + l);
 			i[o * n + s] = c + f, t = Math.abs(f), a[s] = Math.floor((a[s] + t + 1) / 2);
 		}
 	}
 	return i;
 }
-function Ct(e, t, n, r) {
+function St(e, t, n, r) {
 	let i = new Float64Array(t).fill(-1), a = new Uint8Array(n), [o, s, c] = [
 		0,
 		1,
 		0
 	];
 	for (let l = 0; l < t; l++) {
-		if (s = +!!e.flag(mt + s, mt + s, 1724, gt), !s) continue;
-		let t = o + e.integer(1725, 1725, 1725, gt);
+		if (s = +!!e.flag(pt + s, pt + s, 1724, ht), !s) continue;
+		let t = o + e.integer(1725, 1725, 1725, ht);
 		if (!(t >= 0 && t < n) || a[t]) throw M(r, "a grid with a camera out of place");
 		a[t] = 1, i[l] = t, o = t + 1, c += 1;
 	}
@@ -318,20 +318,20 @@ function Ct(e, t, n, r) {
 	return i;
 }
 // eigenfield-three/src/camera-decoder.ts
-var wt = 130, B = 11, Tt = 1, Et = 2, Dt = 2, Ot = 44 * Oe + 1024;
+var Ct = 130, wt = 11, Tt = 1, Et = 2, Dt = 2, Ot = 44 * I + 1024;
 async function kt(e, t) {
 	if (e[0] !== Dt) throw M(t, `version ${e[0]}`);
-	let n = await be(Uint8Array.from(e.subarray(1)), "deflate-raw", Ot, t);
+	let n = await xe(Uint8Array.from(e.subarray(1)), "deflate-raw", Ot, t);
 	return At(Uint8Array.from([1, ...n]), t);
 }
 function At(e, t) {
-	let n = it(e, wt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Tt) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
+	let n = rt(e, Ct, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Tt) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
 	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw M(t, "cameras that cannot be");
 	if (i > 1e5 || a && o * s < i) throw M(t, `${i} cameras`);
-	at(e, Math.max(B * i, o * s), B * Oe, t);
-	let l = wt + (a ? 132 : 0);
-	it(e, l, t);
-	let u = (e, t) => a ? n.getFloat32(wt + 4 * (e * B + t), !0) : 0, d = vt(e.subarray(l)), f = a ? Ct(d, o * s, i, t) : null, p = St(d, i, B, (r & Et) !== 0);
+	it(e, Math.max(wt * i, o * s), wt * I, t);
+	let l = Ct + (a ? 132 : 0);
+	rt(e, l, t);
+	let u = (e, t) => a ? n.getFloat32(Ct + 4 * (e * wt + t), !0) : 0, d = _t(e.subarray(l)), f = a ? St(d, o * s, i, t) : null, p = xt(d, i, wt, (r & Et) !== 0);
 	d.checkEnd(t);
 	let m = {
 		intrinsics: new Float32Array(5 * i),
@@ -342,14 +342,14 @@ function At(e, t) {
 		0,
 		0,
 		...c.subarray(12)
-	], g = Mt(c[3], c[4], c[5], c[6]), _ = new Float64Array(B), v = 0;
+	], g = Mt(c[3], c[4], c[5], c[6]), _ = new Float64Array(wt), v = 0;
 	for (let e = 0; e < (f ? f.length : i); e++) {
 		let t = f ? f[e] : e;
 		if (t < 0) continue;
 		let [n, r] = f ? [Math.floor(e / s), e % s] : [0, 0];
-		for (let e = 0; e < B; e++) {
+		for (let e = 0; e < wt; e++) {
 			let t = c[e < 5 ? 0 : e < 8 ? 1 : 2], i = u(0, e) + u(1, e) * n + u(2, e) * r;
-			_[e] = p[v * B + e] * t + h[e] + i;
+			_[e] = p[v * wt + e] * t + h[e] + i;
 		}
 		jt(_, g, m, t), v += 1;
 	}
@@ -418,6 +418,7 @@ var Nt = 4, Pt = ["prefer-software", "no-preference"], Ft = class {
 		o === this.turn && c && (s && this.decoder?.state === "configured" || (this.config = c, this.decoder && this.decoder.state !== "closed" || (this.decoder = this.made()), this.decoder.configure(c)));
 	}
 	decode(e, t, n) {
+		if (this.decoder?.state === "closed") return this.user.lost();
 		this.onTheWay += 1, this.decoder?.decode(new EncodedVideoChunk({
 			type: n ? "key" : "delta",
 			timestamp: t,
@@ -569,7 +570,7 @@ function tn(e, t, n, r, i) {
 		t[3 * a + 1],
 		t[3 * o],
 		t[3 * o + 1]
-	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? Vt : -.8, _ = 1 << i >> 1, v = Qt((l + d) * .5 + g * m) + _ >> i, y = Qt((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(z(Math.floor((p * p + m * m) / b)), 23), S = Math.min(z(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, qt), T = Math.min(z(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(Ut + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, Jt);
+	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? Vt : -.8, _ = 1 << i >> 1, v = Qt((l + d) * .5 + g * m) + _ >> i, y = Qt((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(B(Math.floor((p * p + m * m) / b)), 23), S = Math.min(B(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, qt), T = Math.min(B(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(Ut + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, Jt);
 	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + O << i, i === 0) return;
 	let k = $t(t, a, i) + 4 * $t(t, o, i);
 	if (e.flag(Wt + k, 913 + $t(t, s, i), 917 + c, Zt)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
@@ -577,10 +578,10 @@ function tn(e, t, n, r, i) {
 function nn(e, t, n, { a: r, b: i, o: a }) {
 	let o = 0;
 	for (let e = 0; e < 3; e++) o += (t[3 * i + e] - t[3 * r + e]) ** 2;
-	let s = Math.min(z(o), 43), c = 0;
+	let s = Math.min(B(o), 43), c = 0;
 	for (let o = 0; o < 3; o++) {
 		let l = Qt(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, Ht + o * 24 + c, 116 + o * Ht + s, Yt);
-		t[3 * n + o] = l + u, c = Math.min(z(Math.abs(u)), 23);
+		t[3 * n + o] = l + u, c = Math.min(B(Math.abs(u)), 23);
 	}
 }
 function rn(e, t, n, r, i) {
@@ -627,7 +628,7 @@ function xn(e, t, n, r, i) {
 		if (l >= t) throw M(i, "more places than announced");
 		return l++;
 	}, p = () => {
-		let t = e.raw(z(l - 1));
+		let t = e.raw(B(l - 1));
 		if (t >= l) throw M(i, "a place that is not there yet");
 		return t;
 	}, m = () => {
@@ -780,7 +781,7 @@ function In(e, t, n, r, i, a, o) {
 		}
 		if (c < 0) {
 			if (e.flag(An + s, An + s, An + wn, Nn)) return -1;
-			if (c = e.raw(z(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
+			if (c = e.raw(B(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
 		}
 		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? En : Dn);
 		return c;
@@ -790,7 +791,7 @@ function In(e, t, n, r, i, a, o) {
 		l.kinds[t] = 1;
 		let n = v;
 		if (v = t, n >= 0 && e.flag(H + 2, H + 2, H + 2, Pn)) {
-			let n = e.raw(z(t - 1));
+			let n = e.raw(B(t - 1));
 			if (n >= t || l.kinds[n] !== 1) throw M(o, "a map that is not there");
 			return l.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
 		}
@@ -867,7 +868,7 @@ function Xn(e, t, n, r) {
 			}
 		}
 		let y = 13, b = t > 0 ? u(t - 1) : 0, x = b;
-		g > 0 && (y = Math.min(z(v - _), 12), b = h / g, x = Math.min(Math.max(Qn(s), p), m));
+		g > 0 && (y = Math.min(B(v - _), 12), b = h / g, x = Math.min(Math.max(Qn(s), p), m));
 		let S = b, [C, w, T] = [
 			o[3 * t],
 			o[3 * t + 1],
@@ -886,7 +887,7 @@ function Xn(e, t, n, r) {
 			}
 		}
 		let E = Jn(x, b), [ee, D] = [Yn(S - E), Yn(b - E)], O = e.integer(Hn + ee * zn + D, Hn + 169 + y * Vn + f, Hn + 169 + 280 + ee * Bn + y, Gn), k = E + O;
-		i[3 * t + 2] = k, f = Math.min(z(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
+		i[3 * t + 2] = k, f = Math.min(B(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
 	}
 }
 function Zn(e, t, n) {
@@ -932,13 +933,13 @@ function $n(e, t, n, r, i) {
 			if (!Number.isFinite(u) || !Number.isFinite(d)) continue;
 			p += u, m += d, h += 1;
 			let v = Math.abs(l[2 * r] - l[2 * s]) + Math.abs(l[2 * r + 1] - l[2 * s + 1]);
-			_ = Math.max(_, z(v));
+			_ = Math.max(_, B(v));
 		}
 		g < 0 && (g = d), d = t;
 		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = Un + 144;
 		for (let n = 0; n < 2; n++) {
 			let r = e.integer(Un + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], Kn + n);
-			l[2 * t + n] = Jn(y[n], 0) + r, u[n] = Math.min(z(Math.abs(r)), 23);
+			l[2 * t + n] = Jn(y[n], 0) + r, u[n] = Math.min(B(Math.abs(r)), 23);
 		}
 	}
 	return l;
@@ -965,7 +966,7 @@ function sr(e, t) {
 	return cr(e, t, nr);
 }
 function cr(e, t, n) {
-	let r = it(e, tr, t, n), [i, a, o] = [
+	let r = rt(e, tr, t, n), [i, a, o] = [
 		r.getUint8(1),
 		r.getUint8(2),
 		r.getUint8(3)
@@ -975,8 +976,8 @@ function cr(e, t, n) {
 		12
 	].map((e) => r.getUint32(e, !0)), u = Float64Array.from({ length: 16 }, (e, t) => r.getFloat64(16 + 8 * t, !0));
 	if (s > Me || l > Me || c > Ne) throw M(t, `${l} vertices and ${c} faces`);
-	if (at(e, Math.max(s, c, l), Ne, t), i > 1 || o > ar * i || a < 1 || a > ir || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
-	let d = new rt(e.subarray(tr), Wn, 16), f = xn(d, s, c, {
+	if (it(e, Math.max(s, c, l), Ne, t), i > 1 || o > ar * i || a < 1 || a > ir || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
+	let d = new nt(e.subarray(tr), Wn, 16), f = xn(d, s, c, {
 		flat: i === 1,
 		fine: o
 	}, t);
@@ -1019,7 +1020,7 @@ function dr(e, t) {
 // eigenfield-three/src/name-decoder.ts
 var fr = 4 * L;
 async function pr(e, t, n) {
-	let r = Math.min(je, fr * t), i = await be(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
+	let r = Math.min(je, fr * t), i = await xe(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
 	if (a === 0 || !Number.isInteger(a)) throw M(n, `${i.length} bytes of ${t} names`);
 	let o = new TextDecoder("utf-8", {
 		fatal: !0,
@@ -1152,7 +1153,7 @@ function Sr(e, t, n) {
 	if (n && (i !== n[0] || a !== n[1])) throw M(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
 	if (t.codec.bits !== 8 && t.codec.bits !== o) throw M(t.where, `no picture of ${t.codec.bits} bits`);
 	let s = i * a;
-	if (!s || i > 16384 || a > 32768 || s > Te) throw M(t.where, `a picture of ${i} x ${a}`);
+	if (!s || i > 16384 || a > 32768 || s > Ee) throw M(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
 var Cr = async (e, t, n) => {
@@ -1224,9 +1225,9 @@ async function Or(e, t, n) {
 // eigenfield-three/src/triangle-decoder.ts
 var kr = 5;
 function Ar(e, t) {
-	let n = it(e, kr, t).getUint32(1, !0);
-	at(e, 3 * n, 6 * Oe, t);
-	let r = vt(e.subarray(kr)), i = St(r, n, 3, !0);
+	let n = rt(e, kr, t).getUint32(1, !0);
+	it(e, 3 * n, 6 * I, t);
+	let r = _t(e.subarray(kr)), i = xt(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
 	if (!a.every((e) => e >= 0 && e < 1e5)) throw M(t, "triangles of cameras that there cannot be");
@@ -1235,12 +1236,12 @@ function Ar(e, t) {
 // eigenfield-three/src/weight-decoder.ts
 var jr = 14, Mr = 2 ** 20;
 function Nr(e, t) {
-	let n = it(e, jr, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
+	let n = rt(e, jr, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
 	if (n.getUint8(1) > 1 || i === 0) throw M(t, "weights of no camera, or of an unknown kind");
-	at(e, o * s * Math.max(a, 1), He, t), it(e, jr + 4 * a, t);
+	it(e, o * s * Math.max(a, 1), He, t), rt(e, jr + 4 * a, t);
 	let c = o * s;
 	if (c < i) throw M(t, "a grid with too few cells");
-	let l = vt(e.subarray(jr + 4 * a)), u = r ? Ct(l, c, i, t) : null, d = u !== null && i === c, f = [
+	let l = _t(e.subarray(jr + 4 * a)), u = r ? St(l, c, i, t) : null, d = u !== null && i === c, f = [
 		0,
 		1,
 		2
@@ -1248,7 +1249,7 @@ function Nr(e, t) {
 	for (let e = 0; e < a; e++) {
 		let r = n.getFloat32(jr + 4 * e, !0);
 		if (!(r > 0 && r < Infinity)) throw M(t, "a step that is not positive");
-		let i = yt(l), h = xt(l, s, f[i], i);
+		let i = vt(l), h = bt(l, s, f[i], i);
 		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw M(t, `numbers of component ${e} that cannot be`);
 		f[i] = h;
 		let g = i === 2 ? Pr(h, o, s) : h;
@@ -1461,7 +1462,7 @@ function Kr(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
-	return e.key("bufferViews").items(I).map((e) => {
+	return e.key("bufferViews").items(F).map((e) => {
 		let t = e.key("byteOffset"), r = e.key("byteStride");
 		e.key("buffer").integer(0, 0);
 		let i = {
@@ -1477,7 +1478,7 @@ function qr(e) {
 	return (t) => t.integer(0, e.length - 1);
 }
 function Jr(e, t) {
-	let n = e.key("accessors"), r = n.exists ? n.items(I) : [];
+	let n = e.key("accessors"), r = n.exists ? n.items(F) : [];
 	return (e, n, i, a) => {
 		let o = r[e.integer(0, r.length - 1)];
 		if (!o) throw e.wrong("no such accessor");
@@ -1528,10 +1529,10 @@ var K = 8, Qr = 16, $r = "av1-10bit-2";
 function ei(e, t) {
 	return new j("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function ti(e, t = Ce) {
+function ti(e, t = we) {
 	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
 	if (!n || !r) throw e.wrong("two numbers are needed");
-	if (n * r > Te) throw e.wrong(`more than ${Te} texels`);
+	if (n * r > Ee) throw e.wrong(`more than ${Ee} texels`);
 	return [n, r];
 }
 function ni(e, t, n, r, i) {
@@ -1552,8 +1553,8 @@ function ni(e, t, n, r, i) {
 			s += t[0] * t[1] * e * n, c += r;
 		}
 	}
-	if (c > 4096) throw e.key("planes").wrong(`more than ${Ee} textures`);
-	if (s > De) throw e.key("planes").wrong("too large when it is decoded");
+	if (c > 4096) throw e.key("planes").wrong(`more than ${De} textures`);
+	if (s > Oe) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
 function ri(e, t) {
@@ -1620,7 +1621,7 @@ function ai(e) {
 	return o;
 }
 function oi(e, t, n) {
-	let r = e.key("at").items(Ee * t).map((e) => {
+	let r = e.key("at").items(De * t).map((e) => {
 		let [t = 0, n = 0] = e.numbers(2, 0, Pe);
 		if (!Number.isInteger(t) || !Number.isInteger(n)) throw e.wrong("no whole numbers");
 		return [t, n];
@@ -1722,7 +1723,7 @@ function pi(e, t) {
 function mi(e, t, n) {
 	if (!e.exists) return null;
 	if (t.codec.bits === K) throw e.wrong(`of a mean of ${K} bits`);
-	let r = ti(e.key("size"), we), i = Rr("picture", e.key("codec"), "png");
+	let r = ti(e.key("size"), Te), i = Rr("picture", e.key("codec"), "png");
 	if (i !== U.png) throw e.key("codec").wrong("no PNG");
 	return {
 		view: n(e.key("bufferView")),
@@ -1734,13 +1735,13 @@ function mi(e, t, n) {
 	};
 }
 function hi(e, t, n, r, i) {
-	let a = ti(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? ti(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, Ce) : [];
+	let a = ti(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? ti(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, we) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
 	let d = e.where;
 	if (e.key("film").exists) {
 		let n = oi(e, t, a), { textures: r } = n;
-		if (r > 4096) throw e.wrong(`more than ${Ee} textures`);
+		if (r > 4096) throw e.wrong(`more than ${De} textures`);
 		return {
 			size: a,
 			grid: c,
@@ -1751,14 +1752,14 @@ function hi(e, t, n, r, i) {
 			where: d
 		};
 	}
-	let f = 0, p = e.key("picture"), m = p.exists ? p.object() : {}, h = e.key("textures").items(Ee).map((e) => {
+	let f = 0, p = e.key("picture"), m = p.exists ? p.object() : {}, h = e.key("textures").items(De).map((e) => {
 		let n = new W({
 			...m,
 			...e.object()
-		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, Ee) : 1;
+		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, De) : 1;
 		return f += o, ii(n, t, o, a, i);
 	});
-	if (f > 4096) throw e.wrong(`more than ${Ee} textures`);
+	if (f > 4096) throw e.wrong(`more than ${De} textures`);
 	let g = e.key("codedWeights"), _ = f ? g.exists ? Yr("weights", g, i) : r(e.key("weights"), "SCALAR", [G], n * f) : null;
 	return {
 		size: a,
@@ -1773,7 +1774,7 @@ function hi(e, t, n, r, i) {
 function gi(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
-	if (n * i > Te) throw e.wrong(`more than ${Te} texels`);
+	if (n * i > Ee) throw e.wrong(`more than ${Ee} texels`);
 }
 // eigenfield-three/src/sheets.ts
 function _i(e, t) {
@@ -1896,13 +1897,13 @@ var Ai = [
 function Ii(e) {
 	let t = new W(e, "");
 	try {
-		return t.key("extensions").key(xe).exists;
+		return t.key("extensions").key(Se).exists;
 	} catch {
 		return !1;
 	}
 }
 function Li(e) {
-	let t = new W(e, ""), n = t.key("extensions").key(xe), r = Bi(n), i = Kr(t), a = Jr(t, i), o = qr(i);
+	let t = new W(e, ""), n = t.key("extensions").key(Se), r = Bi(n), i = Kr(t), a = Jr(t, i), o = qr(i);
 	Vi(t);
 	let s = Wi(t, o), c = n.key("cameras"), { count: l, names: u } = Gi(c, o), d = Ji(c, l), f = d.filter((e) => !e).length, p = ni(n, f, s, a, o), m = ri(n, p), h = c.key("colour"), g = c.key("codedColour");
 	if ((h.exists || g.exists) && m.length < 3) throw h.wrong("needs three channels");
@@ -1919,7 +1920,7 @@ function Li(e) {
 		sizes: Xi(c, l, a),
 		colour: g.exists ? Yr("weights", g, o) : h.exists ? a(h, "SCALAR", [G], 6 * l) : null,
 		...Zi(_),
-		triangles: y.exists ? Yr("triangles", y, o) : v.exists ? Ui(a(v, "SCALAR", [Vr, Hr], null), 2 * Oe) : null,
+		triangles: y.exists ? Yr("triangles", y, o) : v.exists ? Ui(a(v, "SCALAR", [Vr, Hr], null), 2 * I) : null,
 		settings: Qi(n.key("settings")),
 		scores: Qi(n.key("scores")),
 		views: i,
@@ -1951,14 +1952,14 @@ function Bi(e) {
 	let t = e.key("version").text(L);
 	if (!/^1\.\d+$/.test(t)) throw new j("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
-	for (let e of n.exists ? n.items(I) : []) {
+	for (let e of n.exists ? n.items(F) : []) {
 		let t = e.text(L);
 		if (!Mi.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
 function Vi(e) {
-	let t = e.key("nodes").items(I), n = Array(t.length).fill(!1);
+	let t = e.key("nodes").items(F), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
 		for (let e of r.exists ? r.items(t.length) : []) {
@@ -1967,7 +1968,7 @@ function Vi(e) {
 			n[r] = !0;
 		}
 	}
-	for (let r of e.key("scenes").items(I)) {
+	for (let r of e.key("scenes").items(F)) {
 		let e = r.key("nodes");
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
@@ -1989,10 +1990,10 @@ function Wi(e, t) {
 function Gi(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
-		count: n.key("count").integer(1, Oe),
+		count: n.key("count").integer(1, I),
 		names: Yr("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? qi(r) : i.items(Oe).map((e) => e.text(L));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? qi(r) : i.items(I).map((e) => e.text(L));
 	if (!a.length) throw i.wrong("no cameras");
 	let o = Ki(a);
 	if (o) throw i.wrong(o);
@@ -2005,7 +2006,7 @@ function Ki(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
 function qi(e) {
-	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, Oe));
+	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, I));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
 	let r = e.key("parts").items(Ni).map((e) => {
 		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(L))];
@@ -2298,14 +2299,15 @@ function _a(e, t) {
 			}
 		}
 	}
-	let c = i(J(e).flatMap((e) => e.weights ? [e.weights.view] : [])), l = i([...Object.values(e.shown ?? {}), ...e.mesh ? [e.mesh] : []].map(({ view: e }) => e)), u = e.sheets ? r(e.sheets.opacity.mean.view) : 0;
+	let c = i(J(e).flatMap((e) => e.weights ? [e.weights.view] : [])), l = i([...Object.values(e.shown ?? {}), ...e.mesh ? [e.mesh] : []].map(({ view: e }) => e)), u = e.sheets ? r(e.sheets.opacity.mean.view) : 0, d = e.timeline?.groups.reduce((e, { length: t }) => e + t, 0) ?? 0;
 	return {
 		total: t,
 		mesh: l,
 		opacity: u,
 		mean: o,
 		weights: c,
-		other: t - o - c - l - u - s.reduce((e, t) => e + t, 0),
+		groups: d,
+		other: t - o - c - l - u - d - s.reduce((e, t) => e + t, 0),
 		textures: s
 	};
 }
@@ -3088,8 +3090,8 @@ var qo = /* @__PURE__ */ new Set([
 	"RGBX",
 	"BGRA",
 	"BGRX"
-]), Xo = 1, Zo = Uint16Array.from({ length: 256 }, (e, t) => Math.round(t * 1023 / 255));
-async function Qo(e, t) {
+]), Xo = 1, Zo = Uint16Array.from({ length: 256 }, (e, t) => Math.round(t * 1023 / 255)), Qo = Uint16Array.from({ length: 256 }, (e, t) => Zo[16 + Math.round(t * 219 / 255)]);
+async function $o(e, t) {
 	let n = e.format ?? "", { width: r, height: i } = e.visibleRect ?? {
 		width: 0,
 		height: 0
@@ -3106,20 +3108,20 @@ async function Qo(e, t) {
 		stride: l,
 		room: o
 	};
-	let [u, d] = Yo.has(n) ? [4, c + Xo] : [1, c];
-	return $o(o.subarray(d), l, u, [r, i]);
+	let u = Yo.has(n), [d, f] = u ? [4, c + Xo] : [1, c], p = u && e.colorSpace?.fullRange === !1 ? Qo : Zo;
+	return es(o.subarray(f), l, d, [r, i], p);
 }
-function $o(e, t, n, [r, i]) {
-	let a = new Uint16Array(r * i);
-	for (let o = 0; o < i; o++) for (let i = 0; i < r; i++) a[o * r + i] = Zo[e[o * t + n * i]];
+function es(e, t, n, [r, i], a = Zo) {
+	let o = new Uint16Array(r * i);
+	for (let s = 0; s < i; s++) for (let i = 0; i < r; i++) o[s * r + i] = a[e[s * t + n * i]];
 	return {
-		data: new Uint8Array(a.buffer),
+		data: new Uint8Array(o.buffer),
 		width: r,
 		height: i,
 		stride: 2 * r
 	};
 }
-function es({ data: e, stride: t }, { size: [n, r], at: i }) {
+function ts({ data: e, stride: t }, { size: [n, r], at: i }) {
 	return i.map(([i, a]) => ({
 		data: e.subarray(a * t + 2 * i),
 		width: n,
@@ -3128,21 +3130,21 @@ function es({ data: e, stride: t }, { size: [n, r], at: i }) {
 	}));
 }
 // eigenfield-three/src/pieces.ts
-function ts(e) {
+function ns(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
 // eigenfield-three/src/strength.ts
-var ns = 128, rs = .98;
-async function is(e, t, n, r) {
+var rs = 128, is = .98;
+async function as(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = li(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(ns, ns).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = li(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(rs, rs).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	return u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, ns, ns);
-		let { data: u } = d.getImageData(0, 0, ns, ns);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, rs, rs);
+		let { data: u } = d.getImageData(0, 0, rs, rs);
 		(l ? [
 			0,
 			1,
@@ -3151,15 +3153,15 @@ async function is(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), ts(u), as(f);
+	}), ns(u), os(f);
 }
-function as(e) {
+function os(e) {
 	e.sort((e, t) => e - t);
-	let t = e[Math.floor(rs * e.length)] ?? 0;
+	let t = e[Math.floor(is * e.length)] ?? 0;
 	return t > 0 ? .45 / t : 1;
 }
 // eigenfield-three/src/film-textures.ts
-var os = class {
+var ss = class {
 	scene;
 	films;
 	filling = null;
@@ -3195,7 +3197,7 @@ var os = class {
 	}
 	piecesOf({ part: e }) {
 		let t = e && this.films[e.film];
-		return t ? es(t, e).map((e) => ({
+		return t ? ts(t, e).map((e) => ({
 			picture: e,
 			row: 0,
 			rows: e.height
@@ -3203,44 +3205,44 @@ var os = class {
 	}
 	gainOf({ part: e, pieces: t, scale: n, zero: r }, i, a) {
 		let o = e && this.films[e.film];
-		return o ? as(es(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
+		return o ? os(ts(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
 			let s = t * i + o, c = Math.max(...(a[o] ?? [0]).map(Math.abs)) * (n[s] ?? 0);
-			return cs(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
+			return ls(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
 		})) : 1;
 	}
-}, ss = 8;
-function cs({ data: e, width: t, height: n, stride: r }) {
+}, cs = 8;
+function ls({ data: e, width: t, height: n, stride: r }) {
 	let i = [];
-	for (let a = 0; a < n; a += ss) for (let n = 0; n < t; n += ss) {
+	for (let a = 0; a < n; a += cs) for (let n = 0; n < t; n += cs) {
 		let t = a * r + 2 * n;
 		i.push(e[t] + 256 * e[t + 1]);
 	}
 	return i;
 }
 // eigenfield-three/src/container.ts
-var ls = 1179937895, us = 1313821514, ds = 5130562, fs = 1280591429;
-async function ps(e) {
+var us = 1179937895, ds = 1313821514, fs = 5130562, ps = 1280591429;
+async function ms(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof j && t.code === "truncated" ? vs(e.received === 0) : t;
+		throw t instanceof j && t.code === "truncated" ? ys(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== ls) throw vs(!1);
+	if (new DataView(t).getUint32(0, !0) !== us) throw ys(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
 	if (r !== 2) throw new j("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
 	if (i < 20) throw M("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== us) throw M("16", "it does not begin with JSON");
-	if (o > Se) throw M("12", `${o} bytes of JSON`);
+	if (a.getUint32(4, !0) !== ds) throw M("16", "it does not begin with JSON");
+	if (o > Ce) throw M("12", `${o} bytes of JSON`);
 	if (20 + o > i) throw M("12", "a chunk longer than the file");
-	let s = hs(await e.read(20, 20 + o)), c = (t, n) => () => ms(e, 20 + o, i, t, n);
+	let s = gs(await e.read(20, 20 + o)), c = (t, n) => () => hs(e, 20 + o, i, t, n);
 	return {
 		length: i,
 		text: s,
-		json: gs(s, "20"),
-		binary: c(ds, "binary chunk"),
-		groups: c(fs, "chunk of groups")
+		json: _s(s, "20"),
+		binary: c(fs, "binary chunk"),
+		groups: c(ps, "chunk of groups")
 	};
 }
-async function ms(e, t, n, r, i) {
+async function hs(e, t, n, r, i) {
 	let a = t;
 	for (let t = 1; t < 64 && a + 8 <= n; t++) {
 		let t = new DataView(await e.read(a, a + 8)), i = t.getUint32(0, !0);
@@ -3250,22 +3252,22 @@ async function ms(e, t, n, r, i) {
 	}
 	throw M(String(t), `no ${i}`);
 }
-function hs(e) {
+function gs(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
 		throw M("20", "its JSON is not UTF-8");
 	}
 }
-function gs(e, t) {
-	if (_s(e) > 64) throw M(t, "its JSON is nested too deep");
+function _s(e, t) {
+	if (vs(e) > 64) throw M(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
 		throw M(t, "its JSON cannot be read");
 	}
 }
-function _s(e) {
+function vs(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3276,11 +3278,11 @@ function _s(e) {
 	}
 	return n;
 }
-function vs(e) {
+function ys(e) {
 	return new j("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/groups.ts
-var ys = 3, bs = 4, xs = class {
+var bs = 3, xs = 4, Ss = class {
 	scene;
 	timeline;
 	read;
@@ -3291,15 +3293,15 @@ var ys = 3, bs = 4, xs = class {
 	open(e) {
 		let t = this.kept.get(e) ?? this.opened(e);
 		this.kept.delete(e), this.kept.set(e, t);
-		for (let [e] of this.kept) this.kept.size > ys && this.kept.delete(e);
+		for (let [e] of this.kept) this.kept.size > bs && this.kept.delete(e);
 		return t;
 	}
 	async opened(e) {
 		let t = this.timeline.groups[e];
 		if (!t) throw RangeError(`no group ${e}`);
 		let n = new Uint8Array(await this.read(t.offset, t.length));
-		await Cs(n, t);
-		let { head: r, at: i } = await ws(n, t), a = Ts(n, i, t), o = this.weightsOf(r, a), { first: s, frames: c } = t, l = Es(r, t, this.timeline.films.length, a);
+		await ws(n, t);
+		let { head: r, at: i } = await Ts(n, t), a = Es(n, i, t), o = this.weightsOf(r, a), { first: s, frames: c } = t, l = Ds(r, t, this.timeline.films.length, a);
 		return {
 			index: e,
 			first: s,
@@ -3310,9 +3312,9 @@ var ys = 3, bs = 4, xs = class {
 		};
 	}
 	weightsOf(e, t) {
-		let n = this.scene.heldOut.filter((e) => !e).length, r = Os(e.key("weights"), this.scene.planes.length);
+		let n = this.scene.heldOut.filter((e) => !e).length, r = ks(e.key("weights"), this.scene.planes.length);
 		return la(n, this.scene.planes.flatMap(({ bases: e }, i) => {
-			let a = r[i] && Os(r[i], e.length);
+			let a = r[i] && ks(r[i], e.length);
 			return e.map(({ count: e }, r) => {
 				let i = a[r];
 				return da(U["weights-1"].decode(t(i), i.where), n, e, i.where);
@@ -3322,34 +3324,34 @@ var ys = 3, bs = 4, xs = class {
 	scalesOf(e) {
 		let { planes: t } = this.scene;
 		return {
-			means: Os(e.key("means"), t.length).map((e, n) => Ds(e, t[n].mean)),
-			bases: Os(e.key("bases"), t.length).flatMap((e, n) => {
+			means: ks(e.key("means"), t.length).map((e, n) => Os(e, t[n].mean)),
+			bases: ks(e.key("bases"), t.length).flatMap((e, n) => {
 				let { bases: r } = t[n];
-				return Os(e, r.length).map((e, t) => Ds(e, r[t].pictures[0]));
+				return ks(e, r.length).map((e, t) => Os(e, r[t].pictures[0]));
 			})
 		};
 	}
 };
-function Ss(e, { means: t, bases: n }) {
+function Cs(e, { means: t, bases: n }) {
 	e.planes.forEach(({ mean: e }, n) => Object.assign(e, t[n])), J(e).forEach(({ pictures: [e] }, t) => e && Object.assign(e, n[t]));
 }
-async function Cs(e, { sha256: t, where: n }) {
+async function ws(e, { sha256: t, where: n }) {
 	let r = globalThis.crypto?.subtle;
 	if (!r) return;
 	let i = new Uint8Array(await r.digest("SHA-256", e));
 	if (Array.from(i, (e) => e.toString(16).padStart(2, "0")).join("") !== t) throw M(n, "other bytes than its SHA-256 says");
 }
-async function ws(e, { where: t }) {
-	if (e.length < bs) throw M(t, "no head");
-	let n = bs + new DataView(e.buffer).getUint32(0, !0);
+async function Ts(e, { where: t }) {
+	if (e.length < xs) throw M(t, "no head");
+	let n = xs + new DataView(e.buffer).getUint32(0, !0);
 	if (n > e.length) throw M(t, "a head longer than the group");
-	let r = await be(e.subarray(bs, n), "deflate-raw", Be, t);
+	let r = await xe(e.subarray(xs, n), "deflate-raw", Be, t);
 	return {
-		head: new W(gs(new TextDecoder("utf-8").decode(r), t), t),
+		head: new W(_s(new TextDecoder("utf-8").decode(r), t), t),
 		at: n
 	};
 }
-function Ts(e, t, n) {
+function Es(e, t, n) {
 	let r = t;
 	return (t) => {
 		let i = r;
@@ -3357,22 +3359,22 @@ function Ts(e, t, n) {
 		return e.subarray(i, r);
 	};
 }
-function Es(e, t, n, r) {
-	return Os(e.key("frames"), t.frames).map((e) => Os(e, n).map((e) => r(e)));
+function Ds(e, t, n, r) {
+	return ks(e.key("frames"), t.frames).map((e) => ks(e, n).map((e) => r(e)));
 }
-function Ds(e, { pieces: t, textures: n }) {
+function Os(e, { pieces: t, textures: n }) {
 	let r = e;
 	return {
 		scale: di(r.key("scale"), t, n),
 		zero: di(r.key("zero"), t, n)
 	};
 }
-function Os(e, t) {
+function ks(e, t) {
 	let n = e.items(t);
 	if (n.length !== t) throw e.wrong(`${t} entries are needed`);
 	return n;
 }
-var ks = 3, As = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", js = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", Ms = `#version 300 es
+var As = 3, js = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", Ms = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", Ns = `#version 300 es
 precision highp float;
 precision highp int;
 uniform highp sampler2D picture; // values, and whether they are of a chart
@@ -3382,7 +3384,7 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec2 own = texelFetch(picture, at, 0).rg;
   vec2 sum = vec2(own.r * own.g, own.g);
-  for (int far = 1; far <= ${ks} && sum.y == 0.0; far++) {
+  for (int far = 1; far <= ${As} && sum.y == 0.0; far++) {
     for (int y = -far; y <= far; y++) {
       for (int x = -far; x <= far; x++) {
         vec2 near = texelFetch(picture, clamp(at + ivec2(x, y), ivec2(0), size - 1), 0).rg;
@@ -3392,9 +3394,9 @@ void main() {
   }
   stored = vec4(sum.y > 0.0 ? sum.x / sum.y : own.r);
 }
-`, Ns = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
+`, Ps = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
 // eigenfield-three/src/parts.ts
-function Ps(e, t, n) {
+function Fs(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -3404,7 +3406,7 @@ function Ps(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = Ls(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = Rs(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -3432,7 +3434,7 @@ function Ps(e, t, n) {
 						a + e[1] / i[1]
 					],
 					colours: f,
-					...Rs(l, u, h, n.halves && ci(l)),
+					...zs(l, u, h, n.halves && ci(l)),
 					basis: {
 						ready: m,
 						column: o,
@@ -3444,13 +3446,13 @@ function Ps(e, t, n) {
 		}
 	}), r;
 }
-function Fs(e, t, n, r) {
-	Ps(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
+function Is(e, t, n, r) {
+	Fs(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
 		scale: t,
 		bias: n
 	}));
 }
-function Is({ planes: e, sheets: t }, { means: n, needs: r }) {
+function Ls({ planes: e, sheets: t }, { means: n, needs: r }) {
 	let i = n[e.length], a = r.means[e.length]?.size;
 	return !t || !i || !a ? null : {
 		stored: i,
@@ -3466,11 +3468,11 @@ function Is({ planes: e, sheets: t }, { means: n, needs: r }) {
 			0,
 			0
 		]],
-		...Ls(t.opacity),
+		...Rs(t.opacity),
 		basis: null
 	};
 }
-function Ls({ mean: e, channels: t, precision: n }) {
+function Rs({ mean: e, channels: t, precision: n }) {
 	let { scale: r, zero: i } = e, a = n ? 4 : 1 / ui(e, ci([e])), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
@@ -3481,7 +3483,7 @@ function Ls({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function Rs(e, t, n, r) {
+function zs(e, t, n, r) {
 	let i = e.flatMap((e) => Array(e.textures).fill(ui(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * Wa(n), c = {
 		scale: new Float32Array(s),
 		bias: new Float32Array(s)
@@ -3493,7 +3495,7 @@ function Rs(e, t, n, r) {
 	return c;
 }
 // eigenfield-three/src/player.ts
-var zs = .25, Bs = class extends f {
+var Bs = .25, Vs = class extends f {
 	timeline;
 	user;
 	first;
@@ -3535,6 +3537,14 @@ var zs = .25, Bs = class extends f {
 	get waiting() {
 		return this.goal !== null;
 	}
+	get group() {
+		let { groups: e } = this.timeline, t = ki(this.timeline, this.shown.number);
+		return {
+			index: t,
+			count: e.length,
+			bytes: e[t]?.length ?? 0
+		};
+	}
 	get late() {
 		return this.ring.late;
 	}
@@ -3573,7 +3583,7 @@ var zs = .25, Bs = class extends f {
 	}
 	update(e = performance.now()) {
 		if (this.disposed) return;
-		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, zs);
+		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, Bs);
 		if (this.last = this.plays && this.goal === null ? e : null, this.goal === null && !this.plays) return;
 		this.goal === null && (this.clock = this.advanced(t));
 		let n = this.ring.take(this.goal ?? Math.floor(this.clock));
@@ -3623,19 +3633,19 @@ var zs = .25, Bs = class extends f {
 		let n = this.goal !== null && ki(this.timeline, this.goal % this.frames);
 		n === !1 || t !== null && n !== t || (this.goal = this.following = null, this.settle());
 	}
-}, Vs = 256;
-function Hs(e, t, n) {
+}, Hs = 256;
+function Us(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / Vs)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / Hs)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Us(t, i.getX(e), i.getY(e), i.getZ(e))), l = Ws(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Ws(t, i.getX(e), i.getY(e), i.getZ(e))), l = Gs(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = Ws(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = Gs(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -3645,7 +3655,7 @@ function Hs(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function Us({ K: e, R: t, t: n }, r, i, a) {
+function Ws({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -3653,12 +3663,12 @@ function Us({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function Ws(e) {
+function Gs(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/sheet-stack.ts
-var Gs = "sheets", Ks = 16, qs = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Js = `${Fo}${Io}
+var Ks = "sheets", qs = 16, Js = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Ys = `${Fo}${Io}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -3683,7 +3693,7 @@ void main() {
   gl_FragDepth = depth;
   fragment = colour;
 }
-`, Ys = new ae(), Xs = class {
+`, Xs = new ae(), Zs = class {
 	material;
 	scene = new k();
 	camera = new n();
@@ -3699,10 +3709,10 @@ void main() {
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
 		let { shown: n, photograph: r, toPhotograph: i } = t.uniforms;
 		this.screen = new O({
-			name: Gs,
+			name: Ks,
 			glslVersion: h,
-			vertexShader: qs,
-			fragmentShader: Js,
+			vertexShader: Js,
+			fragmentShader: Ys,
 			uniforms: {
 				shown: n,
 				photograph: r,
@@ -3732,7 +3742,7 @@ void main() {
 		this.everywhere.setAttribute("position", new e(a, 3));
 	}
 	get bytes() {
-		return this.target ? Ks * this.target.width * this.target.height : 0;
+		return this.target ? qs * this.target.width * this.target.height : 0;
 	}
 	setGeometry(e, t) {
 		e.clearGroups();
@@ -3750,7 +3760,7 @@ void main() {
 	attach(e, t) {
 		for (let t of [e.material].flat()) t.visible = !1;
 		let n = new S(this.everywhere, this.screen);
-		n.name = Gs, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
+		n.name = Ks, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
 			t(n, i), this.draw(n, i, e);
 		}, e.add(n);
 	}
@@ -3761,9 +3771,9 @@ void main() {
 		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
 	}
 	draw(e, t, n) {
-		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Ys);
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Xs);
 		if (!a || !o) return;
-		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Zs(a, o));
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Qs(a, o));
 		let { target: s } = this;
 		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), bo(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
@@ -3772,7 +3782,7 @@ void main() {
 		this.set("sheets", s.textures[0]), this.set("solid", s.textures[1]), this.set("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
 	}
 };
-function Zs(e, t) {
+function Qs(e, t) {
 	let n = new l(e, t, re);
 	n.format = c;
 	let r = new oe(e, t, {
@@ -3786,7 +3796,7 @@ function Zs(e, t) {
 	return i && (i.type = ne), r;
 }
 // eigenfield-three/src/surface.ts
-var Qs = class {
+var $s = class {
 	meshes;
 	faces;
 	reference;
@@ -3801,7 +3811,7 @@ var Qs = class {
 		if (!i) throw Error("a field needs a mesh");
 		this.mesh = i;
 		let a = [i.material].flat().some((e) => e.side !== m);
-		this.material = Uo(a, t !== null), this.stack = t && new Xs(this.material);
+		this.material = Uo(a, t !== null), this.stack = t && new Zs(this.material);
 		for (let t of e) {
 			let e = (e, n) => r(e, n, t);
 			this.stack ? this.stack.attach(t, e) : (t.material = this.material, t.onBeforeRender = (t, n, r) => e(t, r));
@@ -3828,52 +3838,52 @@ var Qs = class {
 		e.boundingBox = e.boundingSphere = null, this.faces = t, this.version += 1, this.show(t);
 	}
 	show(e) {
-		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? Hs(this.geometry, this.reference, [1, 1]) : 0;
+		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? Us(this.geometry, this.reference, [1, 1]) : 0;
 	}
 	dispose() {
 		this.stack?.dispose(), this.material.dispose(), this.geometry.dispose();
 	}
 };
 // eigenfield-three/src/gpu.ts
-function $s(e) {
+function ec(e) {
 	let t = e.getContext();
 	if (!(t instanceof WebGL2RenderingContext)) throw new j("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
 	if ((t.getExtension("EXT_color_buffer_float") ?? t.getExtension("EXT_color_buffer_half_float")) || t.isContextLost()) return t;
 	throw new j("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
 }
-function ec(e, t) {
+function tc(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function tc(e, { components: t, halves: n }) {
+function nc(e, { components: t, halves: n }) {
 	return t > 2 ? n ? e.RGBA16F : e.RGBA8 : t > 1 ? n ? e.RG16F : e.RG8 : n ? e.R16F : e.R8;
 }
-function nc(e, [t, n], r, i, a) {
-	return ac(e, e.TEXTURE_2D_ARRAY, () => {
-		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, tc(e, a), t, n, r);
+function rc(e, [t, n], r, i, a) {
+	return oc(e, e.TEXTURE_2D_ARRAY, () => {
+		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, nc(e, a), t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function rc(e, t, n, r) {
+function ic(e, t, n, r) {
 	let { width: i, height: a } = n, o = r > 2 ? e.RGBA : r > 1 ? e.RG : e.RED;
-	oc(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
+	sc(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
 }
-function ic(e, [t, n], r) {
-	return ac(e, e.TEXTURE_2D, () => {
-		e.texStorage2D(e.TEXTURE_2D, 1, tc(e, r), t, n);
+function ac(e, [t, n], r) {
+	return oc(e, e.TEXTURE_2D, () => {
+		e.texStorage2D(e.TEXTURE_2D, 1, nc(e, r), t, n);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D, t, e.NEAREST);
 	});
 }
-function ac(e, t, n) {
+function oc(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return oc(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return sc(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function oc(e, t, n, r) {
+function sc(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -3887,7 +3897,7 @@ function oc(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-function sc(e, t, n) {
+function cc(e, t, n) {
 	let r = e.createProgram();
 	for (let [i, a] of [[e.VERTEX_SHADER, t], [e.FRAGMENT_SHADER, n]]) {
 		let t = e.createShader(i);
@@ -3895,7 +3905,7 @@ function sc(e, t, n) {
 	}
 	return e.linkProgram(r), r;
 }
-function cc(e, t, n, r) {
+function lc(e, t, n, r) {
 	if (!n) {
 		r();
 		return;
@@ -3903,9 +3913,9 @@ function cc(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), oc(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), sc(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function lc(e, t) {
+function uc(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -3920,13 +3930,13 @@ function lc(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r && e.isProgram(r) ? r : null), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/charts.ts
-function uc(e, t) {
-	let n = sc(e, ...Ns), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
+function dc(e, t) {
+	let n = cc(e, ...Ps), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
 		let { index: o } = t, s = t.getAttribute("uv"), c = Float32Array.from({ length: 2 * (o?.count ?? 0) }, (e, t) => {
 			let n = o?.getX(t >> 1) ?? 0;
 			return t % 2 ? s.getY(n) : s.getX(n);
 		}), [l, u] = [e.createVertexArray(), e.createBuffer()], d = e.getParameter(e.ARRAY_BUFFER_BINDING);
-		lc(e, () => {
+		uc(e, () => {
 			e.useProgram(n), e.bindVertexArray(l), e.bindBuffer(e.ARRAY_BUFFER, u), e.bufferData(e.ARRAY_BUFFER, c, e.STREAM_DRAW);
 			let t = e.getAttribLocation(n, "uv");
 			e.enableVertexAttribArray(t), e.vertexAttribPointer(t, 2, e.FLOAT, !1, 0, 0), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, a, 0), e.viewport(0, 0, ...i), e.colorMask(!0, !0, !0, !0), e.drawArrays(e.TRIANGLES, 0, c.length / 2);
@@ -3937,7 +3947,7 @@ function uc(e, t) {
 			let { geometry: r } = t;
 			if (i?.grid.join() !== n.join() || i.geometry !== r) {
 				e.deleteTexture(i?.texture ?? null);
-				let t = ic(e, n, {
+				let t = ac(e, n, {
 					components: 1,
 					halves: !1
 				});
@@ -3955,8 +3965,8 @@ function uc(e, t) {
 	};
 }
 // eigenfield-three/src/packing.ts
-function dc(e, t, n, r) {
-	let [i, a] = [sc(e, As, js), sc(e, As, Ms)], [o, s] = [e.createFramebuffer(), e.createVertexArray()], c = t.smaller && uc(e, r), l = !1, u = (t) => e.getUniformLocation(i, t), d = Object.fromEntries([
+function fc(e, t, n, r) {
+	let [i, a] = [cc(e, js, Ms), cc(e, js, Ns)], [o, s] = [e.createFramebuffer(), e.createVertexArray()], c = t.smaller && dc(e, r), l = !1, u = (t) => e.getUniformLocation(i, t), d = Object.fromEntries([
 		"precisions",
 		"covered",
 		"factors",
@@ -3968,7 +3978,7 @@ function dc(e, t, n, r) {
 		"zero"
 	].map((e) => [e, u(e)])), f = ({ picture: t, rows: n }, r, i, a, o, s) => {
 		let { size: c, corner: l, unit: u, codes: f } = i;
-		fc(t) ? e.uniform4f(d.factors, 255 * u, 65280 * u, 0, 0) : e.uniform4fv(d.factors, [
+		pc(t) ? e.uniform4f(d.factors, 255 * u, 65280 * u, 0, 0) : e.uniform4fv(d.factors, [
 			0,
 			1,
 			2,
@@ -3980,30 +3990,30 @@ function dc(e, t, n, r) {
 		p(t, n), e.colorMask(r === 0, r === 1, r === 2, r === 3);
 	}, h = (r, o, u, h, g, _) => {
 		let { picture: v, row: y, rows: b } = r, [x, S] = g.size, C = x < v.width || S < b ? t.smaller : null, w = Math.max(1, Math.floor((C ? n - 2 : n) * S / b)), T = l && o === t.codes;
-		cc(e, 2, (C && c?.covered(g.grid)) ?? null, () => cc(e, 0, T ? null : o, () => {
+		lc(e, 2, (C && c?.covered(g.grid)) ?? null, () => lc(e, 0, T ? null : o, () => {
 			for (let t = 0; t < S; t += w) {
 				let n = Math.min(w, S - t), a = Math.floor(t * b / S), o = Math.ceil((t + n) * b / S);
-				fc(v) ? mc(e, v, y + a, o - a) : pc(e, v, y + a, o - a);
+				pc(v) ? hc(e, v, y + a, o - a) : mc(e, v, y + a, o - a);
 				let c = () => {
 					e.useProgram(i), e.bindVertexArray(s), e.uniform1i(d.precisions, +!!_), e.uniform1i(d.covered, C ? 2 : 0), e.uniform2i(d.nodes, _?.precision.width ?? 0, _?.precision.height ?? 0), e.uniform1f(d.zero, _?.zero ?? 0), C ? (p(C, null), e.colorMask(!0, !0, !0, !0)) : m(u, h), f(r, h.channel, g, a, t, n);
 				};
-				T ? c() : lc(e, c);
+				T ? c() : uc(e, c);
 			}
-		})), C && cc(e, 0, C, () => lc(e, () => {
+		})), C && lc(e, 0, C, () => uc(e, () => {
 			e.useProgram(a), e.bindVertexArray(s), e.uniform2i(e.getUniformLocation(a, "size"), x, S), m(u, h), e.viewport(0, 0, x, S), e.drawArrays(e.TRIANGLES, 0, 3);
 		}));
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let s = fc(n.picture) ? t.codes : t.picture;
+			let s = pc(n.picture) ? t.codes : t.picture;
 			if (!s) return;
 			let c = () => i.forEach((e) => h(n, s, r, e, a, o));
-			o ? cc(e, 1, t.precision, () => {
-				pc(e, o.precision, 0, o.precision.height), c();
+			o ? lc(e, 1, t.precision, () => {
+				mc(e, o.precision, 0, o.precision.height), c();
 			}) : c();
 		},
 		together(n) {
-			cc(e, 0, t.codes, () => lc(e, () => {
+			lc(e, 0, t.codes, () => uc(e, () => {
 				l = !0;
 				try {
 					n();
@@ -4018,17 +4028,17 @@ function dc(e, t, n, r) {
 		}
 	};
 }
-function fc(e) {
+function pc(e) {
 	return "data" in e;
 }
-function pc(e, t, n, r) {
+function mc(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function mc(e, { data: t, width: n, stride: r }, i, a) {
+function hc(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
 // eigenfield-three/src/textures.ts
-var hc = class {
+var gc = class {
 	parts;
 	source;
 	surface;
@@ -4068,7 +4078,7 @@ var hc = class {
 			means: c,
 			bases: s,
 			rays: a.facesPlane,
-			geometry: gc(n.geometry)
+			geometry: _c(n.geometry)
 		}, this.means = c.map(() => new p()), this.bases = s.map(() => new p()), this.ready = s.map(({ count: e }) => Array(e).fill(!1)), this.stillVersions = c.map(() => 0);
 	}
 	get hasMeans() {
@@ -4082,7 +4092,7 @@ var hc = class {
 		return Math.min(t, ...e);
 	}
 	get bytes() {
-		return this.plan ? this.plan.bytes - this.needs.geometry + gc(this.surface.geometry) : 0;
+		return this.plan ? this.plan.bytes - this.needs.geometry + _c(this.surface.geometry) : 0;
 	}
 	get attached() {
 		return this.renderer !== null || this.disposed;
@@ -4112,7 +4122,7 @@ var hc = class {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		let n = $s(e);
+		let n = ec(e);
 		if (n.isContextLost()) return;
 		let { packer: r, plan: i } = this.makeRoom(n);
 		this.plan = i, this.packer = r, this.onPlan(i), await this.source.fill(this.filling(n, i, t)), t.aborted || this.onComplete();
@@ -4167,7 +4177,7 @@ var hc = class {
 		this.stillVersions[n] = this.version += 1;
 		let { mean: l, channels: u } = o, d = X(s, t.meanDown), [f] = r;
 		if (f && r.length === 1 && "close" in f.picture && !c && d.join() === s.join()) {
-			rc(e, a, f.picture, u);
+			ic(e, a, f.picture, u);
 			return;
 		}
 		let p = {
@@ -4201,15 +4211,15 @@ var hc = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs;
-		this.needs.geometry = gc(this.surface.geometry);
+		this.needs.geometry = _c(this.surface.geometry);
 		let r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
 		for (let i = this.options.memory ?? za();; i /= 2) {
-			let a = qa(this.needs, ec(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => nc(e, X(t, o), Ha(n), !1, {
+			let a = qa(this.needs, tc(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => rc(e, X(t, o), Ha(n), !1, {
 				components: n,
 				halves: r
 			})), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return nc(e, a ? X(t, s) : [1, 1], a ? Ua(a, n) : 1, u, {
+				return rc(e, a ? X(t, s) : [1, 1], a ? Ua(a, n) : 1, u, {
 					components: Math.max(1, a),
 					halves: l && i
 				});
@@ -4217,9 +4227,9 @@ var hc = class {
 				f.picture,
 				f.codes,
 				f.smaller
-			].map((t) => t ? ic(e, t.size, t.format) : null), g = ic(e, Za(r), Ma);
+			].map((t) => t ? ac(e, t.size, t.format) : null), g = ac(e, Za(r), Ma);
 			if (p && g && (m || !f.codes) && (h || !f.smaller) && !d.includes(null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = d[t] ?? null), {
-				packer: dc(e, {
+				packer: fc(e, {
 					picture: p,
 					codes: m ?? null,
 					precision: g,
@@ -4238,11 +4248,11 @@ var hc = class {
 		}
 	}
 };
-function gc({ attributes: e, index: t }) {
+function _c({ attributes: e, index: t }) {
 	return Object.values(e).reduce((e, t) => e + t.array.byteLength, 0) + (t?.array.byteLength ?? 0);
 }
 // eigenfield-three/src/field.ts
-var _c = 1.5, vc = .001, yc = class extends f {
+var vc = 1.5, yc = .001, bc = class extends f {
 	parts;
 	source;
 	mesh;
@@ -4277,7 +4287,7 @@ var _c = 1.5, vc = .001, yc = class extends f {
 	constructor(e, t, n = {}) {
 		super(), this.parts = e, this.source = t;
 		let { scene: r, info: i } = e, a = r.sheets?.faces ?? null;
-		this.surface = new Qs(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = fa(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.textures = new hc(e, t, this.surface, n), this.complete = new Promise((e, t) => {
+		this.surface = new $s(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = fa(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.textures = new gc(e, t, this.surface, n), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0), this.listen(), n.renderer && this.textures.attach(n.renderer);
 	}
@@ -4321,20 +4331,20 @@ var _c = 1.5, vc = .001, yc = class extends f {
 		this.textures.onPlan = (e) => {
 			let { scene: t } = this.parts;
 			this.freeComposers(), this.summed = {
-				parts: Ps(t, this.textures, e),
-				opacity: Is(t, this.textures)
+				parts: Fs(t, this.textures, e),
+				opacity: Ls(t, this.textures)
 			}, e.limitation && queueMicrotask(() => this.dispatchEvent({ type: "limited" }));
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return _c * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
+		return vc * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
 	}
 	weightsOf(e) {
 		let { scene: t, info: n, weights: r } = this.parts;
 		return new ko(n, J(t).map(({ count: e }) => e), e, r);
 	}
 	makePlayer({ timeline: e, ring: t }) {
-		return new Bs(e, t, {
+		return new Vs(e, t, {
 			show: (e) => this.showFrame(e),
 			failed: (e) => this.dispatchEvent({
 				type: "error",
@@ -4343,15 +4353,15 @@ var _c = 1.5, vc = .001, yc = class extends f {
 		});
 	}
 	showFrame({ group: e, films: t }) {
-		e !== this.group && this.enter(e), this.source instanceof os && this.source.show(t);
+		e !== this.group && this.enter(e), this.source instanceof ss && this.source.show(t);
 	}
 	enter(e) {
 		let { scene: t } = this.parts, { plan: n } = this.textures;
-		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), Ss(t, e), n && Fs(this.summed.parts, t, this.textures, n);
+		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), Cs(t, e), n && Is(this.summed.parts, t, this.textures, n);
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = Sc(t, n), [i, a] = va(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
+		let r = Cc(t, n), [i, a] = va(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
 		this.setView(), this.setExposure(o, [i, a]);
 		let u = jo[this.filter];
 		l.defines.BICUBIC !== u && (l.defines.BICUBIC = u, l.needsUpdate = !0), l.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
@@ -4420,29 +4430,29 @@ var _c = 1.5, vc = .001, yc = class extends f {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= vc * Math.max(...r);
+		return Math.abs(i) <= yc * Math.max(...r);
 	}
 	fail(e) {
-		if (Cc(e)) return;
+		if (wc(e)) return;
 		let t = de(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
 		this.dispatchEvent({
 			type: "error",
 			error: new j(t.code, r, t.where)
 		});
 	}
-}, bc = new x(), xc = new A();
-function Sc(e, t) {
-	return xc.setFromMatrixPosition(e.matrixWorld).applyMatrix4(bc.copy(t.matrixWorld).invert()), [
-		xc.x,
-		xc.y,
-		xc.z
+}, xc = new x(), Sc = new A();
+function Cc(e, t) {
+	return Sc.setFromMatrixPosition(e.matrixWorld).applyMatrix4(xc.copy(t.matrixWorld).invert()), [
+		Sc.x,
+		Sc.y,
+		Sc.z
 	];
 }
-function Cc(e) {
+function wc(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var wc = class {
+var Tc = class {
 	received = 0;
 	chunks = [];
 	waiters = [];
@@ -4485,7 +4495,11 @@ var wc = class {
 		}
 		return n.buffer;
 	}
-}, Tc = 8, Ec = class {
+}, Ec = 8, Dc = /* @__PURE__ */ new Set([
+	"damaged",
+	"truncated",
+	"network"
+]), Oc = class {
 	timeline;
 	groups;
 	user;
@@ -4518,7 +4532,7 @@ var wc = class {
 		return this.decoders.reduce((e, t) => e + t.open, 0);
 	}
 	get reach() {
-		return Math.max(this.newest, this.from) + Tc / 2;
+		return Math.max(this.newest, this.from) + Ec / 2;
 	}
 	isOver(e) {
 		return this.newest >= e && ![...this.slots.keys()].some((t) => t <= e);
@@ -4566,7 +4580,7 @@ var wc = class {
 		return e % this.timeline.frames;
 	}
 	get hasRoom() {
-		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = Math.max(this.from, this.wanted) + Tc;
+		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = Math.max(this.from, this.wanted) + Ec;
 		return this.next < Math.min(n, t) && this.decoders.every(({ ready: e }) => e);
 	}
 	async feedAll() {
@@ -4588,7 +4602,7 @@ var wc = class {
 	async receive(e, t, n) {
 		let [{ turn: r }, i] = [this, this.slotOf(t)];
 		if (!i) return;
-		let a = await Qo(n, this.rooms[e]?.pop() ?? null);
+		let a = await $o(n, this.rooms[e]?.pop() ?? null);
 		if (r !== this.turn || this.slots.get(t) !== i) return this.reuseOne(e, a);
 		i.films[e] = a, i.films.includes(null) || this.user.ready();
 	}
@@ -4604,7 +4618,7 @@ var wc = class {
 		return this.slots.set(e, n), n;
 	}
 	fail(e) {
-		if (!(e instanceof j && (e.code === "damaged" || e.code === "truncated"))) return this.rest(), this.hopeless = !0, this.user.failed(e, null);
+		if (!(e instanceof j) || !Dc.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(e, null);
 		this.halt();
 		for (let [e, t] of this.slots) t.films.includes(null) && this.forget(e, t);
 		this.broken.add(this.fed), this.user.failed(e, this.fed), this.feed();
@@ -4633,74 +4647,74 @@ var wc = class {
 	reuseOne(e, { room: t }) {
 		t && this.rooms[e]?.push(t);
 	}
-}, Dc = {
+}, kc = {
 	mimeType: "video/AV1",
 	bits: 10
 };
-async function Oc(e, t, n) {
-	let r = new xs(e, t, n), i = await r.open(0);
-	return Ss(e, i), {
+async function Ac(e, t, n) {
+	let r = new Ss(e, t, n), i = await r.open(0);
+	return Cs(e, i), {
 		timeline: t,
 		group: i,
-		films: await Promise.all(t.films.map((e, t) => kc(i.units[0][t], e))),
-		ring: (e) => new Ec(t, r, e)
+		films: await Promise.all(t.films.map((e, t) => jc(i.units[0][t], e))),
+		ring: (e) => new Oc(t, r, e)
 	};
 }
-async function kc(e, { size: t, where: n }) {
+async function jc(e, { size: t, where: n }) {
 	let r = {
 		view: -1,
-		codec: Dc,
+		codec: kc,
 		textures: 1,
 		pieces: 1,
 		where: n
 	}, i = await Dr(ve(e.slice().buffer, n), r, t), a = i[0].picture;
 	if ("data" in a) return a;
 	let o = new OffscreenCanvas(...t).getContext("2d");
-	return o.drawImage(a, 0, 0), ts(i), $o(o.getImageData(0, 0, ...t).data, 4 * t[0], 4, t);
+	return o.drawImage(a, 0, 0), ns(i), es(o.getImageData(0, 0, ...t).data, 4 * t[0], 4, t);
 }
 // eigenfield-three/src/means.ts
-async function Ac(e, t) {
-	let { mean: n, meanSize: r } = e, i = e.precision && await jc(await t(e.precision.view), e.precision);
+async function Mc(e, t) {
+	let { mean: n, meanSize: r } = e, i = e.precision && await Nc(await t(e.precision.view), e.precision);
 	return {
 		pieces: await n.codec.decode(await t(n.view), n, r),
 		precision: i
 	};
 }
-async function jc(e, t) {
+async function Nc(e, t) {
 	let { type: n } = mr(e) ?? {}, { mimeType: r } = t.codec;
 	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
 	if (!i) throw M(t.where, "no picture");
 	return i.picture;
 }
-function Mc({ pieces: e, precision: t }) {
-	ts(e), t?.close();
+function Pc({ pieces: e, precision: t }) {
+	ns(e), t?.close();
 }
 // eigenfield-three/src/packed.ts
-var Nc = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Pc = 4;
-async function Fc(e, t) {
-	let n = new W(e, ""), r = n.key("extensions").key(xe), i = r.key("packed");
+var Fc = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Ic = 4;
+async function Lc(e, t) {
+	let n = new W(e, ""), r = n.key("extensions").key(Se), i = r.key("packed");
 	if (!i.exists) return e;
 	Bi(r);
 	let a = Kr(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < Pc) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, Pc)).getUint32(0, !0);
-	if (Pc + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new W(gs(await Lc(await t(o.offset + Pc, s), i.where), i.where), i.where).object(), u = Ic(new W(c, `${i.where}/lengths`), o, Pc + s), { packed: d, ...f } = r.object();
+	if (!o || o.length < Ic) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, Ic)).getUint32(0, !0);
+	if (Ic + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new W(_s(await zc(await t(o.offset + Ic, s), i.where), i.where), i.where).object(), u = Rc(new W(c, `${i.where}/lengths`), o, Ic + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
-		bufferViews: [...n.key("bufferViews").items(I).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
+		bufferViews: [...n.key("bufferViews").items(F).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
 		extensions: {
 			...n.key("extensions").object(),
-			[xe]: {
+			[Se]: {
 				...f,
 				...l
 			}
 		}
 	};
 }
-function Ic(e, t, n) {
-	let r = n, i = e.items(I).map((e) => {
+function Rc(e, t, n) {
+	let r = n, i = e.items(F).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
 			buffer: 0,
@@ -4711,8 +4725,8 @@ function Ic(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function Lc(e, t) {
-	let n = new TextEncoder().encode(Nc), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function zc(e, t) {
+	let n = new TextEncoder().encode(Fc), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -4720,7 +4734,7 @@ async function Lc(e, t) {
 		~r,
 		~i
 	]), a.set(n, 5), a.set(new Uint8Array(e), 5 + n.length);
-	let o = await be(a, "deflate-raw", n.length + Se, t);
+	let o = await xe(a, "deflate-raw", n.length + Ce, t);
 	try {
 		return new TextDecoder("utf-8", {
 			fatal: !0,
@@ -4731,8 +4745,8 @@ async function Lc(e, t) {
 	}
 }
 // eigenfield-three/src/proxy.ts
-var Rc = 65535;
-function zc(e, t) {
+var Bc = 65535;
+function Vc(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
 	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
 	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
@@ -4742,23 +4756,23 @@ function zc(e, t) {
 	}
 	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
 }
-async function Bc({ view: n, codec: r, where: i }, a) {
+async function Hc({ view: n, codec: r, where: i }, a) {
 	let { positions: o, uv: s, indices: c } = r.decode(new Uint8Array(await a(n)), i);
 	if (!c.length) throw M(i, "a mesh without faces");
 	let l = new t();
 	l.setAttribute("position", new e(o, 3)), l.setAttribute("uv", new e(s, 2));
-	let u = o.length / 3 <= Rc;
+	let u = o.length / 3 <= Bc;
 	return l.setIndex(new e(u ? Uint16Array.from(c) : c, 1)), l;
 }
-function Vc(e) {
+function Uc(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/still-textures.ts
-var Hc = 3;
-function Uc(e) {
+var Wc = 3;
+function Gc(e) {
 	return J(e).flatMap((e, t) => {
 		let n = 0;
 		return e.pictures.map((r) => {
@@ -4772,27 +4786,27 @@ function Uc(e) {
 		});
 	}).sort((e, t) => e.first - t.first || e.number - t.number);
 }
-function Wc(e, t, n) {
-	let r = Uc(e), i = n, a = ({ basis: e, picture: n }) => {
+function Kc(e, t, n) {
+	let r = Gc(e), i = n, a = ({ basis: e, picture: n }) => {
 		let r = t(n.view).then((t) => n.codec.decode(t, n, e.size));
 		return r.catch(() => void 0), r;
 	};
 	return {
 		async fill(n) {
-			let { plan: o, signal: s } = n, c = i ?? await Promise.all(zi(e).map((e) => Ac(e, t)));
+			let { plan: o, signal: s } = n, c = i ?? await Promise.all(zi(e).map((e) => Mc(e, t)));
 			i = null, c.forEach((e, t) => {
-				n.putMean(t, e), Mc(e);
+				n.putMean(t, e), Pc(e);
 			});
 			let l = r.filter(({ first: e }) => e < o.usable), u = [], d = 0;
 			try {
 				for (let { number: e, first: t, picture: r } of l) {
 					if (s.aborted) return;
-					for (let e of l.slice(d, d + Hc - u.length)) u.push(a(e)), d += 1;
+					for (let e of l.slice(d, d + Wc - u.length)) u.push(a(e)), d += 1;
 					let i = await u[0] ?? [];
-					u.shift(), n.putTextures(e, t, i, r), ts(i), n.announce();
+					u.shift(), n.putTextures(e, t, i, r), ns(i), n.announce();
 				}
 			} finally {
-				for (let e of u) e.then(ts).catch(() => void 0);
+				for (let e of u) e.then(ns).catch(() => void 0);
 			}
 			n.end();
 		},
@@ -4800,41 +4814,41 @@ function Wc(e, t, n) {
 			let r = 0;
 			for (let { channels: i, bases: a } of e.planes) {
 				let o = e.colours.slice(r, r += i), s = a.find(({ count: e }) => e > n);
-				if (s) return is(s, n, o, t);
+				if (s) return as(s, n, o, t);
 			}
 			return Promise.resolve(1);
 		},
 		dispose() {
-			i?.forEach(Mc), i = null;
+			i?.forEach(Pc), i = null;
 		}
 	};
 }
 // eigenfield-three/src/grid.ts
-function Gc(e) {
+function qc(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = Kc(e, n, r) ?? (n === r ? null : Kc(e, r, n));
+		let r = t / n, i = Jc(e, n, r) ?? (n === r ? null : Jc(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function Kc(e, t, n) {
-	let [r, i] = [Jc(e, 0), Jc(e, 1)];
-	if (t === 1 && Yc(i) > 0 || n === 1 && Yc(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => Xc(i, e) - Xc(i, t));
+function Jc(e, t, n) {
+	let [r, i] = [Xc(e, 0), Xc(e, 1)];
+	if (t === 1 && Zc(i) > 0 || n === 1 && Zc(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => Qc(i, e) - Qc(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Xc(r, e) - Xc(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Qc(r, e) - Qc(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return qc(n, t, (e, t) => Xc(r, o(t, e))) && qc(t, n, (e, t) => Xc(i, o(e, t))) ? {
+	return Yc(n, t, (e, t) => Qc(r, o(t, e))) && Yc(t, n, (e, t) => Qc(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function qc(e, t, n) {
+function Yc(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -4844,33 +4858,33 @@ function qc(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function Jc(e, t) {
+function Xc(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function Yc(e) {
+function Zc(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var Xc = (e, t) => e[t] ?? 0, Zc = 1e-6, Qc = 32, $c = class {
+var Qc = (e, t) => e[t] ?? 0, $c = 1e-6, el = 32, tl = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = Gc(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = qc(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(el(e), this.isLine ? 0 : el(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(nl(e), this.isLine ? 0 : nl(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => ul(e, t, this.places) : e === "bilinear" && this.grid ? fl(this.places, this.grid) : rl(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => fl(e, t, this.places) : e === "bilinear" && this.grid ? ml(this.places, this.grid) : al(this.places, this.triangles);
 	}
 };
-function el(e) {
+function nl(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function tl(e) {
+function rl(e) {
 	let t = {
 		camera: [
 			0,
@@ -4890,7 +4904,7 @@ function tl(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function nl(e, t, n, r, i, a) {
+function il(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -4898,49 +4912,49 @@ function nl(e, t, n, r, i, a) {
 		m
 	];
 }
-function rl(e, t) {
+function al(e, t) {
 	if (!t.length) {
-		let t = ll(e, cl(e));
-		return (n, r) => sl(n, r, e, t);
+		let t = dl(e, ul(e));
+		return (n, r) => ll(n, r, e, t);
 	}
-	let n = al(e, t, 3), r = ol(t);
+	let n = sl(e, t, 3), r = cl(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * Qc + $(i)] ?? []) {
+		for (let r of n[$(a) * el + $(i)] ?? []) {
 			let [n, l, u] = [
-				il(t, r, 0),
-				il(t, r, 1),
-				il(t, r, 2)
-			], d = nl(i, a, e, n, l, u), f = Math.min(...d);
+				ol(t, r, 0),
+				ol(t, r, 1),
+				ol(t, r, 2)
+			], d = il(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? sl(i, a, e, r) : tl(c.map((e, n) => [il(t, o, n), e]));
+		return s < -1e-9 ? ll(i, a, e, r) : rl(c.map((e, n) => [ol(t, o, n), e]));
 	};
 }
-var il = (e, t, n) => e[3 * t + n] ?? 0;
+var ol = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * Qc)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * el)));
 }
-function al(e, t, n) {
+function sl(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * Qc + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * el + t]?.push(i);
 	}
 	return r;
 }
-function ol(e) {
+function cl(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [il(e, n, r), il(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [ol(e, n, r), ol(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -4949,7 +4963,7 @@ function ol(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function sl(e, t, n, r) {
+function ll(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -4964,12 +4978,12 @@ function sl(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return tl([[o, 1 - c], [s, c]]);
+	return rl([[o, 1 - c], [s, c]]);
 }
-function cl(e) {
+function ul(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function ll(e, t) {
+function dl(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -4990,7 +5004,7 @@ function ll(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function ul(e, t, n) {
+function fl(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -5004,12 +5018,12 @@ function ul(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || dl(n, r, i, a) <= Zc) return sl(e, t, n, ll(n, [
+	if (a < 0 || pl(n, r, i, a) <= $c) return ll(e, t, n, dl(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = nl(e, t, n, r, i, a);
+	let [l, u, d] = il(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -5025,15 +5039,15 @@ function ul(e, t, n) {
 		]
 	};
 }
-function dl(e, t, n, r) {
+function pl(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function fl(e, t) {
+function ml(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = ll(e, cl(e));
-		return (n, r) => sl(n, r, e, t);
+		let t = dl(e, ul(e));
+		return (n, r) => ll(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -5042,7 +5056,7 @@ function fl(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = al(e, o.flat(), 4), c = [];
+	let s = sl(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -5050,12 +5064,12 @@ function fl(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * Qc + $(t)] ?? []) {
-			let s = o[a], c = s ? pl(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * el + $(t)] ?? []) {
+			let s = o[a], c = s ? hl(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return sl(t, n, e, l);
-		let [a, c] = ml(t, n, e, r);
+		if (!r || i < -1e-9) return ll(t, n, e, l);
+		let [a, c] = gl(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -5067,7 +5081,7 @@ function fl(e, t) {
 		};
 	};
 }
-function pl(e, t, n, r) {
+function hl(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -5075,7 +5089,7 @@ function pl(e, t, n, r) {
 	}
 	return i;
 }
-function ml(e, t, n, r) {
+function gl(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -5093,17 +5107,17 @@ function ml(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = hl(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [hl(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = _l(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [_l(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function hl(e) {
+function _l(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var gl = class {
+var vl = class {
 	parser;
 	options;
-	name = xe;
+	name = Se;
 	scene = null;
 	ours;
 	constructor(e, t = {}) {
@@ -5111,11 +5125,11 @@ var gl = class {
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
-		this.options.renderer && $s(this.options.renderer);
+		this.options.renderer && ec(this.options.renderer);
 		let { json: e } = this.parser;
-		me(e), Object.assign(e, await Fc(e, (e, t) => this.read(e, t)));
+		me(e), Object.assign(e, await Lc(e, (e, t) => this.read(e, t)));
 		let t = Li(e);
-		(!t.timeline || this.options.stream?.readGroups) && (this.scene = t, this.scene.shown || _l(e));
+		(!t.timeline || this.options.stream?.readGroups) && (this.scene = t, this.scene.shown || yl(e));
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
@@ -5136,38 +5150,38 @@ var gl = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = vl(e, this.parser), [r] = n;
+		let n = bl(e, this.parser), [r] = n;
 		if (!r) throw M("/meshes/0", "no node shows it");
-		t.shown && zc(r.geometry, t.shown);
+		t.shown && Vc(r.geometry, t.shown);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
 			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ue(`/bufferViews/${e}`);
 			return n;
 		}, a = t.timeline && await this.openClip(t, t.timeline);
 		if (t.mesh) {
-			let e = await Bc(t.mesh, i);
+			let e = await Hc(t.mesh, i);
 			r.geometry.dispose();
 			for (let t of n) t.geometry = e;
 		}
 		t.sheets && vi(t.sheets, r.geometry);
 		let [o, s, c, l] = await Promise.all([
-			Promise.all(a ? [] : zi(t).map((e) => Ac(e, i))),
+			Promise.all(a ? [] : zi(t).map((e) => Mc(e, i))),
 			ea(t, i),
 			a ? a.group.omega : ca(t, i),
 			ma(t, i)
-		]), u = s.filter((e, n) => !t.heldOut[n]), d = new $c(Float64Array.from(u.flatMap((e) => va(t, e.centre))), l, t.extent[1] === 0), f = a ? t.planes.map(({ meanSize: e }) => e ?? [1, 1]) : o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = {
+		]), u = s.filter((e, n) => !t.heldOut[n]), d = new tl(Float64Array.from(u.flatMap((e) => va(t, e.centre))), l, t.extent[1] === 0), f = a ? t.planes.map(({ meanSize: e }) => e ?? [1, 1]) : o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = {
 			scene: t,
-			info: ga(t, s, f, d.grid, this.fileBytes(), Vc(r.geometry)),
+			info: ga(t, s, f, d.grid, this.fileBytes(), Uc(r.geometry)),
 			meshes: n,
 			meanSizes: f,
 			omega: c,
 			weights: d,
 			clip: a
-		}, m = a ? new os(t, a.films) : Wc(t, i, o);
-		e.userData.eigenfield = new yc(p, m, this.options);
+		}, m = a ? new ss(t, a.films) : Kc(t, i, o);
+		e.userData.eigenfield = new bc(p, m, this.options);
 	}
 	openClip(e, t) {
-		return Oc(e, t, (...e) => this.options.stream.readGroups(...e));
+		return Ac(e, t, (...e) => this.options.stream.readGroups(...e));
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -5175,50 +5189,50 @@ var gl = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function _l(e) {
+function yl(e) {
 	let [t] = e.nodes;
 	t && (t.mesh = 0), e.meshes = [{ primitives: [{
 		attributes: {},
 		material: 0
 	}] }], e.materials = [{ doubleSided: !0 }];
 }
-function vl(e, t) {
+function bl(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		yl(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		xl(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function yl(e) {
+function xl(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function bl(e, t = {}) {
+async function Sl(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new wc(), i = new AbortController(), a = () => {
+	let r = new Tc(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = Cl(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = Tl(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
-		let e = await ps(r);
+		let e = await ms(r);
 		if (!Ii(e.json)) return {
-			gltf: await Sl(r, e, o),
+			gltf: await wl(r, e, o),
 			field: null
 		};
-		let i = await xl(r, e, t);
+		let i = await Cl(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
 			gltf: i,
-			field: a instanceof yc ? a : null
+			field: a instanceof bc ? a : null
 		};
 	} catch (e) {
 		throw i.abort(), n?.throwIfAborted(), de(e);
 	}
 }
-async function xl(e, t, n) {
+async function Cl(e, t, n) {
 	let r = new ce(), i = (t) => async (n, r) => {
 		let i = await t + n;
 		return e.read(i, i + r);
@@ -5229,12 +5243,12 @@ async function xl(e, t, n) {
 		read: i(a),
 		readGroups: (...e) => i(t.groups())(...e)
 	};
-	return r.register((e) => new gl(e, {
+	return r.register((e) => new vl(e, {
 		...n,
 		stream: o
 	})), r.parseAsync(t.text, "");
 }
-async function Sl(e, t, n) {
+async function wl(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -5246,25 +5260,25 @@ async function Sl(e, t, n) {
 		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function Cl(e, t, n, r) {
+async function Tl(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? wl(e) : await Tl(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? El(e) : await Dl(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : El(t.received, e);
+			throw n.aborted ? e : Ol(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function wl(e) {
+function El(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function Tl(e, t) {
+async function Dl(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -5275,7 +5289,7 @@ async function Tl(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function El(e, t) {
+function Ol(e, t) {
 	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { yc as EigenField, gl as EigenfieldPlugin, Bs as Player, Gs as SHEETS, j as SceneError, za as defaultMemory, bl as loadEigenfield, xa as novelCamera, Ta as placeCamera, pe as refuseAddresses };
+export { bc as EigenField, vl as EigenfieldPlugin, Vs as Player, Ks as SHEETS, j as SceneError, za as defaultMemory, Sl as loadEigenfield, xa as novelCamera, Ta as placeCamera, pe as refuseAddresses };
