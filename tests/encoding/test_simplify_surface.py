@@ -41,10 +41,10 @@ def count_of(mesh: Mesh, lambda_: float) -> int | None:
 
 
 def test_a_plane_keeps_next_to_nothing_and_waves_as_many_as_their_bytes_pay_for():
-    found = [count_of(wavy(height), 1e-4) for height in (0.0, 0.05, 0.1)]
+    found = [count_of(wavy(height), 5e-6) for height in (0.0, 0.05, 0.1)]
     assert all(found) and found == sorted(set(found))
     assert found[0] < 400
-    assert count_of(wavy(0.2), 1e-5) is None  # too few would go for new charts
+    assert count_of(wavy(0.2), 5e-6) is None  # too few would go for new charts
     few = count_of(wavy(0.2), 1e-3)
     assert few is not None and few < found[-1]
     assert count_of(wavy(0.2), 1e-9) is None  # bytes cost nothing: all are kept
@@ -154,6 +154,6 @@ def test_the_mesh_is_the_one_whose_pictures_were_measured():
     assert found is not None and found.uv is None
     views = [_view(mesh, camera, 0, stripes(camera)) for camera in CAMERAS]
     looked = [_points(views, number) for number in range(len(views))]
-    at_once = simplify_mesh(mesh, int(3362 / 2**1.5))
-    assert len(found.faces) == pytest.approx(len(at_once.faces), abs=2)
+    at_once = simplify_mesh(mesh, 3362 // 2**3)
+    assert len(found.faces) == pytest.approx(len(at_once.faces), rel=0.03)
     assert _loss(found, views, looked) <= _loss(at_once, views, looked)
