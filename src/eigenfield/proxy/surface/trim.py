@@ -26,7 +26,7 @@ log = logging.getLogger("eigenfield.proxy")
 TRIM_SUPPORT_SPACINGS = 4.0  # distance at which points support a surface
 TRIM_MAX_GAP_SPACINGS = 30.0  # size of holes that are closed
 TRIM_MIN_ISLAND_FRACTION = 0.005  # of the area: smaller patches are dropped
-CLEAR_DEPTH_RATIO = 0.5  # of the nearest depth that a view has found itself, up to which nothing shows it its back
+CLEAR_DEPTH_RATIO = 0.5  # of the depth of what is nearest to a view, up to which nothing shows it its back
 CLEAR_DEPTH_PERCENTILE = 1.0  # of its depths, which is taken as the nearest
 CLEAR_FIELD_RATIO = 2.0  # by which more than the view's field is cleared: simplification moves borders
 CLEAR_MAX_LAYERS = 8
@@ -106,39 +106,39 @@ def trim_by_masks(mesh: Mesh, cameras: Sequence[Camera], masks: Sequence[NDArray
 
 
 def clear_views(mesh: Mesh, views: Sequence[DepthView]) -> Mesh:
-    """Remove what shows a view its back, far nearer than all that the view has found itself.
-
-    Such is the wall in which a camera is mounted: others see it, and it would hide all from that camera.
-    """
-    faces = mesh.faces
+    """Remove what shows a view its back, far nearer than all that the view has found itself (`clear_view`)."""
+    found = mesh
     for view in views:
-        found = view.inverse_depth[np.isfinite(view.inverse_depth) & (view.inverse_depth > 0)]
-        if len(found):
-            nearest = 1 / float(np.percentile(found, 100 - CLEAR_DEPTH_PERCENTILE))
-            faces = _cleared(mesh.vertices, faces, view.camera, CLEAR_DEPTH_RATIO * nearest)
-    if len(faces) == len(mesh.faces):
-        return mesh
-    log.info("%d triangles hid all from the camera behind them, and are removed", len(mesh.faces) - len(faces))
-    return make_manifold(Mesh(mesh.vertices, faces))
+        known = view.inverse_depth[np.isfinite(view.inverse_depth) & (view.inverse_depth > 0)]
+        if len(known):
+            found = clear_view(found, view.camera, float(np.percentile(known, 100 - CLEAR_DEPTH_PERCENTILE)))
+    return mesh if found is mesh else make_manifold(found)
 
 
-def _cleared(
-    vertices: NDArray[np.float32], faces: NDArray[np.int32], camera: Camera, depth: float
-) -> NDArray[np.int32]:
-    """The faces without those that a camera sees from behind up to a depth."""
-    K = camera.K.copy()
+def clear_view(mesh: Mesh, camera: Camera, inverse_depth: float) -> Mesh:
+    """The mesh without what shows a camera its back and would hide all from it; the same mesh where nothing does.
+
+    Such is the wall in which a camera is mounted, and which others see.
+
+    Args:
+        inverse_depth: Of what is nearest to the camera.
+    """
+    K, faces = camera.K.copy(), mesh.faces
     K[:2, :2] /= CLEAR_FIELD_RATIO
     wide = replace(camera, K=K)
     for _ in range(CLEAR_MAX_LAYERS):
-        seen = rasterise_view(Mesh(vertices, faces), wide)
-        near = np.unique(seen.face[(seen.face >= 0) & (seen.inverse_depth > 1 / depth)])
-        corners = vertices[faces[near]].astype(np.float64)
+        seen = rasterise_view(Mesh(mesh.vertices, faces), wide)
+        near = np.unique(seen.face[(seen.face >= 0) & (CLEAR_DEPTH_RATIO * seen.inverse_depth > inverse_depth)])
+        corners = mesh.vertices[faces[near]].astype(np.float64)
         outwards = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         behind = near[((camera.centre - corners[:, 0]) * outwards).sum(axis=1) < 0]
         if not len(behind):
             break
         faces = np.delete(faces, behind, axis=0)
-    return faces
+    if len(faces) == len(mesh.faces):
+        return mesh
+    log.info("%d triangles hid all from the camera behind them, and are removed", len(mesh.faces) - len(faces))
+    return Mesh(mesh.vertices, faces)
 
 
 def simplify_with_error(
