@@ -57,6 +57,17 @@ def test_two_cameras_and_one_frame(tmp_path, run):
     calibration(tmp_path / CALIBRATION_FILE, {c: [(f"cam_{c}.png", None)] for c in range(2)}, w=SIDE, h=SIDE)
     code, out, err = run("inspect", tmp_path, "--clip", "0:1")
     assert code == 0 and "one frame shows no motion" in out and "too few" not in out, out + err
+    assert "would run, with a mesh" in out and "eigenfield proxy" not in out  # which wants three
+    assert f"eigenfield encode {tmp_path} --clip 0:1 --proxy mesh.glb -o clip.glb" in out
+
+
+def test_an_offset_that_gains_little_is_not_told():
+    """One camera sees what moves a frame before the others do, as in perspective it may, and only a little better."""
+    random = np.random.default_rng(5)
+    shared = np.convolve(random.random(FRAMES + 8), np.hanning(9), "same")[4:-4]
+    early = np.roll(shared, -1)
+    mixed = [np.exp(3 * (0.3 * shared + 0.7 * early)), *(np.exp(3 * shared) for _ in range(4))]
+    assert [lag.frames for lag in find_lags(mixed)] == [0] * 5
 
 
 def test_light_that_drifts(tmp_path):
@@ -77,3 +88,11 @@ def test_inspect(tmp_path, run, words):
     late = [camera["offset"] for camera in report["footage"]["cameras"]]
     assert late == [0, 3 if "--offset" in words else 4, 0] and report["bytes"] > 0 and report["views"] == 3
     assert all(" --clip" in command for command in report["next"])
+    assert [command.split()[1] for command in report["next"]] == ["proxy", "encode"]
+    assert report["next"][1].endswith("--proxy mesh.glb -o clip.glb")
+
+
+def test_cameras_come_before_all_else(tmp_path, run):
+    code, out, err = run("inspect", film(tmp_path, [0, 0, 0]), "--clip", "0:4")
+    assert code == 0 and "would run, with cameras and a mesh" in out, out + err
+    assert f"next       eigenfield calibrate {tmp_path} --clip 0:4" in out and "encode /" not in out

@@ -11,7 +11,7 @@ import pytest
 import eigenfield as ef
 from eigenfield.core.errors import OptionError
 from eigenfield.encoding import EncodeOptions, encode_footage
-from eigenfield.encoding.clip.encode import group_length
+from eigenfield.encoding.clip.encode import _footage_digest, group_length
 from eigenfield.encoding.clip.plan import KeptPhotographs
 from eigenfield.gltf import load_clip, save, validate
 from eigenfield.imaging.metrics import psnr, to_codes
@@ -102,6 +102,14 @@ def test_finished_groups_are_taken_up_and_nothing_else_is_kept(lit):
     assert again.asked == [3, 0, 3, 5]  # the mesh by the middle one, and what tells this footage from another
 
 
+def test_frames_with_other_masks_are_other_footage(lit):
+    seen, _, _ = lit
+    hidden = [np.zeros((56, 64), np.float32) for _ in CAMERAS]
+    masked = [CalibratedInMemory(InMemory(one.observations.pixels, hidden), CAMERAS) for one in seen.frames]
+    assert _footage_digest(seen) == _footage_digest(replace(seen))
+    assert _footage_digest(seen) != _footage_digest(replace(seen, frames=masked))
+
+
 @pytest.mark.parametrize("count", [None, pytest.param(2, marks=pytest.mark.slow)])
 def test_workers_make_the_same_groups(tmp_path, count):
     seen = footage(1.0, 0.8, 0.7, 0.7)
@@ -177,7 +185,7 @@ def test_options_without_a_meaning_for_clips_are_refused_by_name(given, code):
 def test_a_clip_needs_a_mesh():
     with pytest.raises(OptionError) as error:
         encode_footage(footage(1.0))
-    assert error.value.code == "clip-proxy" and "the command proxy" in str(error.value)
+    assert error.value.code == "clip-proxy" and "`eigenfield proxy CAPTURE --clip`" in str(error.value)
 
 
 @pytest.mark.parametrize(("text", "frames"), [("1s", 30), ("0.5s", 15), ("12", 12), (" 2s ", 60), ("0.04s", 1)])

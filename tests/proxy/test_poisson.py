@@ -15,6 +15,7 @@ from eigenfield.proxy.surface.fusion import OrientedPoints, fuse_depth_maps
 from eigenfield.proxy.surface.multiview import surface_from_views
 from eigenfield.proxy.surface.poisson import poisson_surface
 from eigenfield.proxy.surface.trim import (
+    clear_views,
     simplify_with_error,
     surface_distances,
     surface_error,
@@ -84,6 +85,21 @@ def test_masks_cut_the_surface(scene, cameras):
     with pytest.raises(ProxyError) as caught:
         trim_by_masks(scene, cameras, [np.zeros((120, 160), np.bool_)] * 9)
     assert caught.value.code == "surface-empty"
+
+
+def test_the_wall_behind_which_a_camera_stands_does_not_hide_the_scene(scene, cameras):
+    views = depth_views(scene, cameras)
+    wall = square(0.5, 0.05, 20)
+    turn, centre = cameras[4].R, cameras[4].centre
+    behind = Mesh((wall.vertices @ turn + centre).astype(np.float32), wall.faces)
+    facing = Mesh(behind.vertices, behind.faces[:, ::-1].copy())
+    sides = [one.face_normals() @ turn[2] for one in (behind, facing)]
+    away, towards = (behind, facing) if sides[0].min() > 0 else (facing, behind)
+    cut = clear_views(join_meshes(scene, away), views)
+    drawn, true = (rasterise_view(one, cameras[4]).inverse_depth for one in (cut, scene))
+    assert np.allclose(drawn, true) and len(scene.faces) < len(cut.faces) < len(scene.faces) + len(wall.faces)
+    for kept in (scene, join_meshes(scene, towards)):  # what shows its front stands there
+        assert clear_views(kept, views) is kept
 
 
 def test_too_few_points_are_no_surface():

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from eigenfield.cli.common import chosen_workers, note, note_all
+from eigenfield.cli.leave_out import leave_out_cameras
 from eigenfield.cli.progress import progress_bars
 from eigenfield.core.errors import OptionError
 from eigenfield.core.open_options import OpenOptions
@@ -36,6 +37,7 @@ def encode_clip(
     proxy: Path | None,
     place: OpenOptions,
     options: EncodeOptions,
+    without: str | None,
     work: Path,
     output: Path,
     overwrite: bool,
@@ -53,8 +55,9 @@ def encode_clip(
     refuse_still_options(options)
     refuse_no_proxy(proxy)
     with chosen_workers(workers, cluster) as reached, progress_bars(quiet) as progress:
-        footage = open_footage(capture, options=replace(place, work=work / "frames"))
-        note_all(footage.problems, quiet)
+        found = open_footage(capture, options=replace(place, work=work / "frames"))
+        note_all(found.problems, quiet)
+        footage = leave_out_cameras(found, without, quiet)
         note(f"{len(footage.names)} cameras, {len(footage)} frames at {float(footage.timeline.rate):g} a second", quiet)
         note("Ctrl-C stops it; the same command goes on after the last finished frame", quiet)
         clip = encode_footage(footage, proxy, options, work=work, workers=reached, progress=progress)

@@ -190,10 +190,10 @@ def command(
     if place.clip is None and options.group is not None:
         raise OptionError("group-unused", "--group is about clips", remedy="say --clip, or leave it out")
     if place.clip is not None:
-        refuse_for_clips({"draft": draft, "view": look, "blind": blind, "without": without})
+        refuse_for_clips({"draft": draft, "view": look, "blind": blind})
         surface_to_make(options, from_fields(SurfaceOptions, settings), False, True, {})
         stages = work or whole.with_suffix(".work")
-        encode_clip(capture, proxy, place, options, stages, output, overwrite, quiet, workers, cluster)
+        encode_clip(capture, proxy, place, options, without, stages, output, overwrite, quiet, workers, cluster)
         return
     projected = options.resolved().fit == "none"
     surface = surface_to_make(

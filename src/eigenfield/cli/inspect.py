@@ -309,6 +309,10 @@ def _next_commands(report: dict[str, Any], capture: Path, place: OpenOptions, pr
     folders = [capture, *map(Path, place.also or ())]
     words = " ".join([*(shell_word(folder) for folder in folders), *said])
     advised = " --leave-out advised" if report["harmful"] else ""
+    if place.clip is not None:
+        from eigenfield.cli.inspect_footage import clip_commands
+
+        return clip_commands(words + advised, words, report["views"], proxy is not None)
     encode = f"eigenfield encode {words}{advised} -o scene.glb"
     return [encode] if report["views"] or place.also else [encode, f"eigenfield calibrate {words}"]
 
@@ -378,7 +382,7 @@ def report_lines(report: dict[str, Any], offsets: Mapping[str, int] | None = Non
     Args:
         offsets: Of the cameras of footage, as they were given.
     """
-    from eigenfield.cli.inspect_footage import footage_lines
+    from eigenfield.cli.inspect_footage import clip_needs, footage_lines
 
     sizes = ", ".join(f"{s['width']}x{s['height']} ({s['views']})" for s in report["sizes"])
     files = ", ".join(
@@ -404,7 +408,7 @@ def report_lines(report: dict[str, Any], offsets: Mapping[str, int] | None = Non
     if report["array"] is not None:
         lines += _array_lines(report["array"])
     if report["neighbours"] is not None:
-        lines += _neighbour_lines(report["neighbours"])
+        lines += _neighbour_lines(report["neighbours"], report["footage"] is not None)
     lines += [f"  harmful    {one_line(one['photograph'])} {one['reason']}" for one in report["harmful"]]
     if report["harmful"]:
         lines.append("             take them again, or leave them out: encode --leave-out advised")
@@ -415,7 +419,8 @@ def report_lines(report: dict[str, Any], offsets: Mapping[str, int] | None = Non
     lines += [f"    - {problem}" for problem in report["problems"]]
     if report["verdict"] is not None:
         lines.append(f"  verdict    {report['verdict']['says']}")
-    lines.append(f"  encode     {'would run' if report['refused'] is None else _refusal_text(report['refused'])}")
+    runs = "would run" if report["footage"] is None else clip_needs(bool(report["views"]), report["proxy"] is not None)
+    lines.append(f"  encode     {runs if report['refused'] is None else _refusal_text(report['refused'])}")
     return lines + [f"  next       {command}" for command in report["next"]]
 
 
@@ -462,7 +467,7 @@ def _array_lines(array: dict[str, Any]) -> list[str]:
     return [*lines, f"  cone       {array['cone']:.1f} degrees about ({place}), {array['distance']:.4g} away"]
 
 
-def _neighbour_lines(neighbours: dict[str, Any]) -> list[str]:
+def _neighbour_lines(neighbours: dict[str, Any], clip: bool) -> list[str]:
     from eigenfield.calibration.neighbours import NEIGHBOUR_MAX_PARALLAX_RATIO
     from eigenfield.encoding.verdict import MIN_OVERLAP
 
@@ -475,7 +480,9 @@ def _neighbour_lines(neighbours: dict[str, Any]) -> list[str]:
     overlap, stops = neighbours["overlap"], neighbours["exposure"]
     shared = "" if overlap >= MIN_OVERLAP else ": too little, take them nearer to each other"
     lines.append(f"  overlap    neighbours show at least {overlap:.0%} of the same{shared}")
-    drift = "" if stops <= NEIGHBOUR_MAX_STOPS else ": fix the exposure; `encode` takes out a gain and an offset"
+    drift = "" if stops <= NEIGHBOUR_MAX_STOPS else ": fix the exposure"
+    if drift and not clip:
+        drift += "; `encode` takes out a gain and an offset"
     lines.append(f"  exposure   neighbours differ by at most {stops:.2f} stops{drift}")
     return lines
 

@@ -11,7 +11,7 @@ from eigenfield.core.camera_names import named_camera
 from eigenfield.core.errors import OptionError, one_line
 
 if TYPE_CHECKING:
-    from eigenfield.capture import LightField, PhotoSet
+    from eigenfield.capture import Footage, LightField, PhotoSet
 
     C = TypeVar("C", LightField, PhotoSet, LightField | PhotoSet)
 
@@ -64,3 +64,11 @@ def leave_out(capture: C, rule: str | None, quiet: bool) -> C:
             "leave-out", f"{len(kept)} photographs would be left", remedy=f"leave at least {LEAVE_OUT_MIN_LEFT}"
         )
     return capture.subset(kept) if out else capture
+
+
+def leave_out_cameras(footage: Footage, rule: str | None, quiet: bool) -> Footage:
+    """Footage without some cameras, by what its first instant shows; as `leave_out`."""
+    if rule is None:
+        return footage
+    kept = leave_out(footage.instant(0), rule, quiet).names
+    return footage.subset(index for index, name in enumerate(footage.names) if name in kept)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -19,11 +19,14 @@ from eigenfield.cli.capture_options import (
 )
 from eigenfield.cli.common import PATH, common_options, note, note_all
 from eigenfield.cli.field_options import from_fields
-from eigenfield.cli.leave_out import leave_out, leave_out_option
+from eigenfield.cli.leave_out import leave_out, leave_out_cameras, leave_out_option
 from eigenfield.cli.progress import progress_bars
 from eigenfield.core.open_options import OpenOptions
 from eigenfield.reconstruction import SurfaceOptions
 from eigenfield.reconstruction.options import MESH_KINDS
+
+if TYPE_CHECKING:
+    from eigenfield.capture import Capture
 
 
 @click.command(
@@ -31,6 +34,7 @@ from eigenfield.reconstruction.options import MESH_KINDS
 Examples:
   eigenfield proxy photos/ -o mesh.glb
   eigenfield proxy photos/ --grid 5x4 -o mesh.ply
+  eigenfield proxy videos/ --clip 0:2s -o mesh.glb
   eigenfield proxy photos/ --surface poisson --triangles 60000 -o mesh.glb
   eigenfield proxy photos/ --fit-sphere out_08_08.jpg:150,180,200,210 -o mesh.glb
   eigenfield encode photos/ --calibration mesh.cameras/transforms.json --proxy mesh.glb -o scene.glb"""
@@ -63,7 +67,7 @@ def command(
     """Make a proxy mesh from the photographs in CAPTURE, and their cameras where these are not known.
 
     The mesh is in the world of the capture's calibration. Cameras that were estimated are written beside it
-    (OUTPUT.cameras), and it is in their world.
+    (OUTPUT.cameras), and it is in their world. Of footage (--clip) it is made of the middle frame.
     """  # fmt: skip
     from eigenfield.capture.writers.save import save_calibration
     from eigenfield.proxy import check_mesh_name, write_mesh
@@ -74,7 +78,7 @@ def command(
     refuse_existing(output, overwrite)
     work = work if work is not None else output.with_suffix(".work")
     with progress_bars(quiet) as progress:
-        opened = leave_out(open_for_work(capture, place, work, quiet), without, quiet)
+        opened = _open(capture, place, without, work, quiet)
         surface = replace(from_fields(SurfaceOptions, settings), layers=1)  # a file holds no layers
         result = reconstruct_capture(opened, surface, work, progress, quiet)
     note_all(result.report.lines(result.light_field.names), quiet)
@@ -88,3 +92,16 @@ def command(
         f"{output}: {len(mesh.vertices)} vertices, {len(mesh.faces)} triangles for {len(result.light_field)} "
         f"photographs, {time.monotonic() - started:.0f} s"
     )
+
+
+def _open(capture: Path, place: OpenOptions, without: str | None, work: Path, quiet: bool) -> Capture:
+    """The photographs that the mesh is made of."""
+    if place.clip is None:
+        return leave_out(open_for_work(capture, place, work, quiet), without, quiet)
+    from eigenfield.capture import open_footage
+
+    footage = open_footage(capture, options=replace(place, work=work / "frames"))
+    note_all(footage.problems, quiet)
+    middle = len(footage) // 2  # by which `encode` makes the atlas, too
+    note(f"the mesh is made of the frame at {footage.timeline.times[middle]:.4g} s", quiet)
+    return leave_out_cameras(footage, without, quiet).instant(middle)

@@ -7,6 +7,7 @@ import os
 import re
 from collections.abc import Sequence
 from fractions import Fraction
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -123,7 +124,7 @@ def refuse_still_options(asked: EncodeOptions) -> None:
 def refuse_no_proxy(proxy: object) -> None:
     """Raise OptionError `clip-proxy` where no mesh is given."""
     if proxy is None:
-        remedy = "give a mesh as --proxy; the command proxy makes one of the photographs of an instant"
+        remedy = "give one as --proxy; `eigenfield proxy CAPTURE --clip` makes one of the middle frame"
         raise OptionError("clip-proxy", "a clip is encoded on a mesh that is given", remedy=remedy)
 
 
@@ -144,15 +145,16 @@ def _checked_proxy(
 
 
 def _footage_digest(footage: Footage) -> list[Any]:
-    """What stands for footage: its clock, its bytes, and the pixels of three instants."""
+    """What stands for footage: its clock, its bytes, and the pixels and masks of three instants."""
     digest = hashlib.sha256()
     for number in (0, len(footage) // 2, len(footage) - 1):
         instant = cast("CalibratedObservations", footage.instant(number))
 
-        def codes(index: int, instant: CalibratedObservations = instant) -> NDArray[np.uint8]:
-            return to_codes(instant.photograph(index).pixels)
+        def codes(index: int, instant: CalibratedObservations = instant) -> list[NDArray[np.uint8]]:
+            photograph = instant.photograph(index)
+            return [to_codes(one) for one in (photograph.pixels, photograph.mask) if one is not None]
 
-        for found in parallel_map(codes, range(len(instant))):
+        for found in chain.from_iterable(parallel_map(codes, range(len(instant)))):
             digest.update(found.data)
     return [list(footage.names), str(footage.timeline), footage.bytes, digest.hexdigest()]
 

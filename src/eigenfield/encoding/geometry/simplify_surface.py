@@ -25,6 +25,8 @@ from eigenfield.encoding.geometry.distortion import local_variance, luma_of, spr
 from eigenfield.encoding.geometry.simplify_relief import REMAINING_LOSS_RATIO
 from eigenfield.imaging.raster import rasterise_view, unproject
 from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES, simplify_mesh, weld_vertices
+from eigenfield.proxy.surface.trim import clear_view
+from eigenfield.proxy.topology import remove_unused_vertices
 from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger("eigenfield.encode")
@@ -128,7 +130,12 @@ def simplify_surface_rd(
         log.debug("%d triangles: cost %.4g, of it bytes %.4g", len(simpler.faces), cost, lambda_ * len(simpler.faces))
         if cost < least:
             best, least = simpler, cost
-    return best if best is not None and len(best.faces) <= TRIANGLE_MAX_KEPT_RATIO * most else None
+    if best is None or len(best.faces) > TRIANGLE_MAX_KEPT_RATIO * most:
+        return None
+    for seen in views:  # a hole in a wall, through which a camera looks, may have closed
+        if nearest := float(seen.inverse_depth.max(initial=0.0)):
+            best = clear_view(best, seen.camera, nearest)
+    return remove_unused_vertices(best)
 
 
 def _simplified(mesh: Mesh, triangles: int) -> Mesh | None:

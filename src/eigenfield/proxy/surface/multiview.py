@@ -27,7 +27,13 @@ from eigenfield.proxy.surface.depth_maps import DepthJob, WorkingPicture, make_d
 from eigenfield.proxy.surface.fusion import DepthView, fuse_depth_maps
 from eigenfield.proxy.surface.neighbours import choose_neighbours, frustum_points, inside_frame, spread_views
 from eigenfield.proxy.surface.poisson import poisson_surface
-from eigenfield.proxy.surface.trim import SurfaceError, simplify_with_error, trim_by_masks, trim_surface
+from eigenfield.proxy.surface.trim import (
+    SurfaceError,
+    clear_views,
+    simplify_with_error,
+    trim_by_masks,
+    trim_surface,
+)
 from eigenfield.proxy.surface.visibility import add_weak_points
 from eigenfield.runtime.parallel import tracked_map
 from eigenfield.runtime.parts import Parts
@@ -114,7 +120,7 @@ def surface_from_views(
     masked = any(picture.mask is not None for picture in pictures)
     middle = cameras[_central_camera(cameras)]
     supported = add_weak_points(fused, views, tolerance, progress=progress)
-    mesh = trim_surface(poisson_surface(supported, progress=progress), supported)
+    mesh = clear_views(trim_surface(poisson_surface(supported, progress=progress), supported), views)
     if masked:
         mesh = trim_by_masks(mesh, [p.camera for p in pictures], [p.mask for p in pictures])
     closed = (not masked) if background is None else background

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +14,10 @@ from scipy.spatial import KDTree
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
+from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy.samples import surface_samples
 from eigenfield.proxy.simplify import simplify_mesh
-from eigenfield.proxy.surface.fusion import OrientedPoints
+from eigenfield.proxy.surface.fusion import DepthView, OrientedPoints
 from eigenfield.proxy.surface.neighbours import project_inside
 from eigenfield.proxy.topology import face_patches, fill_holes, make_manifold, remove_islands
 
@@ -25,6 +26,10 @@ log = logging.getLogger("eigenfield.proxy")
 TRIM_SUPPORT_SPACINGS = 4.0  # distance at which points support a surface
 TRIM_MAX_GAP_SPACINGS = 30.0  # size of holes that are closed
 TRIM_MIN_ISLAND_FRACTION = 0.005  # of the area: smaller patches are dropped
+CLEAR_DEPTH_RATIO = 0.5  # of the depth of what is nearest to a view, up to which nothing shows it its back
+CLEAR_DEPTH_PERCENTILE = 1.0  # of its depths, which is taken as the nearest
+CLEAR_FIELD_RATIO = 2.0  # by which more than the view's field is cleared: simplification moves borders
+CLEAR_MAX_LAYERS = 8
 SURFACE_DISTANCE_SAMPLES = 200_000  # on a surface, to find the triangles near a point
 SURFACE_ERROR_PROBES = 20_000  # points at which the error of a simplification is measured
 SURFACE_DISTANCE_NEIGHBOURS = 4  # samples whose triangles are tried
@@ -98,6 +103,42 @@ def trim_by_masks(mesh: Mesh, cameras: Sequence[Camera], masks: Sequence[NDArray
             remedy="check the calibration (`eigenfield inspect CAPTURE`), and that the masks are of these photographs",
         )
     return result
+
+
+def clear_views(mesh: Mesh, views: Sequence[DepthView]) -> Mesh:
+    """Remove what shows a view its back, far nearer than all that the view has found itself (`clear_view`)."""
+    found = mesh
+    for view in views:
+        known = view.inverse_depth[np.isfinite(view.inverse_depth) & (view.inverse_depth > 0)]
+        if len(known):
+            found = clear_view(found, view.camera, float(np.percentile(known, 100 - CLEAR_DEPTH_PERCENTILE)))
+    return mesh if found is mesh else make_manifold(found)
+
+
+def clear_view(mesh: Mesh, camera: Camera, inverse_depth: float) -> Mesh:
+    """The mesh without what shows a camera its back and would hide all from it; the same mesh where nothing does.
+
+    Such is the wall in which a camera is mounted, and which others see.
+
+    Args:
+        inverse_depth: Of what is nearest to the camera.
+    """
+    K, faces = camera.K.copy(), mesh.faces
+    K[:2, :2] /= CLEAR_FIELD_RATIO
+    wide = replace(camera, K=K)
+    for _ in range(CLEAR_MAX_LAYERS):
+        seen = rasterise_view(Mesh(mesh.vertices, faces), wide)
+        near = np.unique(seen.face[(seen.face >= 0) & (CLEAR_DEPTH_RATIO * seen.inverse_depth > inverse_depth)])
+        corners = mesh.vertices[faces[near]].astype(np.float64)
+        outwards = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        behind = near[((camera.centre - corners[:, 0]) * outwards).sum(axis=1) < 0]
+        if not len(behind):
+            break
+        faces = np.delete(faces, behind, axis=0)
+    if len(faces) == len(mesh.faces):
+        return mesh
+    log.info("%d triangles hid all from the camera behind them, and are removed", len(mesh.faces) - len(faces))
+    return Mesh(mesh.vertices, faces)
 
 
 def simplify_with_error(
