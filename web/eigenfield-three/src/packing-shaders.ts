@@ -12,6 +12,18 @@ void main() {
 }
 `;
 
+/** Codes as they are, which most are: where software draws, PACK takes ten times as long, as both sides of a branch run. */
+export const COPY = `#version 300 es
+precision highp float;
+uniform highp sampler2D picture;
+uniform vec4 factors;
+uniform int first; // row of the picture with which the texture begins
+out vec4 stored;
+void main() {
+  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));
+}
+`;
+
 /** What is stored of a picture. Where it becomes smaller, a texel is the mean of those in charts among the texels that it
  * takes the place of, or of all where none is; the second component says whether one is. */
 export const PACK = `#version 300 es

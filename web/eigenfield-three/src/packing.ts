@@ -6,7 +6,7 @@ import { makeCharts } from "./charts.js";
 import { link, onUnit, untouched } from "./gpu.js";
 import type { Size } from "./memory.js";
 import type { Codes, Piece } from "./pieces.js";
-import { PACK, SPREAD, TRIANGLE } from "./packing-shaders.js";
+import { COPY, PACK, SPREAD, TRIANGLE } from "./packing-shaders.js";
 import type { Surface } from "./surface.js";
 
 type GL = WebGL2RenderingContext;
@@ -50,22 +50,25 @@ export interface Packer {
   free(): void;
 }
 
+const UNIFORMS = ["precisions", "covered", "factors", "size", "made", "first", "corner", "nodes", "zero"] as const;
+
+/** Of a program, by their names; null: it has none of that name. */
+type Places = Record<(typeof UNIFORMS)[number], WebGLUniformLocation | null>;
+
 /** Puts pieces of pictures into arrays as compose.glsl reads them, by way of the rooms, which it owns and in which so
  * many rows fit. `surface` has the charts: where textures become smaller, nothing beside a chart gets into it. */
 export function makePacker(gl: GL, rooms: Rooms, fitting: number, surface: Surface): Packer {
-  const [packing, spreading] = [link(gl, TRIANGLE, PACK), link(gl, TRIANGLE, SPREAD)];
+  const [copying, packing, spreading] = [link(gl, TRIANGLE, COPY), link(gl, TRIANGLE, PACK), link(gl, TRIANGLE, SPREAD)];
   const [frame, vertices] = [gl.createFramebuffer(), gl.createVertexArray()];
   const charts = rooms.smaller && makeCharts(gl, surface);
   let ours = false; // within `together`: the room of codes is bound, and all is set for drawing
-  const place = (name: string): WebGLUniformLocation | null => gl.getUniformLocation(packing, name);
-  const names = ["precisions", "covered", "factors", "size", "made", "first", "corner", "nodes", "zero"] as const;
-  const at = Object.fromEntries(names.map((name) => [name, place(name)])) as Record<
-    (typeof names)[number],
-    WebGLUniformLocation | null
-  >;
+  const placesOf = (program: WebGLProgram): Places =>
+    Object.fromEntries(UNIFORMS.map((name) => [name, gl.getUniformLocation(program, name)])) as Places;
+  const [ofCopying, ofPacking] = [placesOf(copying), placesOf(packing)];
 
   /** Draws rows of what is stored, from `top`, of a picture whose rows from `first` are in its room. */
-  const draw = ({ picture, rows }: Piece, channel: number, aim: Aim, first: number, top: number, count: number): void => {
+  const draw = (at: Places, piece: Piece, channel: number, aim: Aim, first: number, top: number, count: number): void => {
+    const { picture, rows } = piece;
     const { size, corner, unit, codes } = aim;
     if (isCodes(picture)) gl.uniform4f(at.factors, 255 * unit, 255 * 256 * unit, 0, 0);
     else gl.uniform4fv(at.factors, [0, 1, 2, 3].map((own) => (own === channel ? codes * unit : 0)));
@@ -104,17 +107,18 @@ export function makePacker(gl: GL, rooms: Rooms, fitting: number, surface: Surfa
           if (isCodes(picture)) putCodes(gl, picture, row + first, last - first);
           else putRows(gl, picture, row + first, last - first);
           const pack = (): void => {
-            gl.useProgram(packing); // its sampler `picture` reads unit 0
+            const as = smaller || fine ? ofPacking : ofCopying;
+            gl.useProgram(smaller || fine ? packing : copying); // its sampler `picture` reads unit 0
             gl.bindVertexArray(vertices);
-            gl.uniform1i(at.precisions, fine ? 1 : 0); // on unit 1 may be anything
-            gl.uniform1i(at.covered, smaller ? 2 : 0);
-            gl.uniform2i(at.nodes, fine?.precision.width ?? 0, fine?.precision.height ?? 0);
-            gl.uniform1f(at.zero, fine?.zero ?? 0);
+            gl.uniform1i(as.precisions, fine ? 1 : 0); // on unit 1 may be anything
+            gl.uniform1i(as.covered, smaller ? 2 : 0);
+            gl.uniform2i(as.nodes, fine?.precision.width ?? 0, fine?.precision.height ?? 0);
+            gl.uniform1f(as.zero, fine?.zero ?? 0);
             if (smaller) {
               into(smaller, null);
               gl.colorMask(true, true, true, true);
             } else toSlot(array, slot);
-            draw(piece, slot.channel, aim, first, top, count);
+            draw(as, piece, slot.channel, aim, first, top, count);
           };
           if (set) pack();
           else untouched(gl, pack);
@@ -164,8 +168,7 @@ export function makePacker(gl: GL, rooms: Rooms, fitting: number, surface: Surfa
       charts?.free();
       gl.deleteVertexArray(vertices);
       gl.deleteFramebuffer(frame);
-      gl.deleteProgram(packing);
-      gl.deleteProgram(spreading);
+      for (const program of [copying, packing, spreading]) gl.deleteProgram(program);
     },
   };
 }

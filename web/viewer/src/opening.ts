@@ -58,7 +58,9 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
   };
   const follow = async (field: EigenField): Promise<void> => {
     session.arriving = true;
-    field.addEventListener("texture", changed);
+    field.addEventListener("texture", () => {
+      if (!document.querySelector(".poster")) changed(); // under a poster each would be drawn and not be seen
+    });
     field.addEventListener("limited", changed);
     const failed = (error: unknown): void => {
       session.message = described(error, null);

@@ -3374,7 +3374,7 @@ function ks(e, t) {
 	if (n.length !== t) throw e.wrong(`${t} entries are needed`);
 	return n;
 }
-var As = 3, js = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", Ms = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", Ns = `#version 300 es
+var As = 3, js = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", Ms = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform int first; // row of the picture with which the texture begins\nout vec4 stored;\nvoid main() {\n  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));\n}\n", Ns = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", Ps = `#version 300 es
 precision highp float;
 precision highp int;
 uniform highp sampler2D picture; // values, and whether they are of a chart
@@ -3394,9 +3394,9 @@ void main() {
   }
   stored = vec4(sum.y > 0.0 ? sum.x / sum.y : own.r);
 }
-`, Ps = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
+`, Fs = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
 // eigenfield-three/src/parts.ts
-function Fs(e, t, n) {
+function Is(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -3406,7 +3406,7 @@ function Fs(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = Rs(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = zs(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -3434,7 +3434,7 @@ function Fs(e, t, n) {
 						a + e[1] / i[1]
 					],
 					colours: f,
-					...zs(l, u, h, n.halves && ci(l)),
+					...Bs(l, u, h, n.halves && ci(l)),
 					basis: {
 						ready: m,
 						column: o,
@@ -3446,13 +3446,13 @@ function Fs(e, t, n) {
 		}
 	}), r;
 }
-function Is(e, t, n, r) {
-	Fs(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
+function Ls(e, t, n, r) {
+	Is(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
 		scale: t,
 		bias: n
 	}));
 }
-function Ls({ planes: e, sheets: t }, { means: n, needs: r }) {
+function Rs({ planes: e, sheets: t }, { means: n, needs: r }) {
 	let i = n[e.length], a = r.means[e.length]?.size;
 	return !t || !i || !a ? null : {
 		stored: i,
@@ -3468,11 +3468,11 @@ function Ls({ planes: e, sheets: t }, { means: n, needs: r }) {
 			0,
 			0
 		]],
-		...Rs(t.opacity),
+		...zs(t.opacity),
 		basis: null
 	};
 }
-function Rs({ mean: e, channels: t, precision: n }) {
+function zs({ mean: e, channels: t, precision: n }) {
 	let { scale: r, zero: i } = e, a = n ? 4 : 1 / ui(e, ci([e])), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
@@ -3483,7 +3483,7 @@ function Rs({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function zs(e, t, n, r) {
+function Bs(e, t, n, r) {
 	let i = e.flatMap((e) => Array(e.textures).fill(ui(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * Wa(n), c = {
 		scale: new Float32Array(s),
 		bias: new Float32Array(s)
@@ -3495,7 +3495,7 @@ function zs(e, t, n, r) {
 	return c;
 }
 // eigenfield-three/src/player.ts
-var Bs = .25, Vs = class extends f {
+var Vs = .25, Hs = class extends f {
 	timeline;
 	user;
 	first;
@@ -3583,7 +3583,7 @@ var Bs = .25, Vs = class extends f {
 	}
 	update(e = performance.now()) {
 		if (this.disposed) return;
-		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, Bs);
+		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, Vs);
 		if (this.last = this.plays && this.goal === null ? e : null, this.goal === null && !this.plays) return;
 		this.goal === null && (this.clock = this.advanced(t));
 		let n = this.ring.take(this.goal ?? Math.floor(this.clock));
@@ -3633,19 +3633,19 @@ var Bs = .25, Vs = class extends f {
 		let n = this.goal !== null && ki(this.timeline, this.goal % this.frames);
 		n === !1 || t !== null && n !== t || (this.goal = this.following = null, this.settle());
 	}
-}, Hs = 256;
-function Us(e, t, n) {
+}, Us = 256;
+function Ws(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / Hs)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / Us)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Ws(t, i.getX(e), i.getY(e), i.getZ(e))), l = Gs(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Gs(t, i.getX(e), i.getY(e), i.getZ(e))), l = Ks(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = Gs(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = Ks(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -3655,7 +3655,7 @@ function Us(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function Ws({ K: e, R: t, t: n }, r, i, a) {
+function Gs({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -3663,12 +3663,12 @@ function Ws({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function Gs(e) {
+function Ks(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/sheet-stack.ts
-var Ks = "sheets", qs = 16, Js = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Ys = `${Fo}${Io}
+var qs = "sheets", Js = 16, Ys = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Xs = `${Fo}${Io}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -3693,7 +3693,7 @@ void main() {
   gl_FragDepth = depth;
   fragment = colour;
 }
-`, Xs = new ae(), Zs = class {
+`, Zs = new ae(), Qs = class {
 	material;
 	scene = new k();
 	camera = new n();
@@ -3709,10 +3709,10 @@ void main() {
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
 		let { shown: n, photograph: r, toPhotograph: i } = t.uniforms;
 		this.screen = new O({
-			name: Ks,
+			name: qs,
 			glslVersion: h,
-			vertexShader: Js,
-			fragmentShader: Ys,
+			vertexShader: Ys,
+			fragmentShader: Xs,
 			uniforms: {
 				shown: n,
 				photograph: r,
@@ -3742,7 +3742,7 @@ void main() {
 		this.everywhere.setAttribute("position", new e(a, 3));
 	}
 	get bytes() {
-		return this.target ? qs * this.target.width * this.target.height : 0;
+		return this.target ? Js * this.target.width * this.target.height : 0;
 	}
 	setGeometry(e, t) {
 		e.clearGroups();
@@ -3760,7 +3760,7 @@ void main() {
 	attach(e, t) {
 		for (let t of [e.material].flat()) t.visible = !1;
 		let n = new S(this.everywhere, this.screen);
-		n.name = Ks, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
+		n.name = qs, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
 			t(n, i), this.draw(n, i, e);
 		}, e.add(n);
 	}
@@ -3771,9 +3771,9 @@ void main() {
 		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
 	}
 	draw(e, t, n) {
-		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Xs);
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Zs);
 		if (!a || !o) return;
-		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Qs(a, o));
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = $s(a, o));
 		let { target: s } = this;
 		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), bo(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
@@ -3782,7 +3782,7 @@ void main() {
 		this.set("sheets", s.textures[0]), this.set("solid", s.textures[1]), this.set("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
 	}
 };
-function Qs(e, t) {
+function $s(e, t) {
 	let n = new l(e, t, re);
 	n.format = c;
 	let r = new oe(e, t, {
@@ -3796,7 +3796,7 @@ function Qs(e, t) {
 	return i && (i.type = ne), r;
 }
 // eigenfield-three/src/surface.ts
-var $s = class {
+var ec = class {
 	meshes;
 	faces;
 	reference;
@@ -3811,7 +3811,7 @@ var $s = class {
 		if (!i) throw Error("a field needs a mesh");
 		this.mesh = i;
 		let a = [i.material].flat().some((e) => e.side !== m);
-		this.material = Uo(a, t !== null), this.stack = t && new Zs(this.material);
+		this.material = Uo(a, t !== null), this.stack = t && new Qs(this.material);
 		for (let t of e) {
 			let e = (e, n) => r(e, n, t);
 			this.stack ? this.stack.attach(t, e) : (t.material = this.material, t.onBeforeRender = (t, n, r) => e(t, r));
@@ -3838,52 +3838,52 @@ var $s = class {
 		e.boundingBox = e.boundingSphere = null, this.faces = t, this.version += 1, this.show(t);
 	}
 	show(e) {
-		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? Us(this.geometry, this.reference, [1, 1]) : 0;
+		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? Ws(this.geometry, this.reference, [1, 1]) : 0;
 	}
 	dispose() {
 		this.stack?.dispose(), this.material.dispose(), this.geometry.dispose();
 	}
 };
 // eigenfield-three/src/gpu.ts
-function ec(e) {
+function tc(e) {
 	let t = e.getContext();
 	if (!(t instanceof WebGL2RenderingContext)) throw new j("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
 	if ((t.getExtension("EXT_color_buffer_float") ?? t.getExtension("EXT_color_buffer_half_float")) || t.isContextLost()) return t;
 	throw new j("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
 }
-function tc(e, t) {
+function nc(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function nc(e, { components: t, halves: n }) {
+function rc(e, { components: t, halves: n }) {
 	return t > 2 ? n ? e.RGBA16F : e.RGBA8 : t > 1 ? n ? e.RG16F : e.RG8 : n ? e.R16F : e.R8;
 }
-function rc(e, [t, n], r, i, a) {
-	return oc(e, e.TEXTURE_2D_ARRAY, () => {
-		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, nc(e, a), t, n, r);
+function ic(e, [t, n], r, i, a) {
+	return sc(e, e.TEXTURE_2D_ARRAY, () => {
+		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, rc(e, a), t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function ic(e, t, n, r) {
+function ac(e, t, n, r) {
 	let { width: i, height: a } = n, o = r > 2 ? e.RGBA : r > 1 ? e.RG : e.RED;
-	sc(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
+	cc(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
 }
-function ac(e, [t, n], r) {
-	return oc(e, e.TEXTURE_2D, () => {
-		e.texStorage2D(e.TEXTURE_2D, 1, nc(e, r), t, n);
+function oc(e, [t, n], r) {
+	return sc(e, e.TEXTURE_2D, () => {
+		e.texStorage2D(e.TEXTURE_2D, 1, rc(e, r), t, n);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D, t, e.NEAREST);
 	});
 }
-function oc(e, t, n) {
+function sc(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return sc(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return cc(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function sc(e, t, n, r) {
+function cc(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -3897,7 +3897,7 @@ function sc(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-function cc(e, t, n) {
+function lc(e, t, n) {
 	let r = e.createProgram();
 	for (let [i, a] of [[e.VERTEX_SHADER, t], [e.FRAGMENT_SHADER, n]]) {
 		let t = e.createShader(i);
@@ -3905,7 +3905,7 @@ function cc(e, t, n) {
 	}
 	return e.linkProgram(r), r;
 }
-function lc(e, t, n, r) {
+function uc(e, t, n, r) {
 	if (!n) {
 		r();
 		return;
@@ -3913,9 +3913,9 @@ function lc(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), sc(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), cc(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function uc(e, t) {
+function dc(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -3930,13 +3930,13 @@ function uc(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r && e.isProgram(r) ? r : null), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/charts.ts
-function dc(e, t) {
-	let n = cc(e, ...Ps), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
+function fc(e, t) {
+	let n = lc(e, ...Fs), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
 		let { index: o } = t, s = t.getAttribute("uv"), c = Float32Array.from({ length: 2 * (o?.count ?? 0) }, (e, t) => {
 			let n = o?.getX(t >> 1) ?? 0;
 			return t % 2 ? s.getY(n) : s.getX(n);
 		}), [l, u] = [e.createVertexArray(), e.createBuffer()], d = e.getParameter(e.ARRAY_BUFFER_BINDING);
-		uc(e, () => {
+		dc(e, () => {
 			e.useProgram(n), e.bindVertexArray(l), e.bindBuffer(e.ARRAY_BUFFER, u), e.bufferData(e.ARRAY_BUFFER, c, e.STREAM_DRAW);
 			let t = e.getAttribLocation(n, "uv");
 			e.enableVertexAttribArray(t), e.vertexAttribPointer(t, 2, e.FLOAT, !1, 0, 0), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, a, 0), e.viewport(0, 0, ...i), e.colorMask(!0, !0, !0, !0), e.drawArrays(e.TRIANGLES, 0, c.length / 2);
@@ -3947,7 +3947,7 @@ function dc(e, t) {
 			let { geometry: r } = t;
 			if (i?.grid.join() !== n.join() || i.geometry !== r) {
 				e.deleteTexture(i?.texture ?? null);
-				let t = ac(e, n, {
+				let t = oc(e, n, {
 					components: 1,
 					halves: !1
 				});
@@ -3965,80 +3965,91 @@ function dc(e, t) {
 	};
 }
 // eigenfield-three/src/packing.ts
-function fc(e, t, n, r) {
-	let [i, a] = [cc(e, js, Ms), cc(e, js, Ns)], [o, s] = [e.createFramebuffer(), e.createVertexArray()], c = t.smaller && dc(e, r), l = !1, u = (t) => e.getUniformLocation(i, t), d = Object.fromEntries([
-		"precisions",
-		"covered",
-		"factors",
-		"size",
-		"made",
-		"first",
-		"corner",
-		"nodes",
-		"zero"
-	].map((e) => [e, u(e)])), f = ({ picture: t, rows: n }, r, i, a, o, s) => {
-		let { size: c, corner: l, unit: u, codes: f } = i;
-		pc(t) ? e.uniform4f(d.factors, 255 * u, 65280 * u, 0, 0) : e.uniform4fv(d.factors, [
+var pc = [
+	"precisions",
+	"covered",
+	"factors",
+	"size",
+	"made",
+	"first",
+	"corner",
+	"nodes",
+	"zero"
+];
+function mc(e, t, n, r) {
+	let [i, a, o] = [
+		lc(e, js, Ms),
+		lc(e, js, Ns),
+		lc(e, js, Ps)
+	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && fc(e, r), u = !1, d = (t) => Object.fromEntries(pc.map((n) => [n, e.getUniformLocation(t, n)])), [f, p] = [d(i), d(a)], m = (t, n, r, i, a, o, s) => {
+		let { picture: c, rows: l } = n, { size: u, corner: d, unit: f, codes: p } = i;
+		hc(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
 			0,
 			1,
 			2,
 			3
-		].map((e) => e === r ? f * u : 0)), e.uniform2i(d.size, t.width, n), e.uniform2i(d.made, ...c), e.uniform2i(d.corner, ...l), e.uniform1i(d.first, a), e.viewport(0, o, c[0], s), e.drawArrays(e.TRIANGLES, 0, 3);
-	}, p = (t, n) => {
-		e.bindFramebuffer(e.DRAW_FRAMEBUFFER, o), n === null ? e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, t, 0) : e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, t, 0, n);
-	}, m = (t, { layer: n, component: r }) => {
-		p(t, n), e.colorMask(r === 0, r === 1, r === 2, r === 3);
-	}, h = (r, o, u, h, g, _) => {
-		let { picture: v, row: y, rows: b } = r, [x, S] = g.size, C = x < v.width || S < b ? t.smaller : null, w = Math.max(1, Math.floor((C ? n - 2 : n) * S / b)), T = l && o === t.codes;
-		lc(e, 2, (C && c?.covered(g.grid)) ?? null, () => lc(e, 0, T ? null : o, () => {
-			for (let t = 0; t < S; t += w) {
-				let n = Math.min(w, S - t), a = Math.floor(t * b / S), o = Math.ceil((t + n) * b / S);
-				pc(v) ? hc(e, v, y + a, o - a) : mc(e, v, y + a, o - a);
-				let c = () => {
-					e.useProgram(i), e.bindVertexArray(s), e.uniform1i(d.precisions, +!!_), e.uniform1i(d.covered, C ? 2 : 0), e.uniform2i(d.nodes, _?.precision.width ?? 0, _?.precision.height ?? 0), e.uniform1f(d.zero, _?.zero ?? 0), C ? (p(C, null), e.colorMask(!0, !0, !0, !0)) : m(u, h), f(r, h.channel, g, a, t, n);
+		].map((e) => e === r ? p * f : 0)), e.uniform2i(t.size, c.width, l), e.uniform2i(t.made, ...u), e.uniform2i(t.corner, ...d), e.uniform1i(t.first, a), e.viewport(0, o, u[0], s), e.drawArrays(e.TRIANGLES, 0, 3);
+	}, h = (t, n) => {
+		e.bindFramebuffer(e.DRAW_FRAMEBUFFER, s), n === null ? e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, t, 0) : e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, t, 0, n);
+	}, g = (t, { layer: n, component: r }) => {
+		h(t, n), e.colorMask(r === 0, r === 1, r === 2, r === 3);
+	}, _ = (r, s, d, _, v, y) => {
+		let { picture: b, row: x, rows: S } = r, [C, w] = v.size, T = C < b.width || w < S ? t.smaller : null, E = Math.max(1, Math.floor((T ? n - 2 : n) * w / S)), ee = u && s === t.codes;
+		uc(e, 2, (T && l?.covered(v.grid)) ?? null, () => uc(e, 0, ee ? null : s, () => {
+			for (let t = 0; t < w; t += E) {
+				let n = Math.min(E, w - t), o = Math.floor(t * S / w), s = Math.ceil((t + n) * S / w);
+				hc(b) ? _c(e, b, x + o, s - o) : gc(e, b, x + o, s - o);
+				let l = () => {
+					let s = T || y ? p : f;
+					e.useProgram(T || y ? a : i), e.bindVertexArray(c), e.uniform1i(s.precisions, +!!y), e.uniform1i(s.covered, T ? 2 : 0), e.uniform2i(s.nodes, y?.precision.width ?? 0, y?.precision.height ?? 0), e.uniform1f(s.zero, y?.zero ?? 0), T ? (h(T, null), e.colorMask(!0, !0, !0, !0)) : g(d, _), m(s, r, _.channel, v, o, t, n);
 				};
-				T ? c() : uc(e, c);
+				ee ? l() : dc(e, l);
 			}
-		})), C && lc(e, 0, C, () => uc(e, () => {
-			e.useProgram(a), e.bindVertexArray(s), e.uniform2i(e.getUniformLocation(a, "size"), x, S), m(u, h), e.viewport(0, 0, x, S), e.drawArrays(e.TRIANGLES, 0, 3);
+		})), T && uc(e, 0, T, () => dc(e, () => {
+			e.useProgram(o), e.bindVertexArray(c), e.uniform2i(e.getUniformLocation(o, "size"), C, w), g(d, _), e.viewport(0, 0, C, w), e.drawArrays(e.TRIANGLES, 0, 3);
 		}));
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let s = pc(n.picture) ? t.codes : t.picture;
+			let s = hc(n.picture) ? t.codes : t.picture;
 			if (!s) return;
-			let c = () => i.forEach((e) => h(n, s, r, e, a, o));
-			o ? lc(e, 1, t.precision, () => {
-				mc(e, o.precision, 0, o.precision.height), c();
+			let c = () => i.forEach((e) => _(n, s, r, e, a, o));
+			o ? uc(e, 1, t.precision, () => {
+				gc(e, o.precision, 0, o.precision.height), c();
 			}) : c();
 		},
 		together(n) {
-			lc(e, 0, t.codes, () => uc(e, () => {
-				l = !0;
+			uc(e, 0, t.codes, () => dc(e, () => {
+				u = !0;
 				try {
 					n();
 				} finally {
-					l = !1;
+					u = !1;
 				}
 			}));
 		},
 		free() {
 			for (let n of Object.values(t)) e.deleteTexture(n);
-			c?.free(), e.deleteVertexArray(s), e.deleteFramebuffer(o), e.deleteProgram(i), e.deleteProgram(a);
+			l?.free(), e.deleteVertexArray(c), e.deleteFramebuffer(s);
+			for (let t of [
+				i,
+				a,
+				o
+			]) e.deleteProgram(t);
 		}
 	};
 }
-function pc(e) {
+function hc(e) {
 	return "data" in e;
 }
-function mc(e, t, n, r) {
+function gc(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function hc(e, { data: t, width: n, stride: r }, i, a) {
+function _c(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
 // eigenfield-three/src/textures.ts
-var gc = class {
+var vc = class {
 	parts;
 	source;
 	surface;
@@ -4078,7 +4089,7 @@ var gc = class {
 			means: c,
 			bases: s,
 			rays: a.facesPlane,
-			geometry: _c(n.geometry)
+			geometry: yc(n.geometry)
 		}, this.means = c.map(() => new p()), this.bases = s.map(() => new p()), this.ready = s.map(({ count: e }) => Array(e).fill(!1)), this.stillVersions = c.map(() => 0);
 	}
 	get hasMeans() {
@@ -4092,7 +4103,7 @@ var gc = class {
 		return Math.min(t, ...e);
 	}
 	get bytes() {
-		return this.plan ? this.plan.bytes - this.needs.geometry + _c(this.surface.geometry) : 0;
+		return this.plan ? this.plan.bytes - this.needs.geometry + yc(this.surface.geometry) : 0;
 	}
 	get attached() {
 		return this.renderer !== null || this.disposed;
@@ -4122,7 +4133,7 @@ var gc = class {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		let n = ec(e);
+		let n = tc(e);
 		if (n.isContextLost()) return;
 		let { packer: r, plan: i } = this.makeRoom(n);
 		this.plan = i, this.packer = r, this.onPlan(i), await this.source.fill(this.filling(n, i, t)), t.aborted || this.onComplete();
@@ -4177,7 +4188,7 @@ var gc = class {
 		this.stillVersions[n] = this.version += 1;
 		let { mean: l, channels: u } = o, d = X(s, t.meanDown), [f] = r;
 		if (f && r.length === 1 && "close" in f.picture && !c && d.join() === s.join()) {
-			ic(e, a, f.picture, u);
+			ac(e, a, f.picture, u);
 			return;
 		}
 		let p = {
@@ -4211,15 +4222,15 @@ var gc = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs;
-		this.needs.geometry = _c(this.surface.geometry);
+		this.needs.geometry = yc(this.surface.geometry);
 		let r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
 		for (let i = this.options.memory ?? za();; i /= 2) {
-			let a = qa(this.needs, tc(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => rc(e, X(t, o), Ha(n), !1, {
+			let a = qa(this.needs, nc(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => ic(e, X(t, o), Ha(n), !1, {
 				components: n,
 				halves: r
 			})), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return rc(e, a ? X(t, s) : [1, 1], a ? Ua(a, n) : 1, u, {
+				return ic(e, a ? X(t, s) : [1, 1], a ? Ua(a, n) : 1, u, {
 					components: Math.max(1, a),
 					halves: l && i
 				});
@@ -4227,9 +4238,9 @@ var gc = class {
 				f.picture,
 				f.codes,
 				f.smaller
-			].map((t) => t ? ac(e, t.size, t.format) : null), g = ac(e, Za(r), Ma);
+			].map((t) => t ? oc(e, t.size, t.format) : null), g = oc(e, Za(r), Ma);
 			if (p && g && (m || !f.codes) && (h || !f.smaller) && !d.includes(null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = d[t] ?? null), {
-				packer: fc(e, {
+				packer: mc(e, {
 					picture: p,
 					codes: m ?? null,
 					precision: g,
@@ -4248,11 +4259,11 @@ var gc = class {
 		}
 	}
 };
-function _c({ attributes: e, index: t }) {
+function yc({ attributes: e, index: t }) {
 	return Object.values(e).reduce((e, t) => e + t.array.byteLength, 0) + (t?.array.byteLength ?? 0);
 }
 // eigenfield-three/src/field.ts
-var vc = 1.5, yc = .001, bc = class extends f {
+var bc = 1.5, xc = .001, Sc = class extends f {
 	parts;
 	source;
 	mesh;
@@ -4287,7 +4298,7 @@ var vc = 1.5, yc = .001, bc = class extends f {
 	constructor(e, t, n = {}) {
 		super(), this.parts = e, this.source = t;
 		let { scene: r, info: i } = e, a = r.sheets?.faces ?? null;
-		this.surface = new $s(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = fa(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.textures = new gc(e, t, this.surface, n), this.complete = new Promise((e, t) => {
+		this.surface = new ec(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = fa(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.textures = new vc(e, t, this.surface, n), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0), this.listen(), n.renderer && this.textures.attach(n.renderer);
 	}
@@ -4331,20 +4342,20 @@ var vc = 1.5, yc = .001, bc = class extends f {
 		this.textures.onPlan = (e) => {
 			let { scene: t } = this.parts;
 			this.freeComposers(), this.summed = {
-				parts: Fs(t, this.textures, e),
-				opacity: Ls(t, this.textures)
+				parts: Is(t, this.textures, e),
+				opacity: Rs(t, this.textures)
 			}, e.limitation && queueMicrotask(() => this.dispatchEvent({ type: "limited" }));
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return vc * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
+		return bc * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
 	}
 	weightsOf(e) {
 		let { scene: t, info: n, weights: r } = this.parts;
 		return new ko(n, J(t).map(({ count: e }) => e), e, r);
 	}
 	makePlayer({ timeline: e, ring: t }) {
-		return new Vs(e, t, {
+		return new Hs(e, t, {
 			show: (e) => this.showFrame(e),
 			failed: (e) => this.dispatchEvent({
 				type: "error",
@@ -4357,11 +4368,11 @@ var vc = 1.5, yc = .001, bc = class extends f {
 	}
 	enter(e) {
 		let { scene: t } = this.parts, { plan: n } = this.textures;
-		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), Cs(t, e), n && Is(this.summed.parts, t, this.textures, n);
+		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), Cs(t, e), n && Ls(this.summed.parts, t, this.textures, n);
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = Cc(t, n), [i, a] = va(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
+		let r = Tc(t, n), [i, a] = va(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
 		this.setView(), this.setExposure(o, [i, a]);
 		let u = jo[this.filter];
 		l.defines.BICUBIC !== u && (l.defines.BICUBIC = u, l.needsUpdate = !0), l.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
@@ -4430,29 +4441,29 @@ var vc = 1.5, yc = .001, bc = class extends f {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= yc * Math.max(...r);
+		return Math.abs(i) <= xc * Math.max(...r);
 	}
 	fail(e) {
-		if (wc(e)) return;
+		if (Ec(e)) return;
 		let t = de(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
 		this.dispatchEvent({
 			type: "error",
 			error: new j(t.code, r, t.where)
 		});
 	}
-}, xc = new x(), Sc = new A();
-function Cc(e, t) {
-	return Sc.setFromMatrixPosition(e.matrixWorld).applyMatrix4(xc.copy(t.matrixWorld).invert()), [
-		Sc.x,
-		Sc.y,
-		Sc.z
+}, Cc = new x(), wc = new A();
+function Tc(e, t) {
+	return wc.setFromMatrixPosition(e.matrixWorld).applyMatrix4(Cc.copy(t.matrixWorld).invert()), [
+		wc.x,
+		wc.y,
+		wc.z
 	];
 }
-function wc(e) {
+function Ec(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var Tc = class {
+var Dc = class {
 	received = 0;
 	chunks = [];
 	waiters = [];
@@ -4495,11 +4506,11 @@ var Tc = class {
 		}
 		return n.buffer;
 	}
-}, Ec = 8, Dc = /* @__PURE__ */ new Set([
+}, Oc = 8, kc = /* @__PURE__ */ new Set([
 	"damaged",
 	"truncated",
 	"network"
-]), Oc = class {
+]), Ac = class {
 	timeline;
 	groups;
 	user;
@@ -4532,7 +4543,7 @@ var Tc = class {
 		return this.decoders.reduce((e, t) => e + t.open, 0);
 	}
 	get reach() {
-		return Math.max(this.newest, this.from) + Ec / 2;
+		return Math.max(this.newest, this.from) + Oc / 2;
 	}
 	isOver(e) {
 		return this.newest >= e && ![...this.slots.keys()].some((t) => t <= e);
@@ -4580,7 +4591,7 @@ var Tc = class {
 		return e % this.timeline.frames;
 	}
 	get hasRoom() {
-		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = Math.max(this.from, this.wanted) + Ec;
+		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = Math.max(this.from, this.wanted) + Oc;
 		return this.next < Math.min(n, t) && this.decoders.every(({ ready: e }) => e);
 	}
 	async feedAll() {
@@ -4618,7 +4629,7 @@ var Tc = class {
 		return this.slots.set(e, n), n;
 	}
 	fail(e) {
-		if (!(e instanceof j) || !Dc.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(e, null);
+		if (!(e instanceof j) || !kc.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(e, null);
 		this.halt();
 		for (let [e, t] of this.slots) t.films.includes(null) && this.forget(e, t);
 		this.broken.add(this.fed), this.user.failed(e, this.fed), this.feed();
@@ -4647,23 +4658,23 @@ var Tc = class {
 	reuseOne(e, { room: t }) {
 		t && this.rooms[e]?.push(t);
 	}
-}, kc = {
+}, jc = {
 	mimeType: "video/AV1",
 	bits: 10
 };
-async function Ac(e, t, n) {
+async function Mc(e, t, n) {
 	let r = new Ss(e, t, n), i = await r.open(0);
 	return Cs(e, i), {
 		timeline: t,
 		group: i,
-		films: await Promise.all(t.films.map((e, t) => jc(i.units[0][t], e))),
-		ring: (e) => new Oc(t, r, e)
+		films: await Promise.all(t.films.map((e, t) => Nc(i.units[0][t], e))),
+		ring: (e) => new Ac(t, r, e)
 	};
 }
-async function jc(e, { size: t, where: n }) {
+async function Nc(e, { size: t, where: n }) {
 	let r = {
 		view: -1,
-		codec: kc,
+		codec: jc,
 		textures: 1,
 		pieces: 1,
 		where: n
@@ -4673,34 +4684,34 @@ async function jc(e, { size: t, where: n }) {
 	return o.drawImage(a, 0, 0), ns(i), es(o.getImageData(0, 0, ...t).data, 4 * t[0], 4, t);
 }
 // eigenfield-three/src/means.ts
-async function Mc(e, t) {
-	let { mean: n, meanSize: r } = e, i = e.precision && await Nc(await t(e.precision.view), e.precision);
+async function Pc(e, t) {
+	let { mean: n, meanSize: r } = e, i = e.precision && await Fc(await t(e.precision.view), e.precision);
 	return {
 		pieces: await n.codec.decode(await t(n.view), n, r),
 		precision: i
 	};
 }
-async function Nc(e, t) {
+async function Fc(e, t) {
 	let { type: n } = mr(e) ?? {}, { mimeType: r } = t.codec;
 	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
 	if (!i) throw M(t.where, "no picture");
 	return i.picture;
 }
-function Pc({ pieces: e, precision: t }) {
+function Ic({ pieces: e, precision: t }) {
 	ns(e), t?.close();
 }
 // eigenfield-three/src/packed.ts
-var Fc = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Ic = 4;
-async function Lc(e, t) {
+var Lc = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Rc = 4;
+async function zc(e, t) {
 	let n = new W(e, ""), r = n.key("extensions").key(Se), i = r.key("packed");
 	if (!i.exists) return e;
 	Bi(r);
 	let a = Kr(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < Ic) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, Ic)).getUint32(0, !0);
-	if (Ic + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new W(_s(await zc(await t(o.offset + Ic, s), i.where), i.where), i.where).object(), u = Rc(new W(c, `${i.where}/lengths`), o, Ic + s), { packed: d, ...f } = r.object();
+	if (!o || o.length < Rc) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, Rc)).getUint32(0, !0);
+	if (Rc + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new W(_s(await Vc(await t(o.offset + Rc, s), i.where), i.where), i.where).object(), u = Bc(new W(c, `${i.where}/lengths`), o, Rc + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
 		bufferViews: [...n.key("bufferViews").items(F).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
@@ -4713,7 +4724,7 @@ async function Lc(e, t) {
 		}
 	};
 }
-function Rc(e, t, n) {
+function Bc(e, t, n) {
 	let r = n, i = e.items(F).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
@@ -4725,8 +4736,8 @@ function Rc(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function zc(e, t) {
-	let n = new TextEncoder().encode(Fc), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function Vc(e, t) {
+	let n = new TextEncoder().encode(Lc), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -4745,8 +4756,8 @@ async function zc(e, t) {
 	}
 }
 // eigenfield-three/src/proxy.ts
-var Bc = 65535;
-function Vc(e, t) {
+var Hc = 65535;
+function Uc(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
 	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
 	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
@@ -4756,23 +4767,23 @@ function Vc(e, t) {
 	}
 	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
 }
-async function Hc({ view: n, codec: r, where: i }, a) {
+async function Wc({ view: n, codec: r, where: i }, a) {
 	let { positions: o, uv: s, indices: c } = r.decode(new Uint8Array(await a(n)), i);
 	if (!c.length) throw M(i, "a mesh without faces");
 	let l = new t();
 	l.setAttribute("position", new e(o, 3)), l.setAttribute("uv", new e(s, 2));
-	let u = o.length / 3 <= Bc;
+	let u = o.length / 3 <= Hc;
 	return l.setIndex(new e(u ? Uint16Array.from(c) : c, 1)), l;
 }
-function Uc(e) {
+function Gc(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/still-textures.ts
-var Wc = 3;
-function Gc(e) {
+var Kc = 3;
+function qc(e) {
 	return J(e).flatMap((e, t) => {
 		let n = 0;
 		return e.pictures.map((r) => {
@@ -4786,22 +4797,22 @@ function Gc(e) {
 		});
 	}).sort((e, t) => e.first - t.first || e.number - t.number);
 }
-function Kc(e, t, n) {
-	let r = Gc(e), i = n, a = ({ basis: e, picture: n }) => {
+function Jc(e, t, n) {
+	let r = qc(e), i = n, a = ({ basis: e, picture: n }) => {
 		let r = t(n.view).then((t) => n.codec.decode(t, n, e.size));
 		return r.catch(() => void 0), r;
 	};
 	return {
 		async fill(n) {
-			let { plan: o, signal: s } = n, c = i ?? await Promise.all(zi(e).map((e) => Mc(e, t)));
+			let { plan: o, signal: s } = n, c = i ?? await Promise.all(zi(e).map((e) => Pc(e, t)));
 			i = null, c.forEach((e, t) => {
-				n.putMean(t, e), Pc(e);
+				n.putMean(t, e), Ic(e);
 			});
 			let l = r.filter(({ first: e }) => e < o.usable), u = [], d = 0;
 			try {
 				for (let { number: e, first: t, picture: r } of l) {
 					if (s.aborted) return;
-					for (let e of l.slice(d, d + Wc - u.length)) u.push(a(e)), d += 1;
+					for (let e of l.slice(d, d + Kc - u.length)) u.push(a(e)), d += 1;
 					let i = await u[0] ?? [];
 					u.shift(), n.putTextures(e, t, i, r), ns(i), n.announce();
 				}
@@ -4819,36 +4830,36 @@ function Kc(e, t, n) {
 			return Promise.resolve(1);
 		},
 		dispose() {
-			i?.forEach(Pc), i = null;
+			i?.forEach(Ic), i = null;
 		}
 	};
 }
 // eigenfield-three/src/grid.ts
-function qc(e) {
+function Yc(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = Jc(e, n, r) ?? (n === r ? null : Jc(e, r, n));
+		let r = t / n, i = Xc(e, n, r) ?? (n === r ? null : Xc(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function Jc(e, t, n) {
-	let [r, i] = [Xc(e, 0), Xc(e, 1)];
-	if (t === 1 && Zc(i) > 0 || n === 1 && Zc(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => Qc(i, e) - Qc(i, t));
+function Xc(e, t, n) {
+	let [r, i] = [Qc(e, 0), Qc(e, 1)];
+	if (t === 1 && $c(i) > 0 || n === 1 && $c(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => el(i, e) - el(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Qc(r, e) - Qc(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => el(r, e) - el(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return Yc(n, t, (e, t) => Qc(r, o(t, e))) && Yc(t, n, (e, t) => Qc(i, o(e, t))) ? {
+	return Zc(n, t, (e, t) => el(r, o(t, e))) && Zc(t, n, (e, t) => el(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function Yc(e, t, n) {
+function Zc(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -4858,33 +4869,33 @@ function Yc(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function Xc(e, t) {
+function Qc(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function Zc(e) {
+function $c(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var Qc = (e, t) => e[t] ?? 0, $c = 1e-6, el = 32, tl = class {
+var el = (e, t) => e[t] ?? 0, tl = 1e-6, nl = 32, rl = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = qc(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = Yc(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(nl(e), this.isLine ? 0 : nl(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(il(e), this.isLine ? 0 : il(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => fl(e, t, this.places) : e === "bilinear" && this.grid ? ml(this.places, this.grid) : al(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => ml(e, t, this.places) : e === "bilinear" && this.grid ? gl(this.places, this.grid) : sl(this.places, this.triangles);
 	}
 };
-function nl(e) {
+function il(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function rl(e) {
+function al(e) {
 	let t = {
 		camera: [
 			0,
@@ -4904,7 +4915,7 @@ function rl(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function il(e, t, n, r, i, a) {
+function ol(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -4912,49 +4923,49 @@ function il(e, t, n, r, i, a) {
 		m
 	];
 }
-function al(e, t) {
+function sl(e, t) {
 	if (!t.length) {
-		let t = dl(e, ul(e));
-		return (n, r) => ll(n, r, e, t);
+		let t = pl(e, fl(e));
+		return (n, r) => dl(n, r, e, t);
 	}
-	let n = sl(e, t, 3), r = cl(t);
+	let n = ll(e, t, 3), r = ul(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * el + $(i)] ?? []) {
+		for (let r of n[$(a) * nl + $(i)] ?? []) {
 			let [n, l, u] = [
-				ol(t, r, 0),
-				ol(t, r, 1),
-				ol(t, r, 2)
-			], d = il(i, a, e, n, l, u), f = Math.min(...d);
+				cl(t, r, 0),
+				cl(t, r, 1),
+				cl(t, r, 2)
+			], d = ol(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? ll(i, a, e, r) : rl(c.map((e, n) => [ol(t, o, n), e]));
+		return s < -1e-9 ? dl(i, a, e, r) : al(c.map((e, n) => [cl(t, o, n), e]));
 	};
 }
-var ol = (e, t, n) => e[3 * t + n] ?? 0;
+var cl = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * el)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * nl)));
 }
-function sl(e, t, n) {
+function ll(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * el + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * nl + t]?.push(i);
 	}
 	return r;
 }
-function cl(e) {
+function ul(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [ol(e, n, r), ol(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [cl(e, n, r), cl(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -4963,7 +4974,7 @@ function cl(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function ll(e, t, n, r) {
+function dl(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -4978,12 +4989,12 @@ function ll(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return rl([[o, 1 - c], [s, c]]);
+	return al([[o, 1 - c], [s, c]]);
 }
-function ul(e) {
+function fl(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function dl(e, t) {
+function pl(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -5004,7 +5015,7 @@ function dl(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function fl(e, t, n) {
+function ml(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -5018,12 +5029,12 @@ function fl(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || pl(n, r, i, a) <= $c) return ll(e, t, n, dl(n, [
+	if (a < 0 || hl(n, r, i, a) <= tl) return dl(e, t, n, pl(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = il(e, t, n, r, i, a);
+	let [l, u, d] = ol(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -5039,15 +5050,15 @@ function fl(e, t, n) {
 		]
 	};
 }
-function pl(e, t, n, r) {
+function hl(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function ml(e, t) {
+function gl(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = dl(e, ul(e));
-		return (n, r) => ll(n, r, e, t);
+		let t = pl(e, fl(e));
+		return (n, r) => dl(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -5056,7 +5067,7 @@ function ml(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = sl(e, o.flat(), 4), c = [];
+	let s = ll(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -5064,12 +5075,12 @@ function ml(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * el + $(t)] ?? []) {
-			let s = o[a], c = s ? hl(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * nl + $(t)] ?? []) {
+			let s = o[a], c = s ? _l(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return ll(t, n, e, l);
-		let [a, c] = gl(t, n, e, r);
+		if (!r || i < -1e-9) return dl(t, n, e, l);
+		let [a, c] = vl(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -5081,7 +5092,7 @@ function ml(e, t) {
 		};
 	};
 }
-function hl(e, t, n, r) {
+function _l(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -5089,7 +5100,7 @@ function hl(e, t, n, r) {
 	}
 	return i;
 }
-function gl(e, t, n, r) {
+function vl(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -5107,14 +5118,14 @@ function gl(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = _l(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [_l(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = yl(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [yl(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function _l(e) {
+function yl(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var vl = class {
+var bl = class {
 	parser;
 	options;
 	name = Se;
@@ -5125,11 +5136,11 @@ var vl = class {
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
-		this.options.renderer && ec(this.options.renderer);
+		this.options.renderer && tc(this.options.renderer);
 		let { json: e } = this.parser;
-		me(e), Object.assign(e, await Lc(e, (e, t) => this.read(e, t)));
+		me(e), Object.assign(e, await zc(e, (e, t) => this.read(e, t)));
 		let t = Li(e);
-		(!t.timeline || this.options.stream?.readGroups) && (this.scene = t, this.scene.shown || yl(e));
+		(!t.timeline || this.options.stream?.readGroups) && (this.scene = t, this.scene.shown || xl(e));
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
@@ -5150,38 +5161,38 @@ var vl = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = bl(e, this.parser), [r] = n;
+		let n = Sl(e, this.parser), [r] = n;
 		if (!r) throw M("/meshes/0", "no node shows it");
-		t.shown && Vc(r.geometry, t.shown);
+		t.shown && Uc(r.geometry, t.shown);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
 			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ue(`/bufferViews/${e}`);
 			return n;
 		}, a = t.timeline && await this.openClip(t, t.timeline);
 		if (t.mesh) {
-			let e = await Hc(t.mesh, i);
+			let e = await Wc(t.mesh, i);
 			r.geometry.dispose();
 			for (let t of n) t.geometry = e;
 		}
 		t.sheets && vi(t.sheets, r.geometry);
 		let [o, s, c, l] = await Promise.all([
-			Promise.all(a ? [] : zi(t).map((e) => Mc(e, i))),
+			Promise.all(a ? [] : zi(t).map((e) => Pc(e, i))),
 			ea(t, i),
 			a ? a.group.omega : ca(t, i),
 			ma(t, i)
-		]), u = s.filter((e, n) => !t.heldOut[n]), d = new tl(Float64Array.from(u.flatMap((e) => va(t, e.centre))), l, t.extent[1] === 0), f = a ? t.planes.map(({ meanSize: e }) => e ?? [1, 1]) : o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = {
+		]), u = s.filter((e, n) => !t.heldOut[n]), d = new rl(Float64Array.from(u.flatMap((e) => va(t, e.centre))), l, t.extent[1] === 0), f = a ? t.planes.map(({ meanSize: e }) => e ?? [1, 1]) : o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = {
 			scene: t,
-			info: ga(t, s, f, d.grid, this.fileBytes(), Uc(r.geometry)),
+			info: ga(t, s, f, d.grid, this.fileBytes(), Gc(r.geometry)),
 			meshes: n,
 			meanSizes: f,
 			omega: c,
 			weights: d,
 			clip: a
-		}, m = a ? new ss(t, a.films) : Kc(t, i, o);
-		e.userData.eigenfield = new bc(p, m, this.options);
+		}, m = a ? new ss(t, a.films) : Jc(t, i, o);
+		e.userData.eigenfield = new Sc(p, m, this.options);
 	}
 	openClip(e, t) {
-		return Ac(e, t, (...e) => this.options.stream.readGroups(...e));
+		return Mc(e, t, (...e) => this.options.stream.readGroups(...e));
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -5189,50 +5200,50 @@ var vl = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function yl(e) {
+function xl(e) {
 	let [t] = e.nodes;
 	t && (t.mesh = 0), e.meshes = [{ primitives: [{
 		attributes: {},
 		material: 0
 	}] }], e.materials = [{ doubleSided: !0 }];
 }
-function bl(e, t) {
+function Sl(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		xl(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		Cl(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function xl(e) {
+function Cl(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function Sl(e, t = {}) {
+async function wl(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new Tc(), i = new AbortController(), a = () => {
+	let r = new Dc(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = Tl(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = Dl(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
 		let e = await ms(r);
 		if (!Ii(e.json)) return {
-			gltf: await wl(r, e, o),
+			gltf: await El(r, e, o),
 			field: null
 		};
-		let i = await Cl(r, e, t);
+		let i = await Tl(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
 			gltf: i,
-			field: a instanceof bc ? a : null
+			field: a instanceof Sc ? a : null
 		};
 	} catch (e) {
 		throw i.abort(), n?.throwIfAborted(), de(e);
 	}
 }
-async function Cl(e, t, n) {
+async function Tl(e, t, n) {
 	let r = new ce(), i = (t) => async (n, r) => {
 		let i = await t + n;
 		return e.read(i, i + r);
@@ -5243,12 +5254,12 @@ async function Cl(e, t, n) {
 		read: i(a),
 		readGroups: (...e) => i(t.groups())(...e)
 	};
-	return r.register((e) => new vl(e, {
+	return r.register((e) => new bl(e, {
 		...n,
 		stream: o
 	})), r.parseAsync(t.text, "");
 }
-async function wl(e, t, n) {
+async function El(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -5260,25 +5271,25 @@ async function wl(e, t, n) {
 		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function Tl(e, t, n, r) {
+async function Dl(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? El(e) : await Dl(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? Ol(e) : await kl(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : Ol(t.received, e);
+			throw n.aborted ? e : Al(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function El(e) {
+function Ol(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function Dl(e, t) {
+async function kl(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -5289,7 +5300,7 @@ async function Dl(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function Ol(e, t) {
+function Al(e, t) {
 	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { bc as EigenField, vl as EigenfieldPlugin, Vs as Player, Ks as SHEETS, j as SceneError, za as defaultMemory, Sl as loadEigenfield, xa as novelCamera, Ta as placeCamera, pe as refuseAddresses };
+export { Sc as EigenField, bl as EigenfieldPlugin, Hs as Player, qs as SHEETS, j as SceneError, za as defaultMemory, wl as loadEigenfield, xa as novelCamera, Ta as placeCamera, pe as refuseAddresses };
