@@ -19,6 +19,7 @@ from eigenfield.capture.readers.video import decode_video
 from eigenfield.core.errors import CaptureError, EigenfieldError, OptionError
 from eigenfield.imaging.png import png_bytes
 from support.filmed import (
+    CALIBRATION_FILE,
     HEIGHT,
     WIDTH,
     calibration,
@@ -182,6 +183,15 @@ def test_videos_in_any_order_of_instants(tmp_path):
     still = open_any(tmp_path, frame=4)
     assert np.array_equal(still.photograph(2).pixels, footage.instant(4).photograph(2).pixels)
     assert np.array_equal(still.cameras[2].t, footage.cameras[2].t)
+
+
+def test_the_stored_direction_of_videos_is_not_looked_for(tmp_path):
+    """Their calibration says nothing about turning, as of pictures that are kept as they are stored."""
+    for camera in range(2):
+        video(tmp_path / f"cam_{camera}.mkv", camera, {0: 0, 1: 40})
+    calibration(tmp_path / CALIBRATION_FILE, {c: [(f"cam_{c}.mkv", None)] for c in range(2)})
+    instant = opened(tmp_path).instant(1)
+    assert not any(view.upright for view in instant.views) and instant.as_stored == ()
 
 
 def test_no_frame_becomes_a_file(tmp_path):

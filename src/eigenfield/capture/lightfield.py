@@ -127,7 +127,8 @@ class LightField(StillCapture):
     @property
     def as_stored(self) -> tuple[int, ...]:
         """Views whose photograph's EXIF orientation is not applied, although its size would be the same."""
-        headers = {index: read_header(view.path) for index, view in enumerate(self.views) if not view.upright}
+        stored = [i for i, view in enumerate(self.views) if not view.upright and view.picture is None]  # no frames
+        headers = {index: read_header(self.views[index].path) for index in stored}
         return tuple(i for i, h in headers.items() if h.orientation != 1 and h.upright_size == h.stored_size)
 
     @property

@@ -47,6 +47,7 @@ def encode_clip(
 ) -> None:
     """Footage in, a clip out."""
     from eigenfield.capture import open_footage
+    from eigenfield.capture.messages import count_phrase
     from eigenfield.encoding import encode_footage
     from eigenfield.encoding.clip.encode import refuse_no_proxy, refuse_still_options
     from eigenfield.gltf import save
@@ -58,7 +59,8 @@ def encode_clip(
         found = open_footage(capture, options=replace(place, work=work / "frames"))
         note_all(found.problems, quiet)
         footage = leave_out_cameras(found, without, quiet)
-        note(f"{len(footage.names)} cameras, {len(footage)} frames at {float(footage.timeline.rate):g} a second", quiet)
+        frames = count_phrase(range(len(footage)), "frame", "frames")
+        note(f"{len(footage.names)} cameras, {frames} at {float(footage.timeline.rate):g} a second", quiet)
         note("Ctrl-C stops it; the same command goes on after the last finished frame", quiet)
         clip = encode_footage(footage, proxy, options, work=work, workers=reached, progress=progress)
         save(clip, output, overwrite=overwrite, progress=progress)
