@@ -18,7 +18,14 @@ from eigenfield.coding.codecs import encoder
 from eigenfield.coding.video.film_layout import MEANS, TEXTURES
 from eigenfield.core.films import CodedGroup, FilmLayout
 from eigenfield.core.payloads import Payload
-from eigenfield.encoding.clip.films import CodedFilm, code_film, film_scale, range_of
+from eigenfield.encoding.clip.films import (
+    MEAN_STEP_RATIOS,
+    TEXTURE_STEP_RATIO,
+    CodedFilm,
+    code_film,
+    film_scale,
+    range_of,
+)
 from eigenfield.encoding.clip.frames import Arrays, FramePass, GroupFrames
 from eigenfield.encoding.clip.open_loop import OpenGroup, equation_arrays, summed_equations
 from eigenfield.encoding.clip.plan import ClipPlan, FramePixels
@@ -106,7 +113,8 @@ def _kept_textures(opened: OpenGroup, layout: FilmLayout) -> list[_Kept]:
 def _code_textures(group: GroupFrames, opened: OpenGroup, kept: Sequence[_Kept], layout: FilmLayout) -> CodedFilm:
     """The film of eigen textures."""
     planes = group.clip.planes
-    scale = film_scale([one.rate.texture_step for one in planes], [one.range for one in kept], [True] * len(kept))
+    steps = [TEXTURE_STEP_RATIO * one.rate.texture_step for one in planes]
+    scale = film_scale(steps, [one.range for one in kept], [True] * len(kept))
 
     def pictures() -> Iterator[Pictures]:
         for arrays in opened.frames:
@@ -190,6 +198,7 @@ def _code_means(group: GroupFrames, closed: FramePass, layout: FilmLayout) -> Co
     planes = group.clip.planes
     ranges = [range_of(closed.each(f"mean{number}")) for number in range(len(planes))]
     signed = [len(plane.settings.matrix) == 2 for plane in planes]  # differences of colours
-    scale = film_scale([plane.rate.mean_step for plane in planes], ranges, signed)
+    steps = [ratio * plane.rate.mean_step for ratio, plane in zip(MEAN_STEP_RATIOS, planes, strict=True)]
+    scale = film_scale(steps, ranges, signed)
     pictures = ([arrays[f"mean{number}"] for number in range(len(planes))] for arrays in closed)
     return code_film(layout, MEANS, scale, pictures, group.keeper("film-of-means", closed))

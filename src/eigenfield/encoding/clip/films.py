@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.coding.pictures.pictures_10bit import crf_of
+from eigenfield.coding.pictures.pictures_10bit import crf_of, encoder_step
 from eigenfield.coding.video.film import decode_film, encode_film
 from eigenfield.coding.video.film_layout import film_parts, join_parts, pictures_of
 from eigenfield.core.films import FilmLayout
@@ -25,10 +25,11 @@ from eigenfield.encoding.fitted.code_planes import CODE_MIN_UNIT, ZERO_CODE
 
 LEAST_CODE, MOST_CODE = 64, 940  # others are lost in browsers that take a film for video of limited range: Firefox 153
 FILM_PRESET = 4  # of SVT-AV1, as for stills
-# Of the quantiser step that a film is asked for, to that of pictures. What stays from frame to frame is coded more
-# finely than was asked for, since each later frame gains by it: textures of a moving cloth are 5 dB nearer than
-# pictures, for four times their bytes. At equal quality such films take 40 % less than those of fixed steps
-FILM_STEP_RATIO = 2.0
+COARSEST_CRF = 63  # what is to be coarser has coarser codes
+# Of the quantiser steps that films are asked for, to those of pictures. What stays from frame to frame is coded more
+# finely than was asked for, since each later frame gains by it, and later means make up for what textures lose
+MEAN_STEP_RATIOS = 2.0, 3.0  # of luma and of chroma
+TEXTURE_STEP_RATIO = 4.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,11 +73,10 @@ def film_scale(steps: Sequence[float], ranges: Sequence[tuple[float, float]], si
         else min(max(high, 1e-3), 1.0) / (MOST_CODE - LEAST_CODE)
         for (low, high), both in zip(ranges, signed, strict=True)
     ]
-    codes = min(step / unit for step, unit in zip(steps, least, strict=True))
+    fitting = (step / unit for step, unit in zip(steps, least, strict=True))
+    codes = min(encoder_step(COARSEST_CRF), *fitting)
     units = tuple(math.ceil(step / codes * 1e6) / 1e6 for step in steps)
-    return FilmScale(
-        crf_of(FILM_STEP_RATIO * codes), units, tuple(ZERO_CODE if both else LEAST_CODE for both in signed)
-    )
+    return FilmScale(crf_of(codes), units, tuple(ZERO_CODE if both else LEAST_CODE for both in signed))
 
 
 def range_of(arrays: Iterable[NDArray[np.float32]]) -> tuple[float, float]:
