@@ -132,10 +132,15 @@ def simplify_surface_rd(
             best, least = simpler, cost
     if best is None or len(best.faces) > TRIANGLE_MAX_KEPT_RATIO * most:
         return None
-    for seen in views:  # a hole in a wall, through which a camera looks, may have closed
-        if nearest := float(seen.inverse_depth.max(initial=0.0)):
-            best = clear_view(best, seen.camera, nearest)
-    return remove_unused_vertices(best)
+    return _cleared(best, views)
+
+
+def _cleared(mesh: Mesh, views: Sequence[_View]) -> Mesh:
+    """The mesh with the holes in a wall, through which cameras look and which may have closed."""
+    for view in views:
+        if nearest := float(view.inverse_depth.max(initial=0.0)):
+            mesh = clear_view(mesh, view.camera, nearest)
+    return remove_unused_vertices(mesh)
 
 
 def _simplified(mesh: Mesh, triangles: int) -> Mesh | None:
