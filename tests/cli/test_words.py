@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -66,7 +67,9 @@ def places(tmp_path_factory, fitted):
     capture, scene = fitted
     write_array(folder / "array")
     photographed(folder / "photos")
-    bare = {"encode": folder / "array", "calibrate": folder / "photos"}
+    for instant in ("0000", "0001"):
+        shutil.copytree(folder / "array", folder / "footage" / instant)
+    bare = {"encode": folder / "array", "calibrate": folder / "photos", "FOOTAGE": folder / "footage"}
     return {"CAPTURE": capture, "MESH": capture / "proxy.ply", "SCENE": scene, **bare}
 
 
@@ -78,7 +81,7 @@ def test_a_command_that_a_message_gives_runs(command, places, run, tmp_path, mon
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("eigenfield.calibration.motion.features.FEATURE_MIN_MEDIAN_COUNT", 0)  # of small photographs
     _, verb, *words = shlex.split(command)
-    capture = places.get(verb, places["CAPTURE"])
+    capture = places.get("FOOTAGE" if "--clip" in words else verb, places["CAPTURE"])
     given = [verb, *(str(capture if word in ("CAPTURE", "{}") else places.get(word, word)) for word in words)]
     if verb == "calibrate":
         given += ["-o", str(tmp_path / "cameras")]

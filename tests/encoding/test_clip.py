@@ -11,8 +11,11 @@ import pytest
 import eigenfield as ef
 from eigenfield.core.errors import OptionError
 from eigenfield.encoding import EncodeOptions, encode_footage
+from eigenfield.encoding.atlas import make_atlas
 from eigenfield.encoding.clip.encode import _footage_digest, group_length
 from eigenfield.encoding.clip.plan import KeptPhotographs
+from eigenfield.encoding.projected.mean import mean_map
+from eigenfield.encoding.projected.project import texture_maps
 from eigenfield.gltf import load_clip, save, validate
 from eigenfield.imaging.metrics import psnr, to_codes
 from eigenfield.rendering import Renderer, camera_weights, draw_texture
@@ -110,6 +113,26 @@ def test_frames_with_other_masks_are_other_footage(lit):
     assert _footage_digest(seen) != _footage_digest(replace(seen, frames=masked))
 
 
+def test_without_a_fit_all_frames_of_a_group_share_the_decomposition_of_their_texture_maps():
+    """The weights are the left singular vectors of all frames' maps beside each other, each less its frame's mean."""
+    seen = footage(1.0, 0.7)
+    clip = encode_footage(seen, MESH, EncodeOptions(fit="none", textures=3), group="2")
+    assert clip.settings["fit"] == "none"
+    scenes = [clip.scene(float(time)) for time in clip.timeline.times]
+    atlas = make_atlas(scenes[0].proxy.mesh, *clip.settings["atlas"])
+    beside = []
+    for instant in seen.frames:
+        with texture_maps(atlas, CAMERAS, instant) as maps:
+            mean = mean_map(maps)
+            beside.append(((maps.values - mean.values) * maps.seen[..., None]).reshape(9, -1).astype(np.float64))
+    vectors = np.linalg.svd(np.concatenate(beside, axis=1), full_matrices=False)[0][:, :3]
+    weights = scenes[0].appearance.planes[0].bases[0].weights / 3  # of unit mean square over nine cameras
+    np.testing.assert_allclose(np.abs((vectors * weights).sum(axis=0)), 1, atol=0.01)
+    for scene, instant in zip(scenes, seen.frames, strict=True):
+        assert measured(scene, instant) > 36
+    assert measured(scenes[0], seen.frames[1]) < 20
+
+
 @pytest.mark.parametrize("count", [None, pytest.param(2, marks=pytest.mark.slow)])
 def test_workers_make_the_same_groups(tmp_path, count):
     seen = footage(1.0, 0.8, 0.7, 0.7)
@@ -169,7 +192,6 @@ def test_a_run_that_was_stopped_goes_on_after_the_last_finished_frame(tmp_path):
     [
         ({"residual": 40}, "clip-option"),
         ({"harmonise": "gain"}, "clip-option"),
-        ({"fit": "none"}, "clip-option"),
         ({"target": ef.Target(psnr=30)}, "clip-option"),
         ({"group": "a while"}, "group-unknown"),
         ({"group": "0"}, "group-unknown"),

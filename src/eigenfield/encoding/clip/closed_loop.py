@@ -60,24 +60,28 @@ def texture_counts(clip: ClipPlan, opened: OpenGroup) -> tuple[int, ...]:
     return tuple(max(1, int(np.argmin(np.cumsum([0.0, *total])))) for total in totals)
 
 
-def code_group(group: GroupFrames, opened: OpenGroup, layout: FilmLayout) -> tuple[CodedGroup, list[float]]:
+def code_group(
+    group: GroupFrames, opened: OpenGroup, layout: FilmLayout, closed: bool = True
+) -> tuple[CodedGroup, list[float]]:
     """A fitted group coded, and the PSNR in dB of each frame's luma before its mean is coded.
 
     Args:
         layout: Says how many textures are kept of each plane: the first ones.
+        closed: Whether weights and means make up for what was lost before them; else they are coded as they are, and
+            no PSNR is known.
     """
     kept, parts = _kept_textures(opened, layout), layout.planes
     textures = _code_textures(group, opened, kept, layout)
-    weights = _code_weights(group, opened, kept, textures)
-    closed = _close(group, opened, weights, textures)
-    means = _code_means(group, closed, layout)
+    weights = _code_weights(group, opened, kept, textures) if closed else _weights_as_they_are(group, opened, kept)
+    final = _close(group, opened, weights, textures) if closed else opened.frames
+    means = _code_means(group, final, layout)
     coded = CodedGroup(
         weights=tuple((one.payload,) for one in weights),
         means=tuple(means.scale.affine(number, plane.channels) for number, plane in enumerate(parts)),
         bases=tuple((textures.scale.affine(number, len(plane.bases[0].at)),) for number, plane in enumerate(parts)),
         units=tuple(zip(means.units, textures.units, strict=True)),
     )
-    return coded, [float(one) for one in closed.each("psnr0")]
+    return coded, [float(one) for one in final.each("psnr0")] if closed else []
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,13 +153,31 @@ def _code_weights(
         return found
 
     done = group.run("weights", make, zip(opened.frames, textures.decoded(), strict=True), opened.frames)
+    return [
+        _coded_weights(clip, number, summed_equations(done, number).solve(one.weights),
+                       done.total(f"squares{number}") / len(group))
+        for number, one in enumerate(kept)
+    ]  # fmt: skip
+
+
+def _weights_as_they_are(group: GroupFrames, opened: OpenGroup, kept: Sequence[_Kept]) -> list[_CodedWeights]:
+    """The weights of the open loop."""
     coded = []
-    for number, (plane, one) in enumerate(zip(clip.planes, kept, strict=True)):
-        weights = summed_equations(done, number).solve(one.weights)
-        steps = weight_steps(done.total(f"squares{number}") / len(group), plane.scales)
-        stream, stored = encoder(WEIGHTS_CODEC)(weights, steps, clip.plan.views.grid)
-        coded.append(_CodedWeights(stored, Payload(WEIGHTS_CODEC, stream)))
+    for number, (plane, one) in enumerate(zip(group.clip.planes, kept, strict=True)):
+        blocks = (Block(plane.rectangle, found[: len(one.signs)], one.weights)
+                  for found in opened.frames.each(f"textures{number}"))  # fmt: skip
+        squares = np.mean([texture_squares(block, plane.scales) for block in blocks], axis=0)
+        coded.append(_coded_weights(group.clip, number, one.weights, squares))
     return coded
+
+
+def _coded_weights(
+    clip: ClipPlan, number: int, weights: NDArray[np.floating[Any]], squares: NDArray[np.float64]
+) -> _CodedWeights:
+    """The weights (Nc, n) of a plane; squares: (n,) of its textures, see `weight_steps`."""
+    steps = weight_steps(squares, clip.planes[number].scales)
+    stream, stored = encoder(WEIGHTS_CODEC)(weights, steps, clip.plan.views.grid)
+    return _CodedWeights(stored, Payload(WEIGHTS_CODEC, stream))
 
 
 def _close(group: GroupFrames, opened: OpenGroup, weights: Sequence[_CodedWeights], textures: CodedFilm) -> FramePass:

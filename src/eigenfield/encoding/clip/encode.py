@@ -115,8 +115,8 @@ def group_length(text: str, rate: Fraction) -> int:
 def refuse_still_options(asked: EncodeOptions) -> None:
     """Raise OptionError `clip-option` for what has no meaning for clips, or has none yet."""
     given = [name for name in STILL_OPTIONS if getattr(asked, name) not in (None, False, "none")]
-    if given or asked.fit == "none":
-        name = f"--{given[0].replace('_', '-')}" if given else "--fit none"
+    if given:
+        name = f"--{given[0].replace('_', '-')}"
         remedy = "leave it out, or encode one instant without --clip"
         raise OptionError("clip-option", f"{name} is for scenes of one instant", remedy=remedy)
 
@@ -124,7 +124,7 @@ def refuse_still_options(asked: EncodeOptions) -> None:
 def refuse_no_proxy(proxy: object) -> None:
     """Raise OptionError `clip-proxy` where no mesh is given."""
     if proxy is None:
-        remedy = "give one as --proxy; `eigenfield proxy CAPTURE --clip` makes one of the middle frame"
+        remedy = "give one as --proxy; `eigenfield proxy CAPTURE --clip -o mesh.ply` makes one of the middle frame"
         raise OptionError("clip-proxy", "a clip is encoded on a mesh that is given", remedy=remedy)
 
 

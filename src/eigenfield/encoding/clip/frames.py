@@ -94,7 +94,7 @@ class GroupFrames:
 
             def build(folder: Path) -> None:
                 def find(camera: int) -> None:
-                    each = (self._observations(number).photograph(camera) for number in self.numbers)
+                    each = (self.observations(number).photograph(camera) for number in self.numbers)
                     camera_at_rest(each, len(self)).save(folder, camera)
 
                 tracked_map(find, range(len(self.clip.cameras)), f"{self.title}: what stands still", self.progress)
@@ -105,7 +105,7 @@ class GroupFrames:
             with self.clip.open_active(folder) as active:
                 yield replace(self, rest=folder, active=active, kept=kept)
 
-    def _observations(self, number: int) -> Observations:
+    def observations(self, number: int) -> Observations:
         """The photographs of a frame, as they are or with what stands still averaged."""
         own = self.clip.observations(self.instant(number))
         return own if self.rest is None else AtRest(own, self.rest)
@@ -128,6 +128,28 @@ class GroupFrames:
             after: The pass before it.
             with_first: Whether `make` also gets, last, what it made of the first frame; None for that frame itself.
         """
+
+        def of_frame(number: int, first: Path | None, *one: Any) -> Arrays:
+            more = (None if first is None else load_arrays(first),) if with_first else ()
+            assert self.kept is not None
+            photographs = self.kept.frame(number - self.numbers.start, lambda: self.observations(number))
+            with self.clip.open_frame(photographs, None if first is None else self.active) as pixels:
+                return make(pixels, *one, *more)
+
+        return self.run_frames(name, of_frame, given, after)
+
+    def run_frames(
+        self,
+        name: str,
+        make: Callable[..., Arrays],
+        given: Iterable[Any] | None = None,
+        after: FramePass | None = None,
+    ) -> FramePass:
+        """A pass over all frames that opens their photographs by itself.
+
+        Args:
+            make: From a frame's number, the stage of the first frame (None: it is this one), and what is given for it.
+        """
         key = stage_key([self.identity, name, None if after is None else after.key], SCENE_ROOMS)
         inputs = ((one,) for one in given) if given is not None else (() for _ in self.numbers)
         folders: list[Path] = []
@@ -135,12 +157,7 @@ class GroupFrames:
         for number, one in track(steps, f"{self.title}: {name}", len(self), self.progress):
 
             def build(folder: Path, number: int = number, one: tuple[Any, ...] = one) -> None:
-                first = (load_arrays(folders[0]) if folders else None,) if with_first else ()
-                active = self.active if folders else None
-                assert self.kept is not None
-                photographs = self.kept.frame(number - self.numbers.start, lambda: self._observations(number))
-                with self.clip.open_frame(photographs, active) as pixels:
-                    save_arrays(folder, make(pixels, *one, *first))
+                save_arrays(folder, make(number, folders[0] if folders else None, *one))
 
             folders.append(self.stages.run(f"{name}-{number:05d}", key, build))
         self.made.extend(folders)

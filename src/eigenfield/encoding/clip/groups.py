@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from eigenfield.core.films import CodedGroup
 from eigenfield.core.progress import Progress, track
 from eigenfield.encoding.clip.closed_loop import code_group, texture_counts
 from eigenfield.encoding.clip.frames import GroupFrames, load_arrays, save_arrays
 from eigenfield.encoding.clip.open_loop import fit_group
 from eigenfield.encoding.clip.plan import ClipPlan, open_clip_plan
+from eigenfield.encoding.clip.projected import project_group
 from eigenfield.encoding.options import PRESETS, resolved_value
 from eigenfield.encoding.plan import EncodePlan
 from eigenfield.gltf.group import group_bytes
@@ -73,14 +75,12 @@ class Groups:
             counts: Eigen textures of each plane; None: as many as pay in this group.
         """
         title, key = f"group {number + 1} of {len(self.spans)}", self.key(number, counts)
+        projected = clip.plan.options.fit == "none"
         clip = clip if counts is None else clip.with_textures(counts)
         frames = GroupFrames(clip, self.footage.instant, range(*self.spans[number]), stages, key, title, progress)
 
         def build(folder: Path) -> None:
-            with frames.opened() as group:
-                opened = fit_group(group, PRESETS[resolved_value(clip.plan.options.preset)].rounds)
-                kept = texture_counts(clip, opened) if counts is None else counts
-                coded, psnr = code_group(group, opened, clip.layout(kept))
+            coded, psnr, kept = _projected(frames) if projected else _fitted(frames, counts)
             (folder / GROUP_FILE).write_bytes(group_bytes(coded))
             save_arrays(folder, {"counts": np.array(kept), "psnr": np.array(psnr)})
 
@@ -106,6 +106,26 @@ class Groups:
             calls = [(task, stages.folder, shared, number, counts) for number in range(1, len(self.spans))]
             for _ in track(spread(workers, calls), "groups on workers", len(calls), progress):
                 pass
+
+
+def _fitted(frames: GroupFrames, counts: tuple[int, ...] | None) -> tuple[CodedGroup, list[float], tuple[int, ...]]:
+    """A group that is fitted in the pictures, the PSNR of its frames, and its eigen textures of each plane.
+
+    Args:
+        counts: As in `Groups.make`.
+    """
+    clip = frames.clip
+    with frames.opened() as group:
+        opened = fit_group(group, PRESETS[resolved_value(clip.plan.options.preset)].rounds)
+        kept = texture_counts(clip, opened) if counts is None else counts
+        return *code_group(group, opened, clip.layout(kept)), kept
+
+
+def _projected(frames: GroupFrames) -> tuple[CodedGroup, list[float], tuple[int, ...]]:
+    """A group the paper's way; see `_fitted`."""
+    opened = project_group(frames)
+    kept = tuple(one.weights.shape[1] for one in opened.weights)
+    return *code_group(frames, opened, frames.clip.layout(kept), closed=False), kept
 
 
 def make_group(folder: Path, shared: Shared[Groups], number: int, counts: tuple[int, ...]) -> None:

@@ -30,7 +30,7 @@ from eigenfield.encoding.fitted.observations import (
 from eigenfield.encoding.fitted.planes import PLANE_PRESETS, PlanePreset, fitted_textures, step_of
 from eigenfield.encoding.fitted.rate import Rate
 from eigenfield.encoding.fitted.solve import Scales, measure_scales
-from eigenfield.encoding.options import SUBSAMPLE_MIN_OBSERVATIONS, resolved_value
+from eigenfield.encoding.options import DEFAULT_PRESET, PRESETS, SUBSAMPLE_MIN_OBSERVATIONS
 from eigenfield.encoding.plan import EncodePlan, component_count
 from eigenfield.encoding.views import nothing_seen_error
 from eigenfield.runtime.files import scratch_arrays
@@ -217,7 +217,8 @@ def open_clip_plan(plan: EncodePlan, work: Path | None = None) -> Iterator[ClipP
     views, options, size = plan.views, plan.options, (plan.atlas[1], plan.atlas[0])
     cameras, count = views.rig.encoded_cameras, len(views.rig.encoded)
     asked = min(fitted_textures(count), MAX_TEXTURES) if options.textures is None else options.textures
-    textures, step = component_count(asked, count), step_of(resolved_value(options.quality))
+    quality = PRESETS[DEFAULT_PRESET].quality if options.quality is None else options.quality  # without a fit
+    textures, step = component_count(asked, count), step_of(quality)
     with (
         open_camera_footprints(cameras, plan.proxy, size, work, views.rig.encoded_reference) as footprints,
         subsampled_footprints(footprints, THINNED_STEP, work) as thinned,
