@@ -11,7 +11,7 @@ from eigenfield.capture import open_capture
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.encoding import EncodeOptions
-from eigenfield.encoding.geometry.simplify_surface import _loss, _points, _view, simplify_surface_rd
+from eigenfield.encoding.geometry.simplify_surface import _cleared, _loss, _points, _view, simplify_surface_rd
 from eigenfield.encoding.options import density_for_quality
 from eigenfield.encoding.prepare import plan_at_quality, plan_encoding
 from eigenfield.proxy import simplify_mesh, unwrap_mesh
@@ -157,3 +157,15 @@ def test_the_mesh_is_the_one_whose_pictures_were_measured():
     at_once = simplify_mesh(mesh, 3362 // 2**3)
     assert len(found.faces) == pytest.approx(len(at_once.faces), rel=0.03)
     assert _loss(found, views, looked) <= _loss(at_once, views, looked)
+
+
+@pytest.mark.parametrize(("faces_camera", "left"), [(True, 18), (False, 0)])
+def test_a_wall_that_shows_a_camera_its_back_is_cut_away_again(faces_camera, left):
+    """Simplification may close the hole in a wall through which a camera looks; what faces the camera stays."""
+    scene, camera = square(3.0, 0.0, 8), CAMERAS[4]
+    wall = square(0.02, float(camera.centre[2]) + 0.2, 4)
+    shown = wall.faces if faces_camera else wall.faces[:, ::-1]
+    faces = np.concatenate([scene.faces, shown + np.int32(len(scene.vertices))])
+    both = Mesh(np.concatenate([scene.vertices, wall.vertices + np.float32([*camera.centre[:2], 0])]), faces)
+    found = _cleared(both, [_view(scene, camera, 0, stripes(camera))])
+    assert len(found.faces) - len(scene.faces) == left
