@@ -207,7 +207,7 @@ def test_options_without_a_meaning_for_clips_are_refused_by_name(given, code):
 def test_a_clip_needs_a_mesh():
     with pytest.raises(OptionError) as error:
         encode_footage(footage(1.0))
-    assert error.value.code == "clip-proxy" and "`eigenfield proxy CAPTURE --clip`" in str(error.value)
+    assert error.value.code == "clip-proxy" and "`eigenfield proxy CAPTURE --clip -o mesh.ply`" in str(error.value)
 
 
 @pytest.mark.parametrize(("text", "frames"), [("1s", 30), ("0.5s", 15), ("12", 12), (" 2s ", 60), ("0.04s", 1)])

@@ -7,7 +7,10 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 import weakref
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -16,6 +19,7 @@ from eigenfield.core.errors import EigenfieldError, OptionError, OutputError
 from eigenfield.runtime import files
 from eigenfield.runtime.files import (
     atomic_writer,
+    read_arrays,
     refuse_existing,
     scratch_array,
     scratch_arrays,
@@ -214,3 +218,25 @@ def test_scratch_beyond_4_gib_keeps_what_is_written_at_its_end(tmp_path):
         array[-1], array[0] = 2.0, 1.0
         array.flush()
         assert array[-1].sum() == 2048 and array[0].sum() == 1024 and not array[rows // 2].any()
+
+
+def test_threads_read_arrays_in_turns(tmp_path, monkeypatch):
+    path, inside, most = tmp_path / "a.npz", 0, 0
+    np.savez(path, one=np.arange(6).reshape(2, 3), other=np.float32(7))
+    load = np.load
+
+    @contextmanager
+    def slow_load(place):
+        nonlocal inside, most
+        inside += 1
+        most = max(most, inside)
+        time.sleep(0.01)
+        with load(place) as found:
+            yield found
+        inside -= 1
+
+    monkeypatch.setattr(files.np, "load", slow_load)
+    with ThreadPoolExecutor(4) as pool:
+        for found in pool.map(read_arrays, [path] * 8):
+            assert found["one"].tolist() == [[0, 1, 2], [3, 4, 5]] and found["other"] == 7
+    assert most == 1

@@ -9,6 +9,7 @@ import re
 import shutil
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -26,6 +27,7 @@ _NUMBER_PLACE = re.compile(r"%0?\d{0,2}d")
 _DISK_FULL_ERRORS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 _NOT_WRITABLE_ERRORS = PermissionError, NotADirectoryError, IsADirectoryError, FileNotFoundError
 _SHARING_VIOLATION = 32  # of Windows: another program has the file open
+_READING = threading.Lock()
 _RENAME_WAITS_SECONDS = 0.05, 0.2, 0.75  # virus scanners and indexers of Windows open every new file for a moment
 
 
@@ -271,3 +273,13 @@ def scratch_arrays(
                 return np.memmap(file, dtype=dtype, mode="r+", offset=number * size, shape=shape)
 
         yield mapped
+
+
+def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
+    """The arrays of an .npz file, by name.
+
+    Threads take turns: NumPy reads headers with `ast`, and two threads in it at once fail now and then in Python 3.11
+    ("AST constructor recursion depth mismatch", cpython issue 106905).
+    """
+    with _READING, np.load(path) as found:
+        return dict(found)

@@ -18,6 +18,7 @@ from eigenfield.core.progress import Progress, track
 from eigenfield.encoding.clip.active import ActivePlane
 from eigenfield.encoding.clip.plan import ClipPlan, KeptPhotographs
 from eigenfield.encoding.clip.rest import MIN_FRAMES, AtRest, camera_at_rest
+from eigenfield.runtime.files import read_arrays
 from eigenfield.runtime.parallel import tracked_map
 from eigenfield.runtime.stages import SCENE_ROOMS, Stages, stage_key
 
@@ -189,5 +190,4 @@ def save_arrays(folder: Path, arrays: Arrays) -> None:
 
 def load_arrays(folder: Path) -> Arrays:
     """The arrays of a finished stage."""
-    with np.load(folder / ARRAYS_FILE) as found:
-        return dict(found)
+    return read_arrays(folder / ARRAYS_FILE)

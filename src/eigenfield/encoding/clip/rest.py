@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from eigenfield.core.observations import Observations, Photograph
 from eigenfield.imaging.metrics import to_codes
+from eigenfield.runtime.files import read_arrays
 
 WINDOW_PIXELS = 5
 MIN_FRAMES = 4  # of fewer nothing is averaged
@@ -50,8 +51,7 @@ class CameraAtRest:
     @staticmethod
     def load(folder: Path, camera: int) -> CameraAtRest:
         """What `save` has written."""
-        with np.load(folder / ARRAYS_FILE.format(camera)) as found:
-            return CameraAtRest(found["average"], found["share"])
+        return CameraAtRest(**read_arrays(folder / ARRAYS_FILE.format(camera)))
 
     def shown(self, photograph: Photograph) -> Photograph:
         """A photograph with its still pixels averaged."""

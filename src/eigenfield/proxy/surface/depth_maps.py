@@ -13,6 +13,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.progress import Progress, track
 from eigenfield.proxy.surface.fusion import DepthView
 from eigenfield.proxy.surface.neighbours import project_inside
+from eigenfield.runtime.files import read_arrays
 from eigenfield.runtime.parts import Parts
 from eigenfield.runtime.shared import Shared, share
 from eigenfield.stereo import ReferenceView, view_matrices
@@ -154,13 +155,13 @@ def _load_pictures(job: DepthJob, pictures: Sequence[Shared[WorkingPicture]]) ->
 
 
 def _load_first(place: Path) -> _FirstMap:
-    with np.load(place) as data:
-        return _FirstMap(data["planes"], data["cost"], data["inverse_depth"], float(data["tolerance"]))
+    data = read_arrays(place)
+    return _FirstMap(data["planes"], data["cost"], data["inverse_depth"], float(data["tolerance"]))
 
 
 def _load_second(place: Path) -> tuple[NDArray[np.float32], ...]:
-    with np.load(place) as data:
-        return data["inverse_depth"], data["confidence"]
+    data = read_arrays(place)
+    return data["inverse_depth"], data["confidence"]
 
 
 def _stack_pictures(job: DepthJob, pictures: Mapping[int, WorkingPicture] | Sequence[WorkingPicture]) -> _Stack:
