@@ -654,8 +654,9 @@ def clips() -> str:
         peers = [peer.replace("one-key", "one key").replace("-", ", preset ") for peer in curves]
         head = ["quality", "kB a frame", "RGB / luma dB", "held out, luma", "flicker", "step, dB", *peers]
         parts.append(
-            f"`{name}`: {one['cameras']} cameras of {width}x{height} and {one['held_out']} held out, {one['frames']}"
-            f" frames in groups of {', '.join(map(str, dict.fromkeys(one['groups'])))}.\n\n{table(head, rows)}"
+            f"`{name}`, pictures of {width}x{height}. {one['cameras']} cameras are encoded, and {one['held_out']} held out."
+            f" The {one['frames']} frames lie in groups of {', '.join(map(str, dict.fromkeys(one['groups'])))}.\n\n"
+            f"{table(head, rows)}"
         )
     return "\n".join([*parts, source]) + "\n"
 

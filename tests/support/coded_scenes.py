@@ -20,6 +20,7 @@ from eigenfield.core.scene import Scene
 from eigenfield.encoding.fitted.code_planes import code_basis, code_opacity, coded_plane, with_weights
 from eigenfield.encoding.geometry.coded import DEPTH_ERROR_PX, coded_cameras, coded_mesh
 from eigenfield.gltf import save
+from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES
 from eigenfield.proxy.relief.find_lattice import relief_proxy
 from support.captures import write_capture
 from support.composed import encoded, kept_as_png, layered_scene
@@ -64,7 +65,8 @@ def fitted_scene() -> Scene:
     with tempfile.TemporaryDirectory() as work:
         folder = write_capture(Path(work) / "nine", cameras(3, 3), bumpy_square(24))
         capture = open_capture(folder)
-        return ef.encode(capture, proxy=folder / "proxy.ply", fit="photographs", textures=6)
+        mesh = folder / "proxy.ply"
+        return ef.encode(capture, proxy=mesh, fit="photographs", textures=6, triangles=PROXY_DEFAULT_TRIANGLES)
 
 
 def precise_scene() -> Scene:

@@ -24,6 +24,7 @@ from eigenfield.encoding.clip.films import (
     CodedFilm,
     code_film,
     film_scale,
+    film_step,
     range_of,
 )
 from eigenfield.encoding.clip.frames import Arrays, FramePass, GroupFrames
@@ -117,7 +118,7 @@ def _kept_textures(opened: OpenGroup, layout: FilmLayout) -> list[_Kept]:
 def _code_textures(group: GroupFrames, opened: OpenGroup, kept: Sequence[_Kept], layout: FilmLayout) -> CodedFilm:
     """The film of eigen textures."""
     planes = group.clip.planes
-    steps = [TEXTURE_STEP_RATIO * one.rate.texture_step for one in planes]
+    steps = [film_step(one.rate.texture_step, TEXTURE_STEP_RATIO, len(group)) for one in planes]
     scale = film_scale(steps, [one.range for one in kept], [True] * len(kept))
 
     def pictures() -> Iterator[Pictures]:
@@ -220,7 +221,8 @@ def _code_means(group: GroupFrames, closed: FramePass, layout: FilmLayout) -> Co
     planes = group.clip.planes
     ranges = [range_of(closed.each(f"mean{number}")) for number in range(len(planes))]
     signed = [len(plane.settings.matrix) == 2 for plane in planes]  # differences of colours
-    steps = [ratio * plane.rate.mean_step for ratio, plane in zip(MEAN_STEP_RATIOS, planes, strict=True)]
+    steps = [film_step(plane.rate.mean_step, ratio, len(group))
+             for ratio, plane in zip(MEAN_STEP_RATIOS, planes, strict=True)]  # fmt: skip
     scale = film_scale(steps, ranges, signed)
     pictures = ([arrays[f"mean{number}"] for number in range(len(planes))] for arrays in closed)
     return code_film(layout, MEANS, scale, pictures, group.keeper("film-of-means", closed))

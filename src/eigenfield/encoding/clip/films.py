@@ -26,10 +26,10 @@ from eigenfield.encoding.fitted.code_planes import CODE_MIN_UNIT, ZERO_CODE
 LEAST_CODE, MOST_CODE = 64, 940  # others are lost in browsers that take a film for video of limited range: Firefox 153
 FILM_PRESET = 4  # of SVT-AV1, as for stills
 COARSEST_CRF = 63  # what is to be coarser has coarser codes
-# Of the quantiser steps that films are asked for, to those of pictures. What stays from frame to frame is coded more
-# finely than was asked for, since each later frame gains by it, and later means make up for what textures lose
+# Of the quantiser steps that films are asked for, to those of pictures, in groups of SETTLED_FRAMES and more
 MEAN_STEP_RATIOS = 2.0, 3.0  # of luma and of chroma
 TEXTURE_STEP_RATIO = 4.0
+SETTLED_FRAMES = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +77,15 @@ def film_scale(steps: Sequence[float], ranges: Sequence[tuple[float, float]], si
     codes = min(encoder_step(COARSEST_CRF), *fitting)
     units = tuple(math.ceil(step / codes * 1e6) / 1e6 for step in steps)
     return FilmScale(crf_of(codes), units, tuple(ZERO_CODE if both else LEAST_CODE for both in signed))
+
+
+def film_step(step: float, ratio: float, frames: int) -> float:
+    """The quantiser step that a film of so many frames is asked for, by a picture's.
+
+    What stays from frame to frame is coded more finely than was asked for, since each later frame gains by it, and
+    later means make up for what textures lose. A film of one frame is a picture.
+    """
+    return float(step * ratio ** min(1.0, math.log2(frames) / math.log2(SETTLED_FRAMES)))
 
 
 def range_of(arrays: Iterable[NDArray[np.float32]]) -> tuple[float, float]:
