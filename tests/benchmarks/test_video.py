@@ -56,7 +56,8 @@ def test_the_table_has_a_row_a_quality_and_a_column_a_peer(monkeypatch, tmp_path
     }  # fmt: skip
     monkeypatch.setattr(tables, "newest", lambda name: ({"light": clip}, "where from\n"))
     text = tables.clips()
-    assert "`light`: 20 cameras of 480x320 and 5 held out, 50 frames in groups of 30." in text
+    assert "`light`, pictures of 480x320. 20 cameras are encoded, and 5 held out." in text
+    assert "The 50 frames lie in groups of 30." in text
     rows = [line for line in text.splitlines() if line.startswith("| 1 ")]
     assert [cell.strip() for cell in rows[0].strip("|").split("|")] == [
         "1", "4.00", "32.00 / 33.00", "26.00 (25.00)", "0.50 (1.00)", "–", "-50 %", "-99 %", "-95 %",
