@@ -3,8 +3,9 @@
 A mesh of photogrammetry has more than its pictures need: each takes bytes of the mesh, and makes charts smaller.
 Where a simplified mesh puts a pixel's point elsewhere, a texture of what the other cameras see is off: by what they see
 beside the point, the mean over them of gradient times displacement. A view that no camera has is drawn so. However far
-it is off, it is no worse than something else in its place: the variance of the photograph around. Where nothing is
-left, the picture is black.
+it is off, it is no worse than something else in its place: the variance of the photograph around. At a silhouette
+another surface is in its place: two unlike values differ by twice their variance, and no texture corrects that. Where
+nothing is left, the picture is black.
 """
 
 from __future__ import annotations
@@ -36,7 +37,9 @@ TRIANGLE_VIEW_MAX_PX = 1 << 20  # of a view: larger ones are scaled down
 TRIANGLE_VIEW_SAMPLES = 8000  # pixels of each view, evenly spread
 TRIANGLE_COUNT_RATIO = 2**0.5  # of one count to the next that is tried
 TRIANGLE_MIN_COUNT = 250  # below, a mesh takes next to nothing
-TRIANGLE_BYTES = 6.0  # its own 2.6, and what its share of the charts' borders takes in textures: measured on the cube
+TRIANGLE_BYTES = 4.0  # its own 1.3 to 2.6, and what its share of the charts' borders takes: demo's scene and the cube
+SILHOUETTE_MIN_DEPTH_RATIO = 0.01  # of inverse depth, by which another surface lies before or behind the given,
+SILHOUETTE_MIN_PX = 2.0  # and by which its points are farther off beside another camera: more than a surface that moved
 TRIANGLE_MAX_KEPT_RATIO = 0.6  # of the triangles, or less, must be enough for new charts to be cut
 
 
@@ -177,7 +180,10 @@ def _points(views: Sequence[_View], number: int) -> _Points:
 
 
 def _loss(mesh: Mesh, views: Sequence[_View], samples: Sequence[_Points]) -> float:
-    """Squared error of luma in all views together. Where no surface is left it counts more: no texture corrects it."""
+    """Squared error of luma in all views together, of which textures leave REMAINING_LOSS_RATIO.
+
+    What no texture corrects counts for more: where another surface is seen, or none is left.
+    """
 
     def of_view(number: int) -> float:
         view, points = views[number], samples[number]
@@ -186,11 +192,16 @@ def _loss(mesh: Mesh, views: Sequence[_View], samples: Sequence[_Points]) -> flo
         holes = float(np.square(view.grey[black], dtype=np.float64).sum())
         here = drawn[points.pixel]
         moved = unproject(view.camera, *points.pixel, np.where(here > 0, here, 1).astype(np.float32))
-        error = np.zeros(len(moved))
+        error, farthest = np.zeros((2, len(moved)))
         for other, there, at, gradient in points.beside:
             shift = np.nan_to_num(other.camera.project(moved)[0] - at)
             error += np.where(there, (gradient * shift).sum(axis=1), 0)
-        squares = np.minimum(np.square(error / np.maximum(points.seen - 1, 1)), view.around[points.pixel])
+            farthest = np.maximum(farthest, np.where(there, np.abs(shift).max(axis=1), 0))
+        around = view.around[points.pixel]
+        squares = np.minimum(np.square(error / np.maximum(points.seen - 1, 1)), around)
+        unlike = np.abs(here / view.inverse_depth[points.pixel] - 1) > SILHOUETTE_MIN_DEPTH_RATIO
+        unlike &= farthest > SILHOUETTE_MIN_PX
+        squares[unlike] = 2 * around[unlike] / REMAINING_LOSS_RATIO
         return view.pixels * (points.each * float(squares[here > 0].sum()) + holes / REMAINING_LOSS_RATIO)
 
     return sum(parallel_map(of_view, range(len(views))))
