@@ -201,7 +201,9 @@ def line(point: dict[str, Any]) -> str:
     if (between := rates.held_out_luma(point)) is not None:
         words.append(f"held out {between:.2f}")
     if (levels := rates.flicker(point)) is not None:
-        words.append(f"flicker {levels:.2f} levels, SSIM of changes {point['flicker']['moving_ssim']:.3f}")
+        words.append(f"flicker {levels:.2f} levels")
+        if (changes := point["flicker"]["moving_ssim"]) is not None:  # something moves
+            words.append(f"SSIM of changes {changes:.3f}")
     if point.get("border"):
         words.append(f"step {point['border']['step']:.2f} dB")
     return ", ".join(words)

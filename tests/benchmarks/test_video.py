@@ -20,6 +20,14 @@ def points(scale, held_out=25.0, flicker=1.0):
     ]  # fmt: skip
 
 
+def test_a_point_in_words_also_where_nothing_moves():
+    point = points(1)[0]
+    said = "100.0 kB, 31.00 dB luma, 30.00 RGB, held out 25.00, flicker 1.00 levels"
+    assert video.line(point) == said + ", SSIM of changes 0.800"
+    point["flicker"]["moving_ssim"] = None
+    assert video.line(point) == said
+
+
 def test_bytes_are_compared_at_equal_luma_and_views_between_at_equal_bytes():
     found = {"ours": points(1)[1:3], "peers": {"keys-6": points(2)}, "stills": []}
     lines = video.table(found).splitlines()
