@@ -6,6 +6,7 @@ import ast
 import re
 import subprocess
 import sys
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -37,9 +38,16 @@ def module_name(path):
 MODULES = {module_name(path): path for path in sorted(ROOT.rglob("*.py"))}
 
 
+@cache
+def nodes(path):
+    """Imports, calls and classes of a file, wherever in it: it is parsed once for all tests."""
+    wanted = (ast.Import, ast.ImportFrom, ast.Call, ast.ClassDef)
+    return [node for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, wanted)]
+
+
 def imports(path):
     """The package's own modules that a file imports, wherever in it."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in nodes(path):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names if alias.name.split(".")[0] == "eigenfield")
         elif isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "eigenfield":
@@ -116,14 +124,14 @@ def test_nothing_prints_but_the_command_line():
     others = [path for path in MODULES.values() if path.relative_to(ROOT).parts[0] != "cli"]
     assert len(others) > 200
     for path in others:
-        calls = [n for n in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(n, ast.Call)]
+        calls = [node for node in nodes(path) if isinstance(node, ast.Call)]
         assert not any(isinstance(c.func, ast.Name) and c.func.id == "print" for c in calls), path
 
 
 def test_no_public_class_name_twice():
     places = {}
     for name, path in MODULES.items():
-        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        for node in nodes(path):
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
                 places.setdefault(node.name, []).append(name)
     for name, module in (("Scene", "scene"), ("Clip", "clip")):  # to which `api` adds methods: decision 41

@@ -129,10 +129,13 @@ def simplify_surface_rd(
         if not tried:
             break
         loss, simpler = min(((_loss(one, views, samples), one) for one in tried), key=lambda pair: pair[0])
-        cost = lambda_ * len(simpler.faces) + REMAINING_LOSS_RATIO * share * loss
-        log.debug("%d triangles: cost %.4g, of it bytes %.4g", len(simpler.faces), cost, lambda_ * len(simpler.faces))
+        remaining = REMAINING_LOSS_RATIO * share * loss
+        cost = lambda_ * len(simpler.faces) + remaining
+        log.debug("%d triangles: cost %.4g, of it bytes %.4g", len(simpler.faces), cost, cost - remaining)
         if cost < least:
             best, least = simpler, cost
+        if remaining > least:  # fewer lose more
+            break
     if best is None or len(best.faces) > TRIANGLE_MAX_KEPT_RATIO * most:
         return None
     return _cleared(best, views)
