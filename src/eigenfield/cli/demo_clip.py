@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 CLIP_HOLD_OUT = "every:10"
 CLIP_EVERY = 5  # frames of which one is measured
-CLIP_STEP_SECONDS = {"draw": 130.0, "encode": 240.0, "fly": 10.0, "measure": 20.0, "page": 2.0}  # on two cores
+CLIP_STEP_SECONDS = {"draw": 130.0, "encode": 200.0, "fly": 8.0, "measure": 20.0, "page": 2.0}  # on two cores
 
 
 def make_demo_clip(output: Path, quiet: bool) -> None:
@@ -65,7 +65,9 @@ def make_demo_clip(output: Path, quiet: bool) -> None:
         footage = open_footage(folder)
         begin_step(shown, "encode")
         options = EncodeOptions(hold_out=CLIP_HOLD_OUT)
-        clip = encode_footage(footage, clip_proxy(folder, len(footage)), options, work=work, progress=progress)
+        clip = encode_footage(
+            footage, drawing.demo_clip_proxy(folder, len(footage)), options, work=work, progress=progress
+        )
         save(clip, path, overwrite=True, progress=progress)
         clip = load_clip(path)
         begin_step(shown, "fly")
@@ -81,13 +83,6 @@ def make_demo_clip(output: Path, quiet: bool) -> None:
         begin_step(shown, "page")
         export(path, page, overwrite=True, progress=progress)
     click.echo(_summary(path, page, clip, figures, time.monotonic() - started))
-
-
-def clip_proxy(folder: Path, frames: int) -> Path:
-    """The mesh on which the demo's clip is encoded: that of the middle frame."""
-    from eigenfield.demo.clip import CLIP_MESHES
-
-    return folder / (CLIP_MESHES % (frames // 2))
 
 
 def _summary(path: Path, page: Path, clip: Clip, figures: dict[str, Any], seconds: float) -> str:

@@ -46,7 +46,8 @@ def _rows(clip: Clip, footage: Instants) -> list[SheetRow]:
     session = open_clip_session(clip, footage)
     rig, rows = session.first.rig, []
     views = sheet_views(rig, sorted(session.views))
-    for frame in spread_indices(clip.timeline.frames, CLIP_SHEET_FRAMES):
+    frames = clip.timeline.frames
+    for frame in range(0, frames, -(-frames // CLIP_SHEET_FRAMES)):
         here = session.at(frame)
         pictures: list[tuple[str, PictureArray]] = []
         for index in views:
