@@ -29,7 +29,7 @@ def write_clip_sheet(clip: Clip, footage: Instants, folder: str | os.PathLike[st
     folder = Path(folder)
     with output_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
-    write_bytes(folder / CLIP_SHEET_FILE, png_bytes(_figure(_rows(clip, footage))), overwrite=overwrite)
+    write_bytes(folder / CLIP_SHEET_FILE, png_bytes(_figure(sheet_rows(clip, footage))), overwrite=overwrite)
     return folder / CLIP_SHEET_FILE
 
 
@@ -42,7 +42,8 @@ def sheet_views(rig: Rig, known: list[int]) -> list[int]:
     return some
 
 
-def _rows(clip: Clip, footage: Instants) -> list[SheetRow]:
+def sheet_rows(clip: Clip, footage: Instants) -> list[SheetRow]:
+    """Each n-th frame from the first on, with the photograph and the drawn picture of some cameras."""
     session = open_clip_session(clip, footage)
     rig, rows = session.first.rig, []
     views = sheet_views(rig, sorted(session.views))
