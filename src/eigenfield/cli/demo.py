@@ -49,7 +49,7 @@ def command(output: Path | None, clip: bool, quiet: bool) -> None:
     scene.html with its poster scene.jpg, which opens in a browser. It takes about 3 minutes on two cores.
 
     With --clip DIR holds footage/ (30 frames of 25 cameras, and the exact mesh of each frame), clip.glb, clip.html,
-    which plays, and flight.mp4, evaluation.json and plots/ of it. It takes about 6 minutes.
+    which plays, and flight.mp4, evaluation.json and plots/ of it. It takes about 7 minutes.
     """  # fmt: skip
     if clip:
         from eigenfield.cli.demo_clip import make_demo_clip

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 CLIP_HOLD_OUT = "every:10"
 CLIP_EVERY = 5  # frames of which one is measured
-CLIP_STEP_SECONDS = {"draw": 130.0, "encode": 200.0, "fly": 8.0, "measure": 20.0, "page": 2.0}  # on two cores
+CLIP_STEP_SECONDS = {"draw": 115.0, "encode": 250.0, "fly": 8.0, "measure": 20.0, "page": 2.0}  # on two cores
 
 
 def make_demo_clip(output: Path, quiet: bool) -> None:
