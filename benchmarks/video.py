@@ -3,10 +3,10 @@
     EIGENFIELD_DATA=captures python benchmarks/video.py [CLIP...] [--out out/video] [--size N] [--grid N] [--frames N]
         [--group 1s] [--qualities 60,75,88,94] [--peers keys-6,one-key-6,keys-2,joint-6] [--stills N] [--store]
 
-CLIP: `light`, the demo's scene with still geometry and moving light, drawn on the first run and kept; `cloth` and
-`panoptic`, of EIGENFIELD_DATA; `tarot`, 20 of its photographs at half size again and again with fresh noise. --size and
---grid are of `light`, --frames of `light` and `tarot`. Every fifth camera is held out, and takes no part in clips,
-streams and stills; of `panoptic`, which is no array, none is.
+CLIP: `light`, the demo's scene with still geometry and moving light, and `demo`, in motion, both drawn on the first run
+and kept; `cloth` and `panoptic`, of EIGENFIELD_DATA; `tarot`, 20 of its photographs at half size again and again with
+fresh noise. --size and --grid are of `light` and `demo`, --frames of these and `tarot`. Every fifth camera is held out,
+and takes no part in clips, streams and stills; of `panoptic`, which is no array, none is.
 
 Ours is one file a quality: encoded, saved, read and drawn again. A peer is a way of `evidence.simulcast` with a preset
 of SVT-AV1 behind it: one stream a camera with a key picture where our groups begin (`keys`), one stream a camera with
@@ -31,6 +31,7 @@ import measure
 from eigenfield.capture import Footage, open_capture, open_footage
 from eigenfield.core.clip import Clip
 from eigenfield.core.spread import spread_indices
+from eigenfield.demo import demo_clip_proxy, draw_demo_clip
 from eigenfield.encoding import EncodeOptions, encode_footage
 from eigenfield.evaluation.clip import evaluate_clip
 from eigenfield.evaluation.strip import write_strip
@@ -88,11 +89,16 @@ def main() -> None:
 
 
 def source_of(name: str, out: Path, size: int, grid: int, frames: int) -> Source:
-    """A clip by its name; `light` is drawn where it is not there. SystemExit: there is none of that name."""
+    """A clip by its name; `light` and `demo` are drawn where they are not there. SystemExit: there is none of that
+    name."""
     if name == "light":
         whole = f"light-{grid}x{grid}-{size}-{frames}"
         folder = moving_light.draw_clip(out / "clips" / whole, grid, grid, size, frames)
         return Source(whole, folder, folder / moving_light.PROXY)
+    if name == "demo":
+        whole = f"demo-{grid}x{grid}-{size}-{frames}"
+        draw_demo_clip(out / "clips" / whole, rows=grid, columns=grid, size=size, frames=frames)
+        return Source(whole, out / "clips" / whole, demo_clip_proxy(out / "clips" / whole, frames))
     if name in ("cloth", "panoptic"):
         folder = measure.data() / {"cloth": "clip_cloth_5x4", "panoptic": "panoptic_arc_10"}[name]
         return Source(name, folder, hold_out=None if name == "panoptic" else "every:5")
@@ -101,7 +107,7 @@ def source_of(name: str, out: Path, size: int, grid: int, frames: int) -> Source
         whole = f"tarot-{frames}"
         capture = open_capture(known.folder, calibration=known.calibration).reduced(2)
         return Source(whole, repeat(capture, out / "clips" / whole, frames), known.proxy)
-    raise SystemExit(f"no clip is called {name}: name light, tarot, cloth or panoptic")
+    raise SystemExit(f"no clip is called {name}: name light, demo, tarot, cloth or panoptic")
 
 
 def of_clip(

@@ -7,8 +7,10 @@ from pathlib import Path
 import numpy as np
 
 from eigenfield.capture import LightField
+from eigenfield.demo.clip import is_drawn, write_timed
+from eigenfield.imaging.png import png_bytes
+from eigenfield.runtime.files import write_bytes
 from eigenfield.runtime.parallel import parallel_map
-from evidence.moving_light import TRANSFORMS, write_picture, write_timed
 
 SIGMA_LEVELS = 2.0  # grey levels of the noise
 SEED = 20190916
@@ -22,7 +24,7 @@ def repeat(capture: LightField, folder: Path, frames: int = 60) -> Path:
         folder: For the clip.
         frames: How often.
     """
-    if (folder / TRANSFORMS).exists():
+    if is_drawn(folder):
         return folder
     names = [Path(name).stem for name in capture.names]
 
@@ -33,7 +35,8 @@ def repeat(capture: LightField, folder: Path, frames: int = 60) -> Path:
         random = np.random.default_rng([SEED, index])
         for frame in range(frames):
             noisy = levels + random.normal(0, SIGMA_LEVELS, levels.shape).astype(np.float32)
-            write_picture(place / f"{frame:06d}.png", np.clip(np.rint(noisy), 0, 255).astype(np.uint8))
+            data = png_bytes(np.clip(np.rint(noisy), 0, 255).astype(np.uint8))
+            write_bytes(place / f"{frame:06d}.png", data, overwrite=True)
 
     parallel_map(write, range(len(capture)))
     write_timed(folder, names, capture.cameras, frames)

@@ -77,7 +77,7 @@ def test_a_file_is_measured_against_a_folder(run, tmp_path):
     assert figures["image"]["encoded"]["psnr"] == PSNR_MAX_DECIBELS
     assert figures["image"]["encoded"]["flip"] == 0
     assert figures["bytes"]["total"] == (tmp_path / "clip.glb").stat().st_size
-    assert (tmp_path / "plots" / "over-time.png").exists()
+    assert (tmp_path / "plots" / "over-time.png").exists() and (tmp_path / "plots" / "contact-sheet.png").exists()
     again = run(*given, "--plots", tmp_path / "plots")
     assert again.code != 0 and "exists already" in again.err
     assert "--curve" in run(*given, "--curve").err

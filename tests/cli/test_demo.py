@@ -9,6 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from eigenfield.demo import draw_demo_clip
+from eigenfield.gltf import load_clip
+
 
 @pytest.mark.slow
 def test_the_demo_leaves_what_it_promises(tmp_path):
@@ -37,3 +40,51 @@ def test_the_demo_leaves_what_it_promises(tmp_path):
     again = demo()
     assert "drawing" not in again.stderr  # the capture is used again
     assert (folder / "scene.glb").read_bytes() == before
+
+
+CLIP_FILES = {"footage", "clip.glb", "clip.html", "clip.jpg", "clip.work", "flight.mp4", "evaluation.json", "plots"}
+
+
+def test_a_clip_of_footage_that_is_there(run, tmp_path):
+    folder = tmp_path / "my clip"
+    draw_demo_clip(folder / "footage", rows=2, columns=3, size=48, frames=3)
+    done = run("demo", "--clip", "-o", folder)
+    assert done.code == 0, done.err
+    said = done.err.splitlines()
+    assert said[0].startswith("this takes about") and "two cores" in said[0]
+    assert [line.split(" of ")[0] for line in said if " of 5: " in line] == [f"step {k}" for k in range(1, 6)]
+    assert "step 1 of 5: footage that is there" in done.err and "drawing 30 frames" not in done.err
+    assert "contact-sheet.png" in done.out and done.out.splitlines()[-1].endswith(str(folder / "clip.html"))
+    assert {path.name for path in folder.iterdir()} == CLIP_FILES
+    assert {path.name for path in (folder / "plots").iterdir()} == {"over-time.png", "contact-sheet.png"}
+    clip = load_clip(folder / "clip.glb")
+    assert clip.timeline.frames == 3 and len(clip.rig.names) == 6
+    figures = json.loads((folder / "evaluation.json").read_text())
+    assert figures["image"]["encoded"]["psnr"] > 22 and figures["image"]["encoded"]["coverage"] == 1.0
+    before = (folder / "clip.glb").read_bytes()
+    assert run("demo", "--clip", "-o", folder, "-q").code == 0
+    assert (folder / "clip.glb").read_bytes() == before
+
+
+@pytest.mark.parametrize("kind", [(), ("--clip",)])
+def test_a_file_in_place_of_the_folder_is_said(run, tmp_path, kind):
+    (tmp_path / "x").write_text("")
+    done = run("demo", *kind, "-o", tmp_path / "x")
+    assert done.code == 2 and "is a file" in done.err
+
+
+@pytest.mark.slow
+def test_the_clip_is_drawn_and_plays(tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-m", "eigenfield", "demo", "--clip"], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    folder = tmp_path / "demo-clip"
+    assert "step 1 of 5: drawing 30 frames of 25 cameras" in done.stderr
+    assert {path.name for path in folder.iterdir()} == CLIP_FILES
+    assert len(list((folder / "footage").glob("mesh_*.ply"))) == 30
+    assert len(list((folder / "footage").glob("cam_*/*.png"))) == 750
+    clip = load_clip(folder / "clip.glb")
+    assert clip.timeline.frames == 30 and len(clip.rig.names) == 25
+    figures = json.loads((folder / "evaluation.json").read_text())
+    assert figures["image"]["encoded"]["psnr"] > 25 and figures["image"]["held_out"]["psnr"] > 23

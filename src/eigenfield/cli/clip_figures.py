@@ -45,15 +45,17 @@ def evaluate_clip_file(
     from eigenfield.evaluation import evaluate_clip
 
     if plots is not None:
-        from eigenfield.evaluation.strip import refuse_existing_strip, write_strip
+        from eigenfield.evaluation.clip_sheet import write_clip_sheet
+        from eigenfield.evaluation.strip import refuse_existing_clip_plots, write_strip
 
-        refuse_existing_strip(plots, overwrite)
+        refuse_existing_clip_plots(plots, overwrite)
     footage = open_footage(capture, options=replace(place, clip=place.clip or ":"))
     note_all(footage.problems, quiet)
     with progress_bars(quiet) as progress:
         figures = evaluate_clip(clip, footage, path=path, every=every, progress=progress, **settings)
     if plots is not None:
         note(f"wrote {write_strip(figures, plots, overwrite=overwrite)}", quiet)
+        note(f"wrote {write_clip_sheet(clip, footage, plots, overwrite=overwrite)}", quiet)
     if as_json:
         echo_json(figures)
     else:

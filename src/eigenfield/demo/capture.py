@@ -15,7 +15,14 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError, OutputError
 from eigenfield.core.progress import Progress, track
 from eigenfield.demo.cameras import array_cameras
-from eigenfield.demo.geometry import CHROME_SPHERE, GLASS_SPHERE, SURFACE_PARTS, build_geometry, build_surroundings
+from eigenfield.demo.geometry import (
+    ALL_PARTS,
+    CHROME_SPHERE,
+    GLASS_SPHERE,
+    DemoGeometry,
+    build_geometry,
+    build_surroundings,
+)
 from eigenfield.demo.light import environment_map
 from eigenfield.demo.rays import Tree, build_tree
 from eigenfield.demo.shading import shade_view
@@ -42,12 +49,16 @@ class Look(NamedTuple):
         around: (h, w, 8) of `build_surroundings`.
         tree: Of `build_surroundings`.
         room: (3, e, e, 3).
+        scene: Whose mesh and atlas they see.
+        spheres: (2, 4) centre and radius of the chrome and the glass ball.
     """
 
     surface: NDArray[np.float32]
     around: NDArray[np.float32]
     tree: Tree
     room: NDArray[np.float32]
+    scene: DemoGeometry
+    spheres: NDArray[np.float64]
 
 
 def bake_look(side: int) -> Look:
@@ -56,12 +67,14 @@ def bake_look(side: int) -> Look:
     Args:
         side: Of the surface's atlas, in texels.
     """
-    around = build_surroundings()
+    scene, around = build_geometry(), build_surroundings()
     return Look(
-        bake_surface(build_geometry(), side),
+        bake_surface(scene, side),
         bake_surface(around, max(3 * side // 4, 64)),
         build_tree(around.mesh),
         environment_map(),
+        scene,
+        np.array([(*middle, radius) for middle, radius in BALLS.values()]),
     )
 
 
@@ -103,8 +116,6 @@ def draw_demo_capture(
 
 
 def _draw_into(folder: Path, rows: int, columns: int, size: int, progress: Progress | None) -> None:
-    import cv2
-
     mesh = build_geometry().mesh
     write_ply(mesh, folder / "proxy.ply")
     cameras = array_cameras(rows, columns, size)
@@ -115,34 +126,42 @@ def _draw_into(folder: Path, rows: int, columns: int, size: int, progress: Progr
     (folder / "transforms.json").write_text(json.dumps(document, indent=1), encoding="utf-8", newline="\n")
     look = bake_look(min(DEMO_TEXELS_PER_PIXEL * size, DEMO_MAX_ATLAS_TEXELS))
 
-    def png(camera: Camera) -> bytes:
-        picture = draw_view(camera, look)
-        done, data = cv2.imencode(".png", picture[..., ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 2])
-        assert done
-        return data.tobytes()
-
-    stream = track(parallel_stream(png, cameras), "draw", len(cameras), progress)
+    stream = track(parallel_stream(lambda camera: draw_png(camera, look), cameras), "draw", len(cameras), progress)
     for name, data in zip(names, stream, strict=True):
         (folder / name).write_bytes(data)
 
 
-def draw_view(camera: Camera, look: Look) -> NDArray[np.uint8]:
-    """(H, W, 3) uint8 sRGB: the scene as a camera sees it, averaged over several points a pixel in linear light."""
-    scene = build_geometry()
-    mesh = scene.mesh
+def draw_png(camera: Camera, look: Look, samples: int = DEMO_SAMPLES_PER_SIDE) -> bytes:
+    """The file of `draw_view`."""
+    import cv2
+
+    picture = draw_view(camera, look, samples)
+    done, data = cv2.imencode(".png", picture[..., ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 2])
+    assert done
+    return data.tobytes()
+
+
+def draw_view(camera: Camera, look: Look, samples: int = DEMO_SAMPLES_PER_SIDE) -> NDArray[np.uint8]:
+    """(H, W, 3) uint8 sRGB: the scene as a camera sees it, averaged over several points a pixel in linear light.
+
+    Args:
+        camera: Of the view.
+        look: Of its time.
+        samples: Points on each side of a pixel.
+    """
+    scene, mesh = look.scene, look.scene.mesh
     assert mesh.uv is not None
-    fine = camera.resize(DEMO_SAMPLES_PER_SIDE * camera.width, DEMO_SAMPLES_PER_SIDE * camera.height)
+    fine = camera.resize(samples * camera.width, samples * camera.height)
     raster = rasterise_view(mesh, fine)
     rays = np.ascontiguousarray(fine.R.T @ np.linalg.inv(fine.K))
     picture = np.empty((camera.height, camera.width, 3), np.float32)
     texels = np.concatenate([mesh.uv * float(look.surface.shape[0]), np.ones((len(mesh.uv), 1))], axis=1)[mesh.faces]
     maps = np.einsum("fkt,fke->fte", texels, raster.edges)
-    balls = np.full(len(SURFACE_PARTS), -1)
-    balls[[SURFACE_PARTS.index(name) for name in BALLS]] = range(len(BALLS))
-    spheres = np.array([(*middle, radius) for middle, radius in BALLS.values()])
+    balls = np.full(len(ALL_PARTS), -1)
+    balls[[ALL_PARTS.index(name) for name in BALLS]] = range(len(BALLS))
     shade_view(
-        raster.face, maps, balls[scene.part], rays, camera.centre, look.surface, look.around, *look.tree, spheres,
-        look.room, DEMO_SAMPLES_PER_SIDE, picture,
+        raster.face, maps, balls[scene.part], rays, camera.centre, look.surface, look.around, *look.tree,
+        look.spheres, look.room, samples, picture,
     )  # fmt: skip
     return _tone_map(picture)
 

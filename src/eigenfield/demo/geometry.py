@@ -8,6 +8,7 @@ show instead: all sides, and a floor and a wall that go on outside the picture.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -41,6 +42,7 @@ BLOCK_SIDES = (*VISIBLE_BLOCK_SIDES, (2, -1))  # it stands on the sixth
 FRONT_POLAR_RADIANS = np.radians(104)  # of a ball, from the middle camera: all that a camera can see
 
 SURFACE_PARTS = ("floor", "wall", "body", "lid", "orange", "marble", "block", "chrome", "glass")
+ALL_PARTS = (*SURFACE_PARTS, "sheet")  # the clip's too: in it the print on the wall is a sheet that hangs before it
 SURROUNDINGS_HALF_WIDTH_UNITS, SURROUNDINGS_HEIGHT_UNITS, SURROUNDINGS_FRONT_UNITS = 3.0, 2.4, 3.8
 SURROUNDINGS_PIXELS_PER_UNIT = 200.0  # of the chart of this floor and wall
 SURROUNDINGS_CELL_UNITS = 0.5  # triangles of floor and wall: small ones make a good tree
@@ -51,7 +53,7 @@ class SurfacePart:
     """One surface of the scene.
 
     Attributes:
-        name: One of SURFACE_PARTS.
+        name: One of ALL_PARTS.
         vertices: (n, 3) float64.
         faces: (m, 3).
         normals: (n, 3) smooth normals.
@@ -74,7 +76,7 @@ class DemoGeometry:
     Attributes:
         mesh: With an atlas.
         normals: (n, 3) smooth normals.
-        part: (m,) index into SURFACE_PARTS of each face.
+        part: (m,) index into ALL_PARTS of each face.
     """
 
     mesh: Mesh
@@ -86,34 +88,47 @@ class DemoGeometry:
 def build_geometry() -> DemoGeometry:
     """All parts in one mesh, with charts packed into the unit square. A PLY restores its float32 numbers exactly."""
     balls = [
-        _ball("chrome", CHROME_SPHERE, 26, 64, FRONT_POLAR_RADIANS),
-        _ball("glass", GLASS_SPHERE, 22, 56, FRONT_POLAR_RADIANS),
+        ball_part("chrome", CHROME_SPHERE, 26, 64, FRONT_POLAR_RADIANS),
+        ball_part("glass", GLASS_SPHERE, 22, 56, FRONT_POLAR_RADIANS),
     ]
-    parts = [*_background(), *_things(FRONT_POLAR_RADIANS), *_block(VISIBLE_BLOCK_SIDES), *balls]
-    return _join([part for part in map(_cull_back_faces, parts) if len(part.faces)])
+    parts = [*background_parts(), *_things(FRONT_POLAR_RADIANS), *block_parts(VISIBLE_BLOCK_SIDES), *balls]
+    return join_parts([part for part in map(cull_back_faces, parts) if len(part.faces)])
 
 
 @cache
 def build_surroundings() -> DemoGeometry:
     """What rays from the chrome and the glass ball meet, these two left out."""
+    return join_parts(surroundings_parts())
+
+
+def surroundings_parts() -> list[SurfacePart]:
+    """The parts of `build_surroundings`."""
     left, right = -SURROUNDINGS_HALF_WIDTH_UNITS, SURROUNDINGS_HALF_WIDTH_UNITS
     floor = _rectangle("floor", (left, right), (WALL_Z_UNITS, SURROUNDINGS_FRONT_UNITS), 1)
     wall = _rectangle("wall", (left, right), (0.0, SURROUNDINGS_HEIGHT_UNITS), 2)
-    return _join([floor, wall, *_things(np.pi), *_block(BLOCK_SIDES)])
+    return [floor, wall, *_things(np.pi), *block_parts(BLOCK_SIDES)]
 
 
 def _things(polar: float) -> list[SurfacePart]:
     """The jar, and balls up to an angle from the middle camera."""
     return [
-        _surface_of_revolution("body", BODY_PROFILE, 66, 128),
-        _surface_of_revolution("lid", LID_PROFILE, 34, 96),
-        _ball("orange", ORANGE_SPHERE, 22, 48, polar),
-        _ball("marble", MARBLE_SPHERE, 18, 40, polar),
+        *jar_parts(),
+        ball_part("orange", ORANGE_SPHERE, 22, 48, polar),
+        ball_part("marble", MARBLE_SPHERE, 18, 40, polar),
     ]
 
 
-def _join(parts: list[SurfacePart]) -> DemoGeometry:
-    """The parts as one mesh, of which the first two share a chart."""
+def jar_parts() -> list[SurfacePart]:
+    """Body and lid."""
+    return [_surface_of_revolution("body", BODY_PROFILE, 66, 128), _surface_of_revolution("lid", LID_PROFILE, 34, 96)]
+
+
+def join_parts(parts: list[SurfacePart]) -> DemoGeometry:
+    """The parts as one mesh, with charts packed into the unit square.
+
+    Args:
+        parts: The first two share a chart.
+    """
     background, others = parts[:2], parts[2:]
     blocks = [np.concatenate([part.chart for part in background]), *(part.chart for part in others)]
     lows = [chart.min(axis=0) for chart in blocks]
@@ -127,11 +142,11 @@ def _join(parts: list[SurfacePart]) -> DemoGeometry:
         np.concatenate([part.faces + offset for part, offset in zip(parts, offsets, strict=False)]).astype(np.int32),
         uv.astype(np.float32),
     )
-    label = np.concatenate([np.full(len(part.faces), SURFACE_PARTS.index(part.name)) for part in parts])
+    label = np.concatenate([np.full(len(part.faces), ALL_PARTS.index(part.name)) for part in parts])
     return DemoGeometry(mesh, np.concatenate([part.normals for part in parts]), label)
 
 
-def _background() -> list[SurfacePart]:
+def background_parts() -> list[SurfacePart]:
     """Floor and wall as a grid in the middle camera's frame; the crease between them is a line of it."""
     camera = array_camera(0.0, 0.0, CHART_FRAME_PIXELS)
     crease = camera.project([(0.0, 0.0, WALL_Z_UNITS)])[0][0, 1]
@@ -150,7 +165,7 @@ def _background() -> list[SurfacePart]:
         points[:, axis] = level
         normal = np.zeros(3)
         normal[axis] = 1.0
-        faces = _grid(len(lines), len(columns))
+        faces = grid_faces(len(lines), len(columns))
         normals = np.tile(normal, (len(points), 1))
         parts.append(SurfacePart(name, points, faces, normals, pixels, normals))
     return parts[::-1]
@@ -166,7 +181,7 @@ def _rectangle(name: str, across: tuple[float, float], along: tuple[float, float
     down = points[:, 2] - WALL_Z_UNITS - points[:, 1]
     normals = np.tile(np.eye(3)[axis], (len(points), 1))
     chart = np.column_stack([points[:, 0], down]) * SURROUNDINGS_PIXELS_PER_UNIT
-    return SurfacePart(name, points, _grid(steps[1], steps[0]), normals, chart, normals)
+    return SurfacePart(name, points, grid_faces(steps[1], steps[0]), normals, chart, normals)
 
 
 def _surface_of_revolution(name: str, profile: Array, rows: int, columns: int) -> SurfacePart:
@@ -194,7 +209,7 @@ def _surface_of_revolution(name: str, profile: Array, rows: int, columns: int) -
         axis=-1,
     )
     points = points + emboss_height(name, angles, arc / length[-1])[..., None] * outward
-    faces = _grid(rows + 1, columns + 1)[:, ::-1]
+    faces = grid_faces(rows + 1, columns + 1)[:, ::-1]
     vertices = points.reshape(-1, 3)
     normals = vertex_normals(vertices, faces).reshape(points.shape)
     normals[:, 0] = normals[:, -1] = (normals[:, 0] + normals[:, -1]) / 2  # the seam at the back
@@ -220,15 +235,25 @@ def emboss_height(name: str, angle: Array, along: Array) -> Array:
     return np.asarray(flutes + belly + rings)
 
 
-def _ball(name: str, sphere: tuple[Array, float], rings: int, sectors: int, polar_end: float) -> SurfacePart:
+def ball_part(
+    name: str, sphere: tuple[Array, float], rings: int, sectors: int, polar_end: float, *, behind: bool = False
+) -> SurfacePart:
     """A sphere about the axis to the middle camera, as far as an angle from it.
 
     The chart is Lambert's azimuthal map (radius 2 sin(angle / 2)), which preserves areas.
+
+    Args:
+        name: One of ALL_PARTS.
+        sphere: Centre and radius.
+        rings: Of triangles.
+        sectors: Of triangles.
+        polar_end: Radians.
+        behind: About the axis away from the middle camera.
     """
     centre, radius = sphere
     axis = array_centre() - centre
     depth = float(np.linalg.norm(axis))
-    axis /= depth
+    axis /= -depth if behind else depth
     right = np.array([axis[2], 0.0, -axis[0]]) / np.hypot(axis[0], axis[2])
     up = np.cross(axis, right)
     polar, angles = np.meshgrid(
@@ -242,7 +267,7 @@ def _ball(name: str, sphere: tuple[Array, float], rings: int, sectors: int, pola
     ).reshape(-1, 3)
     chart_radius = 2 * np.sin(polar / 2) * radius * DEMO_FOCAL_WIDTHS * CHART_FRAME_PIXELS / depth
     chart = np.stack([chart_radius * np.cos(angles), -chart_radius * np.sin(angles)], axis=-1).reshape(-1, 2)
-    faces = _grid(rings + 1, sectors + 1)
+    faces = grid_faces(rings + 1, sectors + 1)
     merged = np.arange(len(normals)).reshape(rings + 1, sectors + 1)
     merged[:, -1] = merged[:, 0]
     merged[0] = merged[0, 0]
@@ -251,8 +276,12 @@ def _ball(name: str, sphere: tuple[Array, float], rings: int, sectors: int, pola
     return SurfacePart(name, centre + radius * normals, faces[whole], normals, chart, normals)
 
 
-def _block(sides: tuple[tuple[int, int], ...]) -> list[SurfacePart]:
-    """Sides of the letter block, one chart each: axis and sign."""
+def block_parts(sides: tuple[tuple[int, int], ...]) -> list[SurfacePart]:
+    """Sides of the letter block, one chart each.
+
+    Args:
+        sides: Axis and sign.
+    """
     c, s = np.cos(BLOCK_ANGLE_RADIANS), np.sin(BLOCK_ANGLE_RADIANS)
     frame = np.array([(c, 0, -s), (0, 1, 0), (s, 0, c)])  # rows: the block's axes in the world
     scale = BLOCK_SIDE_UNITS * DEMO_FOCAL_WIDTHS * CHART_FRAME_PIXELS / np.linalg.norm(array_centre() - BLOCK_CENTRE)
@@ -264,33 +293,44 @@ def _block(sides: tuple[tuple[int, int], ...]) -> list[SurfacePart]:
         right = np.cross(up, out)
         points = BLOCK_CENTRE + BLOCK_SIDE_UNITS * (out / 2 + grid[:, :1] * right + grid[:, 1:] * up)
         normals = np.tile(out, (len(points), 1))
-        parts.append(SurfacePart("block", points, _grid(9, 9), normals, grid * (scale, -scale), normals))
+        parts.append(SurfacePart("block", points, grid_faces(9, 9), normals, grid * (scale, -scale), normals))
     return parts
 
 
-def _grid(rows: int, columns: int) -> NDArray[np.int64]:
-    """Two triangles for each cell of a grid of vertices in row-major order."""
+def grid_faces(rows: int, columns: int) -> NDArray[np.int64]:
+    """Two triangles for each cell of a grid of vertices in row-major order.
+
+    Args:
+        rows: Of vertices.
+        columns: Of vertices.
+    """
     corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).reshape(-1)
     lower = np.stack([corner, corner + columns, corner + columns + 1], axis=1)
     upper = np.stack([corner, corner + columns + 1, corner + 1], axis=1)
     return np.stack([lower, upper], axis=1).reshape(-1, 3)
 
 
-def _cull_back_faces(part: SurfacePart) -> SurfacePart:
+def cull_back_faces(part: SurfacePart, moments: Sequence[tuple[Array, Array]] | None = None) -> SurfacePart:
     """The part without triangles that face away from all four corners of the array, and without their vertices.
 
     The relief is ignored, so that charts have smooth borders. The rest is wound counter-clockwise as seen from outside.
+
+    Args:
+        part: To be culled.
+        moments: Vertices (n, 3) and normals without relief (n, 3) at each time at which it is seen; None: as it is.
     """
     p, normals = part.vertices[part.faces], part.normals[part.faces].sum(axis=1)
     inward = (area_normals(p) * normals).sum(axis=1) < 0
     faces = np.where(inward[:, None], part.faces[:, ::-1], part.faces)
-    middle, outward = p.mean(axis=1), part.outward[part.faces].mean(axis=1)
     seen = np.zeros(len(faces), bool)
-    for x in (-1, 1):
-        for y in (-1, 1):
-            ray = array_camera(x * DEMO_HALF_ARRAY_UNITS, y * DEMO_HALF_ARRAY_UNITS, CHART_FRAME_PIXELS).centre - middle
-            ray /= np.linalg.norm(ray, axis=1, keepdims=True)
-            seen |= (ray * outward).sum(axis=1) > CULL_MIN_COSINE
+    for vertices, outwards in moments or [(part.vertices, part.outward)]:
+        middle, outward = vertices[part.faces].mean(axis=1), outwards[part.faces].mean(axis=1)
+        for x in (-1, 1):
+            for y in (-1, 1):
+                corner = array_camera(x * DEMO_HALF_ARRAY_UNITS, y * DEMO_HALF_ARRAY_UNITS, CHART_FRAME_PIXELS)
+                ray = corner.centre - middle
+                ray /= np.linalg.norm(ray, axis=1, keepdims=True)
+                seen |= (ray * outward).sum(axis=1) > CULL_MIN_COSINE
     used, index = np.unique(faces[seen], return_inverse=True)
     return SurfacePart(
         part.name, part.vertices[used], index.reshape(-1, 3), part.normals[used], part.chart[used], part.outward[used]

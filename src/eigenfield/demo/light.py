@@ -6,7 +6,7 @@ picture, blurred to the width of the reflection lobe.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from typing import NamedTuple
 
@@ -61,8 +61,26 @@ SHADOW_SPHERES = {  # spheres (centre, radius) that stand for the parts
               ((0.72, 0.13, 0.39), 0.14)),
     "chrome": ((tuple(CHROME_SPHERE[0]), CHROME_SPHERE[1]),), "glass": ((tuple(GLASS_SPHERE[0]), GLASS_SPHERE[1]),),
 }  # fmt: skip
+Spheres = tuple[tuple[tuple[float, float, float], float], ...]
 GLASS_DARKNESS_FRACTION = 0.3  # of the ambient light that it keeps off, to that of a solid ball
 CAUSTIC_RAYS = 60_000
+SHEET_AMBIENT_FRACTION = 0.65  # that a sheet right before a wall keeps off it
+
+
+class Shadows(NamedTuple):
+    """What casts shadows.
+
+    Attributes:
+        spheres: That stand for each part.
+        before_wall: The share of a light from a direction (3,) that comes to points (n, 3) of the wall past what hangs
+            before it; None: nothing does.
+    """
+
+    spheres: Mapping[str, Spheres]
+    before_wall: Callable[[Array, Array], Array] | None = None
+
+
+STILL_SHADOWS = Shadows(SHADOW_SPHERES)
 
 
 def radiance(directions: Array, softness: float, lights: Sequence[SoftBox] = SOFT_BOXES) -> Array:
@@ -123,21 +141,22 @@ def environment_map(lights: Sequence[SoftBox] = SOFT_BOXES) -> NDArray[np.float3
     return np.stack(layers).astype(np.float32)
 
 
-def irradiance(points: Array, normals: Array, owner: str) -> tuple[Array, Array]:
+def irradiance(points: Array, normals: Array, owner: str, shadows: Shadows = STILL_SHADOWS) -> tuple[Array, Array]:
     """Light on a surface.
 
     Args:
         points: (n, 3).
         normals: (n, 3).
         owner: The surface's part, which casts no shadow on itself.
+        shadows: Of all parts.
 
     Returns:
         (n, 3) RGB irradiance, and (n,) ambient visibility, 0..1.
     """
     ambient = np.ones(len(points))
     visible = [np.ones(len(points)) for _ in SOFT_BOXES]
-    others = [part for part in SHADOW_SPHERES if part != owner and (part, owner) != ("body", "lid")]
-    for name, (centre, radius) in ((part, sphere) for part in others for sphere in SHADOW_SPHERES[part]):
+    others = [part for part in shadows.spheres if part != owner and (part, owner) != ("body", "lid")]
+    for name, (centre, radius) in ((part, sphere) for part in others for sphere in shadows.spheres[part]):
         offset = np.array(centre) - points
         square = dot_rows(offset, offset)
         toward = dot_rows(offset, normals) / np.sqrt(square)
@@ -149,6 +168,9 @@ def irradiance(points: Array, normals: Array, owner: str) -> tuple[Array, Array]
                 miss = np.sqrt(np.maximum(square - along**2, 0))
                 through = _focused_light()(np.column_stack([along, miss]) / radius) if name == "glass" else 0.0
                 fraction *= _sphere_shadow(along, miss, radius) + through
+    before = shadows.before_wall if owner == "wall" else None
+    if before is not None:
+        ambient *= 1 - SHEET_AMBIENT_FRACTION * (1 - before(points, np.array([0.0, 0.0, 1.0])))
     total = np.array([0.235, 0.245, 0.27]) * (0.72 + 0.28 * normals[:, 1:2]) * ambient[:, None]
     total = total + np.array([0.08, 0.06, 0.045]) * (0.5 - 0.5 * normals[:, 1:2]) * ambient[:, None]
     for k, (light, fraction) in enumerate(zip(SOFT_BOXES, visible, strict=True)):
@@ -156,6 +178,8 @@ def irradiance(points: Array, normals: Array, owner: str) -> tuple[Array, Array]
             continue
         if k < LIGHT_KEY_COUNT:
             fraction *= _window_shadow(points)
+        if before is not None:
+            fraction *= before(points, _unit(np.array(light.direction)))
         facing = np.maximum(normals @ _unit(np.array(light.direction)), 0)
         total = total + (facing * fraction)[:, None] * np.array(light.irradiance)
     return total, ambient

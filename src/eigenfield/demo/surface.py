@@ -5,7 +5,7 @@ Everything is computed once, at the texels of a fine atlas. A view only looks it
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -13,17 +13,17 @@ from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
 from eigenfield.demo.geometry import (
+    ALL_PARTS,
     BLOCK_ANGLE_RADIANS,
     BLOCK_CENTRE,
     BLOCK_SIDE_UNITS,
     MARBLE_SPHERE,
     ORANGE_SPHERE,
-    SURFACE_PARTS,
     Array,
     DemoGeometry,
 )
 from eigenfield.demo.lettering import BLOCK_LETTERS, POSTER, letter_mask, poster_mask
-from eigenfield.demo.light import dot_rows, irradiance
+from eigenfield.demo.light import STILL_SHADOWS, Shadows, dot_rows, irradiance
 from eigenfield.demo.noise import fractal_noise
 from eigenfield.imaging.colour import linear_of_srgb
 from eigenfield.imaging.raster import rasterise_atlas
@@ -47,58 +47,128 @@ class Finish(NamedTuple):
     roughness: Array | float
 
 
+FinishOf = Callable[[Array, Array], Finish]  # of points and normals, (n, 3) each
+
+
+class ChartTexels(NamedTuple):
+    """Some texels of one part.
+
+    Attributes:
+        name: Of the part.
+        texel: (n,) places in the flattened atlas.
+        face: (n,) of the mesh.
+    """
+
+    name: str
+    texel: NDArray[np.int64]
+    face: NDArray[np.int32]
+
+
+class Material(NamedTuple):
+    """What texels of one part are before any light falls on them.
+
+    Attributes:
+        name: Of the part.
+        texel: (n,) places in the flattened atlas.
+        point: (n, 3) in the world.
+        normal: (n, 3) with the relief that is too fine for the mesh.
+        finish: Of each texel.
+    """
+
+    name: str
+    texel: NDArray[np.int64]
+    point: Array
+    normal: Array
+    finish: Finish
+
+
+class Charts:
+    """The atlas of a scene: pieces of a bounded size, and how charts are extended into the gutters."""
+
+    def __init__(self, scene: DemoGeometry, side: int, finishes: Mapping[str, FinishOf] | None = None) -> None:
+        """Rasterise the atlas.
+
+        Args:
+            scene: With an atlas.
+            side: Texels.
+            finishes: Of all parts; None: those of the still scene.
+        """
+        self.side = side
+        self._finishes = SURFACE_FINISHES if finishes is None else finishes
+        raster = rasterise_atlas(scene.mesh, side, side)
+        texel = np.flatnonzero(raster.face >= 0)
+        face = raster.face.reshape(-1)[texel]
+        order = np.argsort(scene.part[face], kind="stable")
+        texel, face = texel[order], face[order]
+        bounds = np.searchsorted(scene.part[face], np.arange(len(ALL_PARTS) + 1))
+        self.pieces = [
+            ChartTexels(name, texel[bounds[k] + start : bounds[k] + stop], face[bounds[k] + start : bounds[k] + stop])
+            for k, name in enumerate(ALL_PARTS)
+            if name in self._finishes
+            for start, stop in pieces(int(bounds[k + 1] - bounds[k]), DEMO_TEXELS_PER_TASK)
+        ]
+        self._edges = raster.edges
+        self._corners = scene.mesh.vertices.astype(np.float64)[scene.mesh.faces]
+        self._normals = scene.normals[scene.mesh.faces]
+        self._nearest = distance_transform_edt(raster.face < 0, return_distances=False, return_indices=True)
+
+    def material(self, piece: ChartTexels) -> Material:
+        """What a piece's texels are made of."""
+        row, column = np.divmod(piece.texel, self.side)
+        f = piece.face
+        position = np.stack([column + 0.5, row + 0.5, np.ones(len(f))], axis=1)
+        weight = np.einsum("nke,ne->nk", self._edges[f], position)
+        point = np.einsum("nk,nkx->nx", weight, self._corners[f])
+        normal = np.einsum("nk,nkx->nx", weight, self._normals[f])
+        normal /= np.sqrt(dot_rows(normal, normal))[:, None]
+        finish = self._finishes[piece.name](point, normal)
+        return Material(piece.name, piece.texel, point, _bumped(piece.name, point, normal), finish)
+
+    def extended(self, surface: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Texels (side * side, c) as a picture (side, side, c): gutters take the nearest texel inside a chart."""
+        return np.ascontiguousarray(surface.reshape(self.side, self.side, -1)[tuple(self._nearest)])
+
+
 def bake_surface(scene: DemoGeometry, side: int) -> NDArray[np.float32]:
     """(side, side, 8) float32: see `shade_view`; charts are extended into the gutters. Mirrors and glass are zero.
 
     Args:
+        scene: With an atlas.
         side: Texels.
     """
-    raster = rasterise_atlas(scene.mesh, side, side)
-    texel = np.flatnonzero(raster.face >= 0)
+    charts = Charts(scene, side)
     surface = np.zeros((side * side, 8), np.float32)
-    face = raster.face.reshape(-1)[texel]
-    order = np.argsort(scene.part[face], kind="stable")
-    texel, face = texel[order], face[order]
-    bounds = np.searchsorted(scene.part[face], np.arange(len(SURFACE_PARTS) + 1))
-    jobs = [
-        (name, bounds[k] + start, bounds[k] + stop)
-        for k, name in enumerate(SURFACE_PARTS)
-        if name in SURFACE_FINISHES
-        for start, stop in pieces(int(bounds[k + 1] - bounds[k]), DEMO_TEXELS_PER_TASK)
-    ]
-    corners, normals = scene.mesh.vertices.astype(np.float64)[scene.mesh.faces], scene.normals[scene.mesh.faces]
 
-    def work(job: tuple[str, int, int]) -> None:
-        name, start, stop = job
-        row, column = np.divmod(texel[start:stop], side)
-        f = face[start:stop]
-        position = np.stack([column + 0.5, row + 0.5, np.ones(len(f))], axis=1)
-        weight = np.einsum("nke,ne->nk", raster.edges[f], position)
-        point = np.einsum("nk,nkx->nx", weight, corners[f])
-        normal = np.einsum("nk,nkx->nx", weight, normals[f])
-        normal /= np.sqrt(dot_rows(normal, normal))[:, None]
-        surface[texel[start:stop]] = _shade_texels(name, point, normal)
+    def work(piece: ChartTexels) -> None:
+        surface[piece.texel] = light_material(charts.material(piece), STILL_SHADOWS)
 
-    parallel_map(work, jobs)
-    nearest = distance_transform_edt(raster.face < 0, return_distances=False, return_indices=True)  # inside a chart
-    return np.ascontiguousarray(surface.reshape(side, side, 8)[tuple(nearest)])
+    parallel_map(work, charts.pieces)
+    return charts.extended(surface)
 
 
-def _shade_texels(name: str, point: Array, normal: Array) -> NDArray[np.float32]:
-    finish = SURFACE_FINISHES[name](point, normal)
-    bumped = normal
-    if name in BUMP_HEIGHTS:
-        height = BUMP_HEIGHTS[name]
-        here = height(point)
-        slope = np.stack(
-            [(height(point + BUMP_STEP_UNITS * axis) - here) / BUMP_STEP_UNITS for axis in np.eye(3)], axis=1
-        )
-        bumped = normal - slope + dot_rows(slope, normal)[:, None] * normal
-        bumped /= np.sqrt(dot_rows(bumped, bumped))[:, None]
-    light, ambient = irradiance(point, bumped, name)
-    roughness = np.broadcast_to(finish.roughness, len(point))
-    columns = [finish.pigment * light, bumped, finish.reflectance * ambient**1.5, roughness]
+def light_material(material: Material, shadows: Shadows) -> NDArray[np.float32]:
+    """(n, 8) float32 of a material's texels: see `shade_view`.
+
+    Args:
+        material: Where it is now.
+        shadows: That fall on it.
+    """
+    finish = material.finish
+    light, ambient = irradiance(material.point, material.normal, material.name, shadows)
+    roughness = np.broadcast_to(finish.roughness, len(material.point))
+    columns = [finish.pigment * light, material.normal, finish.reflectance * ambient**1.5, roughness]
     return np.column_stack(columns).astype(np.float32)
+
+
+def _bumped(name: str, point: Array, normal: Array) -> Array:
+    if name not in BUMP_HEIGHTS:
+        return normal
+    height = BUMP_HEIGHTS[name]
+    here = height(point)
+    slope = np.stack([(height(point + BUMP_STEP_UNITS * axis) - here) / BUMP_STEP_UNITS for axis in np.eye(3)], axis=1)
+    bumped = normal - slope + dot_rows(slope, normal)[:, None] * normal
+    bumped /= np.sqrt(dot_rows(bumped, bumped))[:, None]
+    return bumped
 
 
 def noise(points: Array, frequency: float, octaves: int, seed: int, gain: float = 0.5) -> Array:
@@ -149,6 +219,7 @@ def mix(a: Array, b: Array, share: Array) -> Array:
 
 
 FLOOR_TILE_UNITS = 0.37
+PIN_UNITS = 0.035  # from the sheet's edges; it is so wide
 PAINT_EDGE_UNITS = 0.006  # width of a paint edge, a little over a pixel
 
 
@@ -186,9 +257,22 @@ def _floor(point: Array, normal: Array) -> Finish:
 
 
 def _wall(point: Array, normal: Array) -> Finish:
-    """Lime plaster in two tones over a skirting of boards, and a printed sheet."""
+    """The bare wall, and a printed sheet on it."""
     x, y = point[:, 0], point[:, 1]
-    cloud = noise(point, 2.2, 5, 21, 0.6)
+    pigment = _bare_wall(point, normal).pigment
+    off = np.maximum(
+        np.abs((x - POSTER.left) / POSTER.width - 0.5) - 0.5,
+        (np.abs((POSTER.top - y) / POSTER.height - 0.5) - 0.5) * POSTER.height / POSTER.width,
+    )
+    sheet = edge(off * POSTER.width, PAINT_EDGE_UNITS)
+    shadow = 1 - 0.45 * np.exp(-np.maximum(_outside(x - 0.012, y + 0.016), 0) / 0.016)
+    return Finish(mix(pigment * shadow[:, None], _print(point), sheet), 0.025, 1.0)
+
+
+def _bare_wall(point: Array, normal: Array) -> Finish:
+    """Lime plaster in two tones over a skirting of boards."""
+    x, y = point[:, 0], point[:, 1]
+    cloud = _wall_cloud(point)
     grain = noise(point * (1, 1, 0), 60.0, 3, 22, 0.8)
     trowel = noise(point * (1.0, 3.2, 0), 11.0, 4, 23, 0.6)
     pigment = mix(linear_colour("3E6B66"), linear_colour("6F9A8C"), np.clip(0.5 + 0.75 * cloud + 0.22 * trowel, 0, 1))
@@ -204,16 +288,27 @@ def _wall(point: Array, normal: Array) -> Finish:
     below = edge(y - 0.20, PAINT_EDGE_UNITS)
     rail = edge(np.abs(y - 0.213) - 0.017, PAINT_EDGE_UNITS)
     pigment = mix(mix(pigment, wood, below), linear_colour("D8C9A8") * (1 + 0.1 * grain)[:, None], rail)
-    u, v = (x - POSTER.left) / POSTER.width, (POSTER.top - y) / POSTER.height
-    off = np.maximum(np.abs(u - 0.5) - 0.5, (np.abs(v - 0.5) - 0.5) * POSTER.height / POSTER.width) * POSTER.width
-    sheet = edge(off, PAINT_EDGE_UNITS)
+    return Finish(pigment, 0.025, 1.0)
+
+
+def _wall_cloud(point: Array) -> Array:
+    return noise(point, 2.2, 5, 21, 0.6)
+
+
+def _print(point: Array) -> Array:
+    """Paper with black and red ink."""
+    u, v = (point[:, 0] - POSTER.left) / POSTER.width, (POSTER.top - point[:, 1]) / POSTER.height
     ink, red = poster_mask(u, v)
     fibres = noise(point, 120.0, 2, 26)
-    paper = mix(linear_colour("F0E6D0") * (1 + 0.035 * fibres + 0.05 * cloud)[:, None], linear_colour("1B1B20"), ink)
-    paper = mix(paper, linear_colour("B5301F"), red)
-    shadow = 1 - 0.45 * np.exp(-np.maximum(_outside(x - 0.012, y + 0.016), 0) / 0.016)
-    pigment = mix(pigment * shadow[:, None], paper, sheet)
-    return Finish(pigment, 0.025, 1.0)
+    shade = (1 + 0.035 * fibres + 0.05 * _wall_cloud(point))[:, None]
+    return mix(mix(linear_colour("F0E6D0") * shade, linear_colour("1B1B20"), ink), linear_colour("B5301F"), red)
+
+
+def _sheet(point: Array, normal: Array) -> Finish:
+    """The same print as a sheet of its own, held by two brass pins at the top."""
+    inward = 0.5 * POSTER.width - np.abs(point[:, 0] - POSTER.left - 0.5 * POSTER.width)
+    pin = edge(np.hypot(inward - PIN_UNITS, POSTER.top - point[:, 1] - PIN_UNITS) - 0.5 * PIN_UNITS, PAINT_EDGE_UNITS)
+    return Finish(mix(_print(point), linear_colour("A8741F"), pin), 0.025 + 0.3 * pin, 1.0 - 0.8 * pin)
 
 
 def _outside(x: Array, y: Array) -> Array:
@@ -358,9 +453,10 @@ def _block(point: Array, normal: Array) -> Finish:
     return Finish(pigment, 0.04, 0.8)
 
 
-SURFACE_FINISHES: dict[str, Callable[[Array, Array], Finish]] = {
+SURFACE_FINISHES: dict[str, FinishOf] = {
     "floor": _floor, "wall": _wall, "body": _body, "lid": _lid, "orange": _orange, "marble": _marble, "block": _block,
 }  # fmt: skip
+CLIP_FINISHES: dict[str, FinishOf] = {**SURFACE_FINISHES, "wall": _bare_wall, "sheet": _sheet}
 BUMP_HEIGHTS: dict[str, Callable[[Array], Array]] = {  # heights, whose slope perturbs the normal
     "floor": lambda p: 0.0035 * noise(p, 9.0, 3, 14),
     "wall": lambda p: (

@@ -138,7 +138,7 @@ def evaluate_clip(
         clip = load_clip(clip)
     if isinstance(footage, str | os.PathLike):
         footage = open_footage(Path(footage))
-    session = _start(clip, footage, textures, filter, weights, flip)
+    session = open_clip_session(clip, footage, textures, filter, weights, flip)
     frames, starts = measured_frames(clip, every)
     still = {index: StillPixels() for index in session.views}
     for frame in track(frames, "looking for what stands still", len(frames), progress):
@@ -261,8 +261,15 @@ def _over_time(rows: Sequence[Row]) -> dict[int, dict[str, Any]]:
     }
 
 
-def _start(clip: Clip, footage: Instants, textures: int | None, filter: str, weights: str, flip: bool) -> ClipSession:
-    """Check that clip and footage belong together. Errors are those of `evaluate_clip`."""
+def open_clip_session(
+    clip: Clip,
+    footage: Instants,
+    textures: int | None = None,
+    filter: str = "bicubic",
+    weights: str = "delaunay",
+    flip: bool = False,
+) -> ClipSession:
+    """Check that clip and footage belong together. Arguments and errors are those of `evaluate_clip`."""
     moment = float(clip.timeline.times[0])
     scene = clip.scene(moment)
     views = match_photographs(scene, with_scene_cameras(scene, footage.instant(footage.timeline.frame_at(moment))))

@@ -20,14 +20,14 @@ from eigenfield.evaluation.plots import (
 )
 from eigenfield.runtime.files import output_errors, write_bytes
 
-STRIP_FILE = "over-time.png"
+STRIP_FILE, CLIP_SHEET_FILE = CLIP_PLOT_FILES = "over-time.png", "contact-sheet.png"
 STRIP_KINDS = (("encoded", "encoded", PLOT_BLUE), ("held_out", "held out", PLOT_ORANGE))
 
 
-def refuse_existing_strip(folder: Path, overwrite: bool) -> None:
-    """Check before any work that no chart would be replaced. OutputError `output-exists`, `not-a-folder` or
+def refuse_existing_clip_plots(folder: Path, overwrite: bool) -> None:
+    """Check before any work that no plot of a clip would be replaced. OutputError `output-exists`, `not-a-folder` or
     `output-address`."""
-    refuse_existing_pictures(folder, (STRIP_FILE,), overwrite)
+    refuse_existing_pictures(folder, CLIP_PLOT_FILES, overwrite)
 
 
 def write_strip(scores: Mapping[str, Any], folder: str | os.PathLike[str], *, overwrite: bool = False) -> Path:

@@ -49,6 +49,18 @@ def output_errors(path: str | os.PathLike[str]) -> Iterator[None]:
         raise
 
 
+def make_folder(path: Path) -> None:
+    """A folder, and those above it, where they are not there yet.
+
+    Raises:
+        OutputError: `not-a-folder`, `disk-full` or `not-writable`.
+    """
+    if path.is_file():
+        raise OutputError("not-a-folder", "is a file", path=path, remedy="name a folder")
+    with output_errors(path):
+        path.mkdir(parents=True, exist_ok=True)
+
+
 def refuse_existing(path: Path, overwrite: bool) -> None:
     """Before any work: raise OutputError if `path` exists and may not be replaced, or its folder is missing."""
     with output_errors(path):  # of a name that is too long even this cannot be asked
