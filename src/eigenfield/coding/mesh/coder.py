@@ -126,8 +126,22 @@ def encode_mesh(
     return range_coder.pad_bytes(header + body, max(n, m, v)), found[0]
 
 
+@dataclass(frozen=True, eq=False)
+class PlacedMesh:
+    """A mesh, and the (v, 3) int64 lattice coordinates of its vertices."""
+
+    mesh: Mesh
+    lattice: Lattice
+    places: NDArray[np.int64]
+
+
 def decode_mesh(data: bytes, where: str = "mesh", version: int = VERSION) -> Mesh:
-    """The mesh of `encode_mesh`.
+    """The mesh of `encode_mesh`; see `decode_placed`."""
+    return decode_placed(data, where, version).mesh
+
+
+def decode_placed(data: bytes, where: str = "mesh", version: int = VERSION) -> PlacedMesh:
+    """The mesh of `encode_mesh` on its lattice.
 
     Args:
         version: Of the codec: VERSION or OLD_VERSION.
@@ -164,7 +178,7 @@ def decode_mesh(data: bytes, where: str = "mesh", version: int = VERSION) -> Mes
     assert mesh.uv is not None
     if not (np.abs(mesh.vertices) <= limits.MAX_NUMBER).all() or not (np.abs(mesh.uv) <= limits.MAX_NUMBER).all():
         raise range_coder.damaged_error("positions or texture coordinates that are not finite", where)
-    return mesh
+    return PlacedMesh(mesh, lattice, built.points[vertices.place])
 
 
 def whole_faces(mesh: Mesh, lattice: Lattice) -> NDArray[np.bool_]:
