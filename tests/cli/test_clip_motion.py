@@ -59,8 +59,8 @@ def test_a_sequence_of_meshes_becomes_a_clip_that_moves(clip, filmed, run, tmp_p
     assert off.diagonal().max() < 4 and (off + 99 * np.eye(FRAMES)).min() > 2 * off.diagonal().max()
     exported = []
     for number in (0, 2):
-        assert run("export", clip, "--as", "obj", "--time", number, "-o", tmp_path / f"{number}.obj").code == 0
-        exported.append(read_mesh(tmp_path / f"{number}.obj").vertices)
+        assert run("export", clip, "--as", "obj", "--time", number, "-o", tmp_path / f"mesh{number}.obj").code == 0
+        exported.append(read_mesh(tmp_path / f"mesh{number}.obj").vertices)
     moved = np.linalg.norm(exported[1] - exported[0], axis=1) > 0.1
     assert moved.sum() == 64  # of the plate, and none of the backdrop
 
