@@ -31,7 +31,7 @@ import measure
 from eigenfield.capture import Footage, open_capture, open_footage
 from eigenfield.core.clip import Clip
 from eigenfield.core.spread import spread_indices
-from eigenfield.demo import demo_clip_proxy, draw_demo_clip
+from eigenfield.demo import CLIP_MESHES, draw_demo_clip
 from eigenfield.encoding import EncodeOptions, encode_footage
 from eigenfield.evaluation.clip import evaluate_clip
 from eigenfield.evaluation.strip import write_strip
@@ -98,7 +98,7 @@ def source_of(name: str, out: Path, size: int, grid: int, frames: int) -> Source
     if name == "demo":
         whole = f"demo-{grid}x{grid}-{size}-{frames}"
         draw_demo_clip(out / "clips" / whole, rows=grid, columns=grid, size=size, frames=frames)
-        return Source(whole, out / "clips" / whole, demo_clip_proxy(out / "clips" / whole, frames))
+        return Source(whole, out / "clips" / whole, out / "clips" / whole / CLIP_MESHES)
     if name in ("cloth", "panoptic"):
         folder = measure.data() / {"cloth": "clip_cloth_5x4", "panoptic": "panoptic_arc_10"}[name]
         return Source(name, folder, hold_out=None if name == "panoptic" else "every:5")

@@ -19,7 +19,7 @@ from eigenfield.gltf import encode_scene, layout, load
 from eigenfield.gltf.fallback import with_fallback
 from eigenfield.gltf.streams import FEATURES, OTHER_FEATURES
 from support import schema
-from support.clips import numbered_clip, read_all
+from support.clips import moving_clip, numbered_clip, read_all
 from support.coded_scenes import coded_scene, precise_scene
 from support.glb_surgery import DOCUMENT, changed, ours, outcome
 from support.scenes import tiny_scene
@@ -46,7 +46,7 @@ def files(good):
     made |= {name: encode_scene(coded_scene(name)) for name, codec in CODECS.items() if codec.kind == "weights"}
     made["precise"] = encode_scene(precise_scene())
     made["residual"] = encode_scene(replace(coded, residual=video))
-    made["clip"] = encode_scene(numbered_clip())
+    made["clip"] = encode_scene(moving_clip(numbered_clip(), lambda number, places: places + number))
     return made
 
 

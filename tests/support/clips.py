@@ -9,7 +9,7 @@ scales, so that no frame looks right with what another group has.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding.codecs import encoder
+from eigenfield.coding.mesh.coder import decode_placed
 from eigenfield.coding.video.film import encode_film
 from eigenfield.coding.video.film_layout import EMPTY_CODE, MEANS, TEXTURES, PlaneSizes, film_layout, join_parts
 from eigenfield.core.clip import Clip, Timeline
@@ -26,6 +27,7 @@ from eigenfield.core.payloads import Affine, Payload
 from eigenfield.core.proxy import Proxy
 from eigenfield.encoding.geometry.coded import coded_cameras, coded_mesh
 from eigenfield.gltf import coded_clip, load_clip
+from eigenfield.gltf.clips import CodedGroups
 from eigenfield.gltf.group import group_bytes
 from support import glb_surgery
 from support.scenes import bumpy_square, tiny_scene
@@ -142,3 +144,24 @@ def read_all(path: Path) -> None:
     clip = load_clip(path)
     for time in clip.timeline.times:
         clip.scene(time)
+
+
+def moving_clip(clip: Clip, steps: Callable[[int, NDArray[np.int64]], NDArray[np.int64]]) -> Clip:
+    """A clip of coded groups on a mesh that moves, but in groups in which it is where it was.
+
+    steps: from a frame's number and the lattice coordinates (v, 3) of the mesh to those in that frame.
+    """
+    groups = clip.groups
+    assert isinstance(groups, CodedGroups)
+    (stream,) = next(found for (kind, _), found in groups.payloads.items() if kind == "mesh")
+    placed, made, first = decode_placed(stream.data), [], 0
+    for index, count in enumerate(groups.lengths):
+        frames = np.stack([steps(number, placed.places) for number in range(first, first + count)])
+        data = encoder("motion-1")(placed.places, placed.mesh.faces, frames)
+        motion = Payload("motion-1", data) if (frames != placed.places).any() else None
+        made.append(group_bytes(replace(groups.coded(index), motion=motion)))
+        first += count
+    return coded_clip(
+        clip.rig, groups.mesh, clip.timeline, groups.layout, made, groups.lengths, to_rgb=groups.to_rgb,
+        settings=clip.settings, scores=clip.scores, generator=clip.generator, payloads=groups.payloads,
+    )  # fmt: skip

@@ -39,6 +39,7 @@ def clip_facts(layout: ClipLayout, heads: Sequence[GroupHead]) -> dict[str, Any]
         "groups": [group.frames for group in groups],
         "whole_groups": len(heads),
         "films": found,
+        "motion_bytes": sum(head.motion for head in heads),
         "bits_per_second": BITS * sum(group.length for group in groups[: len(heads)]) / seconds,
     }
 
@@ -60,7 +61,7 @@ def _size(part: FilmPart) -> list[int]:
 
 
 def clip_lines(clip: dict[str, Any]) -> list[str]:
-    """Four lines at most."""
+    """Five lines at most."""
     rate = clip["rate"][0] / clip["rate"][1]
     groups = ", ".join(f"{count} of {frames}" for frames, count in Counter(clip["groups"]).most_common(3))
     whole = sum(clip["groups"][: clip["whole_groups"]])
@@ -75,6 +76,8 @@ def clip_lines(clip: dict[str, Any]) -> list[str]:
         for film in clip["films"][:2]
     ]
     lines.append(f"films         {'; '.join(films)}")
+    if clip["motion_bytes"]:
+        lines.append(f"motion        {clip['motion_bytes']:,} bytes: the mesh moves")
     per_frame = clip["bits_per_second"] / BITS / rate / 1000
     lines.append(f"rate          {clip['bits_per_second'] / 1e6:.3g} Mbit/s, {per_frame:.3g} kB a frame")
     return lines

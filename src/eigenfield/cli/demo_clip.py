@@ -65,9 +65,7 @@ def make_demo_clip(output: Path, quiet: bool) -> None:
         footage = open_footage(folder)
         begin_step(shown, "encode")
         options = EncodeOptions(hold_out=CLIP_HOLD_OUT)
-        clip = encode_footage(
-            footage, drawing.demo_clip_proxy(folder, len(footage)), options, work=work, progress=progress
-        )
+        clip = encode_footage(footage, folder / drawing.CLIP_MESHES, options, work=work, progress=progress)
         save(clip, path, overwrite=True, progress=progress)
         clip = load_clip(path)
         begin_step(shown, "fly")

@@ -6,7 +6,7 @@ import logging
 import re
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import click
 
@@ -103,6 +103,7 @@ Examples:
   eigenfield encode photos/ --hold-out every:5 -o scene.glb
   eigenfield encode photos/ --residual 70 -o archive.glb
   eigenfield encode footage/ --clip 0:2s --proxy mesh.ply -o clip.glb
+  eigenfield encode footage/ --clip 0:2s --proxy 'mesh_%04d.ply' -o clip.glb
   eigenfield encode photos/ --proxy mesh.obj --fit none --uv-ssim 0.98 -o paper.glb""",
 )
 @capture_argument()
@@ -110,7 +111,7 @@ Examples:
     "--proxy",
     type=PATH,
     metavar="MESH",
-    help="Your own mesh, in the cameras' world: .ply, .obj, .glb, .gltf, .stl or .off.",
+    help="A .ply, .obj, .glb, .gltf, .stl or .off file in the cameras' world; of a clip m_%04d.ply.",
 )
 @click.option(
     "--output",
@@ -177,6 +178,7 @@ def command(
     from eigenfield.encoding.views import check_selection
     from eigenfield.gltf import refuse_output, save
     from eigenfield.proxy import refuse_no_mesh
+    from eigenfield.proxy.meshes.sequence import is_sequence, mesh_files
     from eigenfield.reconstruction.whole import check_settings
     from eigenfield.runtime.objects import find_objects
 
@@ -184,7 +186,12 @@ def command(
     whole = default_output(capture) if output is None else output
     output = whole.with_suffix(".draft.glb") if draft and output is None else whole
     refuse_output(output, overwrite)
-    if proxy is not None:
+    if is_sequence(proxy):
+        if place.clip is None:
+            message, remedy = "--proxy names a mesh for each frame", "say --clip, or name one mesh"
+            raise OptionError("sequence-unused", message, remedy=remedy)
+        mesh_files(cast("Path", proxy))
+    elif proxy is not None:
         refuse_no_mesh(proxy)
     options = from_fields(EncodeOptions, settings)
     if place.clip is None and options.group is not None:

@@ -17,6 +17,8 @@ docs/coding.md describes its bytes. What a codec's functions take and return is 
                key_interval) -> bytes                    -> frames, one after the other
     film       (frames, size, crf, preset)               (units, size, where)
                -> units, one for each frame              -> frames, one after the other
+    motion     (places, faces, frames) -> bytes          (data, places, faces, where)
+                                                         -> vertices that move, their places
 
 `where` is the place that a FormatError names, and `name` what it says is damaged. `codes` are those of a whole picture
 (`stacking`).
@@ -138,5 +140,9 @@ CODECS: dict[str, Codec] = {
         frame_size, AV1, ten.PICTURE_BITS,
     ),
     "film-1": Codec("film", encode_film, decode_film, "film-1", "1.11", ("MAX_FILM_SIDE", "MAX_FILM_PIXELS")),
+    "motion-1": Codec(
+        "motion", _later("mesh.motion", "encode_motion"), _later("mesh.motion", "decode_motion"),
+        "motion-1", "1.11", ("MAX_GROUP_FRAMES", "MAX_MOTION"),
+    ),
     "video-1": Codec("video", encode_video, decode_video, None, "1.3", ("MAX_TEXELS", "MAX_VIDEO")),
 }  # fmt: skip

@@ -45,6 +45,7 @@ MAX_TIME = 10**9  # seconds
 MAX_FILMS = 4
 MAX_FILM_SIDE = 8_192
 MAX_FILM_PIXELS = 2**24
+MAX_MOTION = 2**25  # vertices that move in a group, times its frames
 
 MAX_VIDEO = 2**35  # pixels of all frames of a residual: they are decoded one by one
 

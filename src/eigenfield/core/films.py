@@ -70,11 +70,13 @@ class CodedGroup:
         means: Of each plane, from codes to numbers for each channel.
         bases: Of each basis of each plane, likewise for each channel of each texture.
         units: For each frame the temporal unit of each film; the first of a film is a key picture.
+        motion: Where the mesh's vertices are in each frame; None: where the mesh has them.
     """
 
     weights: tuple[tuple[Payload, ...], ...]
     means: tuple[Affine, ...]
     bases: tuple[tuple[Affine, ...], ...]
     units: tuple[tuple[bytes, ...], ...]
+    motion: Payload | None = None
 
     __repr__ = brief_repr

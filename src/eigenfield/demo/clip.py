@@ -78,16 +78,6 @@ def draw_demo_clip(
     draw_footage(folder, array_cameras(rows, columns, size), columns, look, frames, CLIP_SAMPLES_PER_SIDE, progress)
 
 
-def demo_clip_proxy(folder: Path, frames: int) -> Path:
-    """The mesh on which the clip is encoded: that of the middle frame.
-
-    Args:
-        folder: Of the footage.
-        frames: Of it.
-    """
-    return folder / (CLIP_MESHES % (frames // 2))
-
-
 def draw_footage(
     folder: Path,
     cameras: Sequence[Camera],

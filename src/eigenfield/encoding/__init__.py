@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+from collections.abc import Sequence
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -133,7 +134,7 @@ def encode(
 @takes_options(EncodeOptions)
 def encode_footage(
     footage: Footage,
-    proxy: str | os.PathLike[str] | Mesh | None = None,
+    proxy: str | os.PathLike[str] | Mesh | Sequence[str | os.PathLike[str] | Mesh] | None = None,
     options: EncodeOptions | None = None,
     *,
     work: str | os.PathLike[str] | None = None,
@@ -141,11 +142,13 @@ def encode_footage(
     progress: Progress | None = notebook_progress,
     **changes: Any,
 ) -> Clip:
-    """Encode footage on a proxy mesh that stands still, as `eigenfield encode --clip` does.
+    """Encode footage on a proxy mesh that stands still, or on one for each frame, as `eigenfield encode --clip` does.
 
     Args:
         footage: Of cameras that are known.
-        proxy: A triangle mesh in the world of the cameras, or its file.
+        proxy: A triangle mesh in the world of the cameras, or its file. A list of them, one for each frame, or a path
+            with %04d in place of their number: a mesh that moves. All have the same triangles, and the texture
+            coordinates of the first, whose vertices then stay where they are.
         options: What is asked for; None for the defaults. Those that are for one instant are refused.
         work: Folder that keeps finished stages, so that the same call goes on from there. None: a temporary one.
         workers: Of `open_executor`: they make the groups after the first, with the same bytes. They see `work` and the

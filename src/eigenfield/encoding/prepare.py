@@ -48,6 +48,7 @@ def plan_encoding(
     work: Path | None = None,
     progress: Progress | None = None,
     warn: bool = True,
+    exact: bool = False,
 ) -> EncodePlan:
     """Cameras and proxy as a file keeps them: for a fit, the surface fitted to the photographs, and both as coded.
 
@@ -57,12 +58,14 @@ def plan_encoding(
         proxy: A mesh, its file, or a proxy with sheets.
         asked: The options; a target is planned for at its preset's quality.
         warn: Whether a mesh that does not lie where the photographs say is named in a warning.
+        exact: Whether vertices stay where they are given, as those of a mesh that moves do.
 
     Raises:
         CaptureError, ProxyError, OptionError, OutputError: As `encode`.
     """
     begin_step(progress, "mesh")
-    return _at_its_quality(_prepare(proxy, select_views(capture, asked), asked, work, progress, warn), asked)
+    prepared = _prepare(proxy, select_views(capture, asked), asked, work, progress, warn, exact)
+    return _at_its_quality(prepared, asked)
 
 
 def plan_at_quality(
@@ -100,6 +103,7 @@ def _prepare(
     work: Path | None,
     progress: Progress | None,
     warn: bool,
+    exact: bool,
 ) -> PreparedProxy:
     """The proxy with an atlas and as many triangles as asked for; for a fit, moved to where the photographs agree."""
     cameras, given, options = views.rig.cameras, proxy, _for_one_quality(asked)
@@ -126,8 +130,9 @@ def _prepare(
     if options.fit == "none":
         return PreparedProxy(given, Proxy(mesh), views, by_quality=False)
     lattice, side = relief_lattice(mesh, cameras, DEPTH_ERROR_PX), atlas_side(mesh, cameras[views.rig.reference], 1.0)
-    given_surface = Proxy(mesh, lattice)
-    mesh = fit_surface(given_surface, views.rig.encoded_cameras, views.observations, side, work, progress).mesh
+    if not exact:
+        surface = Proxy(mesh, lattice)
+        mesh = fit_surface(surface, views.rig.encoded_cameras, views.observations, side, work, progress).mesh
     measured = views.rig.encoded_cameras if _simplifies(options) else cameras
     fitted = relief_proxy(mesh, measured, DEPTH_ERROR_PX)
     by_quality = _simplifies(options) and lattice is None  # a relief keeps its atlas

@@ -6,7 +6,7 @@ import contextlib
 import hashlib
 import threading
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from eigenfield.coding import limits
 from eigenfield.coding.codecs import CODECS
+from eigenfield.coding.mesh.coder import PlacedMesh, decode_placed
 from eigenfield.coding.pictures.quantise import mean_values
 from eigenfield.coding.video.film import decode_film
 from eigenfield.coding.video.film_layout import pictures_of
@@ -25,7 +26,7 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Payload, Payloads, weights_key
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
-from eigenfield.gltf.group import read_group
+from eigenfield.gltf.group import read_group, read_head
 from eigenfield.gltf.source import ByteSource, HeldBytes, StoredBytes, name_file_in_errors
 
 _AGAIN = "copy or download the file again"
@@ -91,6 +92,7 @@ class CodedGroups:
     to_rgb: NDArray[np.float32] | None
     payloads: Payloads
     _kept: dict[int, Group] = field(default_factory=dict, init=False, repr=False)
+    _placed: list[PlacedMesh] = field(default_factory=list, init=False, repr=False)
 
     @property
     def lengths(self) -> Sequence[int]:
@@ -106,6 +108,10 @@ class CodedGroups:
             self._kept.clear()
             self._kept[index] = kept
         return kept
+
+    def moves(self, index: int) -> bool:
+        """Whether the mesh moves in a group; its head alone is read. FormatError `group-damaged`."""
+        return read_head(self.stored[index].data, self.layout, group_place(index)).motion > 0
 
     def coded(self, index: int) -> CodedGroup:
         """A group as it is coded, its streams not decoded. FormatError `group-damaged`, `truncated`."""
@@ -125,7 +131,8 @@ class CodedGroups:
 
     def _decode(self, index: int) -> Group:
         coded, where = self.coded(index), group_place(index)
-        frames = CodedFrames(coded, self.layout, where, self.stored[index])
+        motion = None if coded.motion is None else self._motion(coded.motion, len(coded.units), where)
+        frames = CodedFrames(coded, self.layout, where, self.stored[index], motion)
         first, planes, payloads = frames[0], [], self.payloads
         parts = zip(first.means, first.textures, coded.bases, coded.weights, strict=True)
         for mean, own, affines, streams in parts:
@@ -137,7 +144,19 @@ class CodedGroups:
                 bases.append(Basis(textures, scale, zero, weights))
                 payloads |= {weights_key(weights): [stream]}
             planes.append(Plane(mean, tuple(bases)))
-        return Group(Proxy(self.mesh), Appearance(tuple(planes), self.to_rgb), frames, payloads)
+        mesh = self.mesh if first.vertices is None else replace(self.mesh, vertices=first.vertices)
+        return Group(Proxy(mesh), Appearance(tuple(planes), self.to_rgb), frames, payloads)
+
+    def _motion(self, stream: Payload, frames: int, where: str) -> Motion:
+        if not self._placed:
+            (mesh,) = next(found for (kind, _), found in self.payloads.items() if kind == "mesh")
+            self._placed.append(decode_placed(mesh.data, where, mesh.data[0]))
+        placed = self._placed[0]
+        moving, steps = CODECS[stream.codec].decode(stream.data, placed.places, placed.mesh.faces, where)
+        if len(steps) != frames:
+            message = f"vertices move in {len(steps)} frames, the group has {frames}"
+            raise FormatError("group-damaged", message, where=where)
+        return Motion(placed, moving, steps, where)
 
     def _weights(self, stream: Payload, count: int, where: str) -> NDArray[np.float32]:
         weights: NDArray[np.float32] = CODECS[stream.codec].decode(stream.data, where)
@@ -149,7 +168,32 @@ class CodedGroups:
         return weights
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_kept": {}}
+        return {**self.__dict__, "_kept": {}, "_placed": []}
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """The vertices of a group's frames.
+
+    Attributes:
+        placed: The mesh of the file.
+        moving: (n,) the vertices that move.
+        steps: (T, n, 3) their lattice coordinates.
+    """
+
+    placed: PlacedMesh
+    moving: NDArray[np.int64]
+    steps: NDArray[np.int64]
+    where: str
+
+    def vertices(self, number: int) -> NDArray[np.float32]:
+        """(V, 3) of a frame. FormatError `coded-damaged`, a lattice has no such point."""
+        vertices = self.placed.mesh.vertices.copy()
+        with np.errstate(over="ignore", invalid="ignore"):
+            vertices[self.moving] = self.placed.lattice.points(self.steps[number])
+        if not (np.abs(vertices) <= limits.MAX_NUMBER).all():
+            raise FormatError("coded-damaged", "positions that are not finite", where=self.where)
+        return vertices
 
 
 def group_place(index: int) -> str:
@@ -162,8 +206,10 @@ class CodedFrames(Sequence[Frame]):
     from the first on.
     """
 
-    def __init__(self, coded: CodedGroup, layout: FilmLayout, where: str, stored: StoredGroup) -> None:
-        self._coded, self._layout, self._where, self._stored = coded, layout, where, stored
+    def __init__(
+        self, coded: CodedGroup, layout: FilmLayout, where: str, stored: StoredGroup, motion: Motion | None = None
+    ) -> None:
+        self._coded, self._layout, self._where, self._stored, self._motion = coded, layout, where, stored, motion
         self._lock = threading.Lock()
         self._films = self._pictures()
         self._next, self._last = 0, Frame((), ())
@@ -184,7 +230,7 @@ class CodedFrames(Sequence[Frame]):
             except BaseException:  # an iterator that has raised is at its end
                 self._films, self._next = self._pictures(), 0
                 raise
-            self._next, self._last = number + 1, self._frame(pictures)
+            self._next, self._last = number + 1, self._frame(number, pictures)
             return self._last
 
     def _skip(self, count: int) -> tuple[NDArray[np.uint16], ...]:
@@ -202,13 +248,14 @@ class CodedFrames(Sequence[Frame]):
         ]
         return zip(*films, strict=True)
 
-    def _frame(self, pictures: Sequence[NDArray[np.uint16]]) -> Frame:
+    def _frame(self, number: int, pictures: Sequence[NDArray[np.uint16]]) -> Frame:
         means, textures = [], []
         for plane, affine in zip(self._layout.planes, self._coded.means, strict=True):
             mean = pictures_of(plane.mean, pictures[plane.mean.film])
             means.append(mean_values(np.moveaxis(mean, 0, -1), affine))
             textures.append(tuple(_texture_codes(part, pictures[part.film], plane.channels) for part in plane.bases))
-        return Frame(tuple(means), tuple(textures))
+        vertices = None if self._motion is None else self._motion.vertices(number)
+        return Frame(tuple(means), tuple(textures), vertices=vertices)
 
 
 def _texture_codes(part: FilmPart, picture: NDArray[np.uint16], channels: int) -> NDArray[np.uint16]:

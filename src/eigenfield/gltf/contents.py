@@ -41,7 +41,7 @@ def parts(path: str | os.PathLike[str]) -> dict[str, int]:
     Of a clip they are those of all groups that are whole.
 
     mean: the means, and the picture for other viewers (`images[0]`).
-    mesh: positions, texture coordinates, indices; a coded one, and the coarse one for other viewers.
+    mesh: positions, texture coordinates, indices; a coded one, its motion, and the coarse one for other viewers.
     opacity: of sheets; 0 where there is none.
     residual: of captured views; 0 where there is none.
     other: JSON, calibration, triangles, headers and padding."""
@@ -59,6 +59,7 @@ def describe_clip(path: str | os.PathLike[str]) -> tuple[ClipLayout, list[GroupH
         means = {plane.mean.film for plane in layout.films.planes}
         for head in heads:
             made["weights"] += sum(map(sum, head.weights))
+            made["mesh"] += head.motion
             for units in head.frames:
                 for film, length in enumerate(units):
                     made["mean" if film in means else "textures"] += length

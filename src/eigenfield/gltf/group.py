@@ -1,7 +1,7 @@
 """A group of frames as bytes (`group-1`): a deflated JSON head, then its streams one behind the other.
 
-First come the weights, then frame by frame a unit of each film. A group that is still arriving can be shown as far as
-it is there.
+First come the weights, then maybe the motion of the mesh, then frame by frame a unit of each film. A group that is
+still arriving can be shown as far as it is there.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from eigenfield.gltf.strict_json import Value
 
 HEAD = struct.Struct("<I")  # bytes of the deflated JSON, which follows
 WEIGHTS_CODEC = "weights-1"
+MOTION_CODEC = "motion-1"
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +36,7 @@ class GroupHead:
         first: The first byte of the streams.
         weights: Lengths, of each basis of each plane.
         frames: Lengths: for each frame the unit of each film.
+        motion: The length; 0: the mesh stands still.
     """
 
     first: int
@@ -42,11 +44,13 @@ class GroupHead:
     means: tuple[Affine, ...]
     bases: tuple[tuple[Affine, ...], ...]
     frames: tuple[tuple[int, ...], ...]
+    motion: int
 
     @property
     def lengths(self) -> list[int]:
         """Of all streams, in their order."""
-        return [*chain.from_iterable(self.weights), *chain.from_iterable(self.frames)]
+        motion = [self.motion] if self.motion else []
+        return [*chain.from_iterable(self.weights), *motion, *chain.from_iterable(self.frames)]
 
 
 def group_bytes(group: CodedGroup) -> bytes:
@@ -60,10 +64,12 @@ def group_bytes(group: CodedGroup) -> bytes:
             for mean, plane in zip(group.means, group.bases, strict=True)
         ],
         "frames": [list(map(len, units)) for units in group.units],
+        **({} if group.motion is None else {"motion": len(group.motion.data)}),
     }
     text = deflate(json_bytes(head).rstrip(b" "))
-    weights = [weights.data for plane in group.weights for weights in plane]
-    return b"".join([HEAD.pack(len(text)), text, *weights, *chain.from_iterable(group.units)])
+    streams = [weights.data for plane in group.weights for weights in plane]
+    streams += [] if group.motion is None else [group.motion.data]
+    return b"".join([HEAD.pack(len(text)), text, *streams, *chain.from_iterable(group.units)])
 
 
 def _affine(affine: Affine, channels: int) -> dict[str, Any]:
@@ -79,6 +85,7 @@ def read_group(data: bytes, layout: FilmLayout, where: str) -> CodedGroup:
     streams = (data[start:end] for start, end in pairwise(ends))
     return CodedGroup(
         weights=tuple(tuple(Payload(WEIGHTS_CODEC, next(streams)) for _ in plane) for plane in head.weights),
+        motion=Payload(MOTION_CODEC, next(streams)) if head.motion else None,
         means=head.means,
         bases=head.bases,
         units=tuple(tuple(next(streams) for _ in units) for units in head.frames),
@@ -126,6 +133,7 @@ def _head_of(entry: Value, first: int, layout: FilmLayout) -> GroupHead:
             for own, plane in zip(bases, layout.planes, strict=True)
         ),
         frames=tuple(tuple(map(_length, units.items(films, films))) for units in frames),
+        motion=_length(entry["motion"]) if entry.has("motion") else 0,
     )
 
 

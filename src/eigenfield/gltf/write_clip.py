@@ -23,6 +23,7 @@ from eigenfield.gltf.coded_pictures import shown_mean
 from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, GROUPS_CHUNK, Glb, glb_blocks, json_bytes
 from eigenfield.gltf.fallback import make_fallback
 from eigenfield.gltf.findings import Findings
+from eigenfield.gltf.group import MOTION_CODEC
 from eigenfield.gltf.layout import TIMELINE, unpacked_document
 from eigenfield.gltf.layout_timeline import GROUP_ALIGNMENT
 from eigenfield.gltf.read_clip import read_clip_layout
@@ -119,6 +120,7 @@ def _needs(groups: CodedGroups, codecs: Iterable[str], cameras: Mapping[str, Any
     """The features that a reader must know to draw this clip; codecs: of streams beside those of groups."""
     coded = groups.coded(0)
     named = {FILM_CODEC, *(weights.codec for plane in coded.weights for weights in plane), *codecs}
+    named |= {MOTION_CODEC} if any(map(groups.moves, range(len(groups.stored)))) else set()
     found = {
         TIMELINE: True,
         "namePattern": "pattern" in cameras,

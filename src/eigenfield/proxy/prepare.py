@@ -17,8 +17,7 @@ from eigenfield.core.progress import Progress
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy.atlas.layout import atlas_fault
 from eigenfield.proxy.atlas.unwrap import unwrap_mesh
-from eigenfield.proxy.meshes.formats import RawMesh
-from eigenfield.proxy.meshes.read import check_mesh, read_mesh
+from eigenfield.proxy.meshes.read import check_mesh, raw_of, read_mesh
 from eigenfield.proxy.surface.neighbours import project_inside
 from eigenfield.proxy.topology import remove_unused_vertices
 
@@ -51,7 +50,8 @@ def prepare_proxy(
         OptionError: As `unwrap_mesh`.
     """
     path = None if isinstance(path_or_mesh, Mesh) else Path(path_or_mesh)
-    mesh = _from_memory(path_or_mesh) if isinstance(path_or_mesh, Mesh) else read_mesh(path_or_mesh, origin)
+    given = path_or_mesh
+    mesh = check_mesh(raw_of(given), None) if isinstance(given, Mesh) else read_mesh(given, origin)
     _check_seen(mesh, cameras, path)
     mesh = without_far_vertices(mesh, cameras, path)
     try:
@@ -62,11 +62,6 @@ def prepare_proxy(
         return unwrap_mesh(mesh, triangles=triangles, cameras=cameras, progress=progress)
     except ProxyError as error:
         raise ProxyError(error.code, error.message, path=path, remedy=error.remedy) from error
-
-
-def _from_memory(mesh: Mesh) -> Mesh:
-    uv = None if mesh.uv is None else np.asarray(mesh.uv, np.float64)
-    return check_mesh(RawMesh(np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int64), uv), None)
 
 
 def _check_seen(mesh: Mesh, cameras: Sequence[Camera], path: Path | None) -> None:

@@ -54,6 +54,7 @@ class _Welded:
         sheet: (m,) of each face.
         label: Of each vertex its chart, whose `kinds` and `maps` are of `_chart_kinds`.
         codes: (v, 2) int64 texture coordinates.
+        origin: (v,) which vertex of the given mesh each is.
     """
 
     places: NDArray[np.int64]
@@ -64,6 +65,7 @@ class _Welded:
     kinds: NDArray[np.int8]
     maps: NDArray[np.int64]
     codes: NDArray[np.int64]
+    origin: NDArray[np.int64]
 
 
 def encode_mesh(
@@ -91,6 +93,23 @@ def encode_mesh(
         ValueError: The mesh has no texture coordinates, reaches 2^20 steps from the lattice's origin or behind its
             camera; or `uv_bits` or `fine` is out of range; or the sheets do not divide the mesh.
     """
+    return _encode(mesh, lattice, uv_bits, fine, sheets)[:2]
+
+
+def vertex_origins(data: bytes, mesh: Mesh) -> NDArray[np.int64]:
+    """(v,) which vertex of a mesh of one sheet each vertex is that `decode_mesh` finds in the bytes of that mesh: the
+    first of those that are one there."""
+    _, flat, uv_bits, fine, _, _, _, *numbers = HEADER.unpack_from(data)
+    lattice = Lattice(np.array(numbers).reshape(4, 4), bool(flat))
+    again, _, origins = _encode(mesh, lattice, uv_bits, fine, ())
+    assert again == data
+    return origins
+
+
+def _encode(
+    mesh: Mesh, lattice: Lattice, uv_bits: int, fine: int, sheets: Sequence[int]
+) -> tuple[bytes, Mesh, NDArray[np.int64]]:
+    """As `encode_mesh`, and (v,) which vertex of the given mesh each one is."""
     if mesh.uv is None or not 1 <= uv_bits <= MESH_MAX_UV_DIGITS:
         raise ValueError("a mesh needs texture coordinates, of 1 to 18 binary digits")
     if not 0 <= fine <= (MESH_MAX_FINE_DIGITS if lattice.flat else 0):
@@ -100,7 +119,7 @@ def encode_mesh(
         raise ValueError("sheets that do not divide the mesh")
     welded = _weld_mesh(mesh, lattice, uv_bits, np.repeat(np.arange(len(counts)), counts))
     n, m, v = len(welded.places), len(welded.faces), len(welded.place)
-    found: list[Mesh] = []
+    found: list[tuple[Mesh, NDArray[np.int64]]] = []
 
     def run(coder: Any) -> None:
         source, built = _source(welded), new_built(n, m)
@@ -119,15 +138,29 @@ def encode_mesh(
         assert complete
         codes = welded.codes[given.order]
         code_textures(coder, vertices, lattice.points(built.points), codes, *corner_lists(vertices.faces, v))
-        found[:] = [_mesh(lattice, uv_bits, built, vertices, codes, VERSION)]
+        found[:] = [(_mesh(lattice, uv_bits, built, vertices, codes, VERSION), welded.origin[given.order])]
 
     header = HEADER.pack(VERSION, int(lattice.flat), uv_bits, fine, n, m, v, *lattice.matrix.reshape(-1))
     body = range_coder.coded_bytes(run, CONTEXTS, MIXTURES, room=4 * (n + m + v) + 1024)
-    return range_coder.pad_bytes(header + body, max(n, m, v)), found[0]
+    return range_coder.pad_bytes(header + body, max(n, m, v)), *found[0]
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedMesh:
+    """A mesh, and the (v, 3) int64 lattice coordinates of its vertices."""
+
+    mesh: Mesh
+    lattice: Lattice
+    places: NDArray[np.int64]
 
 
 def decode_mesh(data: bytes, where: str = "mesh", version: int = VERSION) -> Mesh:
-    """The mesh of `encode_mesh`.
+    """The mesh of `encode_mesh`; see `decode_placed`."""
+    return decode_placed(data, where, version).mesh
+
+
+def decode_placed(data: bytes, where: str = "mesh", version: int = VERSION) -> PlacedMesh:
+    """The mesh of `encode_mesh` on its lattice.
 
     Args:
         version: Of the codec: VERSION or OLD_VERSION.
@@ -164,7 +197,7 @@ def decode_mesh(data: bytes, where: str = "mesh", version: int = VERSION) -> Mes
     assert mesh.uv is not None
     if not (np.abs(mesh.vertices) <= limits.MAX_NUMBER).all() or not (np.abs(mesh.uv) <= limits.MAX_NUMBER).all():
         raise range_coder.damaged_error("positions or texture coordinates that are not finite", where)
-    return mesh
+    return PlacedMesh(mesh, lattice, built.points[vertices.place])
 
 
 def whole_faces(mesh: Mesh, lattice: Lattice) -> NDArray[np.bool_]:
@@ -204,7 +237,7 @@ def _weld_mesh(mesh: Mesh, lattice: Lattice, uv_bits: int, sheet: NDArray[np.int
     points, place = np.unique(points, axis=0, return_inverse=True)
     return _Welded(
         np.ascontiguousarray(points[:, :3]), place.reshape(-1).astype(np.int32), faces.astype(np.int32), sheet,
-        label[used], kinds, maps, codes[used],
+        label[used], kinds, maps, codes[used], used,
     )  # fmt: skip
 
 

@@ -58,16 +58,15 @@ class ActivePlane:
             block.textures = np.where(self.coarse, block.textures, textures)
 
 
-@contextlib.contextmanager
-def open_active_plane(
-    footprints: Footprints, settings: PlaneSettings, moves: Callable[[int], NDArray[np.bool_]], work: Path | None
-) -> Iterator[ActivePlane]:
-    """The part of a plane that changes.
+Moves = Callable[[int], NDArray[np.bool_]]  # from the number of a camera to (h, w), which of its pixels move
+Texels = tuple[NDArray[np.bool_], NDArray[np.bool_]]  # of the mean, and of the components, as of `ActivePlane`
+
+
+def active_texels(footprints: Footprints, settings: PlaneSettings, moves: Moves) -> Texels:
+    """The texels of a plane that any moving pixel sees.
 
     Args:
         footprints: Of all pixels that the plane is fitted to.
-        moves: From the number of a camera to (h, w), which of these pixels move.
-        work: Folder for scratch files.
     """
     cameras, size = range(len(footprints)), footprints.surface.size
 
@@ -78,6 +77,21 @@ def open_active_plane(
         return np.asarray(np.abs(texels[0]) > MIN_SHARE)
 
     mean, coarse = parallel_map(seen, (settings.mean, settings.grid))
+    return mean, coarse
+
+
+@contextlib.contextmanager
+def open_active_plane(
+    footprints: Footprints, changing: Texels, moves: Moves, work: Path | None
+) -> Iterator[ActivePlane]:
+    """The part of a plane that changes.
+
+    Args:
+        footprints: Of all pixels that the plane is fitted to, in the frames that are fitted.
+        changing: `active_texels`, in any frame.
+        work: Folder for scratch files.
+    """
+    (mean, coarse), size = changing, footprints.surface.size
 
     def see(camera: int) -> NDArray[np.bool_]:
         found = moves(camera)

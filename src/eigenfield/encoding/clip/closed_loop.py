@@ -81,6 +81,7 @@ def code_group(
         means=tuple(means.scale.affine(number, plane.channels) for number, plane in enumerate(parts)),
         bases=tuple((textures.scale.affine(number, len(plane.bases[0].at)),) for number, plane in enumerate(parts)),
         units=tuple(zip(means.units, textures.units, strict=True)),
+        motion=None if group.clip.moving is None else group.clip.moving.payload(group.numbers),
     )
     return coded, [float(one) for one in final.each("psnr0")] if closed else []
 

@@ -6,6 +6,7 @@ import hashlib
 import os
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from itertools import chain
 from pathlib import Path
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.arguments import kind_in_words
 from eigenfield.core.clip import Clip
 from eigenfield.core.errors import OptionError, one_line
 from eigenfield.core.mesh import Mesh
@@ -22,6 +24,7 @@ from eigenfield.core.progress import Progress, begin_step
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.version import __version__
 from eigenfield.encoding.clip.groups import Groups, MadeGroup
+from eigenfield.encoding.clip.motion import MovingMesh, moving_mesh
 from eigenfield.encoding.clip.plan import open_clip_plan
 from eigenfield.encoding.fitted.colour import to_rgb
 from eigenfield.encoding.options import EncodeOptions
@@ -30,6 +33,8 @@ from eigenfield.encoding.prepare import plan_encoding
 from eigenfield.gltf.clips import coded_clip
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.proxy import refuse_no_mesh
+from eigenfield.proxy.atlas.unwrap import UNWRAP_MIN_TRIANGLES
+from eigenfield.proxy.meshes.sequence import is_sequence, read_sequence
 from eigenfield.runtime.files import output_errors
 from eigenfield.runtime.parallel import even_pieces, parallel_map
 from eigenfield.runtime.stages import SCENE_ROOMS, Stages, stage_key
@@ -38,6 +43,7 @@ from eigenfield.runtime.tasks import Workers
 if TYPE_CHECKING:
     from eigenfield.capture.footage import Footage
 
+GivenProxy = str | os.PathLike[str] | Mesh | Proxy | Sequence[str | os.PathLike[str] | Mesh]
 DEFAULT_GROUP = "1s"
 GROUP_PATTERN = re.compile(r"(\d{1,9})|(\d{1,9}(?:\.\d*)?|\.\d+)s")  # frames, or seconds
 GROUP_LIMITS = 1, 1024  # frames
@@ -48,16 +54,19 @@ STILL_OPTIONS = (  # that have no meaning for clips
 
 def encode_clip(
     footage: Footage,
-    proxy: str | os.PathLike[str] | Mesh | Proxy | None,
+    proxy: GivenProxy | None,
     asked: EncodeOptions,
     work: Path | None = None,
     progress: Progress | None = None,
     workers: Workers | None = None,
 ) -> Clip:
-    """A clip on one still proxy: its frames share the weights of their group (equation 6, summed over its frames).
+    """A clip on a proxy that stands still, or on a mesh for each frame.
+
+    Its frames share the weights of their group (equation 6, summed over its frames).
 
     Args:
-        proxy: Opaque. None is refused: nothing estimates the surface of a clip yet.
+        proxy: Opaque; or a mesh for each frame (`read_sequence`). None is refused: nothing estimates the surface of a
+            clip yet.
         asked: Options; those that clips have no use for are refused.
         work: Folder that keeps finished stages; None: nothing is kept.
         workers: That make all groups but the first, which says how many textures there are; they see `work` and the
@@ -68,18 +77,18 @@ def encode_clip(
         CaptureError, ProxyError, OutputError: As `encode`.
     """
     refuse_still_options(asked)
-    proxy = _checked_proxy(footage, proxy)
+    proxy = _checked_proxy(footage, proxy, asked)
     length = group_length(asked.group or DEFAULT_GROUP, footage.timeline.rate)
     if work is not None:
         with output_errors(work):
             work.mkdir(parents=True, exist_ok=True)
-    middle = cast("CalibratedObservations", footage.instant(len(footage) // 2))
-    plan = plan_encoding(middle, proxy, asked, work, progress)
-    identity = stage_key([_footage_digest(footage), asked, _plan_digest(plan)], SCENE_ROOMS)
+    plan, moving = _plan(footage, proxy, asked, work, progress)
+    motion = None if moving is None else moving.digest
+    identity = stage_key([_footage_digest(footage), asked, _plan_digest(plan), motion], SCENE_ROOMS)
     spans = even_pieces(len(footage), -(-len(footage) // length))
-    groups = Groups(footage, plan, identity, tuple(spans), work)
+    groups = Groups(footage, plan, identity, tuple(spans), work, moving)
     begin_step(progress, "fit")
-    with Stages(None if work is None else work / "clip") as stages, open_clip_plan(plan, work) as clip:
+    with Stages(None if work is None else work / "clip") as stages, open_clip_plan(plan, work, moving) as clip:
         made = [groups.make(clip, stages, 0, None, progress)]
         counts = made[0].counts
         if workers is not None and len(spans) > 1:
@@ -99,6 +108,20 @@ def encode_clip(
         generator=f"eigenfield {__version__}",
         payloads=plan.payloads,
     )
+
+
+def _plan(
+    footage: Footage, proxy: GivenProxy, asked: EncodeOptions, work: Path | None, progress: Progress | None
+) -> tuple[EncodePlan, MovingMesh | None]:
+    """The plan of the middle instant; or of the first on its own mesh as it is given, and the meshes of all."""
+    if not is_sequence(proxy):
+        middle = cast("CalibratedObservations", footage.instant(len(footage) // 2))
+        return plan_encoding(middle, cast("Mesh", proxy), asked, work, progress), None
+    first = cast("CalibratedObservations", footage.instant(0))
+    sequence = read_sequence(cast("str", proxy), len(footage), first.origin)
+    whole = replace(asked, triangles=max(len(sequence.mesh.faces), UNWRAP_MIN_TRIANGLES))
+    plan = plan_encoding(first, sequence.mesh, whole, work, progress, exact=True)
+    return plan, moving_mesh(plan, sequence)
 
 
 def group_length(text: str, rate: Fraction) -> int:
@@ -128,16 +151,25 @@ def refuse_no_proxy(proxy: object) -> None:
         raise OptionError("clip-proxy", "a clip is encoded on a mesh that is given", remedy=remedy)
 
 
-def _checked_proxy(
-    footage: Footage, proxy: str | os.PathLike[str] | Mesh | Proxy | None
-) -> str | os.PathLike[str] | Mesh | Proxy:
+def _checked_proxy(footage: Footage, proxy: GivenProxy | None, asked: EncodeOptions) -> GivenProxy:
     """The proxy, where it is one for clips and its cameras are known."""
     refuse_no_proxy(proxy)
     assert proxy is not None
     if footage.cameras is None:
         remedy = "find them with calibrate --clip, and give the result as --calibration"
         raise OptionError("clip-cameras", "the cameras of this footage are not known", remedy=remedy)
-    if isinstance(proxy, str | os.PathLike):
+    several: list[Any] = [] if isinstance(proxy, str) or not isinstance(proxy, Sequence) else list(proxy)
+    for one in several or [proxy]:
+        if not isinstance(one, str | os.PathLike | Mesh) and (several or not isinstance(one, Proxy | Sequence)):
+            remedy = "give a mesh, its file, or one of them for each frame"
+            raise OptionError("proxy", f"{kind_in_words(one)} is no proxy", remedy=remedy)
+    if is_sequence(proxy):
+        given = [name for name, is_given in (("triangles", asked.triangles is not None), ("fit", asked.fit == "none"))
+                 if is_given]  # fmt: skip
+        if given:
+            remedy = "leave it out, or give one mesh that stands still"
+            raise OptionError("clip-option", f"--{given[0]} is for meshes that stand still", remedy=remedy)
+    elif isinstance(proxy, str | os.PathLike):
         refuse_no_mesh(Path(proxy))
     elif isinstance(proxy, Proxy) and proxy.sheets is not None:
         raise OptionError("clip-proxy", "a clip is encoded on one opaque surface, not on sheets", remedy="give a mesh")

@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 
 from eigenfield.core.observations import Observations
 from eigenfield.core.progress import Progress, track
-from eigenfield.encoding.clip.active import ActivePlane
-from eigenfield.encoding.clip.plan import ClipPlan, KeptPhotographs
+from eigenfield.encoding.clip.plan import ClipPlan, KeptPhotographs, OpenActive
 from eigenfield.encoding.clip.rest import MIN_FRAMES, AtRest, camera_at_rest
 from eigenfield.runtime.files import read_arrays
 from eigenfield.runtime.parallel import tracked_map
@@ -65,7 +64,8 @@ class GroupFrames:
         identity: What all passes depend on.
         title: Of the group, for reports of progress.
         rest: The stage of what stands still; None: nothing is averaged.
-        active: The part of each plane that changes, which is what frames after the first are fitted to; None: all is.
+        active: From a frame's footprints to the part of each plane that changes, which is what frames after the first
+            are fitted to; None: all is.
         kept: Their photographs, which are decoded once for all passes; None: not `opened`.
         made: Folders of passes, which `clear` removes.
     """
@@ -78,7 +78,7 @@ class GroupFrames:
     title: str
     progress: Progress | None = None
     rest: Path | None = None
-    active: tuple[ActivePlane, ...] | None = None
+    active: OpenActive | None = None
     kept: KeptPhotographs | None = None
     made: list[Path] = field(default_factory=list)
 
@@ -96,14 +96,16 @@ class GroupFrames:
             def build(folder: Path) -> None:
                 def find(camera: int) -> None:
                     each = (self.observations(number).photograph(camera) for number in self.numbers)
-                    camera_at_rest(each, len(self)).save(folder, camera)
+                    moving = self.clip.moving
+                    moves = None if moving is None else moving.moving_pixels(self.clip.cameras[camera], self.numbers)
+                    camera_at_rest(each, len(self), moves).save(folder, camera)
 
                 tracked_map(find, range(len(self.clip.cameras)), f"{self.title}: what stands still", self.progress)
 
             key = stage_key([self.identity, "rest"], SCENE_ROOMS)
             folder = self.stages.run(f"rest-{self.numbers.start:05d}", key, build)
             self.made.append(folder)
-            with self.clip.open_active(folder) as active:
+            with self.clip.open_active(folder, self.numbers) as active:
                 yield replace(self, rest=folder, active=active, kept=kept)
 
     def observations(self, number: int) -> Observations:
@@ -134,7 +136,7 @@ class GroupFrames:
             more = (None if first is None else load_arrays(first),) if with_first else ()
             assert self.kept is not None
             photographs = self.kept.frame(number - self.numbers.start, lambda: self.observations(number))
-            with self.clip.open_frame(photographs, None if first is None else self.active) as pixels:
+            with self.clip.open_frame(number, photographs, None if first is None else self.active) as pixels:
                 return make(pixels, *one, *more)
 
         return self.run_frames(name, of_frame, given, after)

@@ -12,6 +12,7 @@ from eigenfield.core.films import CodedGroup
 from eigenfield.core.progress import Progress, track
 from eigenfield.encoding.clip.closed_loop import code_group, texture_counts
 from eigenfield.encoding.clip.frames import GroupFrames, load_arrays, save_arrays
+from eigenfield.encoding.clip.motion import MovingMesh
 from eigenfield.encoding.clip.open_loop import fit_group
 from eigenfield.encoding.clip.plan import ClipPlan, open_clip_plan
 from eigenfield.encoding.clip.projected import project_group
@@ -54,6 +55,7 @@ class Groups:
         identity: What every group depends on.
         spans: The first frame of each group, and the one after its last.
         work: Folder for scratch files; None: the system's.
+        moving: The mesh at each frame; None: it stands still.
     """
 
     footage: Footage
@@ -61,6 +63,7 @@ class Groups:
     identity: str
     spans: tuple[tuple[int, int], ...]
     work: Path | None
+    moving: MovingMesh | None = None
 
     def key(self, number: int, counts: tuple[int, ...] | None) -> str:
         """Of the stage of a group."""
@@ -133,7 +136,7 @@ def make_group(folder: Path, shared: Shared[Groups], number: int, counts: tuple[
     groups = shared.value()
     with Stages(folder) as stages:
         if stages.find(_name(number), groups.key(number, counts)) is None:
-            with open_clip_plan(groups.plan, groups.work) as clip:
+            with open_clip_plan(groups.plan, groups.work, groups.moving) as clip:
                 groups.make(clip, stages, number, counts, None)
 
 

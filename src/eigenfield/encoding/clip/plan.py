@@ -14,10 +14,17 @@ from eigenfield.coding.video.film_layout import PlaneSizes, film_layout
 from eigenfield.core.camera import Camera
 from eigenfield.core.films import FilmLayout
 from eigenfield.core.observations import CalibratedObservations, Observations, select_cameras
-from eigenfield.encoding.clip.active import ActivePlane, open_active_plane
+from eigenfield.encoding.clip.active import ActivePlane, Texels, active_texels, open_active_plane
+from eigenfield.encoding.clip.motion import MovingMesh
 from eigenfield.encoding.clip.rest import CameraAtRest
 from eigenfield.encoding.fitted.fit import PlaneSettings
-from eigenfield.encoding.fitted.footprints import Footprints, offsets_of, sample_corner, subsampled_footprints
+from eigenfield.encoding.fitted.footprints import (
+    Footprints,
+    offsets_of,
+    open_footprints,
+    sample_corner,
+    subsampled_footprints,
+)
 from eigenfield.encoding.fitted.model import AtlasComposer, Rectangle, make_composer
 from eigenfield.encoding.fitted.observations import (
     DecodedObservations,
@@ -33,9 +40,11 @@ from eigenfield.encoding.fitted.solve import Scales, measure_scales
 from eigenfield.encoding.options import DEFAULT_PRESET, PRESETS, SUBSAMPLE_MIN_OBSERVATIONS
 from eigenfield.encoding.plan import EncodePlan, component_count
 from eigenfield.encoding.views import nothing_seen_error
+from eigenfield.rendering.software.drawing import make_surface
 from eigenfield.runtime.files import scratch_arrays
 
 MAX_TEXTURES = 12  # of luma, unless more are asked for: players sum all of them for each frame
+OpenActive = Callable[[Footprints, Footprints], contextlib.AbstractContextManager[tuple[ActivePlane, ...]]]
 THINNED_STEP = 2  # pixels, each way, to one that weights are fitted to: all frames of a group have a part in them
 
 
@@ -44,7 +53,8 @@ class ClipPlane:
     """One plane of all frames.
 
     Attributes:
-        scales: Of frames without masks.
+        scales: Of frames without masks, on the mesh that all frames have, or the first one has.
+        moves: Whether the mesh moves.
     """
 
     preset: PlanePreset
@@ -52,6 +62,7 @@ class ClipPlane:
     rate: Rate
     scales: Scales
     composer: AtlasComposer
+    moves: bool = False
 
     @property
     def rectangle(self) -> Rectangle:
@@ -61,7 +72,8 @@ class ClipPlane:
 
     def scales_of(self, data: FitData) -> Scales:
         """Of a frame."""
-        return self.scales if data.observations.masks is None else _scales(data, self.settings)
+        same = data.observations.masks is None and not self.moves
+        return self.scales if same else _scales(data, self.settings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,8 +139,10 @@ class ClipPlan:
 
     Attributes:
         few: Whether there are so few cameras that pixels that are far off count for less (`with_robust_weights`).
+        footprints: On the plan's mesh.
         thinned: The footprints of every THINNED_STEP-th pixel.
         work: Folder for scratch files.
+        moving: The mesh at each frame; None: it stands still.
     """
 
     plan: EncodePlan
@@ -137,6 +151,7 @@ class ClipPlan:
     footprints: Footprints
     thinned: Footprints
     work: Path | None
+    moving: MovingMesh | None = None
 
     @property
     def cameras(self) -> Sequence[Camera]:
@@ -159,11 +174,26 @@ class ClipPlan:
         return film_layout([PlaneSizes(len(one.matrix), one.mean, ((one.grid, count),)) for one, count in pairs])
 
     @contextlib.contextmanager
-    def open_active(self, rest: Path) -> Iterator[tuple[ActivePlane, ...]]:
-        """The part of each plane that changes within a group.
+    def open_footprints(self, number: int) -> Iterator[tuple[Footprints, Footprints]]:
+        """Those of a frame of the clip, and of every THINNED_STEP-th pixel."""
+        if self.moving is None:
+            yield self.footprints, self.thinned
+            return
+        surface = make_surface(self.moving.at(number), *self.footprints.surface.size)
+        with (
+            open_footprints(surface, self.cameras, self.footprints.detail, work=self.work) as every,
+            subsampled_footprints(every, THINNED_STEP, self.work) as thinned,
+        ):
+            yield every, thinned
+
+    @contextlib.contextmanager
+    def open_active(self, rest: Path, numbers: range) -> Iterator[OpenActive]:
+        """A function from the footprints of a frame, and the thinned ones, to the part of each plane that changes
+        within a group.
 
         Args:
             rest: The stage of what stands still.
+            numbers: Of the group's frames.
         """
 
         def moves(camera: int) -> NDArray[np.bool_]:
@@ -172,13 +202,29 @@ class ClipPlan:
         def thinned_moves(camera: int) -> NDArray[np.bool_]:
             return moves(camera)[sample_corner(camera, THINNED_STEP)]
 
-        with contextlib.ExitStack() as kept:
-            found = []
-            for plane in self.planes:
-                fewer = plane.preset.subsampled and not self.few
-                footprints, own = (self.thinned, thinned_moves) if fewer else (self.footprints, moves)
-                found.append(kept.enter_context(open_active_plane(footprints, plane.settings, own, self.work)))
-            yield tuple(found)
+        fewer = [plane.preset.subsampled and not self.few for plane in self.planes]
+        changing: list[Texels] = []
+        for number in numbers if self.moving is not None else numbers[:1]:
+            with self.open_footprints(number) as (every, thinned):
+                now = [active_texels(thinned if few else every, plane.settings, thinned_moves if few else moves)
+                       for plane, few in zip(self.planes, fewer, strict=True)]  # fmt: skip
+            before = changing or now
+            changing = [(a[0] | b[0], a[1] | b[1]) for a, b in zip(before, now, strict=True)]
+
+        @contextlib.contextmanager
+        def open_planes(every: Footprints, thinned: Footprints) -> Iterator[tuple[ActivePlane, ...]]:
+            with contextlib.ExitStack() as kept:
+                yield tuple(
+                    kept.enter_context(open_active_plane(
+                        thinned if few else every, texels, thinned_moves if few else moves, self.work
+                    )) for texels, few in zip(changing, fewer, strict=True)
+                )  # fmt: skip
+
+        if self.moving is not None:
+            yield open_planes
+        else:
+            with open_planes(self.footprints, self.thinned) as planes:
+                yield lambda every, thinned: contextlib.nullcontext(planes)
 
     @contextlib.contextmanager
     def open_photographs(self, frames: int) -> Iterator[KeptPhotographs]:
@@ -192,24 +238,27 @@ class ClipPlan:
 
     @contextlib.contextmanager
     def open_frame(
-        self, photographs: DecodedObservations, active: tuple[ActivePlane, ...] | None = None
+        self, number: int, photographs: DecodedObservations, active: OpenActive | None = None
     ) -> Iterator[FramePixels]:
-        """The pixels of a frame.
+        """The pixels of a frame of the clip.
 
         Args:
-            active: As in `FramePixels`.
+            active: Of `open_active`; None: all is fitted.
         """
-        data = FitData(photographs, self.footprints)
-        with open_subsampled(data, THINNED_STEP, self.work, self.thinned) as some:
-            yield FramePixels(data, some, self.few, self.work, active)
+        with self.open_footprints(number) as (every, thinned):
+            data = FitData(photographs, every)
+            planes = contextlib.nullcontext(None) if active is None else active(every, thinned)
+            with open_subsampled(data, THINNED_STEP, self.work, thinned) as some, planes as changing:
+                yield FramePixels(data, some, self.few, self.work, changing)
 
 
 @contextlib.contextmanager
-def open_clip_plan(plan: EncodePlan, work: Path | None = None) -> Iterator[ClipPlan]:
+def open_clip_plan(plan: EncodePlan, work: Path | None = None, moving: MovingMesh | None = None) -> Iterator[ClipPlan]:
     """The plan of a clip.
 
     Args:
         plan: For a fit, of one of the clip's instants.
+        moving: The mesh at each frame; None: it stands still.
 
     Raises:
         CaptureError: `nothing-seen`, no camera covers a pixel.
@@ -229,12 +278,13 @@ def open_clip_plan(plan: EncodePlan, work: Path | None = None) -> Iterator[ClipP
             settings = preset.settings(size, plan.density, textures, views.scattered)
             settings = replace(settings, textures=max(1, min(settings.textures, count - 1)), local=0)
             composer = make_composer(footprints.surface, settings.grey_model())
-            return ClipPlane(preset, settings, preset.rate(step), _scales(whole, settings), composer)
+            rate, scales = preset.rate(step), _scales(whole, settings)
+            return ClipPlane(preset, settings, rate, scales, composer, moving is not None)
 
         planes = tuple(map(plane_of, PLANE_PRESETS))
         if not planes[0].scales.mean.any():
             raise nothing_seen_error()
-        yield ClipPlan(plan, planes, count < SUBSAMPLE_MIN_OBSERVATIONS, footprints, thinned, work)
+        yield ClipPlan(plan, planes, count < SUBSAMPLE_MIN_OBSERVATIONS, footprints, thinned, work, moving)
 
 
 def _of_cameras(

@@ -84,11 +84,14 @@ class AtRest:
         return CameraAtRest.load(self.folder, self.camera_of(index)).shown(self.whole.photograph(index))
 
 
-def camera_at_rest(photographs: Iterable[Photograph], frames: int) -> CameraAtRest:
+def camera_at_rest(
+    photographs: Iterable[Photograph], frames: int, surface_moves: NDArray[np.bool_] | None = None
+) -> CameraAtRest:
     """What stands still in the photographs of a camera, which are looked at one after the other.
 
     Args:
         frames: How many there are, at least 2.
+        surface_moves: (h, w) which pixels see a surface that moves: they are none that stand still, whatever they show.
     """
     totals: list[NDArray[np.float32]] = []
     low = high = before = change = np.zeros(0, np.float32)
@@ -114,6 +117,8 @@ def camera_at_rest(photographs: Iterable[Photograph], frames: int) -> CameraAtRe
     moves |= np.abs(first - second).max(axis=2) > max(2 * DRIFT_SIGMAS * noise / math.sqrt(frames), MIN_DRIFT)
     moves |= np.minimum(totals[0][..., 3], totals[1][..., 3]) < 1
     moves = cv2.morphologyEx(moves.astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))  # specks are noise
+    if surface_moves is not None:
+        moves = np.maximum(np.asarray(moves, np.uint8), surface_moves.astype(np.uint8))
     around = cv2.dilate(moves, np.ones((MARGIN_PIXELS, MARGIN_PIXELS), np.uint8))
     share = np.minimum(cv2.blur(1 - around.astype(np.float32), (BLEND_PIXELS, BLEND_PIXELS)), 1 - moves)
     average = both[..., :3] / np.maximum(both[..., 3:], 1)

@@ -52,6 +52,11 @@ def read_mesh(path: str | os.PathLike[str], origin: NDArray[np.float64] | None =
             `proxy-nodes`, `proxy-polygon`, `proxy-empty`, `proxy-no-faces`, `proxy-index-range`, `proxy-not-finite` or
             `proxy-degenerate`.
     """
+    return check_mesh(read_raw(path, origin), local_copy(path))
+
+
+def read_raw(path: str | os.PathLike[str], origin: NDArray[np.float64] | None = None) -> RawMesh:
+    """What a mesh file says, not checked; otherwise as `read_mesh`."""
     file = local_copy(path)
     refuse_no_mesh(file)
     try:
@@ -64,7 +69,13 @@ def read_mesh(path: str | os.PathLike[str], origin: NDArray[np.float64] | None =
             remedy="check the file and its permissions",
         ) from error
     raw = _parse(data, file.suffix.lower(), file)
-    return check_mesh(raw if origin is None else raw._replace(vertices=raw.vertices - origin), file)
+    return raw if origin is None else raw._replace(vertices=raw.vertices - origin)
+
+
+def raw_of(mesh: Mesh) -> RawMesh:
+    """A mesh in memory as if it came from a file."""
+    uv = None if mesh.uv is None else np.asarray(mesh.uv, np.float64)
+    return RawMesh(np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int64), uv)
 
 
 def refuse_no_mesh(path: Path) -> None:
