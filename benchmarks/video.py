@@ -22,7 +22,6 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +35,7 @@ from eigenfield.encoding import EncodeOptions, encode_footage
 from eigenfield.evaluation.clip import evaluate_clip
 from eigenfield.evaluation.strip import write_strip
 from eigenfield.gltf import load_clip, parts
+from eigenfield.proxy.meshes.sequence import is_sequence, mesh_files
 from evidence import captures, moving_light, rates, simulcast
 from evidence.repeated import repeat
 from evidence.runner import kept
@@ -124,8 +124,7 @@ def of_clip(
     points = [part(f"clip-{quality}", partial(our_point, source, footage, proxy, work, group, quality))
               for quality in qualities]  # fmt: skip
     clip = load_clip(work / f"clip-{qualities[-1]}.glb")
-    starts = [0, *accumulate(clip.groups.lengths)][:-1]
-    taken = simulcast.take(footage, clip.scene(float(clip.timeline.times[0])), clip.timeline, starts)
+    taken = simulcast.take(footage, clip)
     curves = {peer: part(peer, partial(peer_curve, taken, peer))["points"] for peer in peers}
     frames = [int(frame) for frame in spread_indices(clip.timeline.frames, stills)] if stills else []
     singles = [part(f"stills-{quality}", partial(our_stills, source, footage, proxy, work, clip, quality, frames),
@@ -167,6 +166,11 @@ def our_point(source: Source, footage: Footage, proxy: Path, work: Path, group: 
     return point
 
 
+def mesh_at(proxy: Path, frame: int) -> Path:
+    """The mesh of a frame: one of a sequence, or the one that stands still."""
+    return mesh_files(proxy)[frame] if is_sequence(proxy) else proxy
+
+
 def our_stills(
     source: Source, footage: Footage, proxy: Path, work: Path, clip: Clip, quality: int, frames: Sequence[int]
 ) -> dict[str, Any]:
@@ -176,7 +180,8 @@ def our_stills(
         path = work / f"still-{quality}-{frame}.glb"
         capture = footage.instant(footage.timeline.frame_at(float(clip.timeline.times[frame])))
         began = time.perf_counter()
-        ef.encode(capture, proxy, quality=quality, hold_out=source.hold_out, progress=None).save(path, overwrite=True)
+        mesh = mesh_at(proxy, frame)
+        ef.encode(capture, mesh, quality=quality, hold_out=source.hold_out, progress=None).save(path, overwrite=True)
         seconds += time.perf_counter() - began
         sizes.append(path.stat().st_size)
         figures.append(ef.evaluate(path, capture, png_maps="none", progress=None)["image"]["encoded"])

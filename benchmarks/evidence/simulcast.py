@@ -10,7 +10,7 @@ import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from eigenfield.capture import match_photographs, with_scene_cameras
 from eigenfield.coding.video.av1 import decode_video, encode_video
-from eigenfield.core.clip import Timeline
+from eigenfield.core.clip import Clip, Timeline
 from eigenfield.core.scene import Scene
 from eigenfield.evaluation.clip import Instants, Row, figures_of
 from eigenfield.evaluation.flicker import Flicker, StillPixels
@@ -41,26 +41,31 @@ class Taken:
     """The photographs of a clip, decoded.
 
     Attributes:
-        scene: Any of the clip's, for cameras and proxy.
-        timeline: Of the clip.
+        clip: For cameras and proxy.
         starts: The first frame of each group.
         pictures: By camera, those of each frame.
-        covered: By camera, (H, W) what the proxy covers and no frame's mask hides.
+        covered: By camera, (H, W) what the first frame's proxy covers and no frame's mask hides.
     """
 
-    scene: Scene
-    timeline: Timeline
+    clip: Clip
     starts: Sequence[int]
     pictures: Mapping[str, list[Picture]]
     covered: Mapping[str, NDArray[np.bool_]]
 
     @property
+    def timeline(self) -> Timeline:
+        return self.clip.timeline
+
+    @property
     def held_out(self) -> list[str]:
-        return [name for name, held in zip(self.scene.rig.names, self.scene.rig.held_out, strict=True) if held]
+        return [name for name, held in zip(self.clip.rig.names, self.clip.rig.held_out, strict=True) if held]
 
     @property
     def encoded(self) -> list[str]:
-        return [name for name, held in zip(self.scene.rig.names, self.scene.rig.held_out, strict=True) if not held]
+        return [name for name, held in zip(self.clip.rig.names, self.clip.rig.held_out, strict=True) if not held]
+
+    def scene(self, frame: int) -> Scene:
+        return self.clip.scene(float(self.timeline.times[frame]))
 
     @cached_property
     def still(self) -> dict[str, NDArray[np.bool_]]:
@@ -75,15 +80,14 @@ class Taken:
         return dict(zip(self.pictures, parallel_map(of_camera, list(self.pictures)), strict=True))
 
 
-def take(footage: Instants, scene: Scene, timeline: Timeline, starts: Sequence[int]) -> Taken:
+def take(footage: Instants, clip: Clip) -> Taken:
     """Decode all photographs of a clip's frames.
 
     Args:
         footage: What the clip was made of.
-        scene: Any of the clip's.
-        timeline: Of the clip.
-        starts: The first frame of each group.
+        clip: Whose groups say where streams have keys.
     """
+    scene, timeline = clip.scene(float(clip.timeline.times[0])), clip.timeline
     names = scene.rig.names
     covered = {name: rasterise_view(scene.proxy.mesh, camera).face >= 0
                for name, camera in zip(names, scene.rig.cameras, strict=True)}  # fmt: skip
@@ -96,7 +100,7 @@ def take(footage: Instants, scene: Scene, timeline: Timeline, starts: Sequence[i
             pictures[names[index]].append(to_codes(photograph.pixels))
             if photograph.mask is not None:
                 covered[names[index]] &= photograph.mask > 0.5
-    return Taken(scene, timeline, starts, pictures, covered)
+    return Taken(clip, [0, *accumulate(clip.groups.lengths)][:-1], pictures, covered)
 
 
 def code(frames: Sequence[Picture], crf: int, preset: int) -> tuple[int, list[Picture]]:
@@ -123,7 +127,7 @@ def streams(taken: Taken, way: str, crf: int, preset: int) -> Iterator[Coded]:
 def _joint(taken: Taken, crf: int, preset: int) -> Iterator[Coded]:
     """One stream: at each time all cameras, to and fro, and back at the next."""
     names = taken.encoded
-    way = [names[index] for index in order(taken.scene.rig.encoded_cameras)]
+    way = [names[index] for index in order(taken.clip.rig.encoded_cameras)]
     path = [(name, frame) for frame in range(taken.timeline.frames) for name in (way if frame % 2 == 0 else way[::-1])]
     size, decoded = code([taken.pictures[name][frame] for name, frame in path], crf, preset)
     found = dict(zip(path, decoded, strict=True))
@@ -178,13 +182,13 @@ def _measure(taken: Taken, name: str, pictures: Sequence[Picture], flicker: Flic
 
 def _between(taken: Taken, frame: int, shown: Mapping[str, Picture]) -> list[Row]:
     """Held-out cameras at a frame, drawn from what was decoded of the others."""
-    rig = taken.scene.rig
+    rig = taken.clip.rig
     if not taken.held_out:
         return []
     names = [name for name in rig.names if name in shown]
     cameras = dict(zip(rig.names, rig.cameras, strict=True))
     lumigraph = make_lumigraph(
-        taken.scene.proxy.mesh,
+        taken.scene(frame).proxy.mesh,
         [cameras[name] for name in names],
         lambda index: (shown[names[index]].astype(np.float32) / np.float32(255), None),
     )

@@ -24,7 +24,7 @@ def taken(tmp_path_factory):
     cameras = tuple(camera.resize(96, 80) for camera in clip.rig.cameras)
     clip = replace(clip, rig=replace(clip.rig, cameras=cameras))
     footage = write_footage(clip, tmp_path_factory.mktemp("clip") / "f")
-    return simulcast.take(footage, clip.scene(0.0), clip.timeline, [0, 3])
+    return simulcast.take(footage, clip)
 
 
 def test_photographs_are_taken_by_camera_and_frame(taken):
