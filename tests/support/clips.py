@@ -147,15 +147,18 @@ def read_all(path: Path) -> None:
 
 
 def moving_clip(clip: Clip, steps: Callable[[int, NDArray[np.int64]], NDArray[np.int64]]) -> Clip:
-    """A clip of coded groups on a mesh that moves. steps: from a frame's number and the lattice coordinates (v, 3) of
-    the mesh to those in that frame."""
+    """A clip of coded groups on a mesh that moves, but in groups in which it is where it was.
+
+    steps: from a frame's number and the lattice coordinates (v, 3) of the mesh to those in that frame.
+    """
     groups = clip.groups
     assert isinstance(groups, CodedGroups)
     (stream,) = next(found for (kind, _), found in groups.payloads.items() if kind == "mesh")
     placed, made, first = decode_placed(stream.data), [], 0
     for index, count in enumerate(groups.lengths):
         frames = np.stack([steps(number, placed.places) for number in range(first, first + count)])
-        motion = Payload("motion-1", encoder("motion-1")(placed.places, placed.mesh.faces, frames))
+        data = encoder("motion-1")(placed.places, placed.mesh.faces, frames)
+        motion = Payload("motion-1", data) if (frames != placed.places).any() else None
         made.append(group_bytes(replace(groups.coded(index), motion=motion)))
         first += count
     return coded_clip(

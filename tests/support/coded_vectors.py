@@ -17,10 +17,12 @@ from eigenfield.coding.arrays.cameras import code_cameras, decode_cameras
 from eigenfield.coding.arrays.names import code_names, decode_names
 from eigenfield.coding.arrays.triangles import code_triangles, decode_triangles, sorted_triangles
 from eigenfield.coding.arrays.weights import code_weights, decode_weights
-from eigenfield.coding.mesh.coder import decode_mesh, encode_mesh
+from eigenfield.coding.mesh.coder import decode_mesh, decode_placed, encode_mesh
+from eigenfield.coding.mesh.motion import decode_motion, encode_motion
 from eigenfield.core.errors import FormatError
 from eigenfield.core.payloads import mesh_key
 from eigenfield.gltf import read_scene
+from eigenfield.gltf.clips import Motion
 from support import coded_meshes
 from support.arrays import GRID, array_cameras, array_triangles, smooth_weights
 
@@ -93,7 +95,39 @@ def coded_names():
             yield base64.b64encode(data).decode(), number, names_of(data, number)
 
 
+def coded_motion():
+    """Base64 of a mesh and of its motion, whole and damaged; and the positions of all frames, or None."""
+    random = np.random.default_rng(9)
+    relief = coded_meshes.relief(charts=2)
+    for mesh, lattice in (relief, coded_meshes.ball(), coded_meshes.soup(3, 40, 80)):
+        stream = encode_mesh(mesh, lattice)[0]
+        placed = decode_placed(stream)
+        frames = np.tile(placed.places, (4, 1, 1))
+        frames[1:] += np.arange(3)[:, None, None] * (placed.places[:, ::-1] % 7)
+        frames[2:, : len(placed.places) // 2] += random.integers(-900, 900, (len(placed.places) // 2, 3))
+        whole = encode_motion(placed.places, placed.mesh.faces, frames)
+        still = encode_motion(placed.places, placed.mesh.faces, frames[:1])
+        variants = [whole, still, whole[: len(whole) // 2], still[:3]]
+        for _ in range(DAMAGED):
+            damaged = bytearray(whole)
+            damaged[random.integers(len(whole))] = random.integers(256)
+            variants.append(bytes(damaged))
+        for data in variants:
+            yield *(base64.b64encode(one).decode() for one in (stream, data)), positions_of(placed, data)
+
+
+def positions_of(placed, data):
+    """Of all vertices in each frame, or None where the bytes are refused."""
+    try:
+        moving, steps = decode_motion(data, placed.places, placed.mesh.faces, "here")
+        motion = Motion(placed, moving, steps, "here")
+        return [motion.vertices(frame).astype(np.float64).reshape(-1).tolist() for frame in range(len(steps))]
+    except FormatError:
+        return None
+
+
 def write(folder):
+    (folder / "motion.json").write_text(json.dumps(list(coded_motion())), encoding="utf-8")
     (folder / "names.json").write_text(json.dumps(list(coded_names())), encoding="utf-8")
     random = np.random.default_rng(11)
     for name, stream in streams():

@@ -11,22 +11,31 @@ import { FakeFrame, installClock, installFakes } from "./fake-video.mjs";
 import { buildModule } from "./module.mjs";
 
 const EXTENSION = "EIGENFIELD_eigen_textures";
-let built, close, json, chunk, facts;
+let built, close, json, chunk, facts, moving, mesh;
 
 before(async () => {
   let folder;
   ({ module: built, folder, close } = await buildModule("clip"));
   python("-m", "support.viewer_clips", folder);
-  const bytes = readFileSync(join(folder, "clip.glb"));
   facts = JSON.parse(readFileSync(join(folder, "clip.json"), "utf8"));
+  ({ json, chunk, mesh } = await opened(join(folder, "clip.glb")));
+  moving = { ...(await opened(join(folder, "moving.glb"))), positions: join(folder, "moving.json") };
+});
+after(() => close());
+
+/** The document of a clip's file, the data of its groups, and its mesh. */
+async function opened(path) {
+  const bytes = readFileSync(path);
   const chunks = [];
   for (let at = 12; at < bytes.length; at += 8 + bytes.readUInt32LE(at)) {
     chunks.push(bytes.subarray(at + 8, at + 8 + bytes.readUInt32LE(at)));
   }
-  json = await built.unpacked(JSON.parse(chunks[0]), read(chunks[1]));
-  chunk = chunks[2];
-});
-after(() => close());
+  const json = await built.unpacked(JSON.parse(chunks[0]), read(chunks[1]));
+  const scene = built.readDocument(json);
+  const { offset, length } = scene.views[scene.mesh.view];
+  const mesh = scene.mesh.codec.decode(new Uint8Array(await read(chunks[1])(offset, length)), scene.mesh.where);
+  return { json, chunk: chunks[2], mesh };
+}
 
 /** The document after its extension was changed. */
 function changed(change = () => undefined) {
@@ -77,7 +86,7 @@ test("a timeline that cannot be is refused with its place", () => {
 
 test("groups are opened with weights, scales and units; what is damaged says where", async () => {
   const scene = changed();
-  const groups = new built.Groups(scene, scene.timeline, read(chunk));
+  const groups = new built.Groups(scene, scene.timeline, mesh, read(chunk));
   for (const [index, { first, frames }] of scene.timeline.groups.entries()) {
     const group = await groups.open(index);
     assert.deepEqual([group.index, group.first, group.frames, group.units.length], [index, first, frames, frames]);
@@ -87,7 +96,23 @@ test("groups are opened with weights, scales and units; what is damaged says whe
   }
   const wrong = Buffer.from(chunk);
   wrong[scene.timeline.groups[1].offset + 60] ^= 1;
-  await assert.rejects(new built.Groups(scene, scene.timeline, read(wrong)).open(1), damaged("groups/1"));
+  await assert.rejects(new built.Groups(scene, scene.timeline, mesh, read(wrong)).open(1), damaged("groups/1"));
+});
+
+test("a mesh that moves is in each frame where Python puts it, in whatever order frames are asked for", async () => {
+  const expected = JSON.parse(readFileSync(moving.positions, "utf8"));
+  const scene = built.readDocument(moving.json);
+  const groups = new built.Groups(scene, scene.timeline, moving.mesh, read(moving.chunk));
+  for (const [index, { first, frames }] of scene.timeline.groups.entries()) {
+    const { motion } = await groups.open(index);
+    assert.equal(motion === null, index === 2);
+    const positions = Float32Array.from(moving.mesh.positions);
+    for (const frame of [0, frames - 1, 1 % frames, frames >> 1]) {
+      motion?.read(frame);
+      motion?.place(frame, positions);
+      assert.deepEqual([...positions], expected[first + (motion ? frame : 0)], `frame ${first + frame}`);
+    }
+  }
 });
 
 test("heads of groups that cannot be are refused", async () => {
@@ -104,7 +129,7 @@ test("heads of groups that cannot be are refused", async () => {
     length.writeUInt32LE(text.length);
     const made = Buffer.concat([length, text, own.subarray(4 + size)]);
     Object.assign(place, { length: made.length, sha256: createHash("sha256").update(made).digest("hex") });
-    return new built.Groups(scene, scene.timeline, read(made)).open(0);
+    return new built.Groups(scene, scene.timeline, mesh, read(made)).open(0);
   };
   assert.equal((await openWith(() => undefined)).frames, place.frames);
   const faults = {
@@ -118,7 +143,7 @@ test("heads of groups that cannot be are refused", async () => {
   for (const [name, change] of Object.entries(faults)) {
     await assert.rejects(openWith(change), { code: "damaged" }, name);
   }
-  const cut = new built.Groups(scene, scene.timeline, read(Buffer.from([255, 255, 255, 255])));
+  const cut = new built.Groups(scene, scene.timeline, mesh, read(Buffer.from([255, 255, 255, 255])));
   await assert.rejects(cut.open(0), { code: "damaged" });
 });
 
@@ -132,7 +157,7 @@ beforeEach(() => Object.keys(manner).forEach((key) => delete manner[key]));
 function makePlayer() {
   installFakes(manner);
   const scene = changed();
-  const groups = new built.Groups(scene, scene.timeline, read(chunk));
+  const groups = new built.Groups(scene, scene.timeline, mesh, read(chunk));
   const [shown, failed] = [[], []];
   const numbers = ({ data }) => [...new Uint32Array(data.slice(0, 8).buffer)];
   const player = new built.Player(scene.timeline, (user) => new built.FrameRing(scene.timeline, groups, user), {

@@ -290,3 +290,22 @@ test("a graphics context that was lost comes back with the frame that was shown,
   assert.deepEqual(errors, []);
   await close();
 });
+
+test("a mesh that moves is drawn in each frame where it is, played and sought", async () => {
+  const expected = JSON.parse(readFileSync(scenePath("moving.json"), "utf8"));
+  const { page, close } = await openClip("moving.glb");
+  const places = (frame) => page.evaluate(async (frame) => {
+    if (frame !== null) await window.field.player.toFrame(frame);
+    return { read: window.read(), positions: [...window.field.mesh.geometry.attributes.position.array] };
+  }, frame);
+  for (const frame of [null, 3, 12, 5, 24, 11, 0, 13]) {
+    const { read, positions } = await places(frame);
+    assertSame(read);
+    assert.deepEqual(positions, expected[read[0]], `frame ${read[0]}`);
+    assert.equal(read[0], frame ?? 0);
+  }
+  const { played, errors } = await playThrough(page, 0.5, 20);
+  assert.deepEqual(errors, []);
+  played.forEach(assertSame);
+  await close();
+});

@@ -114,6 +114,31 @@ test("names decode to the same names, damaged ones too or to an error of ours", 
   assert.ok(read >= 3 && refused > 20, `${read} read, ${refused} refused`);
 });
 
+test("places of a mesh over time decode to the same bits, damaged ones too or to an error of ours", async () => {
+  let [read, refused] = [0, 0];
+  const bytes = (text) => Uint8Array.from(Buffer.from(text, "base64"));
+  for (const [stream, data, expected] of JSON.parse(await readFile(join(folder, "motion.json"), "utf8"))) {
+    const mesh = decoderOf("mesh", 2)(bytes(stream), "here");
+    const decode = () => {
+      const motion = decoderOf("motion")(bytes(data), mesh, "here");
+      motion.read(Infinity);
+      return Array.from({ length: motion.frames }, (_, frame) => {
+        const positions = new Float32Array(mesh.positions.length);
+        motion.place(frame, positions);
+        return [...positions];
+      });
+    };
+    if (expected === null) {
+      assert.throws(decode, (error) => error.name === "SceneError");
+      refused += 1;
+    } else {
+      assert.deepEqual(decode(), expected);
+      read += 1;
+    }
+  }
+  assert.ok(read > 20 && refused > 10, `${read} read, ${refused} refused`);
+});
+
 test("deflated cameras are the same cameras, and damaged ones an error of ours", async () => {
   const { decode } = built.CODECS["cameras-2"];
   for (const name of ["cameras-line", "cameras-grid"]) {

@@ -5,6 +5,7 @@ import { grownCodes } from "./film-codes.js";
 import { FrameRing, type RingUser } from "./frame-ring.js";
 import { Groups, setScales, type Group } from "./groups.js";
 import type { SceneDocument } from "./document.js";
+import type { DecodedMesh } from "./mesh-decoder.js";
 import type { ByteReader } from "./packed.js";
 import { decodeTenBits } from "./pictures-10bit.js";
 import { closePieces, type Codes } from "./pieces.js";
@@ -16,16 +17,23 @@ export interface Clip {
   timeline: Timeline;
   group: Group; // the first
   films: Codes[]; // of the first frame
+  mesh: DecodedMesh; // where it is in groups in which nothing moves
   ring: (user: RingUser) => FrameRing;
 }
 
 /** Opens the first group of a clip and decodes its first frame. `read`: bytes of the chunk of groups. Raises SceneError. */
-export async function openClip(scene: SceneDocument, timeline: Timeline, read: ByteReader): Promise<Clip> {
-  const groups = new Groups(scene, timeline, read);
+export async function openClip(
+  scene: SceneDocument,
+  timeline: Timeline,
+  mesh: DecodedMesh,
+  read: ByteReader,
+): Promise<Clip> {
+  const groups = new Groups(scene, timeline, mesh, read);
   const group = await groups.open(0);
+  group.motion?.read(0);
   setScales(scene, group);
   const films = await Promise.all(timeline.films.map((film, i) => keyPicture(group.units[0]![i]!, film)));
-  return { timeline, group, films, ring: (user) => new FrameRing(timeline, groups, user) };
+  return { timeline, group, films, mesh, ring: (user) => new FrameRing(timeline, groups, user) };
 }
 
 /** The codes of the first unit of a group, which is a picture by itself: no decoder of videos is needed for it. */

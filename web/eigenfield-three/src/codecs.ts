@@ -8,6 +8,7 @@ import { FilmDecoder } from "./film-decoder.js";
 import type { Value } from "./json.js";
 import * as limits from "./limits.js";
 import { decodeMesh, decodeOldMesh, type DecodedMesh } from "./mesh-decoder.js";
+import { Motion } from "./mesh-motion.js";
 import { decodeNames } from "./name-decoder.js";
 import { decodeTenBits } from "./pictures-10bit.js";
 import { decodeBitmaps } from "./pictures-8bit.js";
@@ -25,6 +26,7 @@ interface Decoders {
   weights: (bytes: Uint8Array, where: string) => CodedWeights;
   picture: PictureDecoder;
   film: (...given: ConstructorParameters<typeof FilmDecoder>) => FilmDecoder;
+  motion: (...given: ConstructorParameters<typeof Motion>) => Motion;
 }
 
 interface Names {
@@ -35,6 +37,7 @@ interface Names {
   weights: schema.WeightsCodec;
   picture: schema.PictureCodec;
   film: schema.FilmCodec;
+  motion: schema.MotionCodec;
 }
 
 export type Kind = keyof Decoders;
@@ -75,6 +78,12 @@ export const CODECS: { readonly [K in Kind as Names[K]]: Codec<K> } = {
     needs: "film-1",
     limits: ["MAX_FILM_SIDE", "MAX_FILM_PIXELS"],
   },
+  "motion-1": {
+    kind: "motion",
+    decode: (...given) => new Motion(...given),
+    needs: "motion-1",
+    limits: ["MAX_GROUP_FRAMES", "MAX_MOTION"],
+  },
   png: eightBits("image/png"),
   webp: eightBits("image/webp"),
   avif: eightBits("image/avif"),
@@ -90,7 +99,7 @@ export const CODECS: { readonly [K in Kind as Names[K]]: Codec<K> } = {
 };
 
 /** The codec of a stream that names none; that of a picture follows from its type. */
-export const USUAL: { readonly [K in Exclude<Kind, "film" | "picture">]: Names[K] } = {
+export const USUAL: { readonly [K in Exclude<Kind, "film" | "motion" | "picture">]: Names[K] } = {
   mesh: "mesh-1",
   cameras: "cameras-1",
   names: "names-1",

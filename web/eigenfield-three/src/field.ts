@@ -3,6 +3,7 @@ import {
   Matrix4,
   Texture,
   Vector3,
+  type BufferAttribute,
   type BufferGeometry,
   type Camera,
   type Mesh,
@@ -81,6 +82,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
   private readonly textures: Textures;
   private weights: EigenWeights;
   private group: Group | null; // of the frame that is shown
+  private readonly moved: BufferGeometry | null; // of a clip, whose frames may have vertices of their own
   private summed: { parts: Part[]; opacity: Part | null } = { parts: [], opacity: null };
   private readonly composers = new Map<number, Composer>(); // by `coarser`, each when it is first asked for
   private readonly encoded: CaptureCamera[];
@@ -106,6 +108,8 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     this.weights = this.weightsOf(parts.omega);
     this.group = parts.clip && parts.clip.group;
     this.player = parts.clip && this.makePlayer(parts.clip);
+    this.moved = parts.clip && this.surface.geometry;
+    if (parts.clip?.group.motion) this.move(parts.clip.group, 0);
     this.textures = new Textures(parts, source, this.surface, options);
     this.complete = new Promise((resolve, reject) => {
       this.addEventListener("complete", () => resolve());
@@ -212,9 +216,21 @@ export class EigenField extends EventDispatcher<FieldEvents> {
   }
 
   /** All of a frame at once: what its group has, and its textures. */
-  private showFrame({ group, films }: ClipFrame): void {
+  private showFrame({ number, group, films }: ClipFrame): void {
+    if (group.motion ?? this.group?.motion) this.move(group, number - group.first);
     if (group !== this.group) this.enter(group);
     if (this.source instanceof FilmTextures) this.source.show(films);
+  }
+
+  /** Puts the vertices where they are in a frame of a group, unless the surface is another by now. */
+  private move({ motion }: Group, frame: number): void {
+    const { geometry } = this.surface;
+    if (geometry !== this.moved) return;
+    const position = geometry.getAttribute("position") as BufferAttribute;
+    if (motion) motion.place(frame, position.array as Float32Array);
+    else position.copyArray(this.parts.clip!.mesh.positions);
+    position.needsUpdate = true;
+    this.surface.setGeometry(geometry);
   }
 
   private enter(group: Group): void {

@@ -174,6 +174,7 @@ export class FrameRing {
       const group = this.given?.index === index ? this.given : await this.groups.open(index);
       const within = number - group.first;
       const units = group.units[within] ?? [];
+      group.motion?.read(within);
       if (within === 0) await Promise.all(this.decoders.map((decoder, film) => decoder.start(units[film]!)));
       if (turn !== this.turn) return;
       this.given = group;

@@ -8,6 +8,8 @@ import { basesOf, checkWeights, sideBySide } from "./info.js";
 import { inflated } from "./inflate.js";
 import { Value } from "./json.js";
 import * as limits from "./limits.js";
+import type { DecodedMesh } from "./mesh-decoder.js";
+import type { Motion } from "./mesh-motion.js";
 import type { ByteReader } from "./packed.js";
 import { numbersOf, type Picture } from "./planes.js";
 import type { AffineJson, GroupHeadJson } from "./schema.js";
@@ -28,6 +30,7 @@ export interface Group {
   means: Affine[]; // of each plane
   bases: Affine[]; // of all planes
   units: Uint8Array[][]; // of each frame, one for each film
+  motion: Motion | null; // null: the mesh stands still
 }
 
 export class Groups {
@@ -37,6 +40,7 @@ export class Groups {
   constructor(
     private readonly scene: SceneDocument,
     private readonly timeline: Timeline,
+    private readonly mesh: DecodedMesh,
     private readonly read: ByteReader,
   ) {}
 
@@ -57,9 +61,18 @@ export class Groups {
     const { head, at } = await readHead(bytes, place);
     const streams = takeStreams(bytes, at, place);
     const omega = this.weightsOf(head, streams);
+    const motion = this.motionOf(head, streams, place);
     const { first, frames } = place;
     const units = unitsOf(head, place, this.timeline.films.length, streams);
-    return { index, first, frames, omega, ...this.scalesOf(head), units };
+    return { index, first, frames, omega, ...this.scalesOf(head), units, motion };
+  }
+
+  private motionOf(head: Value<GroupHeadJson>, streams: Streams, { frames }: GroupPlace): Motion | null {
+    const length = head.key("motion");
+    if (!length.exists) return null;
+    const motion = CODECS["motion-1"].decode(streams(length as Value<number>), this.mesh, length.where);
+    if (motion.frames !== frames) throw length.wrong(`${motion.frames} frames of ${frames}`);
+    return motion;
   }
 
   private weightsOf(head: Value<GroupHeadJson>, streams: Streams): Float32Array {

@@ -26,6 +26,7 @@ export const MAX_SHEETS = 32;
 export const MAX_FILMS = 4;
 export const MAX_FILM_SIDE = 8_192;
 export const MAX_FILM_PIXELS = 2 ** 24;
+export const MAX_MOTION = 2 ** 25; // vertices that move in a group, times its frames
 export const MAX_FRAMES = 2 ** 20;
 export const MAX_GROUPS = 2 ** 16;
 export const MAX_GROUP = 2 ** 30; // bytes

@@ -17,6 +17,8 @@ export interface DecodedMesh {
   positions: Float32Array; // three a vertex
   uv: Float32Array; // two a vertex
   indices: Uint32Array; // three a face
+  places: Int32Array; // lattice coordinates, three a vertex
+  matrix: Float64Array; // from these to the world, four by four
 }
 
 /** A mesh of the codec `mesh-1`. Raises SceneError: `damaged`, `truncated`. */
@@ -53,7 +55,7 @@ function decode(bytes: Uint8Array, where: string, version: number): DecodedMesh 
   const floats = new Float32Array(vertices.maps.buffer);
   const offset = (at: number): number =>
     version === VERSION ? vertices.maps[at]! / 2 ** (digits + 1) - 2 : floats[at]!;
-  return checked(assembled(built, vertices, world, codes, 2 ** digits, offset), where);
+  return checked({ ...assembled(built, vertices, world, codes, 2 ** digits, offset), matrix }, where);
 }
 
 /** Lattice points through a homogeneous matrix, three a point. */
@@ -75,12 +77,14 @@ function assembled(
   codes: Int32Array,
   scale: number,
   offset: (at: number) => number,
-): DecodedMesh {
+): Omit<DecodedMesh, "matrix"> {
   const positions = new Float32Array(3 * place.length);
+  const places = new Int32Array(3 * place.length);
   const uv = new Float32Array(2 * place.length);
   const map = new Float32Array(maps.buffer);
   place.forEach((at, vertex) => {
     positions.set(world.subarray(3 * at, 3 * at + 3), 3 * vertex);
+    places.set(built.points.subarray(3 * at, 3 * at + 3), 3 * vertex);
     const from = 6 * chart[vertex]!;
     const mapped = kinds[chart[vertex]!] === MAPPED;
     for (let axis = 0; axis < 2; axis++) {
@@ -90,7 +94,7 @@ function assembled(
         : codes[2 * vertex + axis]! / scale;
     }
   });
-  return { positions, uv, indices: new Uint32Array(faces) };
+  return { positions, uv, indices: new Uint32Array(faces), places };
 }
 
 function checked(mesh: DecodedMesh, where: string): DecodedMesh {

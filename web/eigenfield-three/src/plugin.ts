@@ -15,7 +15,8 @@ import { decodeMean, type Mean } from "./means.js";
 import type { Size } from "./memory.js";
 import type { EigenfieldOptions } from "./options.js";
 import { unpacked } from "./packed.js";
-import { checkGeometry, countsOf, readCodedMesh } from "./proxy.js";
+import type { DecodedMesh } from "./mesh-decoder.js";
+import { checkGeometry, countsOf, geometryOf, readCodedMesh } from "./proxy.js";
 import { checkSheets } from "./sheets.js";
 import { stillTextures } from "./still-textures.js";
 import type { Timeline } from "./timeline.js";
@@ -86,9 +87,10 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
       if (data.byteLength < (scene.views[view]?.length ?? 0)) throw cutOff(`/bufferViews/${view}`);
       return data;
     };
-    const clip = scene.timeline && (await this.openClip(scene, scene.timeline));
-    if (scene.mesh) {
-      const proxy = await readCodedMesh(scene.mesh, bytes);
+    const coded = scene.mesh && (await readCodedMesh(scene.mesh, bytes));
+    const clip = scene.timeline && coded && (await this.openClip(scene, scene.timeline, coded));
+    if (coded) {
+      const proxy = geometryOf(coded);
       mesh.geometry.dispose();
       for (const each of meshes) each.geometry = proxy;
     }
@@ -110,8 +112,8 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
     gltf.userData["eigenfield"] = new EigenField(parts, source, this.options);
   }
 
-  private openClip(scene: SceneDocument, timeline: Timeline): Promise<Clip> {
-    return openClip(scene, timeline, (...place) => this.options.stream!.readGroups!(...place));
+  private openClip(scene: SceneDocument, timeline: Timeline, mesh: DecodedMesh): Promise<Clip> {
+    return openClip(scene, timeline, mesh, (...place) => this.options.stream!.readGroups!(...place));
   }
 
   private fileBytes(): number {

@@ -5,6 +5,7 @@ import type { Stream, ViewBytes } from "./accessors.js";
 import type { SceneDocument } from "./document.js";
 import { SceneError, damaged } from "./errors.js";
 import { MAX_NUMBER } from "./limits.js";
+import type { DecodedMesh } from "./mesh-decoder.js";
 
 const SHORT = 65535; // vertices up to which indices have 16 bits: index 65535 itself begins a new strip
 
@@ -27,11 +28,15 @@ export function checkGeometry(geometry: BufferGeometry, shown: NonNullable<Scene
 }
 
 /** The proxy of a scene whose glTF mesh is a coarse one, for viewers that know nothing of ours. */
-export async function readCodedMesh({ view, codec, where }: Stream<"mesh">, bytes: ViewBytes): Promise<BufferGeometry> {
-  const { positions, uv, indices } = codec.decode(new Uint8Array(await bytes(view)), where);
-  if (!indices.length) throw damaged(where, "a mesh without faces");
+export async function readCodedMesh({ view, codec, where }: Stream<"mesh">, bytes: ViewBytes): Promise<DecodedMesh> {
+  const mesh = codec.decode(new Uint8Array(await bytes(view)), where);
+  if (!mesh.indices.length) throw damaged(where, "a mesh without faces");
+  return mesh;
+}
+
+export function geometryOf({ positions, uv, indices }: DecodedMesh): BufferGeometry {
   const geometry = new BufferGeometry();
-  geometry.setAttribute("position", new BufferAttribute(positions, 3));
+  geometry.setAttribute("position", new BufferAttribute(positions.slice(), 3)); // those of a clip move
   geometry.setAttribute("uv", new BufferAttribute(uv, 2));
   const short = positions.length / 3 <= SHORT;
   geometry.setIndex(new BufferAttribute(short ? Uint16Array.from(indices) : indices, 1));

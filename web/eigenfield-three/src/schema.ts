@@ -56,6 +56,7 @@ export type Feature =
   | "codedWeights"
   | "film-1"
   | "mesh-2"
+  | "motion-1"
   | "namePattern"
   | "noFallback"
   | "packed"
@@ -87,6 +88,9 @@ export type PictureCodec = "av1-10bit-1" | "av1-10bit-2" | "avif" | "webp" | "pn
 
 /** Codecs of films. */
 export type FilmCodec = "film-1";
+
+/** Codecs of the motion of a mesh. */
+export type MotionCodec = "motion-1";
 
 /** Codecs of a residual. */
 export type VideoCodec = "video-1";
@@ -370,6 +374,8 @@ export interface GroupHeadJson {
   bases: AffineJson[][];
   /** For each frame the bytes of each film's unit. */
   frames: number[][];
+  /** Bytes of the motion of the mesh's vertices. Absent: they stand still. */
+  motion?: number;
 }
 
 /** value = (code - zero) * scale. */

@@ -67,7 +67,7 @@ function ve(e, t) {
 			0
 		]),
 		...N("colr", [
-			...be("nclx"),
+			...F("nclx"),
 			0,
 			2,
 			0,
@@ -77,15 +77,15 @@ function ve(e, t) {
 			128
 		])
 	]), c = N("ftyp", [
-		...be("avif"),
+		...F("avif"),
 		...P(0),
-		...be("avifmif1miafMA1B")
+		...F("avifmif1miafMA1B")
 	]), l = (t) => N("meta", [
 		...P(0),
 		...N("hdlr", [
 			...P(0),
 			...P(0),
-			...be("pict"),
+			...F("pict"),
 			...Array(13).fill(0)
 		]),
 		...N("pitm", [
@@ -121,7 +121,7 @@ function ve(e, t) {
 				1,
 				0,
 				0,
-				...be("av01"),
+				...F("av01"),
 				0
 			])
 		]),
@@ -140,7 +140,7 @@ function ve(e, t) {
 		...c,
 		...l(u),
 		...P(8 + e.byteLength),
-		...be("mdat")
+		...F("mdat")
 	], f = new Uint8Array(u + e.byteLength);
 	return f.set(d), f.set(new Uint8Array(e), u), f.buffer;
 }
@@ -165,7 +165,7 @@ function ye(e, t) {
 function N(e, t) {
 	return [
 		...P(8 + t.length),
-		...be(e),
+		...F(e),
 		...t
 	];
 }
@@ -177,11 +177,11 @@ function P(e) {
 		0
 	].map((t) => e >>> t & 255);
 }
-function be(e) {
+function F(e) {
 	return Array.from(e, (e) => e.charCodeAt(0));
 }
 // eigenfield-three/src/inflate.ts
-async function xe(e, t, n, r) {
+async function be(e, t, n, r) {
 	let i = [], a = 0, o = new Blob([e]).stream().pipeThrough(new DecompressionStream(t)).getReader();
 	try {
 		for (let e = await o.read(); !e.done && a <= n; e = await o.read()) i.push(e.value), a += e.value.length;
@@ -194,11 +194,11 @@ async function xe(e, t, n, r) {
 	return s;
 }
 // eigenfield-three/src/limits.ts
-var Se = "EIGENFIELD_eigen_textures", Ce = 64 * 2 ** 20, F = 16384, we = 16384, Te = 1024, Ee = 2 ** 27, De = 4096, Oe = 8 * 2 ** 30, I = 1e5, ke = 65535, Ae = 2 ** 29, L = 1024, je = 2 ** 25, Me = 2 ** 26, Ne = 2 ** 27, Pe = 8192, Fe = 2 ** 24, Ie = 2 ** 20, Le = 2 ** 16, Re = 2 ** 30, ze = 1024, Be = 2 ** 22, Ve = 2 ** 31 - 1, He = 2 ** 28, Ue = 1e30, R = 65536, We = 126, z = 64, Ge = 0, Ke = 1, qe = 2, Je = 24, Ye = 44, Xe = 21, Ze = 26214, Qe = 4, $e = Float64Array.from({ length: 4095 }, (e, t) => Math.round(R / (1 + Math.exp((2047 - t) / 256)))), et = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), tt = Float64Array.from({ length: 127 }, (e, t) => Math.round(R / (t + 1.5)));
-function B(e) {
-	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + B(Math.floor(e / 4294967296));
+var xe = "EIGENFIELD_eigen_textures", Se = 64 * 2 ** 20, Ce = 16384, we = 16384, Te = 1024, Ee = 2 ** 27, De = 4096, Oe = 8 * 2 ** 30, ke = 1e5, Ae = 65535, je = 2 ** 29, I = 1024, Me = 2 ** 25, Ne = 2 ** 26, Pe = 2 ** 27, Fe = 8192, Ie = 2 ** 24, Le = 2 ** 25, Re = 2 ** 20, ze = 2 ** 16, Be = 2 ** 30, Ve = 1024, He = 2 ** 22, Ue = 2 ** 31 - 1, We = 2 ** 28, Ge = 1e30, L = 65536, Ke = 126, qe = 64, Je = 0, Ye = 1, Xe = 2, Ze = 24, Qe = 44, $e = 21, et = 26214, tt = 4, nt = Float64Array.from({ length: 4095 }, (e, t) => Math.round(L / (1 + Math.exp((2047 - t) / 256)))), rt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), it = Float64Array.from({ length: 127 }, (e, t) => Math.round(L / (t + 1.5)));
+function R(e) {
+	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + R(Math.floor(e / 4294967296));
 }
-var nt = class {
+var at = class {
 	bytes;
 	low = 0;
 	high = 4294967295;
@@ -208,49 +208,49 @@ var nt = class {
 	seen;
 	weights;
 	constructor(e, t, n) {
-		this.bytes = e, this.probability = new Uint16Array(t * z).fill(R / 2), this.seen = new Uint8Array(t * z), this.weights = new Float64Array(n * z * 3).fill(Ze);
-		for (let e = 0; e < Qe; e++) this.code = this.code * 256 + this.next();
+		this.bytes = e, this.probability = new Uint16Array(t * qe).fill(L / 2), this.seen = new Uint8Array(t * qe), this.weights = new Float64Array(n * qe * 3).fill(et);
+		for (let e = 0; e < tt; e++) this.code = this.code * 256 + this.next();
 	}
 	checkEnd(e) {
-		if (this.at > this.bytes.length + Qe) throw ue(e);
+		if (this.at > this.bytes.length + tt) throw ue(e);
 	}
 	flag(e, t, n, r) {
 		return this.node(e, t, n, r, 0) === 1;
 	}
 	raw(e) {
 		let t = 0;
-		for (let n = 0; n < e; n++) t = t * 2 + this.split(R / 2);
+		for (let n = 0; n < e; n++) t = t * 2 + this.split(L / 2);
 		return t;
 	}
 	integer(e, t, n, r) {
 		let i = this.magnitude(e, t, n, r);
-		return i === 0 ? 0 : this.node(e, t, n, r, Ke) ? -i : i;
+		return i === 0 ? 0 : this.node(e, t, n, r, Ye) ? -i : i;
 	}
 	magnitude(e, t, n, r) {
-		if (!this.node(e, t, n, r, Ge)) return 0;
+		if (!this.node(e, t, n, r, Je)) return 0;
 		let i = 0;
-		for (; i < Xe && this.node(e, t, n, r, qe + i);) i += 1;
+		for (; i < $e && this.node(e, t, n, r, Xe + i);) i += 1;
 		if (i < 2) return i + 1;
 		let a = 1;
 		for (let o = i - 2; o >= 0; o--) {
 			let s;
-			s = o === i - 2 ? this.node(e, t, n, r, Je + i) : o === i - 3 ? this.node(e, t, n, r, Ye + 2 * Math.min(i, 9) + (a & 1)) : this.split(R / 2), a = a * 2 + s;
+			s = o === i - 2 ? this.node(e, t, n, r, Ze + i) : o === i - 3 ? this.node(e, t, n, r, Qe + 2 * Math.min(i, 9) + (a & 1)) : this.split(L / 2), a = a * 2 + s;
 		}
 		return a + 1;
 	}
 	node(e, t, n, r, i) {
-		return this.bit(e * z + i, t * z + i, n * z + i, (r * z + i) * 3);
+		return this.bit(e * qe + i, t * qe + i, n * qe + i, (r * qe + i) * 3);
 	}
 	bit(e, t, n, r) {
-		let { probability: i, weights: a } = this, o = et[i[e] >> 4], s = et[i[t] >> 4], c = et[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / R), u = $e[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? R - u : -u;
+		let { probability: i, weights: a } = this, o = rt[i[e] >> 4], s = rt[i[t] >> 4], c = rt[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / L), u = nt[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? L - u : -u;
 		return a[r] += o * f >> 14, a[r + 1] += s * f >> 14, a[r + 2] += c * f >> 14, this.learn(e, d), this.learn(t, d), this.learn(n, d), d;
 	}
 	learn(e, t) {
 		let [n, r] = [this.probability[e], this.seen[e]];
-		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * tt[r] / R), r < We && (this.seen[e] = r + 1);
+		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * it[r] / L), r < Ke && (this.seen[e] = r + 1);
 	}
 	split(e) {
-		let t = this.low + Math.floor((this.high - this.low) * e / R), n = +(this.code <= t);
+		let t = this.low + Math.floor((this.high - this.low) * e / L), n = +(this.code <= t);
 		for (n ? this.high = t : this.low = t + 1; !((this.low ^ this.high) >>> 24);) this.low = this.low << 8 >>> 0, this.high = (this.high << 8 | 255) >>> 0, this.code = (this.code << 8 | this.next()) >>> 0;
 		return n;
 	}
@@ -258,26 +258,26 @@ var nt = class {
 		return this.bytes[this.at++] ?? 0;
 	}
 };
-function rt(e, t, n, r = 1) {
+function z(e, t, n, r = 1) {
 	if (e.length < t) throw ue(n);
 	if (e[0] !== r) throw M(n, `coded numbers of version ${e[0]}`);
 	return new DataView(e.buffer, e.byteOffset, e.byteLength);
 }
-function it(e, t, n, r) {
+function ot(e, t, n, r) {
 	if (t > n || t > 16 * e.length + 1024) throw M(r, `${t} numbers announced`);
 }
 // eigenfield-three/src/table-decoder.ts
-var at = 12, ot = 1, st = 3, ct = 312, lt = st * ct, ut = 938, dt = 24, ft = 16, pt = 1722, mt = 1726, ht = 4, gt = 5;
-function _t(e) {
-	return new nt(e, mt, 21);
-}
-function vt(e) {
-	return e.flag(lt, lt, lt, st) ? 2 : e.flag(937, 937, 937, st) ? ot : 0;
-}
+var st = 12, ct = 1, lt = 3, ut = 312, dt = lt * ut, ft = 938, pt = 24, mt = 16, ht = 1722, gt = 1726, _t = 4, vt = 5;
 function yt(e) {
-	return Math.min(B(e), 11);
+	return new at(e, gt, 21);
 }
-function bt(e, t, n, r) {
+function bt(e) {
+	return e.flag(dt, dt, dt, lt) ? 2 : e.flag(937, 937, 937, lt) ? ct : 0;
+}
+function xt(e) {
+	return Math.min(R(e), 11);
+}
+function St(e, t, n, r) {
 	let i = new Float64Array(n.length), a = n.length / t, o = (e, n, r) => n < 0 || r < 0 || r >= t ? 0 : e[n * t + r], s = 0;
 	for (let c = 0; c < a; c++) for (let a = 0; a < t; a++) {
 		let [l, u] = [o(i, c, a - 1), o(i, c - 1, a)], [d, f] = [o(i, c - 1, a - 1), o(i, c - 1, a + 1)], [p, m, h] = [
@@ -285,32 +285,32 @@ function bt(e, t, n, r) {
 			0,
 			s
 		];
-		r === ot ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
-		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * ct, y = e.integer(v + yt(m) * at + yt(g), v + 144 + yt(m + h), v + 144 + 24 + _ * at + yt(g + Math.abs(l)), r);
+		r === ct ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
+		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * ut, y = e.integer(v + xt(m) * st + xt(g), v + 144 + xt(m + h), v + 144 + 24 + _ * st + xt(g + Math.abs(l)), r);
 		i[c * t + a] = p + y, s = Math.abs(y);
 	}
 	return i;
 }
-function xt(e, t, n, r) {
+function Ct(e, t, n, r) {
 	let i = new Float64Array(t * n), a = new Float64Array(n);
 	for (let o = 0; o < t; o++) {
 		let t = 0;
 		for (let s = 0; s < n; s++) {
-			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(B(a[s]), 23), d = Math.min(B(t), 23), f = e.integer(ut + l * dt + u, ut + (ft + l) * dt + d, 1706 + l, gt + l);
+			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(R(a[s]), 23), d = Math.min(R(t), 23), f = e.integer(ft + l * pt + u, ft + (mt + l) * pt + d, 1706 + l, vt + l);
 			i[o * n + s] = c + f, t = Math.abs(f), a[s] = Math.floor((a[s] + t + 1) / 2);
 		}
 	}
 	return i;
 }
-function St(e, t, n, r) {
+function wt(e, t, n, r) {
 	let i = new Float64Array(t).fill(-1), a = new Uint8Array(n), [o, s, c] = [
 		0,
 		1,
 		0
 	];
 	for (let l = 0; l < t; l++) {
-		if (s = +!!e.flag(pt + s, pt + s, 1724, ht), !s) continue;
-		let t = o + e.integer(1725, 1725, 1725, ht);
+		if (s = +!!e.flag(ht + s, ht + s, 1724, _t), !s) continue;
+		let t = o + e.integer(1725, 1725, 1725, _t);
 		if (!(t >= 0 && t < n) || a[t]) throw M(r, "a grid with a camera out of place");
 		a[t] = 1, i[l] = t, o = t + 1, c += 1;
 	}
@@ -318,20 +318,20 @@ function St(e, t, n, r) {
 	return i;
 }
 // eigenfield-three/src/camera-decoder.ts
-var Ct = 130, wt = 11, Tt = 1, Et = 2, Dt = 2, Ot = 44 * I + 1024;
-async function kt(e, t) {
-	if (e[0] !== Dt) throw M(t, `version ${e[0]}`);
-	let n = await xe(Uint8Array.from(e.subarray(1)), "deflate-raw", Ot, t);
-	return At(Uint8Array.from([1, ...n]), t);
+var Tt = 130, B = 11, Et = 1, Dt = 2, Ot = 2, kt = 44 * ke + 1024;
+async function At(e, t) {
+	if (e[0] !== Ot) throw M(t, `version ${e[0]}`);
+	let n = await be(Uint8Array.from(e.subarray(1)), "deflate-raw", kt, t);
+	return jt(Uint8Array.from([1, ...n]), t);
 }
-function At(e, t) {
-	let n = rt(e, Ct, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Tt) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
+function jt(e, t) {
+	let n = z(e, Tt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Et) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
 	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw M(t, "cameras that cannot be");
 	if (i > 1e5 || a && o * s < i) throw M(t, `${i} cameras`);
-	it(e, Math.max(wt * i, o * s), wt * I, t);
-	let l = Ct + (a ? 132 : 0);
-	rt(e, l, t);
-	let u = (e, t) => a ? n.getFloat32(Ct + 4 * (e * wt + t), !0) : 0, d = _t(e.subarray(l)), f = a ? St(d, o * s, i, t) : null, p = xt(d, i, wt, (r & Et) !== 0);
+	ot(e, Math.max(B * i, o * s), B * ke, t);
+	let l = Tt + (a ? 132 : 0);
+	z(e, l, t);
+	let u = (e, t) => a ? n.getFloat32(Tt + 4 * (e * B + t), !0) : 0, d = yt(e.subarray(l)), f = a ? wt(d, o * s, i, t) : null, p = Ct(d, i, B, (r & Dt) !== 0);
 	d.checkEnd(t);
 	let m = {
 		intrinsics: new Float32Array(5 * i),
@@ -342,27 +342,27 @@ function At(e, t) {
 		0,
 		0,
 		...c.subarray(12)
-	], g = Mt(c[3], c[4], c[5], c[6]), _ = new Float64Array(wt), v = 0;
+	], g = Nt(c[3], c[4], c[5], c[6]), _ = new Float64Array(B), v = 0;
 	for (let e = 0; e < (f ? f.length : i); e++) {
 		let t = f ? f[e] : e;
 		if (t < 0) continue;
 		let [n, r] = f ? [Math.floor(e / s), e % s] : [0, 0];
-		for (let e = 0; e < wt; e++) {
+		for (let e = 0; e < B; e++) {
 			let t = c[e < 5 ? 0 : e < 8 ? 1 : 2], i = u(0, e) + u(1, e) * n + u(2, e) * r;
-			_[e] = p[v * wt + e] * t + h[e] + i;
+			_[e] = p[v * B + e] * t + h[e] + i;
 		}
-		jt(_, g, m, t), v += 1;
+		Mt(_, g, m, t), v += 1;
 	}
 	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw M(t, "cameras that are not finite");
 	return m;
 }
-function jt(e, t, n, r) {
+function Mt(e, t, n, r) {
 	n.intrinsics.set(e.subarray(0, 5), 5 * r);
 	let [i, a, o] = [
 		e[5],
 		e[6],
 		e[7]
-	], s = i * i + a * a + o * o, c = 1 + s, l = Mt(2 * i / c, 2 * a / c, 2 * o / c, (1 - s) / c);
+	], s = i * i + a * a + o * o, c = 1 + s, l = Nt(2 * i / c, 2 * a / c, 2 * o / c, (1 - s) / c);
 	for (let i = 0; i < 3; i++) {
 		let a = 0;
 		for (let o = 0; o < 3; o++) {
@@ -373,7 +373,7 @@ function jt(e, t, n, r) {
 		n.poses[12 * r + 4 * i + 3] = a;
 	}
 }
-function Mt(e, t, n, r) {
+function Nt(e, t, n, r) {
 	return [
 		[
 			1 - 2 * (t * t + n * n),
@@ -393,7 +393,7 @@ function Mt(e, t, n, r) {
 	].flat();
 }
 // eigenfield-three/src/film-decoder.ts
-var Nt = 4, Pt = ["prefer-software", "no-preference"], Ft = class {
+var Pt = 4, Ft = ["prefer-software", "no-preference"], It = class {
 	size;
 	where;
 	user;
@@ -409,12 +409,12 @@ var Nt = 4, Pt = ["prefer-software", "no-preference"], Ft = class {
 		return this.opened;
 	}
 	get ready() {
-		return this.onTheWay < Nt;
+		return this.onTheWay < Pt;
 	}
 	async start(e) {
 		let { level: t, tier: n, width: r, height: i } = ye(e, this.where);
 		if (r !== this.size[0] || i !== this.size[1]) throw M(this.where, `frames of ${r} x ${i}`);
-		let a = `av01.0.${String(t).padStart(2, "0")}${n ? "H" : "M"}.10`, { turn: o } = this, s = this.config?.codec === a, c = s ? this.config : await It(a, this.size, this.where);
+		let a = `av01.0.${String(t).padStart(2, "0")}${n ? "H" : "M"}.10`, { turn: o } = this, s = this.config?.codec === a, c = s ? this.config : await Lt(a, this.size, this.where);
 		o === this.turn && c && (s && this.decoder?.state === "configured" || (this.config = c, this.decoder && this.decoder.state !== "closed" || (this.decoder = this.made()), this.decoder.configure(c)));
 	}
 	decode(e, t, n) {
@@ -458,8 +458,8 @@ var Nt = 4, Pt = ["prefer-software", "no-preference"], Ft = class {
 		e === this.turn && (this.reset(), this.user.failed(t));
 	}
 };
-async function It(e, [t, n], r) {
-	for (let r of typeof VideoDecoder > "u" ? [] : Pt) {
+async function Lt(e, [t, n], r) {
+	for (let r of typeof VideoDecoder > "u" ? [] : Ft) {
 		let i = {
 			codec: e,
 			codedWidth: t,
@@ -472,7 +472,7 @@ async function It(e, [t, n], r) {
 	throw new j("codec", `This browser ${globalThis.isSecureContext ? "decodes no AV1 of 10 bits" : "plays clips from https and localhost only"}; ${globalThis.isSecureContext ? "use a newer browser" : "open the page from there"}. The first frame is shown.`, r);
 }
 // eigenfield-three/src/mesh-front.ts
-var Lt = 0, Rt = 2 ** 24, zt = class {
+var Rt = 0, zt = 2 ** 24, Bt = class {
 	points;
 	start;
 	end;
@@ -510,8 +510,8 @@ var Lt = 0, Rt = 2 ** 24, zt = class {
 	}
 	closeLeft(e) {
 		let [t, n] = [this.before[e], this.after[e]], r = this.start[t];
-		if (this.status[e] = this.status[t] = Lt, this.status[n] === 1 && this.end[n] === r && n !== t) {
-			this.status[n] = Lt, this.link(this.before[t], this.after[n]);
+		if (this.status[e] = this.status[t] = Rt, this.status[n] === 1 && this.end[n] === r && n !== t) {
+			this.status[n] = Rt, this.link(this.before[t], this.after[n]);
 			return;
 		}
 		let i = this.before[t], a = this.add(r, this.end[e], this.start[e]);
@@ -519,7 +519,7 @@ var Lt = 0, Rt = 2 ** 24, zt = class {
 	}
 	closeRight(e) {
 		let [t, n] = [this.before[e], this.after[e]];
-		this.status[e] = this.status[n] = Lt;
+		this.status[e] = this.status[n] = Rt;
 		let r = this.after[n], i = this.add(this.start[e], this.end[n], this.end[e]);
 		this.link(t, i), this.link(i, r);
 	}
@@ -529,9 +529,9 @@ var Lt = 0, Rt = 2 ** 24, zt = class {
 			this.after[e],
 			this.into[t]
 		];
-		this.status[e] = Lt;
+		this.status[e] = Rt;
 		let a = this.add(this.start[e], t, this.end[e]), o = this.add(t, this.end[e], this.start[e]);
-		i >= 0 && this.status[i] !== Lt ? (this.link(a, this.after[i]), this.link(i, o)) : this.link(a, o), this.link(n, a), this.link(o, r), this.into[t] = a;
+		i >= 0 && this.status[i] !== Rt ? (this.link(a, this.after[i]), this.link(i, o)) : this.link(a, o), this.link(n, a), this.link(o, r), this.into[t] = a;
 	}
 	link(e, t) {
 		this.after[e] = t, this.before[t] = e;
@@ -539,7 +539,7 @@ var Lt = 0, Rt = 2 ** 24, zt = class {
 	add(e, t, n) {
 		let { heap: r, key: i, points: a } = this, o = this.gates++;
 		this.start[o] = e, this.end[o] = t, this.opposite[o] = n, this.status[o] = 1, this.into[t] = o;
-		let s = (a[3 * e] + a[3 * t]) * Rt + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
+		let s = (a[3 * e] + a[3 * t]) * zt + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
 		for (; c > 0;) {
 			let e = c - 1 >> 1;
 			if (i[e] <= s) break;
@@ -547,57 +547,57 @@ var Lt = 0, Rt = 2 ** 24, zt = class {
 		}
 		return r[c] = o, i[c] = s, o;
 	}
-}, Bt = 2 ** 20, Vt = .8, Ht = 44, Ut = 385, Wt = 897, Gt = 1086, Kt = 1095, [qt, Jt, Yt, Xt, Zt] = [
+}, Vt = 2 ** 20, Ht = .8, Ut = 44, Wt = 385, Gt = 897, Kt = 1086, qt = 1095, [Jt, Yt, Xt, Zt, Qt] = [
 	0,
 	1,
 	2,
 	3,
 	15
 ];
-function Qt(e) {
-	return Math.floor(Math.min(Math.max(e, -Bt), Bt) + .5);
+function $t(e) {
+	return Math.floor(Math.min(Math.max(e, -Vt), Vt) + .5);
 }
-function $t(e, t, n) {
+function en(e, t, n) {
 	let r = Math.max((1 << n) - 1, 1);
 	return (e[3 * t] & r ? 1 : 0) + (e[3 * t + 1] & r ? 2 : 0);
 }
-function en(e, t, n, r, i) {
-	i.flat ? tn(e, t, n, r, i.fine) : nn(e, t, n, r);
-}
 function tn(e, t, n, r, i) {
+	i.flat ? nn(e, t, n, r, i.fine) : rn(e, t, n, r);
+}
+function nn(e, t, n, r, i) {
 	let { a, b: o, o: s, pair: c } = r, [l, u, d, f] = [
 		t[3 * a],
 		t[3 * a + 1],
 		t[3 * o],
 		t[3 * o + 1]
-	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? Vt : -.8, _ = 1 << i >> 1, v = Qt((l + d) * .5 + g * m) + _ >> i, y = Qt((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(B(Math.floor((p * p + m * m) / b)), 23), S = Math.min(B(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, qt), T = Math.min(B(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(Ut + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, Jt);
+	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? Ht : -.8, _ = 1 << i >> 1, v = $t((l + d) * .5 + g * m) + _ >> i, y = $t((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(R(Math.floor((p * p + m * m) / b)), 23), S = Math.min(R(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, Jt), T = Math.min(R(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(Wt + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, Yt);
 	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + O << i, i === 0) return;
-	let k = $t(t, a, i) + 4 * $t(t, o, i);
-	if (e.flag(Wt + k, 913 + $t(t, s, i), 917 + c, Zt)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
+	let k = en(t, a, i) + 4 * en(t, o, i);
+	if (e.flag(Gt + k, 913 + en(t, s, i), 917 + c, Qt)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
 }
-function nn(e, t, n, { a: r, b: i, o: a }) {
+function rn(e, t, n, { a: r, b: i, o: a }) {
 	let o = 0;
 	for (let e = 0; e < 3; e++) o += (t[3 * i + e] - t[3 * r + e]) ** 2;
-	let s = Math.min(B(o), 43), c = 0;
+	let s = Math.min(R(o), 43), c = 0;
 	for (let o = 0; o < 3; o++) {
-		let l = Qt(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, Ht + o * 24 + c, 116 + o * Ht + s, Yt);
-		t[3 * n + o] = l + u, c = Math.min(B(Math.abs(u)), 23);
+		let l = $t(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, Ut + o * 24 + c, 116 + o * Ut + s, Xt);
+		t[3 * n + o] = l + u, c = Math.min(R(Math.abs(u)), 23);
 	}
 }
-function rn(e, t, n, r, i) {
+function an(e, t, n, r, i) {
 	for (let a = 0; a < (i ? 2 : 3); a++) {
-		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -Bt), Bt) : 0, o = Gt + a;
-		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, Xt);
+		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -Vt), Vt) : 0, o = Kt + a;
+		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, Zt);
 	}
 }
 // eigenfield-three/src/mesh-faces.ts
-var an = 13, on = 11, sn = 12, V = 169, cn = 8, ln = Kt, un = ln + V + 104 + 26, dn = un + V + 104 + an, fn = dn + 64 + 64 + V, pn = fn + V + 4 + 1, mn = pn + 6, [hn, gn, _n, vn, yn] = [
+var on = 13, sn = 11, cn = 12, V = 169, ln = 8, un = qt, dn = un + V + 104 + 26, fn = dn + V + 104 + on, pn = fn + 64 + 64 + V, mn = pn + V + 4 + 1, hn = mn + 6, [gn, _n, vn, yn, bn] = [
 	4,
 	5,
 	6,
 	7,
 	8
-], bn = [
+], xn = [
 	-1,
 	-.4,
 	0,
@@ -608,12 +608,12 @@ var an = 13, on = 11, sn = 12, V = 169, cn = 8, ln = Kt, un = ln + V + 104 + 26,
 	2,
 	4
 ];
-function xn(e, t, n, r, i) {
+function Sn(e, t, n, r, i) {
 	let a = new Int32Array(3 * t), o = {
 		points: a,
 		faces: new Int32Array(3 * n),
 		parents: new Int32Array(3 * t).fill(-1)
-	}, s = new Int32Array(t), c = new zt(a, n), [l, u] = [0, 0], d = (e, t, n) => {
+	}, s = new Int32Array(t), c = new Bt(a, n), [l, u] = [0, 0], d = (e, t, n) => {
 		o.faces.set([
 			e,
 			t,
@@ -628,7 +628,7 @@ function xn(e, t, n, r, i) {
 		if (l >= t) throw M(i, "more places than announced");
 		return l++;
 	}, p = () => {
-		let t = e.raw(B(l - 1));
+		let t = e.raw(R(l - 1));
 		if (t >= l) throw M(i, "a place that is not there yet");
 		return t;
 	}, m = () => {
@@ -637,44 +637,44 @@ function xn(e, t, n, r, i) {
 			-1,
 			-1
 		];
-		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(pn + n, pn + 3 + n, pn + n, yn)) t[n] = p();
+		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(mn + n, mn + 3 + n, mn + n, bn)) t[n] = p();
 		else {
 			let i = t[n] = f();
-			rn(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
+			an(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
 		}
 		let [n, o, s] = t;
 		if (n === o || o === s || s === n) throw M(i, "a face of two corners");
 		d(n, o, s), c.seed(t);
-	}, h = (e, t, n, i) => c.status[t] === 2 ? sn : c.status[t] !== 1 || n === i || t === e ? on : Sn(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
+	}, h = (e, t, n, i) => c.status[t] === 2 ? cn : c.status[t] !== 1 || n === i || t === e ? sn : Cn(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
 	for (; u < n;) {
 		let t = c.next();
 		if (t < 0) {
 			m();
 			continue;
 		}
-		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * an + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = ln + V + 104 + 2 * y + +(_ === v);
-		if (y < on && e.flag(ln + x, ln + V + y * cn + S, w, hn)) {
+		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * on + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = un + V + 104 + 2 * y + +(_ === v);
+		if (y < sn && e.flag(un + x, un + V + y * ln + S, w, gn)) {
 			d(l, n, _), c.closeLeft(t);
 			continue;
 		}
-		if (b < on && (v !== _ || y >= on) && e.flag(un + x, un + V + b * cn + C, un + V + 104 + b, gn)) {
+		if (b < sn && (v !== _ || y >= sn) && e.flag(dn + x, dn + V + b * ln + C, dn + V + 104 + b, _n)) {
 			d(l, n, v), c.closeRight(t);
 			continue;
 		}
-		let T = +(y === sn) + (b === sn ? 2 : 0), E = $t(a, n, r.fine) + 4 * $t(a, l, r.fine), ee = dn + 64 + S * cn + C;
-		if (e.flag(dn + T * 16 + E, ee, dn + 64 + 64 + x, _n)) {
+		let T = +(y === cn) + (b === cn ? 2 : 0), E = en(a, n, r.fine) + 4 * en(a, l, r.fine), ee = fn + 64 + S * ln + C;
+		if (e.flag(fn + T * 16 + E, ee, fn + 64 + 64 + x, vn)) {
 			c.status[t] = 2;
 			continue;
 		}
 		let D;
-		if (e.flag(fn + x, fn + V + T, fn + V + 4, vn)) {
+		if (e.flag(pn + x, pn + V + T, pn + V + 4, yn)) {
 			D = f();
 			let i = c.opposite[t];
 			o.parents.set([
 				n,
 				l,
 				i
-			], 3 * D), en(e, a, D, {
+			], 3 * D), tn(e, a, D, {
 				a: n,
 				b: l,
 				o: i,
@@ -686,7 +686,7 @@ function xn(e, t, n, r, i) {
 	if (l !== t) throw M(i, "fewer places than announced");
 	return o;
 }
-function Sn(e, t, n, r, i, a) {
+function Cn(e, t, n, r, i, a) {
 	let o = (n, r) => a && r === 2 ? 0 : e[3 * n + r] - e[3 * t + r], [s, c, l] = [
 		o(n, 0),
 		o(n, 1),
@@ -709,21 +709,21 @@ function Sn(e, t, n, r, i, a) {
 		s * m - c * p
 	], S = Math.sqrt(g * g + _ * _ + v * v);
 	if (S === 0 || g * y + _ * b + v * x > 0) return 0;
-	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = bn.findIndex((e) => C < e);
+	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = xn.findIndex((e) => C < e);
 	return w < 0 ? 10 : w + 1;
 }
 // eigenfield-three/src/mesh-corners.ts
-var Cn = 32, wn = 4, [Tn, En, Dn, On] = [
+var wn = 32, Tn = 4, [En, Dn, On, kn] = [
 	0,
 	1,
 	2,
 	3
-], kn = mn, An = kn + 64 + 12 + 16, H = An + wn + 1, jn = H + 4, [Mn, Nn, Pn] = [
+], An = hn, jn = An + 64 + 12 + 16, H = jn + Tn + 1, Mn = H + 4, [Nn, Pn, Fn] = [
 	9,
 	10,
 	11
 ];
-function Fn(e, t) {
+function In(e, t) {
 	let n = new Int32Array(t + 1);
 	for (let t of e) n[t + 1] += 1;
 	for (let e = 0; e < t; e++) n[e + 1] += n[e];
@@ -733,7 +733,7 @@ function Fn(e, t) {
 		corners: i
 	};
 }
-function In(e, t, n, r, i, a, o) {
+function Ln(e, t, n, r, i, a, o) {
 	let s = t.faces.length / 3, c = Math.min(s, Math.floor(n / 3)), l = {
 		faces: new Int32Array(3 * s),
 		place: new Int32Array(n),
@@ -748,7 +748,7 @@ function In(e, t, n, r, i, a, o) {
 		0,
 		0,
 		0
-	], m = new Int32Array(wn), h = /* @__PURE__ */ new Int32Array(8), [g, _, v] = [
+	], m = new Int32Array(Tn), h = /* @__PURE__ */ new Int32Array(8), [g, _, v] = [
 		0,
 		0,
 		-1
@@ -757,7 +757,7 @@ function In(e, t, n, r, i, a, o) {
 		return -1;
 	}, b = (e, n) => {
 		let [a, o] = [t.faces[3 * e + n], t.faces[3 * e + (n + 1) % 3]];
-		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + Cn); t++) {
+		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + wn); t++) {
 			let n = Math.floor(i[t] / 3);
 			if (n >= e) break;
 			if (y(n, o) >= 0) return n;
@@ -766,42 +766,42 @@ function In(e, t, n, r, i, a, o) {
 	}, x = (e, t) => l.faces[3 * e + y(e, t)], S = (n, r) => {
 		let i = t.faces[3 * n + r], a = u[i];
 		if (a < 0) return -1;
-		h.fill(On);
+		h.fill(kn);
 		let s = 0;
 		for (let e of [r, (r + 2) % 3]) {
 			if (f[e] < 0) continue;
 			let t = x(f[e], i);
 			s === 1 && m[0] === t ? h[1] = p[e] : (m[s] = t, h[2 * s] = p[e], s += 1);
 		}
-		for (let e = 0; e < Cn && s < wn && a >= 0; e++) (s < 1 || a !== m[0]) && (s < 2 || a !== m[1]) && (m[s++] = a), a = d[a];
+		for (let e = 0; e < wn && s < Tn && a >= 0; e++) (s < 1 || a !== m[0]) && (s < 2 || a !== m[1]) && (m[s++] = a), a = d[a];
 		let c = -1;
 		for (let t = 0; t < s && c < 0; t++) {
-			let [n, i] = [h[2 * t], h[2 * t + 1]], a = kn + 76 + Math.min(s, 3) * 4 + n;
-			e.flag(kn + t * 16 + n * 4 + i, kn + 64 + t * 3 + r, a, Mn) && (c = m[t]);
+			let [n, i] = [h[2 * t], h[2 * t + 1]], a = An + 76 + Math.min(s, 3) * 4 + n;
+			e.flag(An + t * 16 + n * 4 + i, An + 64 + t * 3 + r, a, Nn) && (c = m[t]);
 		}
 		if (c < 0) {
-			if (e.flag(An + s, An + s, An + wn, Nn)) return -1;
-			if (c = e.raw(B(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
+			if (e.flag(jn + s, jn + s, jn + Tn, Pn)) return -1;
+			if (c = e.raw(R(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
 		}
-		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? En : Dn);
+		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? Dn : On);
 		return c;
 	}, C = () => {
 		let t = _++;
-		if (!e.flag(H, H, H, Pn)) return l.kinds[t] = e.flag(H + 1, H + 1, H + 1, Pn) ? 2 : 0, t;
+		if (!e.flag(H, H, H, Fn)) return l.kinds[t] = e.flag(H + 1, H + 1, H + 1, Fn) ? 2 : 0, t;
 		l.kinds[t] = 1;
 		let n = v;
-		if (v = t, n >= 0 && e.flag(H + 2, H + 2, H + 2, Pn)) {
-			let n = e.raw(B(t - 1));
+		if (v = t, n >= 0 && e.flag(H + 2, H + 2, H + 2, Fn)) {
+			let n = e.raw(R(t - 1));
 			if (n >= t || l.kinds[n] !== 1) throw M(o, "a map that is not there");
 			return l.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
 		}
-		let r = n >= 0 && e.flag(H + 3, H + 3, H + 3, Pn);
+		let r = n >= 0 && e.flag(H + 3, H + 3, H + 3, Fn);
 		for (let i = 0; i < 4; i++) l.maps[6 * t + i] = r ? l.maps[6 * n + i] : e.raw(32);
 		for (let n = 4; n < 6; n++) l.maps[6 * t + n] = e.raw(a);
 		return t;
 	};
 	for (let e = 0; e < s; e++) {
-		for (let t = 0; t < 3; t++) f[t] = b(e, t), p[t] = Tn;
+		for (let t = 0; t < 3; t++) f[t] = b(e, t), p[t] = En;
 		let r = -1, i = [];
 		for (let a = 0; a < 3; a++) {
 			let s = S(e, a);
@@ -821,7 +821,7 @@ function In(e, t, n, r, i, a, o) {
 	return l;
 }
 // eigenfield-three/src/mesh-values.ts
-var Ln = 16, Rn = 6, zn = 13, Bn = 14, Vn = 20, Hn = jn, Un = Hn + 169 + 280 + 182, Wn = Un + 144 + 576 + 48, [Gn, Kn] = [12, 13], qn = [
+var Rn = 16, zn = 6, Bn = 13, Vn = 14, Hn = 20, Un = Mn, Wn = Un + 169 + 280 + 182, Gn = Wn + 144 + 576 + 48, [Kn, qn] = [12, 13], Jn = [
 	.5,
 	1.5,
 	3,
@@ -829,14 +829,14 @@ var Ln = 16, Rn = 6, zn = 13, Bn = 14, Vn = 20, Hn = jn, Un = Hn + 169 + 280 + 1
 	12,
 	30
 ];
-function Jn(e, t) {
-	return Qt(Number.isNaN(e) ? t : e);
+function Yn(e, t) {
+	return $t(Number.isNaN(e) ? t : e);
 }
-function Yn(e) {
-	let t = qn.filter((t) => Math.abs(e) >= t).length;
-	return e < 0 ? Rn - t : Rn + t;
+function Xn(e) {
+	let t = Jn.filter((t) => Math.abs(e) >= t).length;
+	return e < 0 ? zn - t : zn + t;
 }
-function Xn(e, t, n, r) {
+function Zn(e, t, n, r) {
 	let { points: i, faces: a, parents: o } = t, s = /* @__PURE__ */ new Float64Array(9), c = (e) => i[3 * e], l = (e) => i[3 * e + 1], u = (e) => i[3 * e + 2], d = (e, t) => {
 		let [n, r, i] = [
 			c(t) - c(e),
@@ -857,18 +857,18 @@ function Xn(e, t, n, r) {
 			Infinity,
 			-Infinity
 		];
-		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + Ln); e++) for (let i = 1; i < 3; i++) {
-			let o = Zn(a, r[e], i);
+		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + Rn); e++) for (let i = 1; i < 3; i++) {
+			let o = Qn(a, r[e], i);
 			if (o >= t) continue;
 			let s = d(t, o);
 			h += s * u(o), g += s, _ = Math.min(_, u(o)), v = Math.max(v, u(o));
-			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + Ln); e++) for (let n = 1; n < 3; n++) {
-				let i = Zn(a, r[e], n);
+			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + Rn); e++) for (let n = 1; n < 3; n++) {
+				let i = Qn(a, r[e], n);
 				i < t && d(t, i);
 			}
 		}
 		let y = 13, b = t > 0 ? u(t - 1) : 0, x = b;
-		g > 0 && (y = Math.min(B(v - _), 12), b = h / g, x = Math.min(Math.max(Qn(s), p), m));
+		g > 0 && (y = Math.min(R(v - _), 12), b = h / g, x = Math.min(Math.max($n(s), p), m));
 		let S = b, [C, w, T] = [
 			o[3 * t],
 			o[3 * t + 1],
@@ -886,15 +886,15 @@ function Xn(e, t, n, r) {
 				S = Math.min(Math.max(u(C) + t * (u(w) - u(C)) + c * (u(T) - u(C)), p), m);
 			}
 		}
-		let E = Jn(x, b), [ee, D] = [Yn(S - E), Yn(b - E)], O = e.integer(Hn + ee * zn + D, Hn + 169 + y * Vn + f, Hn + 169 + 280 + ee * Bn + y, Gn), k = E + O;
-		i[3 * t + 2] = k, f = Math.min(B(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
+		let E = Yn(x, b), [ee, D] = [Xn(S - E), Xn(b - E)], O = e.integer(Un + ee * Bn + D, Un + 169 + y * Hn + f, Un + 169 + 280 + ee * Vn + y, Kn), k = E + O;
+		i[3 * t + 2] = k, f = Math.min(R(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
 	}
 }
-function Zn(e, t, n) {
+function Qn(e, t, n) {
 	let r = t % 3;
 	return e[t - r + (r + n) % 3];
 }
-function Qn(e) {
+function $n(e) {
 	let [t, n, r] = [
 		e[0],
 		e[1],
@@ -914,7 +914,7 @@ function Qn(e) {
 	];
 	return (s * u - c * d + l * f) / (t * u - n * d + r * f);
 }
-function $n(e, t, n, r, i) {
+function er(e, t, n, r, i) {
 	let { faces: a, chart: o, kinds: s, place: c } = t, l = new Int32Array(2 * c.length), u = [0, 0], d = -1;
 	for (let t = 0; t < c.length; t++) {
 		let f = s[o[t]];
@@ -926,25 +926,25 @@ function $n(e, t, n, r, i) {
 			-1,
 			0
 		];
-		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + Ln); e++) {
-			let [r, s] = [Zn(a, i[e], 1), Zn(a, i[e], 2)];
+		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + Rn); e++) {
+			let [r, s] = [Qn(a, i[e], 1), Qn(a, i[e], 2)];
 			if (r < t && o[r] === o[t] && (g = Math.max(g, r)), s < t && o[s] === o[t] && (g = Math.max(g, s)), r >= t || s >= t) continue;
-			let [u, d] = er(n, c, l, t, r, s, f === 2);
+			let [u, d] = tr(n, c, l, t, r, s, f === 2);
 			if (!Number.isFinite(u) || !Number.isFinite(d)) continue;
 			p += u, m += d, h += 1;
 			let v = Math.abs(l[2 * r] - l[2 * s]) + Math.abs(l[2 * r + 1] - l[2 * s + 1]);
-			_ = Math.max(_, B(v));
+			_ = Math.max(_, R(v));
 		}
 		g < 0 && (g = d), d = t;
-		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = Un + 144;
+		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = Wn + 144;
 		for (let n = 0; n < 2; n++) {
-			let r = e.integer(Un + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], Kn + n);
-			l[2 * t + n] = Jn(y[n], 0) + r, u[n] = Math.min(B(Math.abs(r)), 23);
+			let r = e.integer(Wn + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], qn + n);
+			l[2 * t + n] = Yn(y[n], 0) + r, u[n] = Math.min(R(Math.abs(r)), 23);
 		}
 	}
 	return l;
 }
-function er(e, t, n, r, i, a, o) {
+function tr(e, t, n, r, i, a, o) {
 	let [s, c, l] = [
 		0,
 		0,
@@ -958,15 +958,15 @@ function er(e, t, n, r, i, a, o) {
 	return [n[2 * i] + f * u - m * d, n[2 * i + 1] + f * d + m * u];
 }
 // eigenfield-three/src/mesh-decoder.ts
-var tr = 144, nr = 2, rr = 3, ir = 18, ar = 8;
-function or(e, t) {
-	return cr(e, t, 1);
-}
+var nr = 144, rr = 2, ir = 3, ar = 18, or = 8;
 function sr(e, t) {
-	return cr(e, t, nr);
+	return lr(e, t, 1);
 }
-function cr(e, t, n) {
-	let r = rt(e, tr, t, n), [i, a, o] = [
+function cr(e, t) {
+	return lr(e, t, rr);
+}
+function lr(e, t, n) {
+	let r = z(e, nr, t, n), [i, a, o] = [
 		r.getUint8(1),
 		r.getUint8(2),
 		r.getUint8(3)
@@ -975,21 +975,24 @@ function cr(e, t, n) {
 		8,
 		12
 	].map((e) => r.getUint32(e, !0)), u = Float64Array.from({ length: 16 }, (e, t) => r.getFloat64(16 + 8 * t, !0));
-	if (s > Me || l > Me || c > Ne) throw M(t, `${l} vertices and ${c} faces`);
-	if (it(e, Math.max(s, c, l), Ne, t), i > 1 || o > ar * i || a < 1 || a > ir || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
-	let d = new nt(e.subarray(tr), Wn, 16), f = xn(d, s, c, {
+	if (s > Ne || l > Ne || c > Pe) throw M(t, `${l} vertices and ${c} faces`);
+	if (ot(e, Math.max(s, c, l), Pe, t), i > 1 || o > or * i || a < 1 || a > ar || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
+	let d = new at(e.subarray(nr), Gn, 16), f = Sn(d, s, c, {
 		flat: i === 1,
 		fine: o
 	}, t);
 	d.checkEnd(t);
-	let p = Fn(f.faces, s);
-	i && Xn(d, f, p.first, p.corners);
-	let m = n === nr ? a + rr : 32, h = In(d, f, l, p.first, p.corners, m, t), g = lr(f.points, u), _ = Fn(h.faces, l), v = $n(d, h, g, _.first, _.corners);
+	let p = In(f.faces, s);
+	i && Zn(d, f, p.first, p.corners);
+	let m = n === rr ? a + ir : 32, h = Ln(d, f, l, p.first, p.corners, m, t), g = ur(f.points, u), _ = In(h.faces, l), v = er(d, h, g, _.first, _.corners);
 	d.checkEnd(t);
 	let y = new Float32Array(h.maps.buffer);
-	return dr(ur(f, h, g, v, 2 ** a, (e) => n === nr ? h.maps[e] / 2 ** (a + 1) - 2 : y[e]), t);
+	return fr({
+		...dr(f, h, g, v, 2 ** a, (e) => n === rr ? h.maps[e] / 2 ** (a + 1) - 2 : y[e]),
+		matrix: u
+	}, t);
 }
-function lr(e, t) {
+function ur(e, t) {
 	let n = new Float64Array(e.length);
 	for (let r = 0; r < e.length; r += 3) {
 		let i = (n) => t[4 * n] * e[r] + t[4 * n + 1] * e[r + 1] + t[4 * n + 2] * e[r + 2] + t[4 * n + 3], a = i(3);
@@ -997,30 +1000,165 @@ function lr(e, t) {
 	}
 	return n;
 }
-function ur(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) {
-	let u = new Float32Array(3 * n.length), d = new Float32Array(2 * n.length), f = new Float32Array(a.buffer);
+function dr(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) {
+	let u = new Float32Array(3 * n.length), d = new Int32Array(3 * n.length), f = new Float32Array(2 * n.length), p = new Float32Array(a.buffer);
 	return n.forEach((t, n) => {
-		u.set(o.subarray(3 * t, 3 * t + 3), 3 * n);
-		let a = 6 * r[n], p = i[r[n]] === 1;
+		u.set(o.subarray(3 * t, 3 * t + 3), 3 * n), d.set(e.points.subarray(3 * t, 3 * t + 3), 3 * n);
+		let a = 6 * r[n], m = i[r[n]] === 1;
 		for (let r = 0; r < 2; r++) {
 			let i = a + 2 * r;
-			d[2 * n + r] = p ? f[i] * e.points[3 * t] + f[i + 1] * e.points[3 * t + 1] + l(a + 4 + r) : s[2 * n + r] / c;
+			f[2 * n + r] = m ? p[i] * e.points[3 * t] + p[i + 1] * e.points[3 * t + 1] + l(a + 4 + r) : s[2 * n + r] / c;
 		}
 	}), {
 		positions: u,
-		uv: d,
-		indices: new Uint32Array(t)
+		uv: f,
+		indices: new Uint32Array(t),
+		places: d
 	};
 }
-function dr(e, t) {
-	let n = (e) => Math.abs(e) <= Ue;
+function fr(e, t) {
+	let n = (e) => Math.abs(e) <= Ge;
 	if (!e.positions.every(n) || !e.uv.every(n)) throw M(t, "positions or texture coordinates that are not finite");
 	return e;
 }
+// eigenfield-three/src/mesh-motion.ts
+var pr = 11, mr = 2 ** 20, hr = 8, [gr, _r] = [7, 8], vr = 12, [yr, br, xr, Sr] = [
+	0,
+	1,
+	2,
+	3
+], Cr = 576, wr = 720, Tr = 1152, Er = 1159, Dr = 3, Or = 4, kr = class {
+	mesh;
+	where;
+	frames;
+	flags;
+	decoder = null;
+	moving;
+	around;
+	steps;
+	off;
+	decoded = 0;
+	constructor(e, t, n) {
+		this.mesh = t, this.where = n;
+		let r = z(e, pr, n), i = t.places.length / 3, a = r.getUint32(5, !0);
+		this.frames = r.getUint16(9, !0);
+		let o = pr + this.frames;
+		if (r.getUint32(1, !0) !== i || a > i) throw M(n, `${a} vertices that move, of another mesh`);
+		if (this.frames < 1 || this.frames > 1024 || this.frames * a > Le) throw M(n, `${a} vertices that move in ${this.frames} frames`);
+		if (z(e, o, n), this.flags = e.slice(pr, o), this.flags.some((e) => e > gr + _r)) throw M(n, "frames that cannot be");
+		if (ot(e, this.flags.reduce((e, t) => e + (t & 1) + (t >> 1 & 1) + (t >> 2 & 1), 0) * a, 3 * Le, n), this.moving = new Int32Array(a), this.steps = new Int32Array(a && 3 * a * (2 + this.frames)), this.off = new Int32Array(3 * a), this.around = Nr(t.places, t.indices), !a) return;
+		this.decoder = new at(e.subarray(o), Er, Or);
+		let s = Mr(this.decoder, i, this.around);
+		if (s.reduce((e, t) => e + t, 0) !== a) throw M(n, "other vertices that move");
+		this.around = this.start(s);
+	}
+	read(e) {
+		for (; this.decoded <= Math.min(e, this.frames - 1); this.decoded += 1) this.decoder && this.readFrame(this.decoder, this.decoded);
+	}
+	place(e, t) {
+		let { matrix: n } = this.mesh;
+		t.set(this.mesh.positions);
+		let r = this.moving.length;
+		if (!r) return;
+		let i = this.steps.subarray(3 * r * (2 + e), 3 * r * (3 + e));
+		this.moving.forEach((e, r) => t.set(Ar(i, 3 * r, n), 3 * e));
+	}
+	start(e) {
+		let { places: t, indices: n } = this.mesh, r = new Int32Array(e.length).fill(-1), i = 0;
+		e.forEach((e, t) => {
+			e && (this.moving[i] = t, r[t] = i++);
+		});
+		let a = new Int32Array(3 * i);
+		return this.moving.forEach((e, n) => a.set(t.subarray(3 * e, 3 * e + 3), 3 * n)), this.steps.set(a), this.steps.set(a, a.length), Nr(a, Int32Array.from(n, (e) => r[e]));
+	}
+	readFrame(e, t) {
+		let { steps: n, around: r, off: i } = this, { near: a, starts: o, twins: s } = r, c = 3 * this.moving.length, [l, u, d, f] = [
+			this.flags[t],
+			c * (2 + t),
+			c * (1 + t),
+			c * t
+		], p = (l & _r) !== 0, m = new Int32Array(c);
+		for (let t = 0; t < this.moving.length; t++) {
+			let [r, c] = [o[t], o[t + 1]], h = c - r, g = s[t] ? yr : h === 0 ? Sr : h === 1 ? xr : br;
+			for (let o = 0; o < 3; o++) {
+				let s = 3 * t + o;
+				if (!(l >> o & 1)) {
+					n[u + s] = n[d + s];
+					continue;
+				}
+				let [_, v, y, b] = [
+					Infinity,
+					-Infinity,
+					0,
+					0
+				];
+				for (let e = r; e < c; e++) {
+					let t = 3 * a[e] + o, r = n[u + t] - n[d + t];
+					p && (r -= n[d + t] - n[f + t]), _ = Math.min(_, r), v = Math.max(v, r), y += r, b += Math.abs(m[t]);
+				}
+				let x = n[d + s];
+				p && (x += x - n[f + s]), h && (x += Math.floor((2 * y + h) / (2 * h))), x = Math.min(Math.max(x, -mr), mr);
+				let S = jr(h && Math.floor(4 * b / h)), C = jr(4 * Math.abs(i[s])), w = jr(h && v - _);
+				m[s] = e.integer((g * vr + S) * vr + C, Cr + (o * 4 + g) * vr + w, wr + (o * vr + w) * vr + S, o), n[u + s] = x + m[s];
+			}
+		}
+		this.off = m, e.checkEnd(this.where), this.check(u, c);
+	}
+	check(e, t) {
+		for (let n = e; n < e + t; n += 3) if (!Ar(this.steps, n, this.mesh.matrix).every((e) => Math.abs(e) <= 1e30)) throw M(this.where, "positions that are not finite");
+	}
+};
+function Ar(e, t, n) {
+	let [r, i, a] = [
+		e[t],
+		e[t + 1],
+		e[t + 2]
+	], o = (e) => n[4 * e] * r + n[4 * e + 1] * i + n[4 * e + 2] * a + n[4 * e + 3], s = o(3);
+	return [
+		o(0) / s,
+		o(1) / s,
+		o(2) / s
+	];
+}
+function jr(e) {
+	return Math.min(R(e), 11);
+}
+function Mr(e, t, { near: n, starts: r }) {
+	let i = new Uint8Array(t), a = 0;
+	for (let o = 0; o < t; o++) {
+		let [t, s] = [r[o], r[o + 1]], c = 0;
+		for (let e = t; e < s; e++) c += i[n[e]];
+		let l = s === t ? 3 : c === 0 ? 0 : c === s - t ? 2 : 1;
+		a = Number(e.flag(Tr + l, 1156 + a, 1158, Dr)), i[o] = a;
+	}
+	return i;
+}
+function Nr(e, t) {
+	let n = e.length / 3, r = Array.from({ length: n }, () => []), i = new Uint8Array(n), a = /* @__PURE__ */ new Map();
+	for (let t = 0; t < n; t++) {
+		let n = `${e[3 * t]} ${e[3 * t + 1]} ${e[3 * t + 2]}`, o = a.get(n);
+		o === void 0 ? a.set(n, t) : (i[t] = 1, r[t].push(o));
+	}
+	for (let e = 0; e < t.length; e++) {
+		let n = t[e];
+		if (n < 0 || i[n]) continue;
+		let a = e - e % 3;
+		for (let i of [1, 2]) {
+			let o = t[a + (e + i) % 3];
+			o >= 0 && o < n && r[n].length < hr && r[n].push(o);
+		}
+	}
+	let o = new Int32Array(n + 1);
+	return r.forEach((e, t) => o[t + 1] = o[t] + e.length), {
+		near: r.flat(),
+		starts: o,
+		twins: i
+	};
+}
 // eigenfield-three/src/name-decoder.ts
-var fr = 4 * L;
-async function pr(e, t, n) {
-	let r = Math.min(je, fr * t), i = await xe(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
+var Pr = 4 * I;
+async function Fr(e, t, n) {
+	let r = Math.min(Me, Pr * t), i = await be(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
 	if (a === 0 || !Number.isInteger(a)) throw M(n, `${i.length} bytes of ${t} names`);
 	let o = new TextDecoder("utf-8", {
 		fatal: !0,
@@ -1039,16 +1177,16 @@ async function pr(e, t, n) {
 	return c;
 }
 // eigenfield-three/src/headers.ts
-function mr(e) {
+function Ir(e) {
 	let t = new DataView(e);
 	try {
-		return gr(t) ?? _r(t) ?? vr(t) ?? yr(t);
+		return Rr(t) ?? zr(t) ?? Br(t) ?? Vr(t);
 	} catch (e) {
 		if (e instanceof RangeError) return null;
 		throw e;
 	}
 }
-function hr(e, t) {
+function Lr(e, t) {
 	return String.fromCharCode(...[
 		0,
 		1,
@@ -1056,15 +1194,15 @@ function hr(e, t) {
 		3
 	].map((n) => e.getUint8(t + n)));
 }
-function gr(e) {
-	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || hr(e, 12) !== "IHDR" ? null : {
+function Rr(e) {
+	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || Lr(e, 12) !== "IHDR" ? null : {
 		type: "image/png",
 		width: e.getUint32(16),
 		height: e.getUint32(20),
 		bits: null
 	};
 }
-function _r(e) {
+function zr(e) {
 	if (e.getUint16(0) !== 65496) return null;
 	for (let t = 2;;) {
 		let n = e.getUint16(t);
@@ -1087,12 +1225,12 @@ function _r(e) {
 		t += 2 + e.getUint16(t + 2);
 	}
 }
-function vr(e) {
-	if (hr(e, 0) !== "RIFF" || hr(e, 8) !== "WEBP") return null;
+function Br(e) {
+	if (Lr(e, 0) !== "RIFF" || Lr(e, 8) !== "WEBP") return null;
 	let t = {
 		type: "image/webp",
 		bits: null
-	}, n = hr(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
+	}, n = Lr(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
 	if (n === "VP8X") return {
 		...t,
 		width: 1 + r(24),
@@ -1112,11 +1250,11 @@ function vr(e) {
 		height: e.getUint16(28, !0) & 16383
 	} : null;
 }
-function yr(e) {
-	if (hr(e, 4) !== "ftyp") return null;
+function Vr(e) {
+	if (Lr(e, 4) !== "ftyp") return null;
 	let t = null, n = null, r = (i, a) => {
 		for (let o = i; o + 8 <= a;) {
-			let i = e.getUint32(o), s = hr(e, o + 4), c = i === 0 ? a : o + i;
+			let i = e.getUint32(o), s = Lr(e, o + 4), c = i === 0 ? a : o + i;
 			if (i === 1 || c < o + 8 || c > a) return;
 			if (s === "meta" && r(o + 12, c), (s === "iprp" || s === "ipco") && r(o + 8, c), s === "ispe") {
 				let [n, r] = [e.getUint32(o + 12), e.getUint32(o + 16)];
@@ -1139,15 +1277,15 @@ function yr(e) {
 	};
 }
 // eigenfield-three/src/pictures-8bit.ts
-var br = {
+var Hr = {
 	colorSpaceConversion: "none",
 	premultiplyAlpha: "none"
-}, xr = {
+}, Ur = {
 	"image/avif": "AAAAHGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZgAAAOltZXRhAAAAAAAAACFoZGxyAAAAAAAAAABwaWN0AAAAAAAAAAAAAAAAAAAAAA5waXRtAAAAAAABAAAAHmlsb2MAAAAARAAAAQABAAAAAQAAAQ0AAAAZAAAAKGlpbmYAAAAAAAEAAAAaaW5mZQIAAAAAAQAAYXYwMUNvbG9yAAAAAGhpcHJwAAAASWlwY28AAAAUaXNwZQAAAAAAAAAIAAAACAAAAA5waXhpAAAAAAEIAAAADGF2MUOBABwAAAAAE2NvbHJuY2x4AAEADQAGgAAAABdpcG1hAAAAAAAAAAEAAQQBAoMEAAAAIW1kYXQSAAoIGAi/aYCGg1AyCxlGIYeeaACQQNmg",
 	"image/webp": "UklGRh4AAABXRUJQVlA4TBEAAAAvAAAAAAdQwAIWsP+BiOh/AAA="
 };
-function Sr(e, t, n) {
-	let r = mr(e);
+function Wr(e, t, n) {
+	let r = Ir(e);
 	if (!r) throw M(t.where, "no picture");
 	let { width: i, height: a, bits: o } = r;
 	if (n && (i !== n[0] || a !== n[1])) throw M(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
@@ -1156,12 +1294,12 @@ function Sr(e, t, n) {
 	if (!s || i > 16384 || a > 32768 || s > Ee) throw M(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
-var Cr = async (e, t, n) => {
-	let r = t.pieces * t.textures, [i, a] = Sr(e, t, n && [n[0], r * n[1]]), o = mr(e)?.type ?? t.codec.mimeType, s;
+var Gr = async (e, t, n) => {
+	let r = t.pieces * t.textures, [i, a] = Wr(e, t, n && [n[0], r * n[1]]), o = Ir(e)?.type ?? t.codec.mimeType, s;
 	try {
-		s = await createImageBitmap(new Blob([e], { type: o }), br);
+		s = await createImageBitmap(new Blob([e], { type: o }), Hr);
 	} catch (e) {
-		throw await wr(o) ? M(t.where, "it cannot be decoded") : Tr(o, t, e);
+		throw await Kr(o) ? M(t.where, "it cannot be decoded") : qr(o, t, e);
 	}
 	if (s.width !== i || s.height !== a) throw s.close(), M(t.where, `decoded to ${s.width} x ${s.height}, not to ${i} x ${a}`);
 	let c = a / r;
@@ -1171,8 +1309,8 @@ var Cr = async (e, t, n) => {
 		rows: c
 	}));
 };
-async function wr(e) {
-	let t = xr[e];
+async function Kr(e) {
+	let t = Ur[e];
 	if (!t) return !0;
 	let n = Uint8Array.from(atob(t), (e) => e.charCodeAt(0));
 	try {
@@ -1181,17 +1319,17 @@ async function wr(e) {
 		return !1;
 	}
 }
-function Tr(e, t, n) {
+function qr(e, t, n) {
 	return new j("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
 }
 // eigenfield-three/src/pictures-10bit.ts
-var Er = /* @__PURE__ */ new Set([
+var Jr = /* @__PURE__ */ new Set([
 	"I420P10",
 	"I422P10",
 	"I444P10"
-]), Dr = async (e, t, n) => {
-	let r = t.pieces * t.textures, [i, a] = Sr(e, t, n && [n[0], r * n[1]]), o = await Or(e, i, a);
-	if (!o) return Cr(e, t, n);
+]), Yr = async (e, t, n) => {
+	let r = t.pieces * t.textures, [i, a] = Wr(e, t, n && [n[0], r * n[1]]), o = await Xr(e, i, a);
+	if (!o) return Gr(e, t, n);
 	let s = a / r;
 	return Array.from({ length: r }, (e, t) => ({
 		picture: o,
@@ -1199,7 +1337,7 @@ var Er = /* @__PURE__ */ new Set([
 		rows: s
 	}));
 };
-async function Or(e, t, n) {
+async function Xr(e, t, n) {
 	if (typeof ImageDecoder > "u") return null;
 	let r = null, i = null;
 	try {
@@ -1208,7 +1346,7 @@ async function Or(e, t, n) {
 			type: "image/avif"
 		}), i = (await r.decode()).image;
 		let a = i.visibleRect;
-		if (!Er.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
+		if (!Jr.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
 		let o = new Uint8Array(i.allocationSize()), [s] = await i.copyTo(o);
 		return s ? {
 			data: o.subarray(s.offset),
@@ -1223,36 +1361,36 @@ async function Or(e, t, n) {
 	}
 }
 // eigenfield-three/src/triangle-decoder.ts
-var kr = 5;
-function Ar(e, t) {
-	let n = rt(e, kr, t).getUint32(1, !0);
-	it(e, 3 * n, 6 * I, t);
-	let r = _t(e.subarray(kr)), i = xt(r, n, 3, !0);
+var Zr = 5;
+function Qr(e, t) {
+	let n = z(e, Zr, t).getUint32(1, !0);
+	ot(e, 3 * n, 6 * ke, t);
+	let r = yt(e.subarray(Zr)), i = Ct(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
 	if (!a.every((e) => e >= 0 && e < 1e5)) throw M(t, "triangles of cameras that there cannot be");
 	return { corners: Uint32Array.from(a) };
 }
 // eigenfield-three/src/weight-decoder.ts
-var jr = 14, Mr = 2 ** 20;
-function Nr(e, t) {
-	let n = rt(e, jr, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
+var $r = 14, ei = 2 ** 20;
+function ti(e, t) {
+	let n = z(e, $r, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
 	if (n.getUint8(1) > 1 || i === 0) throw M(t, "weights of no camera, or of an unknown kind");
-	it(e, o * s * Math.max(a, 1), He, t), rt(e, jr + 4 * a, t);
+	ot(e, o * s * Math.max(a, 1), We, t), z(e, $r + 4 * a, t);
 	let c = o * s;
 	if (c < i) throw M(t, "a grid with too few cells");
-	let l = _t(e.subarray(jr + 4 * a)), u = r ? St(l, c, i, t) : null, d = u !== null && i === c, f = [
+	let l = yt(e.subarray($r + 4 * a)), u = r ? wt(l, c, i, t) : null, d = u !== null && i === c, f = [
 		0,
 		1,
 		2
-	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * Mr * Math.max(o, s);
+	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * ei * Math.max(o, s);
 	for (let e = 0; e < a; e++) {
-		let r = n.getFloat32(jr + 4 * e, !0);
+		let r = n.getFloat32($r + 4 * e, !0);
 		if (!(r > 0 && r < Infinity)) throw M(t, "a step that is not positive");
-		let i = vt(l), h = bt(l, s, f[i], i);
+		let i = bt(l), h = St(l, s, f[i], i);
 		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw M(t, `numbers of component ${e} that cannot be`);
 		f[i] = h;
-		let g = i === 2 ? Pr(h, o, s) : h;
+		let g = i === 2 ? ni(h, o, s) : h;
 		for (let t = 0; t < c; t++) {
 			let n = u ? u[t] : t;
 			n >= 0 && (p[n * a + e] = g[t] * r);
@@ -1266,14 +1404,14 @@ function Nr(e, t) {
 		values: p
 	};
 }
-function Pr(e, t, n) {
-	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = Fr(n);
+function ni(e, t, n) {
+	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = ri(n);
 	for (let i = 0; i < t; i++) for (let t = 0; t < n; t++) {
 		let o = 0;
 		for (let r = 0; r < n; r++) o += a(r, t) * e[i * n + r];
 		r[i * n + t] = o;
 	}
-	let o = Fr(t);
+	let o = ri(t);
 	for (let e = 0; e < t; e++) for (let a = 0; a < n; a++) {
 		let s = 0;
 		for (let i = 0; i < t; i++) s += o(i, e) * r[i * n + a];
@@ -1281,13 +1419,13 @@ function Pr(e, t, n) {
 	}
 	return i;
 }
-function Fr(e) {
+function ri(e) {
 	let [t, n] = [Math.sqrt(1 / e), Math.sqrt(2 / e)], r = Float64Array.from({ length: 4 * e }, (t, r) => n * Math.cos(Math.PI * r / (2 * e)));
 	return (n, i) => n === 0 ? t : r[(2 * i + 1) * n % (4 * e)];
 }
 // eigenfield-three/src/codecs.ts
-function Ir(e) {
-	let [t, n] = [Cr, Cr];
+function ii(e) {
+	let [t, n] = [Gr, Gr];
 	return {
 		kind: "picture",
 		decode: t,
@@ -1305,82 +1443,88 @@ function Ir(e) {
 var U = {
 	"mesh-1": {
 		kind: "mesh",
-		decode: or,
+		decode: sr,
 		needs: "codedMesh",
 		limits: ["MAX_VERTICES", "MAX_TRIANGLES"]
 	},
 	"mesh-2": {
 		kind: "mesh",
-		decode: sr,
+		decode: cr,
 		needs: "mesh-2",
 		limits: ["MAX_VERTICES", "MAX_TRIANGLES"]
 	},
 	"cameras-1": {
 		kind: "cameras",
-		decode: At,
+		decode: jt,
 		needs: "codedCameras",
 		limits: ["MAX_CAMERAS"]
 	},
 	"cameras-2": {
 		kind: "cameras",
-		decode: kt,
+		decode: At,
 		needs: "cameras-2",
 		limits: ["MAX_CAMERAS"]
 	},
 	"names-1": {
 		kind: "names",
-		decode: pr,
+		decode: Fr,
 		needs: "codedNames",
 		limits: ["MAX_NAMES", "MAX_CAMERAS"]
 	},
 	"triangles-1": {
 		kind: "triangles",
-		decode: Ar,
+		decode: Qr,
 		needs: "codedTriangles",
 		limits: ["MAX_CAMERAS"]
 	},
 	"weights-1": {
 		kind: "weights",
-		decode: Nr,
+		decode: ti,
 		needs: "codedWeights",
 		limits: ["MAX_WEIGHTS"]
 	},
 	"film-1": {
 		kind: "film",
-		decode: (...e) => new Ft(...e),
+		decode: (...e) => new It(...e),
 		needs: "film-1",
 		limits: ["MAX_FILM_SIDE", "MAX_FILM_PIXELS"]
 	},
-	png: Ir("image/png"),
-	webp: Ir("image/webp"),
-	avif: Ir("image/avif"),
-	jpeg: Ir("image/jpeg"),
+	"motion-1": {
+		kind: "motion",
+		decode: (...e) => new kr(...e),
+		needs: "motion-1",
+		limits: ["MAX_GROUP_FRAMES", "MAX_MOTION"]
+	},
+	png: ii("image/png"),
+	webp: ii("image/webp"),
+	avif: ii("image/avif"),
+	jpeg: ii("image/jpeg"),
 	"av1-10bit-1": {
-		...Ir("image/avif"),
+		...ii("image/avif"),
 		bits: 10,
-		decode: Dr,
+		decode: Yr,
 		needs: "bits"
 	},
 	"av1-10bit-2": {
-		...Ir("video/AV1"),
+		...ii("video/AV1"),
 		bits: 10,
-		decode: (e, t, n) => Dr(ve(e, t.where), t, n),
-		bitmaps: (e, t, n) => Cr(ve(e, t.where), t, n),
+		decode: (e, t, n) => Yr(ve(e, t.where), t, n),
+		bitmaps: (e, t, n) => Gr(ve(e, t.where), t, n),
 		needs: "av1-10bit-2"
 	}
-}, Lr = {
+}, ai = {
 	mesh: "mesh-1",
 	cameras: "cameras-1",
 	names: "names-1",
 	triangles: "triangles-1",
 	weights: "weights-1"
 };
-function Rr(e, t, n) {
-	let r = t.exists ? t.text(L) : n, i = Object.hasOwn(U, r) ? U[r] : null;
+function oi(e, t, n) {
+	let r = t.exists ? t.text(I) : n, i = Object.hasOwn(U, r) ? U[r] : null;
 	if (i?.kind === e) return i;
 	throw new j("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
 }
-function zr(e, t) {
+function si(e, t) {
 	return Object.keys(U).find((n) => {
 		let r = U[n];
 		return r.kind === "picture" && r.mimeType === e && (t ?? r.bits) === r.bits;
@@ -1418,7 +1562,7 @@ var W = class e {
 		if (this.raw.length > e) throw this.wrong(`longer than ${e} characters`);
 		return this.raw;
 	}
-	number(e = -Ue, t = Ue) {
+	number(e = -Ge, t = Ge) {
 		if (typeof this.raw != "number") throw this.wrong("no number");
 		if (!(this.raw >= e && this.raw <= t)) throw this.wrong(`${this.raw} is not in ${e}..${t}`);
 		return this.raw;
@@ -1428,7 +1572,7 @@ var W = class e {
 		if (!Number.isInteger(n)) throw this.wrong(`${n} is no whole number`);
 		return n;
 	}
-	numbers(e, t = -Ue, n = Ue) {
+	numbers(e, t = -Ge, n = Ge) {
 		let r = this.items(e);
 		if (r.length !== e) throw this.wrong(`${e} numbers are needed`);
 		return r.map((e) => e.number(t, n));
@@ -1444,25 +1588,25 @@ var W = class e {
 	wrong(e) {
 		return M(this.where || "/", this.exists ? e : "missing");
 	}
-}, Br = 5121, Vr = 5123, Hr = 5125, G = 5126, Ur = {
-	[Br]: 1,
-	[Vr]: 2,
-	[Hr]: 4,
+}, ci = 5121, li = 5123, ui = 5125, G = 5126, di = {
+	[ci]: 1,
+	[li]: 2,
+	[ui]: 4,
 	[G]: 4
-}, Wr = /* @__PURE__ */ new Set([
+}, fi = /* @__PURE__ */ new Set([
 	"cameras",
 	"triangles",
 	"weights"
-]), Gr = {
+]), pi = {
 	SCALAR: 1,
 	VEC2: 2,
 	VEC3: 3
 };
-function Kr(e) {
+function mi(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
-	return e.key("bufferViews").items(F).map((e) => {
+	return e.key("bufferViews").items(Ce).map((e) => {
 		let t = e.key("byteOffset"), r = e.key("byteStride");
 		e.key("buffer").integer(0, 0);
 		let i = {
@@ -1474,11 +1618,11 @@ function Kr(e) {
 		return i;
 	});
 }
-function qr(e) {
+function hi(e) {
 	return (t) => t.integer(0, e.length - 1);
 }
-function Jr(e, t) {
-	let n = e.key("accessors"), r = n.exists ? n.items(F) : [];
+function gi(e, t) {
+	let n = e.key("accessors"), r = n.exists ? n.items(Ce) : [];
 	return (e, n, i, a) => {
 		let o = r[e.integer(0, r.length - 1)];
 		if (!o) throw e.wrong("no such accessor");
@@ -1488,14 +1632,14 @@ function Jr(e, t) {
 		if (o.key("sparse").exists) throw o.wrong("sparse");
 		let c = o.key("normalized");
 		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = Gr[n] ?? 1, u = o.key("count").integer(1, He);
+		let l = pi[n] ?? 1, u = o.key("count").integer(1, We);
 		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
 		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
 		if (!f) throw o.wrong("no such buffer view");
-		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = Ur[s] * l;
+		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = di[s] * l;
 		if (f.stride && (f.stride < h || n === "SCALAR")) throw o.wrong("a stride that cannot be");
 		if (m + (u - 1) * (f.stride || h) + h > f.length) throw o.wrong("outside its buffer view");
-		if ((m + f.offset) % Ur[s]) throw o.wrong("not aligned");
+		if ((m + f.offset) % di[s]) throw o.wrong("not aligned");
 		return {
 			view: d,
 			offset: m,
@@ -1506,40 +1650,40 @@ function Jr(e, t) {
 		};
 	};
 }
-function Yr(e, t, n) {
-	let r = typeof t.raw == "number" && Wr.has(e), i = Rr(e, r ? new W(void 0, t.where) : t.key("codec"), Lr[e]);
+function _i(e, t, n) {
+	let r = typeof t.raw == "number" && fi.has(e), i = oi(e, r ? new W(void 0, t.where) : t.key("codec"), ai[e]);
 	return {
 		view: n(r ? t : t.key("bufferView")),
 		codec: i,
 		where: t.where
 	};
 }
-async function Xr(e, t, n) {
+async function vi(e, t, n) {
 	let r = await n(e.view), i = t[e.view]?.length ?? Infinity;
 	if (r.byteLength < i) throw ue(e.where);
-	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + Ur[c] * o * s);
-	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : Zr(new Float32Array(l), e.where);
+	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + di[c] * o * s);
+	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : yi(new Float32Array(l), e.where);
 }
-function Zr(e, t) {
+function yi(e, t) {
 	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw M(t, `${n} among its numbers`);
 	return e;
 }
 // eigenfield-three/src/planes.ts
-var K = 8, Qr = 16, $r = "av1-10bit-2";
-function ei(e, t) {
+var K = 8, bi = 16, xi = "av1-10bit-2";
+function Si(e, t) {
 	return new j("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function ti(e, t = we) {
+function Ci(e, t = we) {
 	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
 	if (!n || !r) throw e.wrong("two numbers are needed");
 	if (n * r > Ee) throw e.wrong(`more than ${Ee} texels`);
 	return [n, r];
 }
-function ni(e, t, n, r, i) {
+function wi(e, t, n, r, i) {
 	let a = e.key("planes").items(16);
 	if (!a.length) throw e.key("planes").wrong("no plane");
 	let o = a.map((e, a) => {
-		let o = e.key("channels").integer(1, 64), s = fi(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => hi(e, o, t, r, i);
+		let o = e.key("channels").integer(1, 64), s = Pi(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => Li(e, o, t, r, i);
 		return {
 			channels: o,
 			...s,
@@ -1557,7 +1701,7 @@ function ni(e, t, n, r, i) {
 	if (s > Oe) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
-function ri(e, t) {
+function Ti(e, t) {
 	let n = t.reduce((e, { channels: t }) => e + t, 0), r = e.key("toRGB");
 	if (r.exists) {
 		let e = r.numbers(3 * n), t = (t, r) => e[t * n + r] ?? 0;
@@ -1589,11 +1733,11 @@ function ri(e, t) {
 			1
 		]
 	];
-	throw ei(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
+	throw Si(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
 }
-function ii(e, t, n, r, i, a = !1) {
-	let o = ai(e), s = t === 3 && o.bits === K ? 1 : t;
-	r && gi(e, s * n, r);
+function Ei(e, t, n, r, i, a = !1) {
+	let o = Di(e), s = t === 3 && o.bits === K ? 1 : t;
+	r && Ri(e, s * n, r);
 	let [c, l] = [e.key("scale"), e.key("zero")], u = {
 		view: i(e.key("bufferView")),
 		codec: o,
@@ -1604,25 +1748,25 @@ function ii(e, t, n, r, i, a = !1) {
 	};
 	return a && o.bits === K && !c.exists && !l.exists ? {
 		...u,
-		...si(t)
+		...ki(t)
 	} : {
 		...u,
-		scale: di(c, t, n),
-		zero: di(l, t, n)
+		scale: Ni(c, t, n),
+		zero: Ni(l, t, n)
 	};
 }
-function ai(e) {
-	let t = e.key("mimeType").text(L);
-	if (!zr(t)) throw e.key("mimeType").wrong("an unknown type");
-	let n = e.key("bits"), r = n.exists ? n.integer(1, Qr) : K, i = zr(t, r);
+function Di(e) {
+	let t = e.key("mimeType").text(I);
+	if (!si(t)) throw e.key("mimeType").wrong("an unknown type");
+	let n = e.key("bits"), r = n.exists ? n.integer(1, bi) : K, i = si(t, r);
 	if (!i) throw n.wrong(`${r} bits of ${t}`);
-	let a = e.key("codec"), o = Rr("picture", a, i);
+	let a = e.key("codec"), o = oi("picture", a, i);
 	if (o.mimeType !== t || o.bits !== r) throw a.wrong(`${r} bits of ${t}`);
 	return o;
 }
-function oi(e, t, n) {
+function Oi(e, t, n) {
 	let r = e.key("at").items(De * t).map((e) => {
-		let [t = 0, n = 0] = e.numbers(2, 0, Pe);
+		let [t = 0, n = 0] = e.numbers(2, 0, Fe);
 		if (!Number.isInteger(t) || !Number.isInteger(n)) throw e.wrong("no whole numbers");
 		return [t, n];
 	});
@@ -1638,7 +1782,7 @@ function oi(e, t, n) {
 	};
 	return {
 		view: -1,
-		codec: U[$r],
+		codec: U[xi],
 		textures: r.length / t,
 		pieces: t,
 		where: i,
@@ -1646,28 +1790,28 @@ function oi(e, t, n) {
 		...o
 	};
 }
-function si(e) {
+function ki(e) {
 	return {
 		scale: Array(e).fill(1 / 255),
 		zero: Array(e).fill(0)
 	};
 }
-function ci(e) {
+function Ai(e) {
 	return e.some(({ codec: e }) => e.bits > K);
 }
-function li({ codec: e }) {
+function ji({ codec: e }) {
 	return (2 ** e.bits - 1) / 255;
 }
-function ui(e, t) {
-	return t ? 1 : 1 / (255 * li(e));
+function Mi(e, t) {
+	return t ? 1 : 1 / (255 * ji(e));
 }
-function di(e, t, n) {
+function Ni(e, t, n) {
 	let r = e.items(t * n).map((e) => e.number());
 	if (r.length === t * n) return r;
 	if (r.length !== t) throw e.wrong(`${t} or ${t * n} numbers are needed`);
 	return Array(n).fill(r).flat();
 }
-function fi(e, t, n, r) {
+function Pi(e, t, n, r) {
 	let i = e.key("mean");
 	if (!i.exists) {
 		if (n === null || t !== 1 && t !== 3) throw i.wrong("no mean");
@@ -1679,15 +1823,15 @@ function fi(e, t, n, r) {
 				pieces: 1,
 				where: "/images/0",
 				part: null,
-				...si(t)
+				...ki(t)
 			},
 			meanSize: null,
 			precision: null
 		};
 	}
-	let a = ti(i.key("size"));
+	let a = Ci(i.key("size"));
 	if (i.key("film").exists) {
-		let e = oi(i, t, a);
+		let e = Oi(i, t, a);
 		if (e.textures !== 1) throw i.key("at").wrong(`${t} places are needed`);
 		return {
 			mean: e,
@@ -1695,16 +1839,16 @@ function fi(e, t, n, r) {
 			precision: null
 		};
 	}
-	let o = ii(i, t, 1, a, r, !0);
+	let o = Ei(i, t, 1, a, r, !0);
 	return {
 		mean: o,
 		meanSize: a,
-		precision: mi(i.key("precision"), o, r)
+		precision: Ii(i.key("precision"), o, r)
 	};
 }
-function pi(e, t) {
-	let n = ti(e.key("size")), r = ai(e);
-	return gi(e, 1, n), {
+function Fi(e, t) {
+	let n = Ci(e.key("size")), r = Di(e);
+	return Ri(e, 1, n), {
 		channels: 1,
 		mean: {
 			view: t(e.key("bufferView")),
@@ -1720,10 +1864,10 @@ function pi(e, t) {
 		precision: null
 	};
 }
-function mi(e, t, n) {
+function Ii(e, t, n) {
 	if (!e.exists) return null;
 	if (t.codec.bits === K) throw e.wrong(`of a mean of ${K} bits`);
-	let r = ti(e.key("size"), Te), i = Rr("picture", e.key("codec"), "png");
+	let r = Ci(e.key("size"), Te), i = oi("picture", e.key("codec"), "png");
 	if (i !== U.png) throw e.key("codec").wrong("no PNG");
 	return {
 		view: n(e.key("bufferView")),
@@ -1734,13 +1878,13 @@ function mi(e, t, n) {
 		where: e.where
 	};
 }
-function hi(e, t, n, r, i) {
-	let a = ti(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? ti(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, we) : [];
+function Li(e, t, n, r, i) {
+	let a = Ci(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Ci(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, we) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
 	let d = e.where;
 	if (e.key("film").exists) {
-		let n = oi(e, t, a), { textures: r } = n;
+		let n = Oi(e, t, a), { textures: r } = n;
 		if (r > 4096) throw e.wrong(`more than ${De} textures`);
 		return {
 			size: a,
@@ -1757,10 +1901,10 @@ function hi(e, t, n, r, i) {
 			...m,
 			...e.object()
 		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, De) : 1;
-		return f += o, ii(n, t, o, a, i);
+		return f += o, Ei(n, t, o, a, i);
 	});
 	if (f > 4096) throw e.wrong(`more than ${De} textures`);
-	let g = e.key("codedWeights"), _ = f ? g.exists ? Yr("weights", g, i) : r(e.key("weights"), "SCALAR", [G], n * f) : null;
+	let g = e.key("codedWeights"), _ = f ? g.exists ? _i("weights", g, i) : r(e.key("weights"), "SCALAR", [G], n * f) : null;
 	return {
 		size: a,
 		grid: c,
@@ -1771,23 +1915,23 @@ function hi(e, t, n, r, i) {
 		where: d
 	};
 }
-function gi(e, t, [n, r]) {
+function Ri(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
 	if (n * i > Ee) throw e.wrong(`more than ${Ee} texels`);
 }
 // eigenfield-three/src/sheets.ts
-function _i(e, t) {
+function zi(e, t) {
 	if (!e.exists) return null;
-	let n = e.key("faces").items(32).map((e) => e.integer(1, Ne));
+	let n = e.key("faces").items(32).map((e) => e.integer(1, Pe));
 	if (!n.length) throw e.key("faces").wrong("no sheet");
 	return {
 		faces: n,
-		opacity: pi(e.key("opacity"), t),
+		opacity: Fi(e.key("opacity"), t),
 		where: e.where
 	};
 }
-function vi({ faces: e, where: t }, { index: n, attributes: r }) {
+function Bi({ faces: e, where: t }, { index: n, attributes: r }) {
 	let i = e.reduce((e, t) => e + t, 0), a = (n?.count ?? 0) / 3;
 	if (i !== a) throw M(`${t}/faces`, `the sheets have ${i} triangles, the mesh has ${a}`);
 	let o = new Uint8Array(r.position?.count ?? 0), s = 0;
@@ -1800,37 +1944,37 @@ function vi({ faces: e, where: t }, { index: n, attributes: r }) {
 	});
 }
 // eigenfield-three/src/timeline.ts
-var yi = 64, q = 16, bi = /^[0-9a-f]{64}$/;
-function xi(e, t) {
+var Vi = 64, q = 16, Hi = /^[0-9a-f]{64}$/;
+function Ui(e, t) {
 	if (!e.exists) {
-		let e = wi(t)[0];
+		let e = Ki(t)[0];
 		if (e) throw M(e.where, "a texture in a film, and no timeline");
 		return null;
 	}
-	let [n = 1, r = 1] = e.key("rate").numbers(2, 1, Ve), i = n / r;
+	let [n = 1, r = 1] = e.key("rate").numbers(2, 1, Ue), i = n / r;
 	if (!(Number.isInteger(n) && Number.isInteger(r)) || i > 1e3 || i < 1 / 1e3) throw e.key("rate").wrong("no rate");
-	let a = e.key("first"), o = e.key("films").items(4).map(Si), s = e.key("frames").integer(1, Ie);
-	return Ei(t, o), {
+	let a = e.key("first"), o = e.key("films").items(4).map(Wi), s = e.key("frames").integer(1, Re);
+	return Ji(t, o), {
 		rate: i,
 		first: a.exists ? a.number() : 0,
 		frames: s,
 		films: o,
-		groups: Ci(e, s)
+		groups: Gi(e, s)
 	};
 }
-function Si(e) {
-	let t = Rr("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, yi, Pe);
-	if (n % yi || r % yi || n * r > Fe) throw e.key("size").wrong(`a film of ${n} x ${r}`);
+function Wi(e) {
+	let t = oi("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, Vi, Fe);
+	if (n % Vi || r % Vi || n * r > Ie) throw e.key("size").wrong(`a film of ${n} x ${r}`);
 	return {
 		codec: t,
 		size: [n, r],
 		where: e.where
 	};
 }
-function Ci(e, t) {
-	let [n, r] = [0, 0], i = e.key("groups").items(Le).map((e) => {
-		let t = e.key("frames").integer(1, ze), i = e.key("length").integer(1, Re), a = e.key("offset").integer(r, 2 ** 53 - 1), o = e.key("sha256").text(64);
-		if (!bi.test(o)) throw e.key("sha256").wrong("no SHA-256");
+function Gi(e, t) {
+	let [n, r] = [0, 0], i = e.key("groups").items(ze).map((e) => {
+		let t = e.key("frames").integer(1, Ve), i = e.key("length").integer(1, Be), a = e.key("offset").integer(r, 2 ** 53 - 1), o = e.key("sha256").text(64);
+		if (!Hi.test(o)) throw e.key("sha256").wrong("no SHA-256");
 		if (a % 4) throw e.key("offset").wrong("no multiple of 4");
 		return [n, r] = [n + t, a + i], {
 			first: n - t,
@@ -1844,15 +1988,15 @@ function Ci(e, t) {
 	if (n !== t) throw e.key("groups").wrong(`${n} frames in groups, and ${t} in all`);
 	return i;
 }
-function wi(e) {
-	return Ti(e).flatMap(({ part: e }) => e ? [e] : []);
+function Ki(e) {
+	return qi(e).flatMap(({ part: e }) => e ? [e] : []);
 }
-function Ti(e) {
+function qi(e) {
 	return e.flatMap(({ mean: e, bases: t }) => [e, ...t.flatMap((e) => e.pictures)]);
 }
-function Ei(e, t) {
+function Ji(e, t) {
 	let n = t.map(({ size: e }) => new Uint8Array(e[0] * e[1] / q ** 2));
-	for (let { part: r, where: i } of Ti(e)) {
+	for (let { part: r, where: i } of qi(e)) {
 		let e = r && t[r.film];
 		if (!r || !e) throw M(i, "it lies in no film");
 		let [a, o] = [e.size[0] / q, n[r.film]], [s, c] = r.size.map((e) => Math.ceil(e / q));
@@ -1867,13 +2011,13 @@ function Ei(e, t) {
 		}
 	}
 }
-function Di({ rate: e, first: t, frames: n }, r) {
+function Yi({ rate: e, first: t, frames: n }, r) {
 	return Math.min(Math.max(Math.floor((r - t) * e + .5), 0), n - 1);
 }
-function Oi({ rate: e, first: t }, n) {
+function Xi({ rate: e, first: t }, n) {
 	return t + n / e;
 }
-function ki({ groups: e }, t) {
+function Zi({ groups: e }, t) {
 	let [n, r] = [0, e.length - 1];
 	for (; n < r;) {
 		let i = n + r + 1 >> 1;
@@ -1882,7 +2026,7 @@ function ki({ groups: e }, t) {
 	return n;
 }
 // eigenfield-three/src/document.ts
-var Ai = [
+var Qi = [
 	"namePattern",
 	"noFallback",
 	"packed",
@@ -1893,73 +2037,73 @@ var Ai = [
 	"stacks",
 	"timeline",
 	"toRGB"
-], ji = Object.values(U).flatMap(({ needs: e }) => e ?? []), Mi = /* @__PURE__ */ new Set([...Ai, ...ji]), Ni = 64, Pi = 9, Fi = 10 ** Pi;
-function Ii(e) {
+], $i = Object.values(U).flatMap(({ needs: e }) => e ?? []), ea = /* @__PURE__ */ new Set([...Qi, ...$i]), ta = 64, na = 9, ra = 10 ** na;
+function ia(e) {
 	let t = new W(e, "");
 	try {
-		return t.key("extensions").key(Se).exists;
+		return t.key("extensions").key(xe).exists;
 	} catch {
 		return !1;
 	}
 }
-function Li(e) {
-	let t = new W(e, ""), n = t.key("extensions").key(Se), r = Bi(n), i = Kr(t), a = Jr(t, i), o = qr(i);
-	Vi(t);
-	let s = Wi(t, o), c = n.key("cameras"), { count: l, names: u } = Gi(c, o), d = Ji(c, l), f = d.filter((e) => !e).length, p = ni(n, f, s, a, o), m = ri(n, p), h = c.key("colour"), g = c.key("codedColour");
+function aa(e) {
+	let t = new W(e, ""), n = t.key("extensions").key(xe), r = ca(n), i = mi(t), a = gi(t, i), o = hi(i);
+	la(t);
+	let s = fa(t, o), c = n.key("cameras"), { count: l, names: u } = pa(c, o), d = ga(c, l), f = d.filter((e) => !e).length, p = wi(n, f, s, a, o), m = Ti(n, p), h = c.key("colour"), g = c.key("codedColour");
 	if ((h.exists || g.exists) && m.length < 3) throw h.wrong("needs three channels");
 	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), [x, S] = [n.key("mesh"), n.key("timeline")];
 	return {
 		version: r,
-		generator: b.exists ? b.text(L) : "",
+		generator: b.exists ? b.text(I) : "",
 		planes: p,
 		colours: m,
 		names: u,
 		heldOut: d,
 		reference: n.key("reference").integer(0, l - 1),
-		calibration: Yi(c, l, a, o),
-		sizes: Xi(c, l, a),
-		colour: g.exists ? Yr("weights", g, o) : h.exists ? a(h, "SCALAR", [G], 6 * l) : null,
-		...Zi(_),
-		triangles: y.exists ? Yr("triangles", y, o) : v.exists ? Ui(a(v, "SCALAR", [Vr, Hr], null), 2 * I) : null,
-		settings: Qi(n.key("settings")),
-		scores: Qi(n.key("scores")),
+		calibration: _a(c, l, a, o),
+		sizes: va(c, l, a),
+		colour: g.exists ? _i("weights", g, o) : h.exists ? a(h, "SCALAR", [G], 6 * l) : null,
+		...ya(_),
+		triangles: y.exists ? _i("triangles", y, o) : v.exists ? da(a(v, "SCALAR", [li, ui], null), 2 * ke) : null,
+		settings: ba(n.key("settings")),
+		scores: ba(n.key("scores")),
 		views: i,
-		mesh: x.exists || S.exists ? Yr("mesh", x, o) : null,
-		sheets: _i(n.key("sheets"), o),
-		shown: x.exists && !t.key("meshes").exists ? null : Ri(t, a),
+		mesh: x.exists || S.exists ? _i("mesh", x, o) : null,
+		sheets: zi(n.key("sheets"), o),
+		shown: x.exists && !t.key("meshes").exists ? null : oa(t, a),
 		preview: s,
-		timeline: xi(S, p)
+		timeline: Ui(S, p)
 	};
 }
-function Ri(e, t) {
+function oa(e, t) {
 	let n = e.key("meshes").at(0).key("primitives").at(0), r = n.key("mode");
 	if (r.exists && r.integer(0, 6) !== 4) throw r.wrong("no triangles");
 	let [i, a] = [n.key("attributes"), n.key("indices")];
 	return {
-		position: Hi(t(i.key("POSITION"), "VEC3", [G], null), Me),
-		uv: Hi(t(i.key("TEXCOORD_0"), "VEC2", [G], null), Me),
-		indices: Ui(t(a, "SCALAR", [
-			Br,
-			Vr,
-			Hr
-		], null), Ne)
+		position: ua(t(i.key("POSITION"), "VEC3", [G], null), Ne),
+		uv: ua(t(i.key("TEXCOORD_0"), "VEC2", [G], null), Ne),
+		indices: da(t(a, "SCALAR", [
+			ci,
+			li,
+			ui
+		], null), Pe)
 	};
 }
-function zi({ planes: e, sheets: t }) {
+function sa({ planes: e, sheets: t }) {
 	return t ? [...e, t.opacity] : e;
 }
-function Bi(e) {
-	let t = e.key("version").text(L);
+function ca(e) {
+	let t = e.key("version").text(I);
 	if (!/^1\.\d+$/.test(t)) throw new j("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
-	for (let e of n.exists ? n.items(F) : []) {
-		let t = e.text(L);
-		if (!Mi.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
+	for (let e of n.exists ? n.items(Ce) : []) {
+		let t = e.text(I);
+		if (!ea.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
-function Vi(e) {
-	let t = e.key("nodes").items(F), n = Array(t.length).fill(!1);
+function la(e) {
+	let t = e.key("nodes").items(Ce), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
 		for (let e of r.exists ? r.items(t.length) : []) {
@@ -1968,64 +2112,64 @@ function Vi(e) {
 			n[r] = !0;
 		}
 	}
-	for (let r of e.key("scenes").items(F)) {
+	for (let r of e.key("scenes").items(Ce)) {
 		let e = r.key("nodes");
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
-function Hi(e, t) {
+function ua(e, t) {
 	if (e.count > t) throw M(e.where, `more than ${t}`);
 	return e;
 }
-function Ui(e, t) {
+function da(e, t) {
 	if (e.count % 3) throw M(e.where, "torn triangles");
-	return Hi(e, 3 * t);
+	return ua(e, 3 * t);
 }
-function Wi(e, t) {
+function fa(e, t) {
 	let n = e.key("images");
 	if (!n.exists) return null;
 	let r = n.at(0).key("bufferView");
 	return r.exists ? t(r) : null;
 }
-function Gi(e, t) {
+function pa(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
-		count: n.key("count").integer(1, I),
-		names: Yr("names", n, t)
+		count: n.key("count").integer(1, ke),
+		names: _i("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? qi(r) : i.items(I).map((e) => e.text(L));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? ha(r) : i.items(ke).map((e) => e.text(I));
 	if (!a.length) throw i.wrong("no cameras");
-	let o = Ki(a);
+	let o = ma(a);
 	if (o) throw i.wrong(o);
 	return {
 		count: a.length,
 		names: a
 	};
 }
-function Ki(e) {
+function ma(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
-function qi(e) {
-	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, I));
+function ha(e) {
+	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, ke));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
-	let r = e.key("parts").items(Ni).map((e) => {
-		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(L))];
+	let r = e.key("parts").items(ta).map((e) => {
+		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(I))];
 		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
 		if (a.exists) {
-			let e = a.items(i).map((e) => e.text(L));
+			let e = a.items(i).map((e) => e.text(I));
 			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
 			return [r, e];
 		}
-		let [o, s] = [e.key("first").integer(0, Fi), e.key("step").integer(0, Fi)], c = e.key("digits").integer(1, Pi);
+		let [o, s] = [e.key("first").integer(0, ra), e.key("step").integer(0, ra)], c = e.key("digits").integer(1, na);
 		return [r, Array.from({ length: i }, (e, t) => String(o + s * t).padStart(c, "0"))];
 	});
 	return Array.from({ length: t * n }, (t, i) => {
 		let a = [Math.floor(i / n), i % n], o = r.map(([e, t]) => t[a[e] ?? 0]).join("");
-		if (o.length > 1024) throw e.wrong(`names of more than ${L} characters`);
+		if (o.length > 1024) throw e.wrong(`names of more than ${I} characters`);
 		return o;
 	});
 }
-function Ji(e, t) {
+function ga(e, t) {
 	let n = Array(t).fill(!1), r = e.key("heldOut");
 	if (!r.exists) return n;
 	for (let e of r.items(t)) {
@@ -2036,21 +2180,21 @@ function Ji(e, t) {
 	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
 	return n;
 }
-function Yi(e, t, n, r) {
+function _a(e, t, n, r) {
 	let i = e.key("coded");
-	return i.exists ? Yr("cameras", i, r) : {
+	return i.exists ? _i("cameras", i, r) : {
 		intrinsics: n(e.key("intrinsics"), "SCALAR", [G], 5 * t),
 		poses: n(e.key("poses"), "SCALAR", [G], 12 * t)
 	};
 }
-function Xi(e, t, n) {
+function va(e, t, n) {
 	let r = e.key("size");
-	if (!r.exists) return n(e.key("sizes"), "SCALAR", [Hr], 2 * t);
-	let [i = 0, a = 0] = r.numbers(2, 1, ke);
+	if (!r.exists) return n(e.key("sizes"), "SCALAR", [ui], 2 * t);
+	let [i = 0, a = 0] = r.numbers(2, 1, Ae);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
-function Zi(e) {
+function ya(e) {
 	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
 	for (let i of [
 		r(t, t) - 1,
@@ -2065,23 +2209,23 @@ function Zi(e) {
 		extent: [i, a]
 	};
 }
-function Qi(e) {
+function ba(e) {
 	return e.exists ? e.object() : {};
 }
 // eigenfield-three/src/info.ts
-var $i = 1e-6;
-async function ea(e, t) {
+var xa = 1e-6;
+async function Sa(e, t) {
 	let [n, { lenses: r, poses: i }, a, o] = await Promise.all([
-		na(e, t),
-		ia(e, t),
-		aa(e, t),
-		ta(e, t)
+		wa(e, t),
+		Ea(e, t),
+		Da(e, t),
+		Ca(e, t)
 	]);
 	return n.map((t, n) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
-		if (!(s > $i && c > $i)) throw M(r.where, `focal lengths of "${t}"`);
-		let { R: f, t: p } = oa([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
-		if (!m || !h || Math.max(m, h) > 65535 || m * h > Ae) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
+		if (!(s > xa && c > xa)) throw M(r.where, `focal lengths of "${t}"`);
+		let { R: f, t: p } = Oa([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
+		if (!m || !h || Math.max(m, h) > 65535 || m * h > je) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
 				s,
@@ -2098,13 +2242,13 @@ async function ea(e, t) {
 				0,
 				1
 			]
-		], [_, v] = o ? sa([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
+		], [_, v] = o ? ka([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
 		return {
 			name: t,
 			K: g,
 			R: f,
 			t: p,
-			centre: ya(f, p),
+			centre: Va(f, p),
 			width: m,
 			height: h,
 			gain: _,
@@ -2112,8 +2256,8 @@ async function ea(e, t) {
 		};
 	});
 }
-async function ta({ colour: e, heldOut: t, views: n }, r) {
-	if (!e || "type" in e) return e && Xr(e, n, r);
+async function Ca({ colour: e, heldOut: t, views: n }, r) {
+	if (!e || "type" in e) return e && vi(e, n, r);
 	let { cameras: i, components: a, values: o } = await e.codec.decode(new Uint8Array(await r(e.view)), e.where);
 	if (a !== 6 || i !== t.filter((e) => !e).length) throw M(e.where, `${i} x ${a} colours`);
 	let s = 0;
@@ -2126,31 +2270,31 @@ async function ta({ colour: e, heldOut: t, views: n }, r) {
 		0
 	] : [...o.subarray(6 * s, 6 * ++s)]));
 }
-async function na({ names: e, heldOut: t }, n) {
+async function wa({ names: e, heldOut: t }, n) {
 	if (Array.isArray(e)) return e;
-	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : Ki(r);
+	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : ma(r);
 	if (i) throw M(e.where, i);
 	return r;
 }
-async function ra(e, t, n) {
+async function Ta(e, t, n) {
 	return {
-		numbers: await Xr(e, t.views, n),
+		numbers: await vi(e, t.views, n),
 		where: e.where
 	};
 }
-async function ia(e, t) {
+async function Ea(e, t) {
 	let { calibration: n, heldOut: r } = e;
 	if ("intrinsics" in n) {
 		let { intrinsics: r, poses: i } = n;
 		return {
-			lenses: await ra(r, e, t),
-			poses: await ra(i, e, t)
+			lenses: await Ta(r, e, t),
+			poses: await Ta(i, e, t)
 		};
 	}
 	let { view: i, codec: a, where: o } = n, s = await a.decode(new Uint8Array(await t(i)), o), c = s.poses.length / 12;
 	if (c !== r.length) throw M(o, `${c} cameras in it, and ${r.length} names`);
 	let l = (e) => ({
-		numbers: Zr(e, o),
+		numbers: yi(e, o),
 		where: o
 	});
 	return {
@@ -2158,15 +2302,15 @@ async function ia(e, t) {
 		poses: l(s.poses)
 	};
 }
-async function aa(e, t) {
-	if (!Array.isArray(e.sizes)) return ra(e.sizes, e, t);
+async function Da(e, t) {
+	if (!Array.isArray(e.sizes)) return Ta(e.sizes, e, t);
 	let [n, r] = e.sizes;
 	return {
 		numbers: Uint32Array.from({ length: 2 * e.heldOut.length }, (e, t) => t % 2 ? r : n),
 		where: "its cameras' size"
 	};
 }
-function oa(e, t, n) {
+function Oa(e, t, n) {
 	let r = (t) => [
 		e[4 * t] ?? NaN,
 		e[4 * t + 1] ?? NaN,
@@ -2184,22 +2328,22 @@ function oa(e, t, n) {
 		let a = Y(i[e], i[r]) - +(e === r);
 		if (!(Math.abs(a) <= 2e-4)) throw M(t, `the pose of "${n}" is no rotation`);
 	}
-	if (!(Y(ba(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
+	if (!(Y(Ha(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
 	return {
 		R: i,
 		t: a
 	};
 }
-function sa(e, t, n) {
+function ka(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
 	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw M(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
-async function ca(e, t) {
+async function Aa(e, t) {
 	let n = e.heldOut.filter((e) => !e).length;
-	return la(n, await Promise.all(J(e).map((r) => ua(r, n, e, t))));
+	return ja(n, await Promise.all(J(e).map((r) => Ma(r, n, e, t))));
 }
-function la(e, t) {
+function ja(e, t) {
 	let n = t.reduce((e, { length: t }) => e + t, 0) / e, r = new Float32Array(e * n), i = 0;
 	for (let a of t) {
 		let t = a.length / e;
@@ -2208,29 +2352,29 @@ function la(e, t) {
 	}
 	return r;
 }
-async function ua({ weights: e, count: t }, n, r, i) {
+async function Ma({ weights: e, count: t }, n, r, i) {
 	if (!e) return /* @__PURE__ */ new Float32Array();
-	if ("type" in e) return Xr(e, r.views, i);
+	if ("type" in e) return vi(e, r.views, i);
 	let { view: a, codec: o, where: s } = e;
-	return da(o.decode(new Uint8Array(await i(a)), s), n, t, s);
+	return Na(o.decode(new Uint8Array(await i(a)), s), n, t, s);
 }
-function da({ cameras: e, components: t, values: n }, r, i, a) {
-	if (e === r && t === i) return Zr(n, a);
+function Na({ cameras: e, components: t, values: n }, r, i, a) {
+	if (e === r && t === i) return yi(n, a);
 	throw M(a, `${e} x ${t} weights, and ${r} encoded cameras x ${i} textures`);
 }
 function J(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
 }
-function fa(e) {
+function Pa(e) {
 	return Math.max(0, ...J(e).map(({ count: e }) => e));
 }
-function pa(e, t) {
+function Fa(e, t) {
 	let n = [...t.slice(0, e.planes.length), ...J(e).map(({ grid: e }) => e)];
 	return [Math.max(...n.map(([e]) => e)), Math.max(...n.map(([, e]) => e))];
 }
-async function ma(e, t) {
+async function Ia(e, t) {
 	if (!e.triangles) return /* @__PURE__ */ new Uint32Array();
-	let { where: n } = e.triangles, r = await ha(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
+	let { where: n } = e.triangles, r = await La(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
 		if (Math.max(t, a, o) >= i) throw M(n, `no encoded camera ${Math.max(t, a, o)}`);
@@ -2238,11 +2382,11 @@ async function ma(e, t) {
 	}
 	return r;
 }
-async function ha(e, t, n) {
-	return "type" in e ? Uint32Array.from(await Xr(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
+async function La(e, t, n) {
+	return "type" in e ? Uint32Array.from(await vi(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
 }
-function ga(e, t, n, r, i, a) {
-	let { right: o, up: s } = e, c = ba(o, s), l = [
+function Ra(e, t, n, r, i, a) {
+	let { right: o, up: s } = e, c = Ha(o, s), l = [
 		0,
 		0,
 		0
@@ -2270,8 +2414,8 @@ function ga(e, t, n, r, i, a) {
 		settings: e.settings,
 		scores: e.scores,
 		metresPerUnit: typeof u == "number" && u > 0 && u <= 1e30 ? u : null,
-		bytes: _a(e, i),
-		size: pa(e, n),
+		bytes: za(e, i),
+		size: Fa(e, n),
 		planes: e.planes.map(({ channels: e, bases: t }, r) => ({
 			channels: e,
 			mean: n[r] ?? [1, 1],
@@ -2287,8 +2431,8 @@ function ga(e, t, n, r, i, a) {
 		facesPlane: Math.abs(Y(l, c)) > .7
 	};
 }
-function _a(e, t) {
-	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(fa(e)).fill(0);
+function za(e, t) {
+	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(Pa(e)).fill(0);
 	for (let { pictures: t } of J(e)) {
 		let e = 0;
 		for (let { view: n, textures: i } of t) {
@@ -2311,7 +2455,7 @@ function _a(e, t) {
 		textures: s
 	};
 }
-function va(e, t) {
+function Ba(e, t) {
 	let { origin: n, extent: r } = e, i = [
 		t[0] - n[0],
 		t[1] - n[1],
@@ -2319,7 +2463,7 @@ function va(e, t) {
 	];
 	return [r[0] > 0 ? Y(i, e.right) / r[0] : 0, r[1] > 0 ? Y(i, e.up) / r[1] : 0];
 }
-function ya(e, t) {
+function Va(e, t) {
 	let n = (n) => -(e[0][n] * t[0] + e[1][n] * t[1] + e[2][n] * t[2]);
 	return [
 		n(0),
@@ -2330,7 +2474,7 @@ function ya(e, t) {
 function Y(e, t) {
 	return e[0] * t[0] + e[1] * t[1] + e[2] * t[2];
 }
-function ba(e, t) {
+function Ha(e, t) {
 	return [
 		e[1] * t[2] - e[2] * t[1],
 		e[2] * t[0] - e[0] * t[2],
@@ -2338,7 +2482,7 @@ function ba(e, t) {
 	];
 }
 // eigenfield-three/src/cameras.ts
-function xa(e, t, n) {
+function Ua(e, t, n) {
 	let { info: r } = e, i = r.cameras.filter((e, t) => !r.heldOut[t]), a = r.cameras[r.reference];
 	if (!a) throw RangeError(`no camera ${r.reference}`);
 	let { width: o, height: s } = a, c = [
@@ -2377,7 +2521,7 @@ function xa(e, t, n) {
 	e.viewWeights(t, n, "delaunay").forEach((e, t) => {
 		let n = i[t];
 		if (!e || !n) return;
-		let r = Sa(n, o, s);
+		let r = Wa(n, o, s);
 		for (let t of [
 			0,
 			1,
@@ -2388,7 +2532,7 @@ function xa(e, t, n) {
 			2
 		]) t < 2 && (c[t][i] += e * r[t][i]), l[t][i] += e * n.R[t][i];
 	});
-	let u = wa(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Ca(t) * m[0], Ca(n) * m[1]], _ = [
+	let u = Ka(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Ga(t) * m[0], Ga(n) * m[1]], _ = [
 		0,
 		1,
 		2
@@ -2405,7 +2549,7 @@ function xa(e, t, n) {
 		offset: null
 	};
 }
-function Sa({ K: e, width: t, height: n }, r, i) {
+function Wa({ K: e, width: t, height: n }, r, i) {
 	let a = Math.max(r / t, i / n), [o, s] = [(r - a * t) / 2, (i - a * n) / 2];
 	return [
 		[
@@ -2425,16 +2569,16 @@ function Sa({ K: e, width: t, height: n }, r, i) {
 		]
 	];
 }
-function Ca(e) {
+function Ga(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function wa(e) {
+function Ka(e) {
 	let t = e;
 	for (let e = 0; e < 50; e++) {
 		let e = [
-			ba(t[1], t[2]),
-			ba(t[2], t[0]),
-			ba(t[0], t[1])
+			Ha(t[1], t[2]),
+			Ha(t[2], t[0]),
+			Ha(t[0], t[1])
 		], n = Y(t[0], e[0]);
 		if (!(n > 1e-12)) break;
 		let r = t.map((t, r) => t.map((t, i) => (t + e[r][i] / n) / 2)), i = Math.max(...r.flatMap((e, n) => e.map((e, r) => Math.abs(e - t[n][r]))));
@@ -2442,24 +2586,24 @@ function wa(e) {
 	}
 	return t;
 }
-function Ta(e, t, n, r, i = 1) {
+function qa(e, t, n, r, i = 1) {
 	let a = n.width / n.height, o = i * Math.min(1, a / r), s = i * Math.min(1, r / a), c = {
 		left: (1 - o) / 2,
 		top: (1 - s) / 2,
 		width: o,
 		height: s
 	};
-	return Ea(e, t, n), Da(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
+	return Ja(e, t, n), Ya(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
 }
-function Ea(e, t, n) {
+function Ja(e, t, n) {
 	let { R: r, centre: i } = n, a = new x().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
 	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new A()), t.updateMatrixWorld(!0);
 }
-function Da(e, t, n, r) {
-	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Oa(e, n);
+function Ya(e, t, n, r) {
+	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Xa(e, n);
 	t.near = d, t.far = f, t.projectionMatrix.set(l * i, -l * a, -(2 * r.left - 1 + l * o), 0, 0, u * s, -(1 - 2 * r.top - u * c), 0, 0, 0, -(f + d) / (f - d), -2 * f * d / (f - d), 0, 0, -1, 0), t.projectionMatrixInverse.copy(t.projectionMatrix).invert();
 }
-function Oa(e, t) {
+function Xa(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
@@ -2469,7 +2613,7 @@ function Oa(e, t) {
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
 // eigenfield-three/src/exposure.ts
-function ka(e) {
+function Za(e) {
 	let [t, n] = [[
 		1,
 		1,
@@ -2489,46 +2633,46 @@ function ka(e) {
 	};
 }
 // eigenfield-three/src/memory.ts
-var Aa = 4 / 3, ja = Ra({
+var Qa = 4 / 3, $a = oo({
 	components: 4,
 	halves: !0
-}), Ma = {
+}), eo = {
 	components: 4,
 	halves: !1
-}, Na = {
+}, to = {
 	components: 2,
 	halves: !1
-}, Pa = {
+}, no = {
 	components: 2,
 	halves: !0
-}, Fa = 2 ** 20, Ia = 1 / 64, La = 34;
-function Ra({ components: e, halves: t }) {
+}, ro = 2 ** 20, io = 1 / 64, ao = 34;
+function oo({ components: e, halves: t }) {
 	return (e > 2 ? 4 : e) * (t ? 2 : 1);
 }
-function za() {
+function so() {
 	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
-	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && Ba(e) ? Math.min(t ?? 4, 6) * 128 * Fa : Math.min(t ?? 8, 8) * 256 * Fa;
+	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && co(e) ? Math.min(t ?? 4, 6) * 128 * ro : Math.min(t ?? 8, 8) * 256 * ro;
 }
-function Ba(e) {
+function co(e) {
 	return (e?.maxTouchPoints ?? 0) > 1;
 }
 function X([e, t], n) {
 	return [Math.ceil(e / n), Math.ceil(t / n)];
 }
-function Va(e, t) {
+function lo(e, t) {
 	let [n, r] = X(e, t);
 	return n * r;
 }
-function Ha(e) {
+function uo(e) {
 	return Math.ceil(e / 4);
 }
-function Ua(e, t) {
-	return t * Wa(e);
+function fo(e, t) {
+	return t * po(e);
 }
-function Wa(e) {
+function po(e) {
 	return Math.max(1, Math.ceil(e / 4));
 }
-function Ga(e) {
+function mo(e) {
 	let { atlas: t, means: n, bases: r } = e, i = [
 		t,
 		...n.map(({ size: e }) => e),
@@ -2536,7 +2680,7 @@ function Ga(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-var Ka = [{
+var ho = [{
 	meanDown: 1,
 	scaleDown: 1,
 	halves: !0
@@ -2559,14 +2703,14 @@ var Ka = [{
 	scaleDown: t * e,
 	halves: !1
 })))];
-function qa(e, t) {
-	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => Ja(e, t.meanDown) + e.geometry + Ya(e, t, n), o = (n, r) => a(n, r) + Qa(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = Ka.filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
+function go(e, t) {
+	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => _o(e, t.meanDown) + e.geometry + vo(e, t, n), o = (n, r) => a(n, r) + xo(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = ho.filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
 	for (; !u && l > 0; l--) u = c.find((e) => o(e, l - 1));
-	u ??= Ka.at(-1);
-	let d = $a({
+	u ??= ho.at(-1);
+	let d = So({
 		...u,
 		usable: l
-	}, e), f = eo(d, e, t);
+	}, e), f = Co(d, e, t);
 	return {
 		...u,
 		usable: l,
@@ -2575,52 +2719,52 @@ function qa(e, t) {
 		limitation: f
 	};
 }
-function Ja(e, t) {
-	let n = e.means.map(({ size: e, channels: n, tenBits: r }) => Ra({
+function _o(e, t) {
+	let n = e.means.map(({ size: e, channels: n, tenBits: r }) => oo({
 		components: n,
 		halves: r
-	}) * Ha(n) * Va(e, t)), r = Ga(e).map((n) => {
-		let r = n.join() === e.atlas.join() ? Aa : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
-		return ja * Va(n, t) * (r + +!!i);
+	}) * uo(n) * lo(e, t)), r = mo(e).map((n) => {
+		let r = n.join() === e.atlas.join() ? Qa : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
+		return $a * lo(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function Ya({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
+function vo({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
 	return e.reduce((e, a) => {
 		let o = Math.min(i, a.count);
 		if (!o) return e;
-		let s = t ? Wa(o) * 129 * 129 * ja : 0;
-		return e + Ra({
+		let s = t ? po(o) * 129 * 129 * $a : 0;
+		return e + oo({
 			components: o,
 			halves: r && a.tenBits
-		}) * Ua(o, a.channels) * Va(a.size, n) + s;
+		}) * fo(o, a.channels) * lo(a.size, n) + s;
 	}, 0);
 }
-function Xa({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
-	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = Za([...a, ...o].map(({ size: e }) => e)), l = Math.floor(Ia * i / (Ra(Ma) * s)), u = [s, Math.min(c, Math.max(La, l))], d = [...n > 1 ? a.map((e) => X(e.size, n)) : [], ...r > 1 ? o.map((e) => X(e.size, r)) : []];
+function yo({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
+	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = bo([...a, ...o].map(({ size: e }) => e)), l = Math.floor(io * i / (oo(eo) * s)), u = [s, Math.min(c, Math.max(ao, l))], d = [...n > 1 ? a.map((e) => X(e.size, n)) : [], ...r > 1 ? o.map((e) => X(e.size, r)) : []];
 	return {
 		picture: {
 			size: u,
-			format: Ma
+			format: eo
 		},
 		codes: [...a, ...o].some(({ tenBits: e }) => e) ? {
 			size: u,
-			format: Na
+			format: to
 		} : null,
 		smaller: d.length ? {
-			size: Za(d),
-			format: Pa
+			size: bo(d),
+			format: no
 		} : null
 	};
 }
-function Za(e) {
+function bo(e) {
 	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
 }
-function Qa(e, t, n) {
-	let r = Object.values(Xa(e, t, n)).map((e) => e ? Ra(e.format) * Va(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(...Ga(e).map((e) => Va(e, 1))) : 0;
+function xo(e, t, n) {
+	let r = Object.values(yo(e, t, n)).map((e) => e ? oo(e.format) * lo(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(...mo(e).map((e) => lo(e, 1))) : 0;
 	return [...r, i].reduce((e, t) => e + t, 0);
 }
-function $a({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
+function So({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 	let a = Math.max(0, ...i.bases.map(({ count: e }) => e)), o = [];
 	return e < a && o.push({
 		kind: "count",
@@ -2634,28 +2778,28 @@ function $a({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 		percent: Math.round(100 / t)
 	}), o;
 }
-function eo(e, t, n) {
+function Co(e, t, n) {
 	if (!e.length) return null;
 	let r = e.map((e) => e.kind === "count" ? `${e.part} of ${e.whole} eigen textures are drawn` : e.kind === "bits" ? "eigen textures have 8 bits" : `${e.kind === "mean" ? "the mean texture has" : "eigen textures have"} ${e.percent} % of ${e.kind === "mean" ? "its" : "their"} width and height`), i = {
 		meanDown: 1,
 		scaleDown: 1,
 		halves: !0
-	}, a = Ja(t, 1) + Ya(t, i, Infinity) + Qa(t, i, n.memory) + t.geometry, o = a > n.memory ? `the scene needs ${to(a)} MB of graphics memory and ${to(n.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${no(r.join(", "))}: ${o}.`;
+	}, a = _o(t, 1) + vo(t, i, Infinity) + xo(t, i, n.memory) + t.geometry, o = a > n.memory ? `the scene needs ${wo(a)} MB of graphics memory and ${wo(n.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${To(r.join(", "))}: ${o}.`;
 }
-function to(e) {
+function wo(e) {
 	return (e / 1e6).toFixed(+(e < 1e7));
 }
-function no(e) {
+function To(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var ro = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\n#define REACH 2\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec2 beside;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nfloat codeOf(vec2 shift) { return shift.x + float(REACH) + float(2 * REACH + 1) * (shift.y + float(REACH)); }\nvec2 shiftOf(vec4 place) {\n  int code = int(place.w + 0.5) - 1;\n  return code < 0 ? vec2(0.0) : vec2(code % (2 * REACH + 1) - REACH, code / (2 * REACH + 1) - REACH);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec4 place = rayWeights || beside.x > 0.0 ? texelFetch(places, ivec2(gl_FragCoord.xy), 0) : vec4(0.0);\n  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);\n  own -= beside * shiftOf(place);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", io = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", ao = 2, oo = `
+var Eo = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\n#define REACH 2\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec2 beside;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nfloat codeOf(vec2 shift) { return shift.x + float(REACH) + float(2 * REACH + 1) * (shift.y + float(REACH)); }\nvec2 shiftOf(vec4 place) {\n  int code = int(place.w + 0.5) - 1;\n  return code < 0 ? vec2(0.0) : vec2(code % (2 * REACH + 1) - REACH, code / (2 * REACH + 1) - REACH);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec4 place = rayWeights || beside.x > 0.0 ? texelFetch(places, ivec2(gl_FragCoord.xy), 0) : vec4(0.0);\n  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);\n  own -= beside * shiftOf(place);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Do = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", Oo = 2, ko = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${io}${ro}`, so = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", co = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nflat out vec2 shift;\nvoid main() {\n  point = onPlane;\n  shift = shifts[gl_InstanceID];\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shift, 0.0, 1.0);\n}\n", lo = `${oo}
+${Do}${Eo}`, Ao = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", jo = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nflat out vec2 shift;\nvoid main() {\n  point = onPlane;\n  shift = shifts[gl_InstanceID];\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shift, 0.0, 1.0);\n}\n", Mo = `${ko}
 in vec3 point;
 flat in vec2 shift;
 out vec4 place;
@@ -2663,12 +2807,12 @@ void main() {
   place = placeOf(point);
   place.w += codeOf(shift);
 }
-`, uo = "sumTextures", fo = "finerValue", po = "finerOpacity";
-function mo(n, r, i) {
+`, No = "sumTextures", Po = "finerValue", Fo = "finerOpacity";
+function Io(n, r, i) {
 	let o = new O({
 		glslVersion: h,
-		vertexShader: so,
-		fragmentShader: `${oo}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
+		vertexShader: Ao,
+		fragmentShader: `${ko}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
 		uniforms: {
 			rectangle: { value: new ae(...r) },
 			...i
@@ -2704,7 +2848,7 @@ function mo(n, r, i) {
 	let c = new S(s, o);
 	return c.frustumCulled = !1, c;
 }
-function ho([e, t], n) {
+function Lo([e, t], n) {
 	return new oe(e, t, {
 		type: g,
 		depthBuffer: !1,
@@ -2713,29 +2857,29 @@ function ho([e, t], n) {
 		magFilter: n ? y : w
 	});
 }
-function go(e, t) {
-	let n = ba(e.right, e.up), r = [
+function Ro(e, t) {
+	let n = Ha(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
 		t[2] - e.origin[2]
 	];
-	return [...va(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
+	return [...Ba(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
 }
-function _o(t, n, r) {
+function zo(t, n, r) {
 	let { index: i } = t, a = t.getAttribute("position"), o = t.getAttribute("uv"), s = new Float32Array(3 * a.count), c = new Float32Array(2 * a.count);
-	for (let e = 0; e < a.count; e++) s.set(go(n, [
+	for (let e = 0; e < a.count; e++) s.set(Ro(n, [
 		a.getX(e),
 		a.getY(e),
 		a.getZ(e)
 	]), 3 * e), c.set([o.getX(e), o.getY(e)], 2 * e);
-	let l = Array.from({ length: 5 }, (e, t) => t - ao), d = l.flatMap((e) => l.map((t) => new ie(t, e)));
+	let l = Array.from({ length: 5 }, (e, t) => t - Oo), d = l.flatMap((e) => l.map((t) => new ie(t, e)));
 	d.sort((e, t) => t.lengthSq() - e.lengthSq());
 	let f = new v();
 	f.setAttribute("position", new e(c, 2)), f.setAttribute("onPlane", new e(s, 3)), f.setIndex(i && new e(i.array, 1)), f.instanceCount = d.length, f.boundingSphere = new te();
 	let p = new O({
 		glslVersion: h,
-		vertexShader: co.replace("SHIFTS", String(d.length)),
-		fragmentShader: lo,
+		vertexShader: jo.replace("SHIFTS", String(d.length)),
+		fragmentShader: Mo,
 		uniforms: {
 			texel: { value: new ie(2 / r.width, 2 / r.height) },
 			shifts: { value: d }
@@ -2754,19 +2898,19 @@ function _o(t, n, r) {
 		}
 	};
 }
-var vo = new i(0), yo = new i();
-function bo(e, t, n) {
+var Bo = new i(0), Vo = new i();
+function Ho(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(yo), e.setClearColor(vo, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(yo, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(Vo), e.setClearColor(Bo, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(Vo, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/composer.ts
-var xo = {
+var Uo = {
 	version: 0,
 	mean: !0,
 	opacity: 0,
@@ -2776,7 +2920,7 @@ var xo = {
 	eye: null,
 	places: 0,
 	maps: null
-}, So = class {
+}, Wo = class {
 	opacity;
 	down;
 	snaps;
@@ -2788,14 +2932,14 @@ var xo = {
 	camera = new n();
 	constructor(e, t, n, r, i, a, o) {
 		this.opacity = n, this.down = r, this.snaps = i, this.surface = a, this.plane = o;
-		let [s, ...c] = Ga({
+		let [s, ...c] = mo({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), l = (e, n) => {
-			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => wo(t, i ? X(e, r) : null)), o = new k();
+			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => Ko(t, i ? X(e, r) : null)), o = new k();
 			return a.forEach(({ quad: e }, t) => o.add(Object.assign(e, { renderOrder: t }))), {
-				target: ho(X(e, r), n),
+				target: Lo(X(e, r), n),
 				scene: o,
 				steps: a,
 				places: null
@@ -2803,7 +2947,7 @@ var xo = {
 		}, u = l(s ?? e, !0);
 		this.grids = c.map((e) => l(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = mo(fo, [
+			let t = Io(Po, [
 				0,
 				0,
 				1,
@@ -2817,36 +2961,36 @@ var xo = {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && Do(this.composed, n) || (this.composed = n, bo(e, t, () => {
+		this.composed && Yo(this.composed, n) || (this.composed = n, Ho(e, t, () => {
 			n.opacity > this.opacityDrawn && this.drawOpacity(e, n.opacity);
 			for (let t of this.grids) {
 				(n.eye !== null && t.steps.some(({ part: e }) => e.basis) || this.snaps) && this.findPlaces(e, t, n.places);
-				for (let e of t.steps) To(e, t.places?.target.texture ?? null, n);
+				for (let e of t.steps) qo(e, t.places?.target.texture ?? null, n);
 				this.draw(e, t.scene, t.target, this.opacityDrawn > 0 && t === this.grids.at(-1));
 			}
 		}));
 	}
 	dispose() {
-		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), Co(n);
+		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), Go(n);
 	}
 	drawOpacity(e, t) {
 		let n = this.grids.at(-1);
 		if (!this.opacity || !n) return;
-		let r = ho(X(this.opacity.grid, this.down), !1), i = wo(this.opacity, null);
-		for (let e of i) To(e, null, xo);
+		let r = Lo(X(this.opacity.grid, this.down), !1), i = Ko(this.opacity, null);
+		for (let e of i) qo(e, null, Uo);
 		let [a, o] = [new k(), new k()];
-		a.add(...i.map(({ quad: e }) => e)), o.add(mo(po, [
+		a.add(...i.map(({ quad: e }) => e)), o.add(Io(Fo, [
 			0,
 			0,
 			1,
 			1
 		], { coarse: { value: r.texture } })), this.draw(e, a, r), this.draw(e, o, n.target);
-		for (let e of [a, o]) Co(e);
+		for (let e of [a, o]) Go(e);
 		r.dispose(), this.opacityDrawn = t;
 	}
 	findPlaces(e, t, n) {
 		if (t.places?.version === n) return;
-		let r = t.places?.target ?? ho([t.target.width, t.target.height], !1), { scene: i, free: a } = _o(this.surface.geometry, this.plane, r);
+		let r = t.places?.target ?? Lo([t.target.width, t.target.height], !1), { scene: i, free: a } = zo(this.surface.geometry, this.plane, r);
 		this.draw(e, i, r), a(), t.places = {
 			target: r,
 			version: n
@@ -2858,17 +3002,17 @@ var xo = {
 		r && i.colorMask(!0, !0, !0, !1), e.clear(!0, !1, !1), r && i.colorMask(!0, !0, !0, !0), e.render(t, this.camera);
 	}
 };
-function Co(e) {
+function Go(e) {
 	for (let { geometry: t, material: n } of e.children) t.dispose(), n.dispose();
 }
-function wo(e, t) {
+function Ko(e, t) {
 	let [n, r, i, a] = e.rectangle, o = t && new ie(1 / ((i - n) * t[0]), 1 / ((a - r) * t[1])), s = e.colours.length, [c, l] = [e.scale.length / (4 * s), Math.floor(64 / s)], u = [];
 	for (let t = 0; t < c; t += l) {
 		let n = Array.from({ length: 64 }, (t, n) => new A(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), r = e.basis ? 1 : 4, i = mo(uo, e.rectangle, {
+		])), r = e.basis ? 1 : 4, i = Io(No, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(t * s / r) },
 			sharing: { value: r },
@@ -2893,31 +3037,31 @@ function wo(e, t) {
 	}
 	return u;
 }
-function To({ part: e, first: t, groups: n, quad: r }, i, a) {
+function qo({ part: e, first: t, groups: n, quad: r }, i, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Eo(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Jo(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
 	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", i), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function Eo(e, t, n, r) {
+function Jo(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function Do(e, t) {
+function Yo(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
 // eigenfield-three/src/maps.ts
-function Oo(e, t, n, i, a) {
+function Xo(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? Wa(t) : 0;
+		u += e, d += t ? po(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -2936,7 +3080,7 @@ function Oo(e, t, n, i, a) {
 	return p.format = D, p.type = g, p.minFilter = p.magFilter = y, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
 }
 // eigenfield-three/src/eigen-weights.ts
-var ko = class {
+var Zo = class {
 	info;
 	counts;
 	omega;
@@ -2968,12 +3112,12 @@ var ko = class {
 		if (n >= 0) return Float64Array.from(this.omega.subarray(n * this.total, (n + 1) * this.total));
 		let r = this.info.cameras[e];
 		if (!r) throw RangeError(`no camera ${e}`);
-		return this.at(...va(this.info.viewPlane, r.centre), t);
+		return this.at(...Ba(this.info.viewPlane, r.centre), t);
 	}
 	maps(e, t) {
 		if (this.made?.mixing === e && this.made.usable === t) return this.made.texture;
 		this.dispose();
-		let n = Oo(this.views, e, this.omega, this.counts, t);
+		let n = Xo(this.views, e, this.omega, this.counts, t);
 		return this.made = {
 			texture: n,
 			mixing: e,
@@ -2983,20 +3127,20 @@ var ko = class {
 	dispose() {
 		this.made?.texture.dispose();
 	}
-}, Ao = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", jo = {
+}, Qo = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", $o = {
 	bilinear: 0,
 	bicubic: 1
-}, Mo = {
+}, es = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, No = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Po = No.replace("void main", "invariant gl_Position;\nvoid main"), Fo = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", Io = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", Lo = `${Fo}
-${io}${Ao}
+}, ts = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", ns = ts.replace("void main", "invariant gl_Position;\nvoid main"), rs = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", is = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", as = `${rs}
+${Do}${Qo}
 uniform float shownGain;       // of the eigen texture around mid grey
 in vec2 surfaceUv;
 vec3 eigenColour(vec3 value) { return clamp(0.5 + shownGain * value, 0.0, 1.0); }
-`, Ro = `${Lo}${Io}
+`, os = `${as}${is}
 in vec3 surfacePlace;
 out vec4 fragment;
 void main() {
@@ -3006,7 +3150,7 @@ void main() {
   if (shown == 3) colour = errorColour(colour, surfacePlace);
   fragment = vec4(colour, 1.0);
 }
-`, zo = `${Lo}
+`, ss = `${as}
 layout(location = 0) out vec4 fragment;
 layout(location = 1) out vec4 solid;
 vec3 threeBytes(float depth) {
@@ -3020,98 +3164,98 @@ void main() {
   float depth = (gl_FragCoord.z - gl_DepthRange.near) / gl_DepthRange.diff;
   solid = colour.a < 0.5 ? vec4(0.0) : vec4(threeBytes(depth), 1.0);
 }
-`, Bo = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", Vo = {
+`, cs = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", ls = {
 	blending: a,
 	blendSrc: E,
 	blendDst: ee
-}, Ho = {
+}, us = {
 	depthWrite: !1,
 	stencilWrite: !0,
 	stencilFunc: d,
 	stencilZPass: _
 };
-function Uo(e, t) {
+function ds(e, t) {
 	let n = {
 		composed: { value: null },
 		finest: { value: 1 },
 		exposureScale: { value: new A(1, 1, 1) },
 		exposureBias: { value: new A() },
-		shown: { value: Mo.picture },
+		shown: { value: es.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new x() }
 	}, r = new O({
 		glslVersion: h,
-		vertexShader: t ? Po : No,
-		fragmentShader: t ? zo : Ro,
+		vertexShader: t ? ns : ts,
+		fragmentShader: t ? ss : os,
 		uniforms: n,
-		defines: { BICUBIC: jo.bicubic },
+		defines: { BICUBIC: $o.bicubic },
 		side: e ? u : m,
 		...t ? {
-			...Vo,
-			...Ho
+			...ls,
+			...us
 		} : {}
 	});
 	return r.name = "eigen textures", r;
 }
-function Wo(e) {
+function fs(e) {
 	let { side: t } = e;
 	return new O({
 		name: "depth of sheets",
 		glslVersion: h,
-		vertexShader: Po,
-		fragmentShader: Bo,
+		vertexShader: ns,
+		fragmentShader: cs,
 		colorWrite: !1,
 		side: t,
 		stencilWrite: !0,
 		stencilZPass: se
 	});
 }
-function Go(e, t, n) {
-	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !Ko(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
+function ps(e, t, n) {
+	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !ms(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
 	u && (d.elements[13] = 1), e.toPhotograph.value.multiplyMatrices(d, l.multiply(c)), e.photograph.value = n;
 }
-function Ko(e) {
+function ms(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
 // eigenfield-three/src/film-codes.ts
-var qo = /* @__PURE__ */ new Set([
+var hs = /* @__PURE__ */ new Set([
 	"I420P10",
 	"I422P10",
 	"I444P10"
-]), Jo = /* @__PURE__ */ new Set([
+]), gs = /* @__PURE__ */ new Set([
 	"I420",
 	"I420A",
 	"I422",
 	"I444",
 	"NV12"
-]), Yo = /* @__PURE__ */ new Set([
+]), _s = /* @__PURE__ */ new Set([
 	"RGBA",
 	"RGBX",
 	"BGRA",
 	"BGRX"
-]), Xo = 1, Zo = Uint16Array.from({ length: 256 }, (e, t) => Math.round(t * 1023 / 255)), Qo = Uint16Array.from({ length: 256 }, (e, t) => Zo[16 + Math.round(t * 219 / 255)]);
-async function $o(e, t) {
+]), vs = 1, ys = Uint16Array.from({ length: 256 }, (e, t) => Math.round(t * 1023 / 255)), bs = Uint16Array.from({ length: 256 }, (e, t) => ys[16 + Math.round(t * 219 / 255)]);
+async function xs(e, t) {
 	let n = e.format ?? "", { width: r, height: i } = e.visibleRect ?? {
 		width: 0,
 		height: 0
 	};
-	if (!qo.has(n) && !Jo.has(n) && !Yo.has(n)) throw new j("unsupported", `This browser does not hand out its frames (${n || "no format"}).`, "");
+	if (!hs.has(n) && !gs.has(n) && !_s.has(n)) throw new j("unsupported", `This browser does not hand out its frames (${n || "no format"}).`, "");
 	let a = e.allocationSize(), o = t && t.length >= a ? t : new Uint8Array(a), [s] = await e.copyTo(o), { offset: c, stride: l } = s ?? {
 		offset: 0,
 		stride: 0
 	};
-	if (qo.has(n)) return {
+	if (hs.has(n)) return {
 		data: o.subarray(c),
 		width: r,
 		height: i,
 		stride: l,
 		room: o
 	};
-	let u = Yo.has(n), [d, f] = u ? [4, c + Xo] : [1, c], p = u && e.colorSpace?.fullRange === !1 ? Qo : Zo;
-	return es(o.subarray(f), l, d, [r, i], p);
+	let u = _s.has(n), [d, f] = u ? [4, c + vs] : [1, c], p = u && e.colorSpace?.fullRange === !1 ? bs : ys;
+	return Ss(o.subarray(f), l, d, [r, i], p);
 }
-function es(e, t, n, [r, i], a = Zo) {
+function Ss(e, t, n, [r, i], a = ys) {
 	let o = new Uint16Array(r * i);
 	for (let s = 0; s < i; s++) for (let i = 0; i < r; i++) o[s * r + i] = a[e[s * t + n * i]];
 	return {
@@ -3121,7 +3265,7 @@ function es(e, t, n, [r, i], a = Zo) {
 		stride: 2 * r
 	};
 }
-function ts({ data: e, stride: t }, { size: [n, r], at: i }) {
+function Cs({ data: e, stride: t }, { size: [n, r], at: i }) {
 	return i.map(([i, a]) => ({
 		data: e.subarray(a * t + 2 * i),
 		width: n,
@@ -3130,21 +3274,21 @@ function ts({ data: e, stride: t }, { size: [n, r], at: i }) {
 	}));
 }
 // eigenfield-three/src/pieces.ts
-function ns(e) {
+function ws(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
 // eigenfield-three/src/strength.ts
-var rs = 128, is = .98;
-async function as(e, t, n, r) {
+var Ts = 128, Es = .98;
+async function Ds(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = li(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(rs, rs).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = ji(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Ts, Ts).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	return u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, rs, rs);
-		let { data: u } = d.getImageData(0, 0, rs, rs);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, Ts, Ts);
+		let { data: u } = d.getImageData(0, 0, Ts, Ts);
 		(l ? [
 			0,
 			1,
@@ -3153,15 +3297,15 @@ async function as(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), ns(u), os(f);
+	}), ws(u), Os(f);
 }
-function os(e) {
+function Os(e) {
 	e.sort((e, t) => e - t);
-	let t = e[Math.floor(is * e.length)] ?? 0;
+	let t = e[Math.floor(Es * e.length)] ?? 0;
 	return t > 0 ? .45 / t : 1;
 }
 // eigenfield-three/src/film-textures.ts
-var ss = class {
+var ks = class {
 	scene;
 	films;
 	filling = null;
@@ -3197,7 +3341,7 @@ var ss = class {
 	}
 	piecesOf({ part: e }) {
 		let t = e && this.films[e.film];
-		return t ? ts(t, e).map((e) => ({
+		return t ? Cs(t, e).map((e) => ({
 			picture: e,
 			row: 0,
 			rows: e.height
@@ -3205,44 +3349,44 @@ var ss = class {
 	}
 	gainOf({ part: e, pieces: t, scale: n, zero: r }, i, a) {
 		let o = e && this.films[e.film];
-		return o ? os(ts(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
+		return o ? Os(Cs(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
 			let s = t * i + o, c = Math.max(...(a[o] ?? [0]).map(Math.abs)) * (n[s] ?? 0);
-			return ls(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
+			return js(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
 		})) : 1;
 	}
-}, cs = 8;
-function ls({ data: e, width: t, height: n, stride: r }) {
+}, As = 8;
+function js({ data: e, width: t, height: n, stride: r }) {
 	let i = [];
-	for (let a = 0; a < n; a += cs) for (let n = 0; n < t; n += cs) {
+	for (let a = 0; a < n; a += As) for (let n = 0; n < t; n += As) {
 		let t = a * r + 2 * n;
 		i.push(e[t] + 256 * e[t + 1]);
 	}
 	return i;
 }
 // eigenfield-three/src/container.ts
-var us = 1179937895, ds = 1313821514, fs = 5130562, ps = 1280591429;
-async function ms(e) {
+var Ms = 1179937895, Ns = 1313821514, Ps = 5130562, Fs = 1280591429;
+async function Is(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof j && t.code === "truncated" ? ys(e.received === 0) : t;
+		throw t instanceof j && t.code === "truncated" ? Vs(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== us) throw ys(!1);
+	if (new DataView(t).getUint32(0, !0) !== Ms) throw Vs(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
 	if (r !== 2) throw new j("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
 	if (i < 20) throw M("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== ds) throw M("16", "it does not begin with JSON");
-	if (o > Ce) throw M("12", `${o} bytes of JSON`);
+	if (a.getUint32(4, !0) !== Ns) throw M("16", "it does not begin with JSON");
+	if (o > Se) throw M("12", `${o} bytes of JSON`);
 	if (20 + o > i) throw M("12", "a chunk longer than the file");
-	let s = gs(await e.read(20, 20 + o)), c = (t, n) => () => hs(e, 20 + o, i, t, n);
+	let s = Rs(await e.read(20, 20 + o)), c = (t, n) => () => Ls(e, 20 + o, i, t, n);
 	return {
 		length: i,
 		text: s,
-		json: _s(s, "20"),
-		binary: c(fs, "binary chunk"),
-		groups: c(ps, "chunk of groups")
+		json: zs(s, "20"),
+		binary: c(Ps, "binary chunk"),
+		groups: c(Fs, "chunk of groups")
 	};
 }
-async function hs(e, t, n, r, i) {
+async function Ls(e, t, n, r, i) {
 	let a = t;
 	for (let t = 1; t < 64 && a + 8 <= n; t++) {
 		let t = new DataView(await e.read(a, a + 8)), i = t.getUint32(0, !0);
@@ -3252,22 +3396,22 @@ async function hs(e, t, n, r, i) {
 	}
 	throw M(String(t), `no ${i}`);
 }
-function gs(e) {
+function Rs(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
 		throw M("20", "its JSON is not UTF-8");
 	}
 }
-function _s(e, t) {
-	if (vs(e) > 64) throw M(t, "its JSON is nested too deep");
+function zs(e, t) {
+	if (Bs(e) > 64) throw M(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
 		throw M(t, "its JSON cannot be read");
 	}
 }
-function vs(e) {
+function Bs(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3278,80 +3422,89 @@ function vs(e) {
 	}
 	return n;
 }
-function ys(e) {
+function Vs(e) {
 	return new j("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/groups.ts
-var bs = 3, xs = 4, Ss = class {
+var Hs = 3, Us = 4, Ws = class {
 	scene;
 	timeline;
+	mesh;
 	read;
 	kept = /* @__PURE__ */ new Map();
-	constructor(e, t, n) {
-		this.scene = e, this.timeline = t, this.read = n;
+	constructor(e, t, n, r) {
+		this.scene = e, this.timeline = t, this.mesh = n, this.read = r;
 	}
 	open(e) {
 		let t = this.kept.get(e) ?? this.opened(e);
 		this.kept.delete(e), this.kept.set(e, t);
-		for (let [e] of this.kept) this.kept.size > bs && this.kept.delete(e);
+		for (let [e] of this.kept) this.kept.size > Hs && this.kept.delete(e);
 		return t;
 	}
 	async opened(e) {
 		let t = this.timeline.groups[e];
 		if (!t) throw RangeError(`no group ${e}`);
 		let n = new Uint8Array(await this.read(t.offset, t.length));
-		await ws(n, t);
-		let { head: r, at: i } = await Ts(n, t), a = Es(n, i, t), o = this.weightsOf(r, a), { first: s, frames: c } = t, l = Ds(r, t, this.timeline.films.length, a);
+		await Ks(n, t);
+		let { head: r, at: i } = await qs(n, t), a = Js(n, i, t), o = this.weightsOf(r, a), s = this.motionOf(r, a, t), { first: c, frames: l } = t, u = Ys(r, t, this.timeline.films.length, a);
 		return {
 			index: e,
-			first: s,
-			frames: c,
+			first: c,
+			frames: l,
 			omega: o,
 			...this.scalesOf(r),
-			units: l
+			units: u,
+			motion: s
 		};
 	}
+	motionOf(e, t, { frames: n }) {
+		let r = e.key("motion");
+		if (!r.exists) return null;
+		let i = U["motion-1"].decode(t(r), this.mesh, r.where);
+		if (i.frames !== n) throw r.wrong(`${i.frames} frames of ${n}`);
+		return i;
+	}
 	weightsOf(e, t) {
-		let n = this.scene.heldOut.filter((e) => !e).length, r = ks(e.key("weights"), this.scene.planes.length);
-		return la(n, this.scene.planes.flatMap(({ bases: e }, i) => {
-			let a = r[i] && ks(r[i], e.length);
+		let n = this.scene.heldOut.filter((e) => !e).length, r = Zs(e.key("weights"), this.scene.planes.length);
+		return ja(n, this.scene.planes.flatMap(({ bases: e }, i) => {
+			let a = r[i] && Zs(r[i], e.length);
 			return e.map(({ count: e }, r) => {
 				let i = a[r];
-				return da(U["weights-1"].decode(t(i), i.where), n, e, i.where);
+				return Na(U["weights-1"].decode(t(i), i.where), n, e, i.where);
 			});
 		}));
 	}
 	scalesOf(e) {
 		let { planes: t } = this.scene;
 		return {
-			means: ks(e.key("means"), t.length).map((e, n) => Os(e, t[n].mean)),
-			bases: ks(e.key("bases"), t.length).flatMap((e, n) => {
+			means: Zs(e.key("means"), t.length).map((e, n) => Xs(e, t[n].mean)),
+			bases: Zs(e.key("bases"), t.length).flatMap((e, n) => {
 				let { bases: r } = t[n];
-				return ks(e, r.length).map((e, t) => Os(e, r[t].pictures[0]));
+				return Zs(e, r.length).map((e, t) => Xs(e, r[t].pictures[0]));
 			})
 		};
 	}
 };
-function Cs(e, { means: t, bases: n }) {
+function Gs(e, { means: t, bases: n }) {
 	e.planes.forEach(({ mean: e }, n) => Object.assign(e, t[n])), J(e).forEach(({ pictures: [e] }, t) => e && Object.assign(e, n[t]));
 }
-async function ws(e, { sha256: t, where: n }) {
+async function Ks(e, { sha256: t, where: n }) {
 	let r = globalThis.crypto?.subtle;
 	if (!r) return;
 	let i = new Uint8Array(await r.digest("SHA-256", e));
 	if (Array.from(i, (e) => e.toString(16).padStart(2, "0")).join("") !== t) throw M(n, "other bytes than its SHA-256 says");
 }
-async function Ts(e, { where: t }) {
-	if (e.length < xs) throw M(t, "no head");
-	let n = xs + new DataView(e.buffer).getUint32(0, !0);
+async function qs(e, { where: t }) {
+	if (e.length < Us) throw M(t, "no head");
+	let n = Us + new DataView(e.buffer).getUint32(0, !0);
 	if (n > e.length) throw M(t, "a head longer than the group");
-	let r = await xe(e.subarray(xs, n), "deflate-raw", Be, t);
+	let r = await be(e.subarray(Us, n), "deflate-raw", He, t);
 	return {
-		head: new W(_s(new TextDecoder("utf-8").decode(r), t), t),
+		head: new W(zs(new TextDecoder("utf-8").decode(r), t), t),
 		at: n
 	};
 }
-function Es(e, t, n) {
+function Js(e, t, n) {
 	let r = t;
 	return (t) => {
 		let i = r;
@@ -3359,22 +3512,22 @@ function Es(e, t, n) {
 		return e.subarray(i, r);
 	};
 }
-function Ds(e, t, n, r) {
-	return ks(e.key("frames"), t.frames).map((e) => ks(e, n).map((e) => r(e)));
+function Ys(e, t, n, r) {
+	return Zs(e.key("frames"), t.frames).map((e) => Zs(e, n).map((e) => r(e)));
 }
-function Os(e, { pieces: t, textures: n }) {
+function Xs(e, { pieces: t, textures: n }) {
 	let r = e;
 	return {
-		scale: di(r.key("scale"), t, n),
-		zero: di(r.key("zero"), t, n)
+		scale: Ni(r.key("scale"), t, n),
+		zero: Ni(r.key("zero"), t, n)
 	};
 }
-function ks(e, t) {
+function Zs(e, t) {
 	let n = e.items(t);
 	if (n.length !== t) throw e.wrong(`${t} entries are needed`);
 	return n;
 }
-var As = 3, js = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", Ms = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform int first; // row of the picture with which the texture begins\nout vec4 stored;\nvoid main() {\n  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));\n}\n", Ns = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", Ps = `#version 300 es
+var Qs = 3, $s = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", ec = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform int first; // row of the picture with which the texture begins\nout vec4 stored;\nvoid main() {\n  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));\n}\n", tc = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", nc = `#version 300 es
 precision highp float;
 precision highp int;
 uniform highp sampler2D picture; // values, and whether they are of a chart
@@ -3384,7 +3537,7 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec2 own = texelFetch(picture, at, 0).rg;
   vec2 sum = vec2(own.r * own.g, own.g);
-  for (int far = 1; far <= ${As} && sum.y == 0.0; far++) {
+  for (int far = 1; far <= ${Qs} && sum.y == 0.0; far++) {
     for (int y = -far; y <= far; y++) {
       for (int x = -far; x <= far; x++) {
         vec2 near = texelFetch(picture, clamp(at + ivec2(x, y), ivec2(0), size - 1), 0).rg;
@@ -3394,9 +3547,9 @@ void main() {
   }
   stored = vec4(sum.y > 0.0 ? sum.x / sum.y : own.r);
 }
-`, Fs = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
+`, rc = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
 // eigenfield-three/src/parts.ts
-function Is(e, t, n) {
+function ic(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -3406,7 +3559,7 @@ function Is(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = zs(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = sc(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -3434,7 +3587,7 @@ function Is(e, t, n) {
 						a + e[1] / i[1]
 					],
 					colours: f,
-					...Bs(l, u, h, n.halves && ci(l)),
+					...cc(l, u, h, n.halves && Ai(l)),
 					basis: {
 						ready: m,
 						column: o,
@@ -3442,17 +3595,17 @@ function Is(e, t, n) {
 					}
 				});
 			}
-			o += p, s += h ? Wa(h) : 0;
+			o += p, s += h ? po(h) : 0;
 		}
 	}), r;
 }
-function Ls(e, t, n, r) {
-	Is(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
+function ac(e, t, n, r) {
+	ic(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
 		scale: t,
 		bias: n
 	}));
 }
-function Rs({ planes: e, sheets: t }, { means: n, needs: r }) {
+function oc({ planes: e, sheets: t }, { means: n, needs: r }) {
 	let i = n[e.length], a = r.means[e.length]?.size;
 	return !t || !i || !a ? null : {
 		stored: i,
@@ -3468,12 +3621,12 @@ function Rs({ planes: e, sheets: t }, { means: n, needs: r }) {
 			0,
 			0
 		]],
-		...zs(t.opacity),
+		...sc(t.opacity),
 		basis: null
 	};
 }
-function zs({ mean: e, channels: t, precision: n }) {
-	let { scale: r, zero: i } = e, a = n ? 4 : 1 / ui(e, ci([e])), o = {
+function sc({ mean: e, channels: t, precision: n }) {
+	let { scale: r, zero: i } = e, a = n ? 4 : 1 / Mi(e, Ai([e])), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
 	};
@@ -3483,8 +3636,8 @@ function zs({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function Bs(e, t, n, r) {
-	let i = e.flatMap((e) => Array(e.textures).fill(ui(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * Wa(n), c = {
+function cc(e, t, n, r) {
+	let i = e.flatMap((e) => Array(e.textures).fill(Mi(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * po(n), c = {
 		scale: new Float32Array(s),
 		bias: new Float32Array(s)
 	};
@@ -3495,7 +3648,7 @@ function Bs(e, t, n, r) {
 	return c;
 }
 // eigenfield-three/src/player.ts
-var Vs = .25, Hs = class extends f {
+var lc = .25, uc = class extends f {
 	timeline;
 	user;
 	first;
@@ -3529,7 +3682,7 @@ var Vs = .25, Hs = class extends f {
 		return this.shown.number;
 	}
 	get time() {
-		return Oi(this.timeline, this.shown.number);
+		return Xi(this.timeline, this.shown.number);
 	}
 	get sought() {
 		return (this.following ?? this.goal ?? this.shown.position) % this.frames;
@@ -3538,7 +3691,7 @@ var Vs = .25, Hs = class extends f {
 		return this.goal !== null;
 	}
 	get group() {
-		let { groups: e } = this.timeline, t = ki(this.timeline, this.shown.number);
+		let { groups: e } = this.timeline, t = Zi(this.timeline, this.shown.number);
 		return {
 			index: t,
 			count: e.length,
@@ -3571,7 +3724,7 @@ var Vs = .25, Hs = class extends f {
 		this.plays && (this.plays = !1, this.clock = this.shown.position, this.dispatchEvent({ type: "change" }));
 	}
 	seek(e) {
-		return this.toFrame(Di(this.timeline, e));
+		return this.toFrame(Yi(this.timeline, e));
 	}
 	toFrame(e) {
 		return this.toPosition(this.lap + Math.min(Math.max(Math.round(e), 0), this.frames - 1));
@@ -3583,7 +3736,7 @@ var Vs = .25, Hs = class extends f {
 	}
 	update(e = performance.now()) {
 		if (this.disposed) return;
-		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, Vs);
+		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, lc);
 		if (this.last = this.plays && this.goal === null ? e : null, this.goal === null && !this.plays) return;
 		this.goal === null && (this.clock = this.advanced(t));
 		let n = this.ring.take(this.goal ?? Math.floor(this.clock));
@@ -3630,22 +3783,22 @@ var Vs = .25, Hs = class extends f {
 	fail(e, t) {
 		if (this.disposed) return;
 		this.user.failed(e), t === null && this.pause();
-		let n = this.goal !== null && ki(this.timeline, this.goal % this.frames);
+		let n = this.goal !== null && Zi(this.timeline, this.goal % this.frames);
 		n === !1 || t !== null && n !== t || (this.goal = this.following = null, this.settle());
 	}
-}, Us = 256;
-function Ws(e, t, n) {
+}, dc = 256;
+function fc(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / Us)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / dc)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Gs(t, i.getX(e), i.getY(e), i.getZ(e))), l = Ks(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => pc(t, i.getX(e), i.getY(e), i.getZ(e))), l = mc(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = Ks(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = mc(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -3655,7 +3808,7 @@ function Ws(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function Gs({ K: e, R: t, t: n }, r, i, a) {
+function pc({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -3663,12 +3816,12 @@ function Gs({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function Ks(e) {
+function mc(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/sheet-stack.ts
-var qs = "sheets", Js = 16, Ys = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Xs = `${Fo}${Io}
+var hc = "sheets", gc = 16, _c = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", vc = `${rs}${is}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -3693,7 +3846,7 @@ void main() {
   gl_FragDepth = depth;
   fragment = colour;
 }
-`, Zs = new ae(), Qs = class {
+`, yc = new ae(), bc = class {
 	material;
 	scene = new k();
 	camera = new n();
@@ -3703,16 +3856,16 @@ void main() {
 	everywhere = new t();
 	target = null;
 	constructor(t) {
-		this.material = t, this.depth = Wo(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
+		this.material = t, this.depth = fs(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
 			let { materialIndex: o = 0 } = a, s = this.sheets.material.length / 2, c = s - 1 - (o >> 1);
 			e.getContext().depthRange(c / s, (c + 1) / s);
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
 		let { shown: n, photograph: r, toPhotograph: i } = t.uniforms;
 		this.screen = new O({
-			name: qs,
+			name: hc,
 			glslVersion: h,
-			vertexShader: Ys,
-			fragmentShader: Xs,
+			vertexShader: _c,
+			fragmentShader: vc,
 			uniforms: {
 				shown: n,
 				photograph: r,
@@ -3726,7 +3879,7 @@ void main() {
 				toPlace: { value: new x() }
 			},
 			transparent: !0,
-			...Vo
+			...ls
 		});
 		let a = new Float32Array([
 			-1,
@@ -3742,7 +3895,7 @@ void main() {
 		this.everywhere.setAttribute("position", new e(a, 3));
 	}
 	get bytes() {
-		return this.target ? Js * this.target.width * this.target.height : 0;
+		return this.target ? gc * this.target.width * this.target.height : 0;
 	}
 	setGeometry(e, t) {
 		e.clearGroups();
@@ -3760,7 +3913,7 @@ void main() {
 	attach(e, t) {
 		for (let t of [e.material].flat()) t.visible = !1;
 		let n = new S(this.everywhere, this.screen);
-		n.name = qs, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
+		n.name = hc, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
 			t(n, i), this.draw(n, i, e);
 		}, e.add(n);
 	}
@@ -3771,18 +3924,18 @@ void main() {
 		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
 	}
 	draw(e, t, n) {
-		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Zs);
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(yc);
 		if (!a || !o) return;
-		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = $s(a, o));
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = xc(a, o));
 		let { target: s } = this;
-		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), bo(e, t, () => {
+		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), Ho(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
 		}), e.getContext().depthRange(0, 1);
 		let { uniforms: c } = this.screen;
 		this.set("sheets", s.textures[0]), this.set("solid", s.textures[1]), this.set("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
 	}
 };
-function $s(e, t) {
+function xc(e, t) {
 	let n = new l(e, t, re);
 	n.format = c;
 	let r = new oe(e, t, {
@@ -3796,7 +3949,7 @@ function $s(e, t) {
 	return i && (i.type = ne), r;
 }
 // eigenfield-three/src/surface.ts
-var ec = class {
+var Sc = class {
 	meshes;
 	faces;
 	reference;
@@ -3811,7 +3964,7 @@ var ec = class {
 		if (!i) throw Error("a field needs a mesh");
 		this.mesh = i;
 		let a = [i.material].flat().some((e) => e.side !== m);
-		this.material = Uo(a, t !== null), this.stack = t && new Qs(this.material);
+		this.material = ds(a, t !== null), this.stack = t && new bc(this.material);
 		for (let t of e) {
 			let e = (e, n) => r(e, n, t);
 			this.stack ? this.stack.attach(t, e) : (t.material = this.material, t.onBeforeRender = (t, n, r) => e(t, r));
@@ -3829,7 +3982,7 @@ var ec = class {
 		if (n !== e) {
 			let { index: r, attributes: i } = e;
 			if (!r || !i.position || !i.uv) throw TypeError("A surface needs position, uv and an index.");
-			this.stack && t && vi({
+			this.stack && t && Bi({
 				faces: t,
 				where: "the geometry"
 			}, e), n.dispose();
@@ -3838,52 +3991,52 @@ var ec = class {
 		e.boundingBox = e.boundingSphere = null, this.faces = t, this.version += 1, this.show(t);
 	}
 	show(e) {
-		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? Ws(this.geometry, this.reference, [1, 1]) : 0;
+		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? fc(this.geometry, this.reference, [1, 1]) : 0;
 	}
 	dispose() {
 		this.stack?.dispose(), this.material.dispose(), this.geometry.dispose();
 	}
 };
 // eigenfield-three/src/gpu.ts
-function tc(e) {
+function Cc(e) {
 	let t = e.getContext();
 	if (!(t instanceof WebGL2RenderingContext)) throw new j("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
 	if ((t.getExtension("EXT_color_buffer_float") ?? t.getExtension("EXT_color_buffer_half_float")) || t.isContextLost()) return t;
 	throw new j("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
 }
-function nc(e, t) {
+function wc(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function rc(e, { components: t, halves: n }) {
+function Tc(e, { components: t, halves: n }) {
 	return t > 2 ? n ? e.RGBA16F : e.RGBA8 : t > 1 ? n ? e.RG16F : e.RG8 : n ? e.R16F : e.R8;
 }
-function ic(e, [t, n], r, i, a) {
-	return sc(e, e.TEXTURE_2D_ARRAY, () => {
-		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, rc(e, a), t, n, r);
+function Ec(e, [t, n], r, i, a) {
+	return kc(e, e.TEXTURE_2D_ARRAY, () => {
+		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, Tc(e, a), t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function ac(e, t, n, r) {
+function Dc(e, t, n, r) {
 	let { width: i, height: a } = n, o = r > 2 ? e.RGBA : r > 1 ? e.RG : e.RED;
-	cc(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
+	Ac(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
 }
-function oc(e, [t, n], r) {
-	return sc(e, e.TEXTURE_2D, () => {
-		e.texStorage2D(e.TEXTURE_2D, 1, rc(e, r), t, n);
+function Oc(e, [t, n], r) {
+	return kc(e, e.TEXTURE_2D, () => {
+		e.texStorage2D(e.TEXTURE_2D, 1, Tc(e, r), t, n);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D, t, e.NEAREST);
 	});
 }
-function sc(e, t, n) {
+function kc(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return cc(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return Ac(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function cc(e, t, n, r) {
+function Ac(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -3897,7 +4050,7 @@ function cc(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-function lc(e, t, n) {
+function jc(e, t, n) {
 	let r = e.createProgram();
 	for (let [i, a] of [[e.VERTEX_SHADER, t], [e.FRAGMENT_SHADER, n]]) {
 		let t = e.createShader(i);
@@ -3905,7 +4058,7 @@ function lc(e, t, n) {
 	}
 	return e.linkProgram(r), r;
 }
-function uc(e, t, n, r) {
+function Mc(e, t, n, r) {
 	if (!n) {
 		r();
 		return;
@@ -3913,9 +4066,9 @@ function uc(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), cc(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), Ac(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function dc(e, t) {
+function Nc(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -3930,13 +4083,13 @@ function dc(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r && e.isProgram(r) ? r : null), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/charts.ts
-function fc(e, t) {
-	let n = lc(e, ...Fs), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
+function Pc(e, t) {
+	let n = jc(e, ...rc), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
 		let { index: o } = t, s = t.getAttribute("uv"), c = Float32Array.from({ length: 2 * (o?.count ?? 0) }, (e, t) => {
 			let n = o?.getX(t >> 1) ?? 0;
 			return t % 2 ? s.getY(n) : s.getX(n);
 		}), [l, u] = [e.createVertexArray(), e.createBuffer()], d = e.getParameter(e.ARRAY_BUFFER_BINDING);
-		dc(e, () => {
+		Nc(e, () => {
 			e.useProgram(n), e.bindVertexArray(l), e.bindBuffer(e.ARRAY_BUFFER, u), e.bufferData(e.ARRAY_BUFFER, c, e.STREAM_DRAW);
 			let t = e.getAttribLocation(n, "uv");
 			e.enableVertexAttribArray(t), e.vertexAttribPointer(t, 2, e.FLOAT, !1, 0, 0), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, a, 0), e.viewport(0, 0, ...i), e.colorMask(!0, !0, !0, !0), e.drawArrays(e.TRIANGLES, 0, c.length / 2);
@@ -3947,7 +4100,7 @@ function fc(e, t) {
 			let { geometry: r } = t;
 			if (i?.grid.join() !== n.join() || i.geometry !== r) {
 				e.deleteTexture(i?.texture ?? null);
-				let t = oc(e, n, {
+				let t = Oc(e, n, {
 					components: 1,
 					halves: !1
 				});
@@ -3965,7 +4118,7 @@ function fc(e, t) {
 	};
 }
 // eigenfield-three/src/packing.ts
-var pc = [
+var Fc = [
 	"precisions",
 	"covered",
 	"factors",
@@ -3976,14 +4129,14 @@ var pc = [
 	"nodes",
 	"zero"
 ];
-function mc(e, t, n, r) {
+function Ic(e, t, n, r) {
 	let [i, a, o] = [
-		lc(e, js, Ms),
-		lc(e, js, Ns),
-		lc(e, js, Ps)
-	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && fc(e, r), u = !1, d = (t) => Object.fromEntries(pc.map((n) => [n, e.getUniformLocation(t, n)])), [f, p] = [d(i), d(a)], m = (t, n, r, i, a, o, s) => {
+		jc(e, $s, ec),
+		jc(e, $s, tc),
+		jc(e, $s, nc)
+	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && Pc(e, r), u = !1, d = (t) => Object.fromEntries(Fc.map((n) => [n, e.getUniformLocation(t, n)])), [f, p] = [d(i), d(a)], m = (t, n, r, i, a, o, s) => {
 		let { picture: c, rows: l } = n, { size: u, corner: d, unit: f, codes: p } = i;
-		hc(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
+		Lc(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
 			0,
 			1,
 			2,
@@ -3995,31 +4148,31 @@ function mc(e, t, n, r) {
 		h(t, n), e.colorMask(r === 0, r === 1, r === 2, r === 3);
 	}, _ = (r, s, d, _, v, y) => {
 		let { picture: b, row: x, rows: S } = r, [C, w] = v.size, T = C < b.width || w < S ? t.smaller : null, E = Math.max(1, Math.floor((T ? n - 2 : n) * w / S)), ee = u && s === t.codes;
-		uc(e, 2, (T && l?.covered(v.grid)) ?? null, () => uc(e, 0, ee ? null : s, () => {
+		Mc(e, 2, (T && l?.covered(v.grid)) ?? null, () => Mc(e, 0, ee ? null : s, () => {
 			for (let t = 0; t < w; t += E) {
 				let n = Math.min(E, w - t), o = Math.floor(t * S / w), s = Math.ceil((t + n) * S / w);
-				hc(b) ? _c(e, b, x + o, s - o) : gc(e, b, x + o, s - o);
+				Lc(b) ? zc(e, b, x + o, s - o) : Rc(e, b, x + o, s - o);
 				let l = () => {
 					let s = T || y ? p : f;
 					e.useProgram(T || y ? a : i), e.bindVertexArray(c), e.uniform1i(s.precisions, +!!y), e.uniform1i(s.covered, T ? 2 : 0), e.uniform2i(s.nodes, y?.precision.width ?? 0, y?.precision.height ?? 0), e.uniform1f(s.zero, y?.zero ?? 0), T ? (h(T, null), e.colorMask(!0, !0, !0, !0)) : g(d, _), m(s, r, _.channel, v, o, t, n);
 				};
-				ee ? l() : dc(e, l);
+				ee ? l() : Nc(e, l);
 			}
-		})), T && uc(e, 0, T, () => dc(e, () => {
+		})), T && Mc(e, 0, T, () => Nc(e, () => {
 			e.useProgram(o), e.bindVertexArray(c), e.uniform2i(e.getUniformLocation(o, "size"), C, w), g(d, _), e.viewport(0, 0, C, w), e.drawArrays(e.TRIANGLES, 0, 3);
 		}));
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let s = hc(n.picture) ? t.codes : t.picture;
+			let s = Lc(n.picture) ? t.codes : t.picture;
 			if (!s) return;
 			let c = () => i.forEach((e) => _(n, s, r, e, a, o));
-			o ? uc(e, 1, t.precision, () => {
-				gc(e, o.precision, 0, o.precision.height), c();
+			o ? Mc(e, 1, t.precision, () => {
+				Rc(e, o.precision, 0, o.precision.height), c();
 			}) : c();
 		},
 		together(n) {
-			uc(e, 0, t.codes, () => dc(e, () => {
+			Mc(e, 0, t.codes, () => Nc(e, () => {
 				u = !0;
 				try {
 					n();
@@ -4039,17 +4192,17 @@ function mc(e, t, n, r) {
 		}
 	};
 }
-function hc(e) {
+function Lc(e) {
 	return "data" in e;
 }
-function gc(e, t, n, r) {
+function Rc(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function _c(e, { data: t, width: n, stride: r }, i, a) {
+function zc(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
 // eigenfield-three/src/textures.ts
-var vc = class {
+var Bc = class {
 	parts;
 	source;
 	surface;
@@ -4075,21 +4228,21 @@ var vc = class {
 		let { scene: i, info: a, meanSizes: o } = e, s = i.planes.flatMap(({ channels: e, bases: t }) => t.map((t) => ({
 			...t,
 			channels: e,
-			tenBits: ci(t.pictures)
+			tenBits: Ai(t.pictures)
 		})));
 		this.layout = s;
-		let c = zi(i).map(({ channels: e, mean: t }, n) => ({
+		let c = sa(i).map(({ channels: e, mean: t }, n) => ({
 			size: o[n] ?? [1, 1],
 			channels: e,
 			pieces: t.pieces,
-			tenBits: ci([t])
+			tenBits: Ai([t])
 		}));
 		this.needs = {
 			atlas: a.size,
 			means: c,
 			bases: s,
 			rays: a.facesPlane,
-			geometry: yc(n.geometry)
+			geometry: Vc(n.geometry)
 		}, this.means = c.map(() => new p()), this.bases = s.map(() => new p()), this.ready = s.map(({ count: e }) => Array(e).fill(!1)), this.stillVersions = c.map(() => 0);
 	}
 	get hasMeans() {
@@ -4103,7 +4256,7 @@ var vc = class {
 		return Math.min(t, ...e);
 	}
 	get bytes() {
-		return this.plan ? this.plan.bytes - this.needs.geometry + yc(this.surface.geometry) : 0;
+		return this.plan ? this.plan.bytes - this.needs.geometry + Vc(this.surface.geometry) : 0;
 	}
 	get attached() {
 		return this.renderer !== null || this.disposed;
@@ -4133,7 +4286,7 @@ var vc = class {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		let n = tc(e);
+		let n = Cc(e);
 		if (n.isContextLost()) return;
 		let { packer: r, plan: i } = this.makeRoom(n);
 		this.plan = i, this.packer = r, this.onPlan(i), await this.source.fill(this.filling(n, i, t)), t.aborted || this.onComplete();
@@ -4166,12 +4319,12 @@ var vc = class {
 			this.layout[t]
 		];
 		if (!(c instanceof WebGLTexture) || !l || !u) return;
-		let { size: d, grid: f, corner: p, channels: m, tenBits: h } = u, g = ui(i, s && h), _ = {
+		let { size: d, grid: f, corner: p, channels: m, tenBits: h } = u, g = Mi(i, s && h), _ = {
 			size: X(d, o),
 			grid: f,
 			corner: p,
 			unit: g,
-			codes: 255 * li(i)
+			codes: 255 * ji(i)
 		};
 		for (let e = n; e < Math.min(n + i.textures, a); e++) {
 			let t = r.slice((e - n) * i.pieces, (e - n + 1) * i.pieces), a = m * Math.floor(e / 4);
@@ -4183,20 +4336,20 @@ var vc = class {
 		this.version += 1;
 	}
 	putMean(e, t, n, { pieces: r, precision: i }) {
-		let [a, o] = [this.means[n]?.sourceTexture, zi(this.parts.scene)[n]], { size: s, tenBits: c } = this.needs.means[n] ?? {};
+		let [a, o] = [this.means[n]?.sourceTexture, sa(this.parts.scene)[n]], { size: s, tenBits: c } = this.needs.means[n] ?? {};
 		if (!(a instanceof WebGLTexture) || !o || !s) return;
 		this.stillVersions[n] = this.version += 1;
 		let { mean: l, channels: u } = o, d = X(s, t.meanDown), [f] = r;
 		if (f && r.length === 1 && "close" in f.picture && !c && d.join() === s.join()) {
-			ac(e, a, f.picture, u);
+			Dc(e, a, f.picture, u);
 			return;
 		}
 		let p = {
 			size: d,
 			grid: s,
 			corner: [0, 0],
-			unit: ui(l, c === !0),
-			codes: 255 * li(l)
+			unit: Mi(l, c === !0),
+			codes: 255 * ji(l)
 		};
 		this.put(r, a, u, p, (e) => ({
 			layer: Math.floor(e / 4),
@@ -4222,25 +4375,25 @@ var vc = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs;
-		this.needs.geometry = yc(this.surface.geometry);
+		this.needs.geometry = Vc(this.surface.geometry);
 		let r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
-		for (let i = this.options.memory ?? za();; i /= 2) {
-			let a = qa(this.needs, nc(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => ic(e, X(t, o), Ha(n), !1, {
+		for (let i = this.options.memory ?? so();; i /= 2) {
+			let a = go(this.needs, wc(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => Ec(e, X(t, o), uo(n), !1, {
 				components: n,
 				halves: r
 			})), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return ic(e, a ? X(t, s) : [1, 1], a ? Ua(a, n) : 1, u, {
+				return Ec(e, a ? X(t, s) : [1, 1], a ? fo(a, n) : 1, u, {
 					components: Math.max(1, a),
 					halves: l && i
 				});
-			})], f = Xa(this.needs, a, i), [p, m, h] = [
+			})], f = yo(this.needs, a, i), [p, m, h] = [
 				f.picture,
 				f.codes,
 				f.smaller
-			].map((t) => t ? oc(e, t.size, t.format) : null), g = oc(e, Za(r), Ma);
+			].map((t) => t ? Oc(e, t.size, t.format) : null), g = Oc(e, bo(r), eo);
 			if (p && g && (m || !f.codes) && (h || !f.smaller) && !d.includes(null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = d[t] ?? null), {
-				packer: mc(e, {
+				packer: Ic(e, {
 					picture: p,
 					codes: m ?? null,
 					precision: g,
@@ -4259,11 +4412,11 @@ var vc = class {
 		}
 	}
 };
-function yc({ attributes: e, index: t }) {
+function Vc({ attributes: e, index: t }) {
 	return Object.values(e).reduce((e, t) => e + t.array.byteLength, 0) + (t?.array.byteLength ?? 0);
 }
 // eigenfield-three/src/field.ts
-var bc = 1.5, xc = .001, Sc = class extends f {
+var Hc = 1.5, Uc = .001, Wc = class extends f {
 	parts;
 	source;
 	mesh;
@@ -4287,6 +4440,7 @@ var bc = 1.5, xc = .001, Sc = class extends f {
 	textures;
 	weights;
 	group;
+	moved;
 	summed = {
 		parts: [],
 		opacity: null
@@ -4298,7 +4452,7 @@ var bc = 1.5, xc = .001, Sc = class extends f {
 	constructor(e, t, n = {}) {
 		super(), this.parts = e, this.source = t;
 		let { scene: r, info: i } = e, a = r.sheets?.faces ?? null;
-		this.surface = new ec(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = fa(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.textures = new vc(e, t, this.surface, n), this.complete = new Promise((e, t) => {
+		this.surface = new Sc(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = Pa(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip?.group.motion && this.move(e.clip.group, 0), this.textures = new Bc(e, t, this.surface, n), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0), this.listen(), n.renderer && this.textures.attach(n.renderer);
 	}
@@ -4342,20 +4496,20 @@ var bc = 1.5, xc = .001, Sc = class extends f {
 		this.textures.onPlan = (e) => {
 			let { scene: t } = this.parts;
 			this.freeComposers(), this.summed = {
-				parts: Is(t, this.textures, e),
-				opacity: Rs(t, this.textures)
+				parts: ic(t, this.textures, e),
+				opacity: oc(t, this.textures)
 			}, e.limitation && queueMicrotask(() => this.dispatchEvent({ type: "limited" }));
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return bc * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
+		return Hc * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
 	}
 	weightsOf(e) {
 		let { scene: t, info: n, weights: r } = this.parts;
-		return new ko(n, J(t).map(({ count: e }) => e), e, r);
+		return new Zo(n, J(t).map(({ count: e }) => e), e, r);
 	}
 	makePlayer({ timeline: e, ring: t }) {
-		return new Hs(e, t, {
+		return new uc(e, t, {
 			show: (e) => this.showFrame(e),
 			failed: (e) => this.dispatchEvent({
 				type: "error",
@@ -4363,18 +4517,24 @@ var bc = 1.5, xc = .001, Sc = class extends f {
 			})
 		});
 	}
-	showFrame({ group: e, films: t }) {
-		e !== this.group && this.enter(e), this.source instanceof ss && this.source.show(t);
+	showFrame({ number: e, group: t, films: n }) {
+		(t.motion ?? this.group?.motion) && this.move(t, e - t.first), t !== this.group && this.enter(t), this.source instanceof ks && this.source.show(n);
+	}
+	move({ motion: e }, t) {
+		let { geometry: n } = this.surface;
+		if (n !== this.moved) return;
+		let r = n.getAttribute("position");
+		e ? e.place(t, r.array) : r.copyArray(this.parts.clip.mesh.positions), r.needsUpdate = !0, this.surface.setGeometry(n);
 	}
 	enter(e) {
 		let { scene: t } = this.parts, { plan: n } = this.textures;
-		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), Cs(t, e), n && Ls(this.summed.parts, t, this.textures, n);
+		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), Gs(t, e), n && ac(this.summed.parts, t, this.textures, n);
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = Tc(t, n), [i, a] = va(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
+		let r = qc(t, n), [i, a] = Ba(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
 		this.setView(), this.setExposure(o, [i, a]);
-		let u = jo[this.filter];
+		let u = $o[this.filter];
 		l.defines.BICUBIC !== u && (l.defines.BICUBIC = u, l.needsUpdate = !0), l.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
@@ -4383,7 +4543,7 @@ var bc = 1.5, xc = .001, Sc = class extends f {
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
 		if (!s) {
 			let { parts: e, opacity: t } = this.summed;
-			s = new So(i, e, t, o, this.coarser > 1, this.surface, a), this.composers.set(o, s);
+			s = new Wo(i, e, t, o, this.coarser > 1, this.surface, a), this.composers.set(o, s);
 		}
 		s.compose(e, t, n);
 		let { composed: c, finest: l } = this.surface.material.uniforms;
@@ -4394,15 +4554,15 @@ var bc = 1.5, xc = .001, Sc = class extends f {
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.surface.material.uniforms.shown.value, r = n === Mo.eigen ? this.shownEigen : null;
+		let n = this.surface.material.uniforms.shown.value, r = n === es.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			opacity: this.textures.opacityVersion,
 			only: r,
-			count: n === Mo.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === es.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && go(this.info.viewPlane, t),
+			eye: t && Ro(this.info.viewPlane, t),
 			places: t || this.coarser > 1 ? this.surface.version : 0,
 			maps: t && this.weights.maps(this.mixing, this.usable)
 		};
@@ -4410,7 +4570,7 @@ var bc = 1.5, xc = .001, Sc = class extends f {
 	setExposure(e, t) {
 		let { cameras: n, heldOut: r, mixedColours: i, viewPlane: a } = this.info, o = this.exposure ?? (i || this.showsErrors ? e : null), s = o === null ? void 0 : n[o], c = [[s, 1]];
 		if (i && (o === null || r[o])) {
-			let e = s ? va(a, s.centre) : t, { camera: n, weight: r } = this.parts.weights.at(...e, this.mixing);
+			let e = s ? Ba(a, s.centre) : t, { camera: n, weight: r } = this.parts.weights.at(...e, this.mixing);
 			c = [
 				0,
 				1,
@@ -4418,7 +4578,7 @@ var bc = 1.5, xc = .001, Sc = class extends f {
 				3
 			].map((e) => [this.encoded[n[e] ?? 0], r[e] ?? 0]);
 		}
-		let { scale: l, bias: u } = ka(c), { exposureScale: d, exposureBias: f } = this.surface.material.uniforms;
+		let { scale: l, bias: u } = Za(c), { exposureScale: d, exposureBias: f } = this.surface.material.uniforms;
 		d.value.fromArray(l), f.value.fromArray(u);
 	}
 	get showsErrors() {
@@ -4426,9 +4586,9 @@ var bc = 1.5, xc = .001, Sc = class extends f {
 	}
 	setView() {
 		let { uniforms: e } = this.surface.material, t = this.showsErrors, n = this.view === "error" && !t ? "picture" : this.view, r = this.shownEigen;
-		e.shown.value = Mo[n === "eigen" && r >= this.loaded ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
+		e.shown.value = es[n === "eigen" && r >= this.loaded ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
 		let i = t && this.info.cameras[this.camera ?? 0];
-		i && this.photograph && Go(e, i, this.photograph);
+		i && this.photograph && ps(e, i, this.photograph);
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -4441,29 +4601,29 @@ var bc = 1.5, xc = .001, Sc = class extends f {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= xc * Math.max(...r);
+		return Math.abs(i) <= Uc * Math.max(...r);
 	}
 	fail(e) {
-		if (Ec(e)) return;
+		if (Jc(e)) return;
 		let t = de(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
 		this.dispatchEvent({
 			type: "error",
 			error: new j(t.code, r, t.where)
 		});
 	}
-}, Cc = new x(), wc = new A();
-function Tc(e, t) {
-	return wc.setFromMatrixPosition(e.matrixWorld).applyMatrix4(Cc.copy(t.matrixWorld).invert()), [
-		wc.x,
-		wc.y,
-		wc.z
+}, Gc = new x(), Kc = new A();
+function qc(e, t) {
+	return Kc.setFromMatrixPosition(e.matrixWorld).applyMatrix4(Gc.copy(t.matrixWorld).invert()), [
+		Kc.x,
+		Kc.y,
+		Kc.z
 	];
 }
-function Ec(e) {
+function Jc(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var Dc = class {
+var Yc = class {
 	received = 0;
 	chunks = [];
 	waiters = [];
@@ -4506,11 +4666,11 @@ var Dc = class {
 		}
 		return n.buffer;
 	}
-}, Oc = 8, kc = /* @__PURE__ */ new Set([
+}, Xc = 8, Zc = /* @__PURE__ */ new Set([
 	"damaged",
 	"truncated",
 	"network"
-]), Ac = class {
+]), Qc = class {
 	timeline;
 	groups;
 	user;
@@ -4543,13 +4703,13 @@ var Dc = class {
 		return this.decoders.reduce((e, t) => e + t.open, 0);
 	}
 	get reach() {
-		return Math.max(this.newest, this.from) + Oc / 2;
+		return Math.max(this.newest, this.from) + Xc / 2;
 	}
 	isOver(e) {
 		return this.newest >= e && ![...this.slots.keys()].some((t) => t <= e);
 	}
 	seek(e) {
-		let t = ki(this.timeline, this.numberOf(e));
+		let t = Zi(this.timeline, this.numberOf(e));
 		if (this.broken.has(t)) return !1;
 		let n = e - this.numberOf(e) + (this.timeline.groups[t]?.first ?? 0), r = this.slots.has(e) && ![...this.skipped].some((t) => t > e);
 		(this.given === null || this.next <= n || e < this.next && !r) && (this.stop(), this.next = n), this.wanted = this.from = e;
@@ -4591,7 +4751,7 @@ var Dc = class {
 		return e % this.timeline.frames;
 	}
 	get hasRoom() {
-		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = Math.max(this.from, this.wanted) + Oc;
+		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = Math.max(this.from, this.wanted) + Xc;
 		return this.next < Math.min(n, t) && this.decoders.every(({ ready: e }) => e);
 	}
 	async feedAll() {
@@ -4600,20 +4760,20 @@ var Dc = class {
 				this,
 				this.next,
 				this.numberOf(this.next)
-			], r = ki(this.timeline, n);
+			], r = Zi(this.timeline, n);
 			if (this.broken.has(r)) {
 				this.pass(r, t);
 				continue;
 			}
 			this.fed = r;
 			let i = this.given?.index === r ? this.given : await this.groups.open(r), a = n - i.first, o = i.units[a] ?? [];
-			if (a === 0 && await Promise.all(this.decoders.map((e, t) => e.start(o[t]))), e !== this.turn || (this.given = i, this.next = t + 1, this.decoders.forEach((e, n) => e.decode(o[n], t, a === 0)), a === i.frames - 1 && await Promise.all(this.decoders.map((e) => e.flush())), e !== this.turn)) return;
+			if (i.motion?.read(a), a === 0 && await Promise.all(this.decoders.map((e, t) => e.start(o[t]))), e !== this.turn || (this.given = i, this.next = t + 1, this.decoders.forEach((e, n) => e.decode(o[n], t, a === 0)), a === i.frames - 1 && await Promise.all(this.decoders.map((e) => e.flush())), e !== this.turn)) return;
 		}
 	}
 	async receive(e, t, n) {
 		let [{ turn: r }, i] = [this, this.slotOf(t)];
 		if (!i) return;
-		let a = await $o(n, this.rooms[e]?.pop() ?? null);
+		let a = await xs(n, this.rooms[e]?.pop() ?? null);
 		if (r !== this.turn || this.slots.get(t) !== i) return this.reuseOne(e, a);
 		i.films[e] = a, i.films.includes(null) || this.user.ready();
 	}
@@ -4629,7 +4789,7 @@ var Dc = class {
 		return this.slots.set(e, n), n;
 	}
 	fail(e) {
-		if (!(e instanceof j) || !kc.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(e, null);
+		if (!(e instanceof j) || !Zc.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(e, null);
 		this.halt();
 		for (let [e, t] of this.slots) t.films.includes(null) && this.forget(e, t);
 		this.broken.add(this.fed), this.user.failed(e, this.fed), this.feed();
@@ -4658,74 +4818,75 @@ var Dc = class {
 	reuseOne(e, { room: t }) {
 		t && this.rooms[e]?.push(t);
 	}
-}, jc = {
+}, $c = {
 	mimeType: "video/AV1",
 	bits: 10
 };
-async function Mc(e, t, n) {
-	let r = new Ss(e, t, n), i = await r.open(0);
-	return Cs(e, i), {
+async function el(e, t, n, r) {
+	let i = new Ws(e, t, n, r), a = await i.open(0);
+	return a.motion?.read(0), Gs(e, a), {
 		timeline: t,
-		group: i,
-		films: await Promise.all(t.films.map((e, t) => Nc(i.units[0][t], e))),
-		ring: (e) => new Ac(t, r, e)
+		group: a,
+		films: await Promise.all(t.films.map((e, t) => tl(a.units[0][t], e))),
+		mesh: n,
+		ring: (e) => new Qc(t, i, e)
 	};
 }
-async function Nc(e, { size: t, where: n }) {
+async function tl(e, { size: t, where: n }) {
 	let r = {
 		view: -1,
-		codec: jc,
+		codec: $c,
 		textures: 1,
 		pieces: 1,
 		where: n
-	}, i = await Dr(ve(e.slice().buffer, n), r, t), a = i[0].picture;
+	}, i = await Yr(ve(e.slice().buffer, n), r, t), a = i[0].picture;
 	if ("data" in a) return a;
 	let o = new OffscreenCanvas(...t).getContext("2d");
-	return o.drawImage(a, 0, 0), ns(i), es(o.getImageData(0, 0, ...t).data, 4 * t[0], 4, t);
+	return o.drawImage(a, 0, 0), ws(i), Ss(o.getImageData(0, 0, ...t).data, 4 * t[0], 4, t);
 }
 // eigenfield-three/src/means.ts
-async function Pc(e, t) {
-	let { mean: n, meanSize: r } = e, i = e.precision && await Fc(await t(e.precision.view), e.precision);
+async function nl(e, t) {
+	let { mean: n, meanSize: r } = e, i = e.precision && await rl(await t(e.precision.view), e.precision);
 	return {
 		pieces: await n.codec.decode(await t(n.view), n, r),
 		precision: i
 	};
 }
-async function Fc(e, t) {
-	let { type: n } = mr(e) ?? {}, { mimeType: r } = t.codec;
+async function rl(e, t) {
+	let { type: n } = Ir(e) ?? {}, { mimeType: r } = t.codec;
 	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
 	if (!i) throw M(t.where, "no picture");
 	return i.picture;
 }
-function Ic({ pieces: e, precision: t }) {
-	ns(e), t?.close();
+function il({ pieces: e, precision: t }) {
+	ws(e), t?.close();
 }
 // eigenfield-three/src/packed.ts
-var Lc = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Rc = 4;
-async function zc(e, t) {
-	let n = new W(e, ""), r = n.key("extensions").key(Se), i = r.key("packed");
+var al = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", ol = 4;
+async function sl(e, t) {
+	let n = new W(e, ""), r = n.key("extensions").key(xe), i = r.key("packed");
 	if (!i.exists) return e;
-	Bi(r);
-	let a = Kr(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < Rc) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, Rc)).getUint32(0, !0);
-	if (Rc + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new W(_s(await Vc(await t(o.offset + Rc, s), i.where), i.where), i.where).object(), u = Bc(new W(c, `${i.where}/lengths`), o, Rc + s), { packed: d, ...f } = r.object();
+	ca(r);
+	let a = mi(n), o = a[i.integer(a.length - 1, a.length - 1)];
+	if (!o || o.length < ol) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, ol)).getUint32(0, !0);
+	if (ol + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new W(zs(await ll(await t(o.offset + ol, s), i.where), i.where), i.where).object(), u = cl(new W(c, `${i.where}/lengths`), o, ol + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
-		bufferViews: [...n.key("bufferViews").items(F).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
+		bufferViews: [...n.key("bufferViews").items(Ce).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
 		extensions: {
 			...n.key("extensions").object(),
-			[Se]: {
+			[xe]: {
 				...f,
 				...l
 			}
 		}
 	};
 }
-function Bc(e, t, n) {
-	let r = n, i = e.items(F).map((e) => {
+function cl(e, t, n) {
+	let r = n, i = e.items(Ce).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
 			buffer: 0,
@@ -4736,8 +4897,8 @@ function Bc(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function Vc(e, t) {
-	let n = new TextEncoder().encode(Lc), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function ll(e, t) {
+	let n = new TextEncoder().encode(al), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -4745,7 +4906,7 @@ async function Vc(e, t) {
 		~r,
 		~i
 	]), a.set(n, 5), a.set(new Uint8Array(e), 5 + n.length);
-	let o = await xe(a, "deflate-raw", n.length + Ce, t);
+	let o = await be(a, "deflate-raw", n.length + Se, t);
 	try {
 		return new TextDecoder("utf-8", {
 			fatal: !0,
@@ -4756,8 +4917,8 @@ async function Vc(e, t) {
 	}
 }
 // eigenfield-three/src/proxy.ts
-var Hc = 65535;
-function Uc(e, t) {
+var ul = 65535;
+function dl(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
 	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
 	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
@@ -4767,23 +4928,26 @@ function Uc(e, t) {
 	}
 	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
 }
-async function Wc({ view: n, codec: r, where: i }, a) {
-	let { positions: o, uv: s, indices: c } = r.decode(new Uint8Array(await a(n)), i);
-	if (!c.length) throw M(i, "a mesh without faces");
-	let l = new t();
-	l.setAttribute("position", new e(o, 3)), l.setAttribute("uv", new e(s, 2));
-	let u = o.length / 3 <= Hc;
-	return l.setIndex(new e(u ? Uint16Array.from(c) : c, 1)), l;
+async function fl({ view: e, codec: t, where: n }, r) {
+	let i = t.decode(new Uint8Array(await r(e)), n);
+	if (!i.indices.length) throw M(n, "a mesh without faces");
+	return i;
 }
-function Gc(e) {
+function pl({ positions: n, uv: r, indices: i }) {
+	let a = new t();
+	a.setAttribute("position", new e(n.slice(), 3)), a.setAttribute("uv", new e(r, 2));
+	let o = n.length / 3 <= ul;
+	return a.setIndex(new e(o ? Uint16Array.from(i) : i, 1)), a;
+}
+function ml(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/still-textures.ts
-var Kc = 3;
-function qc(e) {
+var hl = 3;
+function gl(e) {
 	return J(e).flatMap((e, t) => {
 		let n = 0;
 		return e.pictures.map((r) => {
@@ -4797,27 +4961,27 @@ function qc(e) {
 		});
 	}).sort((e, t) => e.first - t.first || e.number - t.number);
 }
-function Jc(e, t, n) {
-	let r = qc(e), i = n, a = ({ basis: e, picture: n }) => {
+function _l(e, t, n) {
+	let r = gl(e), i = n, a = ({ basis: e, picture: n }) => {
 		let r = t(n.view).then((t) => n.codec.decode(t, n, e.size));
 		return r.catch(() => void 0), r;
 	};
 	return {
 		async fill(n) {
-			let { plan: o, signal: s } = n, c = i ?? await Promise.all(zi(e).map((e) => Pc(e, t)));
+			let { plan: o, signal: s } = n, c = i ?? await Promise.all(sa(e).map((e) => nl(e, t)));
 			i = null, c.forEach((e, t) => {
-				n.putMean(t, e), Ic(e);
+				n.putMean(t, e), il(e);
 			});
 			let l = r.filter(({ first: e }) => e < o.usable), u = [], d = 0;
 			try {
 				for (let { number: e, first: t, picture: r } of l) {
 					if (s.aborted) return;
-					for (let e of l.slice(d, d + Kc - u.length)) u.push(a(e)), d += 1;
+					for (let e of l.slice(d, d + hl - u.length)) u.push(a(e)), d += 1;
 					let i = await u[0] ?? [];
-					u.shift(), n.putTextures(e, t, i, r), ns(i), n.announce();
+					u.shift(), n.putTextures(e, t, i, r), ws(i), n.announce();
 				}
 			} finally {
-				for (let e of u) e.then(ns).catch(() => void 0);
+				for (let e of u) e.then(ws).catch(() => void 0);
 			}
 			n.end();
 		},
@@ -4825,41 +4989,41 @@ function Jc(e, t, n) {
 			let r = 0;
 			for (let { channels: i, bases: a } of e.planes) {
 				let o = e.colours.slice(r, r += i), s = a.find(({ count: e }) => e > n);
-				if (s) return as(s, n, o, t);
+				if (s) return Ds(s, n, o, t);
 			}
 			return Promise.resolve(1);
 		},
 		dispose() {
-			i?.forEach(Ic), i = null;
+			i?.forEach(il), i = null;
 		}
 	};
 }
 // eigenfield-three/src/grid.ts
-function Yc(e) {
+function vl(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = Xc(e, n, r) ?? (n === r ? null : Xc(e, r, n));
+		let r = t / n, i = yl(e, n, r) ?? (n === r ? null : yl(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function Xc(e, t, n) {
-	let [r, i] = [Qc(e, 0), Qc(e, 1)];
-	if (t === 1 && $c(i) > 0 || n === 1 && $c(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => el(i, e) - el(i, t));
+function yl(e, t, n) {
+	let [r, i] = [xl(e, 0), xl(e, 1)];
+	if (t === 1 && Sl(i) > 0 || n === 1 && Sl(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => Cl(i, e) - Cl(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => el(r, e) - el(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Cl(r, e) - Cl(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return Zc(n, t, (e, t) => el(r, o(t, e))) && Zc(t, n, (e, t) => el(i, o(e, t))) ? {
+	return bl(n, t, (e, t) => Cl(r, o(t, e))) && bl(t, n, (e, t) => Cl(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function Zc(e, t, n) {
+function bl(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -4869,33 +5033,33 @@ function Zc(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function Qc(e, t) {
+function xl(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function $c(e) {
+function Sl(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var el = (e, t) => e[t] ?? 0, tl = 1e-6, nl = 32, rl = class {
+var Cl = (e, t) => e[t] ?? 0, wl = 1e-6, Tl = 32, El = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = Yc(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = vl(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(il(e), this.isLine ? 0 : il(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(Dl(e), this.isLine ? 0 : Dl(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => ml(e, t, this.places) : e === "bilinear" && this.grid ? gl(this.places, this.grid) : sl(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => Ll(e, t, this.places) : e === "bilinear" && this.grid ? zl(this.places, this.grid) : Al(this.places, this.triangles);
 	}
 };
-function il(e) {
+function Dl(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function al(e) {
+function Ol(e) {
 	let t = {
 		camera: [
 			0,
@@ -4915,7 +5079,7 @@ function al(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function ol(e, t, n, r, i, a) {
+function kl(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -4923,49 +5087,49 @@ function ol(e, t, n, r, i, a) {
 		m
 	];
 }
-function sl(e, t) {
+function Al(e, t) {
 	if (!t.length) {
-		let t = pl(e, fl(e));
-		return (n, r) => dl(n, r, e, t);
+		let t = Il(e, Fl(e));
+		return (n, r) => Pl(n, r, e, t);
 	}
-	let n = ll(e, t, 3), r = ul(t);
+	let n = Ml(e, t, 3), r = Nl(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * nl + $(i)] ?? []) {
+		for (let r of n[$(a) * Tl + $(i)] ?? []) {
 			let [n, l, u] = [
-				cl(t, r, 0),
-				cl(t, r, 1),
-				cl(t, r, 2)
-			], d = ol(i, a, e, n, l, u), f = Math.min(...d);
+				jl(t, r, 0),
+				jl(t, r, 1),
+				jl(t, r, 2)
+			], d = kl(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? dl(i, a, e, r) : al(c.map((e, n) => [cl(t, o, n), e]));
+		return s < -1e-9 ? Pl(i, a, e, r) : Ol(c.map((e, n) => [jl(t, o, n), e]));
 	};
 }
-var cl = (e, t, n) => e[3 * t + n] ?? 0;
+var jl = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * nl)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * Tl)));
 }
-function ll(e, t, n) {
+function Ml(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * nl + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * Tl + t]?.push(i);
 	}
 	return r;
 }
-function ul(e) {
+function Nl(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [cl(e, n, r), cl(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [jl(e, n, r), jl(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -4974,7 +5138,7 @@ function ul(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function dl(e, t, n, r) {
+function Pl(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -4989,12 +5153,12 @@ function dl(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return al([[o, 1 - c], [s, c]]);
+	return Ol([[o, 1 - c], [s, c]]);
 }
-function fl(e) {
+function Fl(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function pl(e, t) {
+function Il(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -5015,7 +5179,7 @@ function pl(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function ml(e, t, n) {
+function Ll(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -5029,12 +5193,12 @@ function ml(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || hl(n, r, i, a) <= tl) return dl(e, t, n, pl(n, [
+	if (a < 0 || Rl(n, r, i, a) <= wl) return Pl(e, t, n, Il(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = ol(e, t, n, r, i, a);
+	let [l, u, d] = kl(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -5050,15 +5214,15 @@ function ml(e, t, n) {
 		]
 	};
 }
-function hl(e, t, n, r) {
+function Rl(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function gl(e, t) {
+function zl(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = pl(e, fl(e));
-		return (n, r) => dl(n, r, e, t);
+		let t = Il(e, Fl(e));
+		return (n, r) => Pl(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -5067,7 +5231,7 @@ function gl(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = ll(e, o.flat(), 4), c = [];
+	let s = Ml(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -5075,12 +5239,12 @@ function gl(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * nl + $(t)] ?? []) {
-			let s = o[a], c = s ? _l(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * Tl + $(t)] ?? []) {
+			let s = o[a], c = s ? Bl(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return dl(t, n, e, l);
-		let [a, c] = vl(t, n, e, r);
+		if (!r || i < -1e-9) return Pl(t, n, e, l);
+		let [a, c] = Vl(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -5092,7 +5256,7 @@ function gl(e, t) {
 		};
 	};
 }
-function _l(e, t, n, r) {
+function Bl(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -5100,7 +5264,7 @@ function _l(e, t, n, r) {
 	}
 	return i;
 }
-function vl(e, t, n, r) {
+function Vl(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -5118,29 +5282,29 @@ function vl(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = yl(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [yl(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Hl(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [Hl(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function yl(e) {
+function Hl(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var bl = class {
+var Ul = class {
 	parser;
 	options;
-	name = Se;
+	name = xe;
 	scene = null;
 	ours;
 	constructor(e, t = {}) {
-		this.parser = e, this.options = t, this.ours = Ii(e.json);
+		this.parser = e, this.options = t, this.ours = ia(e.json);
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
-		this.options.renderer && tc(this.options.renderer);
+		this.options.renderer && Cc(this.options.renderer);
 		let { json: e } = this.parser;
-		me(e), Object.assign(e, await zc(e, (e, t) => this.read(e, t)));
-		let t = Li(e);
-		(!t.timeline || this.options.stream?.readGroups) && (this.scene = t, this.scene.shown || xl(e));
+		me(e), Object.assign(e, await sl(e, (e, t) => this.read(e, t)));
+		let t = aa(e);
+		(!t.timeline || this.options.stream?.readGroups) && (this.scene = t, this.scene.shown || Wl(e));
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
@@ -5161,38 +5325,38 @@ var bl = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = Sl(e, this.parser), [r] = n;
+		let n = Gl(e, this.parser), [r] = n;
 		if (!r) throw M("/meshes/0", "no node shows it");
-		t.shown && Uc(r.geometry, t.shown);
+		t.shown && dl(r.geometry, t.shown);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
 			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ue(`/bufferViews/${e}`);
 			return n;
-		}, a = t.timeline && await this.openClip(t, t.timeline);
-		if (t.mesh) {
-			let e = await Wc(t.mesh, i);
+		}, a = t.mesh && await fl(t.mesh, i), o = t.timeline && a && await this.openClip(t, t.timeline, a);
+		if (a) {
+			let e = pl(a);
 			r.geometry.dispose();
 			for (let t of n) t.geometry = e;
 		}
-		t.sheets && vi(t.sheets, r.geometry);
-		let [o, s, c, l] = await Promise.all([
-			Promise.all(a ? [] : zi(t).map((e) => Pc(e, i))),
-			ea(t, i),
-			a ? a.group.omega : ca(t, i),
-			ma(t, i)
-		]), u = s.filter((e, n) => !t.heldOut[n]), d = new rl(Float64Array.from(u.flatMap((e) => va(t, e.centre))), l, t.extent[1] === 0), f = a ? t.planes.map(({ meanSize: e }) => e ?? [1, 1]) : o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = {
+		t.sheets && Bi(t.sheets, r.geometry);
+		let [s, c, l, u] = await Promise.all([
+			Promise.all(o ? [] : sa(t).map((e) => nl(e, i))),
+			Sa(t, i),
+			o ? o.group.omega : Aa(t, i),
+			Ia(t, i)
+		]), d = c.filter((e, n) => !t.heldOut[n]), f = new El(Float64Array.from(d.flatMap((e) => Ba(t, e.centre))), u, t.extent[1] === 0), p = o ? t.planes.map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
 			scene: t,
-			info: ga(t, s, f, d.grid, this.fileBytes(), Gc(r.geometry)),
+			info: Ra(t, c, p, f.grid, this.fileBytes(), ml(r.geometry)),
 			meshes: n,
-			meanSizes: f,
-			omega: c,
-			weights: d,
-			clip: a
-		}, m = a ? new ss(t, a.films) : Jc(t, i, o);
-		e.userData.eigenfield = new Sc(p, m, this.options);
+			meanSizes: p,
+			omega: l,
+			weights: f,
+			clip: o
+		}, h = o ? new ks(t, o.films) : _l(t, i, s);
+		e.userData.eigenfield = new Wc(m, h, this.options);
 	}
-	openClip(e, t) {
-		return Mc(e, t, (...e) => this.options.stream.readGroups(...e));
+	openClip(e, t, n) {
+		return el(e, t, n, (...e) => this.options.stream.readGroups(...e));
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -5200,50 +5364,50 @@ var bl = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function xl(e) {
+function Wl(e) {
 	let [t] = e.nodes;
 	t && (t.mesh = 0), e.meshes = [{ primitives: [{
 		attributes: {},
 		material: 0
 	}] }], e.materials = [{ doubleSided: !0 }];
 }
-function Sl(e, t) {
+function Gl(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		Cl(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		Kl(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function Cl(e) {
+function Kl(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function wl(e, t = {}) {
+async function ql(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new Dc(), i = new AbortController(), a = () => {
+	let r = new Yc(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = Dl(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = Xl(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
-		let e = await ms(r);
-		if (!Ii(e.json)) return {
-			gltf: await El(r, e, o),
+		let e = await Is(r);
+		if (!ia(e.json)) return {
+			gltf: await Yl(r, e, o),
 			field: null
 		};
-		let i = await Tl(r, e, t);
+		let i = await Jl(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
 			gltf: i,
-			field: a instanceof Sc ? a : null
+			field: a instanceof Wc ? a : null
 		};
 	} catch (e) {
 		throw i.abort(), n?.throwIfAborted(), de(e);
 	}
 }
-async function Tl(e, t, n) {
+async function Jl(e, t, n) {
 	let r = new ce(), i = (t) => async (n, r) => {
 		let i = await t + n;
 		return e.read(i, i + r);
@@ -5254,12 +5418,12 @@ async function Tl(e, t, n) {
 		read: i(a),
 		readGroups: (...e) => i(t.groups())(...e)
 	};
-	return r.register((e) => new bl(e, {
+	return r.register((e) => new Ul(e, {
 		...n,
 		stream: o
 	})), r.parseAsync(t.text, "");
 }
-async function El(e, t, n) {
+async function Yl(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -5271,25 +5435,25 @@ async function El(e, t, n) {
 		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function Dl(e, t, n, r) {
+async function Xl(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? Ol(e) : await kl(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? Zl(e) : await Ql(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : Al(t.received, e);
+			throw n.aborted ? e : $l(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function Ol(e) {
+function Zl(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function kl(e, t) {
+async function Ql(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -5300,7 +5464,7 @@ async function kl(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function Al(e, t) {
+function $l(e, t) {
 	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { Sc as EigenField, bl as EigenfieldPlugin, Hs as Player, qs as SHEETS, j as SceneError, za as defaultMemory, wl as loadEigenfield, xa as novelCamera, Ta as placeCamera, pe as refuseAddresses };
+export { Wc as EigenField, Ul as EigenfieldPlugin, uc as Player, hc as SHEETS, j as SceneError, so as defaultMemory, ql as loadEigenfield, Ua as novelCamera, qa as placeCamera, pe as refuseAddresses };
