@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
-from eigenfield.core.errors import OptionError, ProxyError
+from eigenfield.core.errors import EigenfieldError, OptionError, ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.encoding import EncodeOptions, encode_footage
 from eigenfield.gltf import load_clip, parts, save, validate
@@ -174,6 +174,14 @@ def test_meshes_that_cannot_be_are_named_by_their_frame(plate):
         with pytest.raises(ProxyError) as caught:
             encode_footage(two, [meshes[0], replace(meshes[1], vertices=vertices)], OPTIONS)
         assert caught.value.code == code and "frame 1" in str(caught.value)
+
+
+@pytest.mark.parametrize("wrong", [5, [1, 2], "meshes"])
+def test_what_is_no_mesh_is_named(plate, wrong):
+    meshes, footage = plate
+    with pytest.raises(EigenfieldError) as caught:
+        encode_footage(footage, [*meshes[:-1], None] if wrong == "meshes" else wrong)
+    assert caught.value.code == "proxy" and "give a mesh" in str(caught.value)
 
 
 @pytest.mark.parametrize("given", [{"triangles": 100}, {"fit": "none"}])

@@ -111,8 +111,7 @@ Examples:
     "--proxy",
     type=PATH,
     metavar="MESH",
-    help="Your own mesh, in the cameras' world: .ply, .obj, .glb, .gltf, .stl or .off. Of a clip also mesh_%04d.ply: "
-    "one for each frame, all with the same triangles.",
+    help="A .ply, .obj, .glb, .gltf, .stl or .off file in the cameras' world; of a clip m_%04d.ply.",
 )
 @click.option(
     "--output",

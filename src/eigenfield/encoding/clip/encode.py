@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.arguments import kind_in_words
 from eigenfield.core.clip import Clip
 from eigenfield.core.errors import OptionError, one_line
 from eigenfield.core.mesh import Mesh
@@ -157,6 +158,11 @@ def _checked_proxy(footage: Footage, proxy: GivenProxy | None, asked: EncodeOpti
     if footage.cameras is None:
         remedy = "find them with calibrate --clip, and give the result as --calibration"
         raise OptionError("clip-cameras", "the cameras of this footage are not known", remedy=remedy)
+    several: list[Any] = [] if isinstance(proxy, str) or not isinstance(proxy, Sequence) else list(proxy)
+    for one in several or [proxy]:
+        if not isinstance(one, str | os.PathLike | Mesh) and (several or not isinstance(one, Proxy | Sequence)):
+            remedy = "give a mesh, its file, or one of them for each frame"
+            raise OptionError("proxy", f"{kind_in_words(one)} is no proxy", remedy=remedy)
     if is_sequence(proxy):
         given = [name for name, is_given in (("triangles", asked.triangles is not None), ("fit", asked.fit == "none"))
                  if is_given]  # fmt: skip
