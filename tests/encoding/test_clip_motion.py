@@ -176,6 +176,15 @@ def test_meshes_that_cannot_be_are_named_by_their_frame(plate):
         assert caught.value.code == code and "frame 1" in str(caught.value)
 
 
+def test_more_motion_than_a_file_may_have_is_refused_before_any_work(plate, monkeypatch):
+    meshes, footage = plate
+    monkeypatch.setattr("eigenfield.coding.limits.MAX_MOTION", 64 * FRAMES - 1)
+    with pytest.raises(ProxyError) as caught:
+        encode_footage(footage, meshes, OPTIONS, group="6")
+    assert caught.value.code == "proxy-motion" and "64 vertices move in a group of 6 frames" in str(caught.value)
+    assert "group" in caught.value.remedy
+
+
 @pytest.mark.parametrize("wrong", [5, [1, 2], "meshes"])
 def test_what_is_no_mesh_is_named(plate, wrong):
     meshes, footage = plate

@@ -86,6 +86,8 @@ def encode_clip(
     motion = None if moving is None else moving.digest
     identity = stage_key([_footage_digest(footage), asked, _plan_digest(plan), motion], SCENE_ROOMS)
     spans = even_pieces(len(footage), -(-len(footage) // length))
+    if moving is not None:
+        moving.check_groups(spans)
     groups = Groups(footage, plan, identity, tuple(spans), work, moving)
     begin_step(progress, "fit")
     with Stages(None if work is None else work / "clip") as stages, open_clip_plan(plan, work, moving) as clip:

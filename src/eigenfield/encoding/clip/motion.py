@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.coding import limits
 from eigenfield.coding.codecs import encoder
 from eigenfield.coding.mesh.coder import decode_placed, vertex_origins
 from eigenfield.coding.mesh.motion_kernels import MOTION_MAX_STEPS
@@ -53,6 +55,19 @@ class MovingMesh:
         vertices = self.mesh.vertices.copy()
         vertices[moving] = self.lattice.points(self.frames[number, moving].astype(np.int64))
         return replace(self.mesh, vertices=vertices)
+
+    def check_groups(self, spans: Sequence[tuple[int, int]]) -> None:
+        """ProxyError `proxy-motion`: more vertices move in a group than a file may have.
+
+        Args:
+            spans: The first frame of each group, and the one after its last.
+        """
+        for first, last in spans:
+            moving = int(self.moves(range(first, last)).sum())
+            if moving * (last - first) > limits.MAX_MOTION:
+                message = f"{moving} vertices move in a group of {last - first} frames: too much for a file"
+                remedy = "say a shorter --group, or give meshes with fewer vertices"
+                raise ProxyError("proxy-motion", message, remedy=remedy)
 
     def payload(self, numbers: range) -> Payload | None:
         """The motion of a group as a file has it; None: nothing moves."""
