@@ -42,17 +42,17 @@ from eigenfield.demo.surface import CLIP_FINISHES, Charts, Material, light_mater
 from eigenfield.runtime.parallel import parallel_map
 
 CULL_TIMES = 24  # at which it is looked whether a face is seen
-SHEET_CELLS = 24  # on each side
+SHEET_CELLS = 14  # on each side
 AROUND_ATLAS_SHARE = 0.75  # side of the atlas of what the balls show, over that of the surface
 
 
 def moving_scene() -> DemoGeometry:
-    """All that cameras see, at rest."""
+    """All that cameras see, at rest. What moves has few triangles: each vertex takes bytes in each frame."""
     balls = [
-        *(ball_part("orange", ORANGE_SPHERE, 20, 48, np.pi / 2, behind=behind) for behind in (False, True)),
-        *(ball_part("marble", MARBLE_SPHERE, 16, 40, np.pi / 2, behind=behind) for behind in (False, True)),
+        *(ball_part("orange", ORANGE_SPHERE, 12, 32, np.pi / 2, behind=behind) for behind in (False, True)),
+        *(ball_part("marble", MARBLE_SPHERE, 10, 26, np.pi / 2, behind=behind) for behind in (False, True)),
         ball_part("chrome", CHROME_SPHERE, 26, 64, FRONT_POLAR_RADIANS),
-        ball_part("glass", GLASS_SPHERE, 22, 56, FRONT_POLAR_RADIANS),
+        ball_part("glass", GLASS_SPHERE, 13, 36, FRONT_POLAR_RADIANS),
     ]
     parts = [*background_parts(), *jar_parts(), *block_parts(VISIBLE_BLOCK_SIDES), _sheet_part(), *balls]
     return join_parts([part for part in map(_cull, parts) if len(part.faces)])
