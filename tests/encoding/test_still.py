@@ -112,6 +112,23 @@ def test_the_surface_is_the_wall_where_a_square_passes(passing, tmp_path):
     np.testing.assert_allclose(depths(made.proxy.mesh, camera), WALL, rtol=0.05)
 
 
+@pytest.mark.parametrize("known", [True, False])
+def test_a_middle_frame_that_is_missing_and_cameras_that_are_not_known(passing, tmp_path, known):
+    folder = tmp_path / "footage"
+    shutil.copytree(passing, folder)
+    (folder / "cam_1_1" / f"{FRAMES // 2:06d}.png").unlink()
+    if not known:
+        (folder / "transforms.json").unlink()
+    footage, whole = open_footage(folder), open_footage(passing)
+    assert footage.held[4, FRAMES // 2] and not footage.instant(FRAMES // 2).photograph(4).mask.any()
+    still, better = (still_capture(one, Stages(tmp_path)) for one in (footage, whole))
+    assert (still.light_field is not None) == known and still.names == whole.names
+    seen = still.photograph(4)
+    counts = np.ones((SIDE, SIDE), bool) if seen.mask is None else seen.mask > 0.5
+    assert counts.mean() > 0.95
+    assert np.abs(seen.pixels - better.photograph(4).pixels)[counts].mean() < 1 / 255
+
+
 def test_a_clip_without_a_mesh_goes_on_where_it_was_stopped(passing, tmp_path):
     class StoppedError(Exception):
         pass

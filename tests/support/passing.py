@@ -18,7 +18,8 @@ WALL, SQUARE = BASELINE * SIDE / 1.0, BASELINE * SIDE / 3.5  # depths
 
 
 def write_passing(folder: Path, cameras: int = GRID**2, noise: float = 1.0) -> Path:
-    """FOLDER/cam_R_C/NNNNNN.png and transforms.json: no pixel sees the square in more than 2 of 7 frames."""
+    """FOLDER/cam_R_C/NNNNNN.png and transforms.json: no pixel sees the square, or what is just beside it, in more than 2
+    of 7 frames."""
     random = np.random.default_rng(3)
     rows, columns = (index.ravel() - GRID // 2 for index in np.mgrid[:GRID, :GRID])
     matrices = np.zeros((GRID**2, 3, 4))
@@ -28,7 +29,7 @@ def write_passing(folder: Path, cameras: int = GRID**2, noise: float = 1.0) -> P
     entries = []
     for frame in range(FRAMES):
         middle = SIDE / 2 + 16 * (frame - FRAMES // 2)
-        square = lambda x, y, middle=middle: (abs(x - middle) < 13) & (abs(y - SIDE / 2) < 18)  # noqa: E731
+        square = lambda x, y, middle=middle: (abs(x - middle) < 11) & (abs(y - SIDE / 2) < 18)  # noqa: E731
         drawn = photograph([(3.5, 0.0, 0.0, paint(5, detail=2.0), square), wall], matrices, SIDE)
         for row, column, picture in zip(rows[:cameras], columns[:cameras], drawn, strict=False):
             K = np.array([[SIDE, 0, SIDE / 2], [0, SIDE, SIDE / 2], [0, 0, 1.0]])

@@ -112,13 +112,16 @@ def still_capture(footage: Footage, stages: Stages, progress: Progress | None = 
     cameras = range(len(instant))
 
     def build(folder: Path) -> None:
-        begin_step(progress, "still")
+        begin_step(progress, "still photographs")
         frames = [footage.photographs(number) for number in chosen]
 
         def write(camera: int) -> None:
-            seen = [one.photograph(camera) for one in frames]
-            codes = np.stack([to_codes(one.pixels) for one in seen])
-            made = still_photograph(codes, [one.mask for one in seen], chosen.index(middle))
+            codes, masks = [], []
+            for one in frames:
+                photograph = one.photograph(camera)
+                codes.append(to_codes(photograph.pixels))
+                masks.append(photograph.mask)
+            made = still_photograph(np.stack(codes), masks, chosen.index(middle))
             pixels = made.pixels if made.mask is None else np.dstack([made.pixels, made.mask])
             (folder / PICTURE_FILE.format(camera)).write_bytes(png_bytes(pixels))
 
@@ -149,14 +152,13 @@ def still_photograph(codes: NDArray[np.uint8], masks: Sequence[NDArray[np.float3
 
     def same(number: int) -> NDArray[np.bool_]:
         away = cv2.absdiff(smooth[number], usual).max(axis=2) > AWAY_CODES
-        near = cv2.dilate(away.astype(np.uint8), around) == 0
-        mask = masks[number]
-        return near if mask is None else near & (mask > 0.5)
+        return cv2.dilate(away.astype(np.uint8), around) == 0
 
-    alike = np.stack([same(number) for number in range(len(codes))])
-    alike &= 2 * alike.sum(axis=0) > len(codes)
+    seen = np.stack([np.ones(codes.shape[1:3], np.bool_) if mask is None else mask > 0.5 for mask in masks])
+    alike = seen & np.stack([same(number) for number in range(len(codes))])
+    alike &= 2 * alike.sum(axis=0) > seen.sum(axis=0)
     scale = np.float32(255)
-    frames = (Photograph(one / scale, seen.astype(np.float32)) for one, seen in zip(codes, alike, strict=True))
+    frames = (Photograph(one / scale, counts.astype(np.float32)) for one, counts in zip(codes, alike, strict=True))
     rest = camera_at_rest(frames, len(codes))
     pixels = rest.shown(Photograph(codes[middle] / scale, None)).pixels
     mask = masks[middle]
