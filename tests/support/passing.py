@@ -18,7 +18,7 @@ WALL, SQUARE = BASELINE * SIDE / 1.0, BASELINE * SIDE / 3.5  # depths
 
 
 def write_passing(folder: Path, cameras: int = GRID**2, noise: float = 1.0) -> Path:
-    """FOLDER/cam_R_C/NNNNNN.png and transforms.json: no pixel sees the square, or what is just beside it, in more than 2
+    """FOLDER/cam_R_C/NNNNNN.png and transforms.json. No pixel sees the square, or what is beside it, in more than 2
     of 7 frames."""
     random = np.random.default_rng(3)
     rows, columns = (index.ravel() - GRID // 2 for index in np.mgrid[:GRID, :GRID])
