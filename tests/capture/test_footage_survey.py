@@ -57,7 +57,7 @@ def test_two_cameras_and_one_frame(tmp_path, run):
     calibration(tmp_path / CALIBRATION_FILE, {c: [(f"cam_{c}.png", None)] for c in range(2)}, w=SIDE, h=SIDE)
     code, out, err = run("inspect", tmp_path, "--clip", "0:1")
     assert code == 0 and "one frame shows no motion" in out and "too few" not in out, out + err
-    assert "would run, with a mesh" in out and "eigenfield proxy" not in out  # which wants three
+    assert "would run, with a mesh" in out  # a surface wants three
     assert f"eigenfield encode {tmp_path} --clip 0:1 --proxy mesh.glb -o clip.glb" in out
 
 
@@ -88,11 +88,11 @@ def test_inspect(tmp_path, run, words):
     late = [camera["offset"] for camera in report["footage"]["cameras"]]
     assert late == [0, 3 if "--offset" in words else 4, 0] and report["bytes"] > 0 and report["views"] == 3
     assert all(" --clip" in command for command in report["next"])
-    assert [command.split()[1] for command in report["next"]] == ["proxy", "encode"]
-    assert report["next"][1].endswith("--proxy mesh.glb -o clip.glb")
+    said = "--clip 0:40 --offset cam_1=1" if "--offset" in words else "--clip :"
+    assert report["next"] == [f"eigenfield encode {tmp_path} {said} -o clip.glb"]
 
 
 def test_cameras_come_before_all_else(tmp_path, run):
     code, out, err = run("inspect", film(tmp_path, [0, 0, 0]), "--clip", "0:4")
-    assert code == 0 and "would run, with cameras and a mesh" in out, out + err
+    assert code == 0 and "would run, with cameras\n" in out, out + err
     assert f"next       eigenfield calibrate {tmp_path} --clip 0:4" in out and "encode /" not in out

@@ -10,9 +10,11 @@ import pytest
 
 import eigenfield as ef
 from eigenfield.core.errors import OptionError
+from eigenfield.core.proxy import Proxy, Sheets
 from eigenfield.encoding import EncodeOptions, encode_footage
 from eigenfield.encoding.atlas import make_atlas
-from eigenfield.encoding.clip.encode import _footage_digest, group_length
+from eigenfield.encoding.clip.digest import footage_digest
+from eigenfield.encoding.clip.encode import encode_clip, group_length
 from eigenfield.encoding.clip.plan import KeptPhotographs
 from eigenfield.encoding.projected.mean import mean_map
 from eigenfield.encoding.projected.project import texture_maps
@@ -115,8 +117,8 @@ def test_frames_with_other_masks_are_other_footage(lit):
     seen, _, _ = lit
     hidden = [np.zeros((56, 64), np.float32) for _ in CAMERAS]
     masked = [CalibratedInMemory(InMemory(one.observations.pixels, hidden), CAMERAS) for one in seen.frames]
-    assert _footage_digest(seen) == _footage_digest(replace(seen))
-    assert _footage_digest(seen) != _footage_digest(replace(seen, frames=masked))
+    assert footage_digest(seen) == footage_digest(replace(seen))
+    assert footage_digest(seen) != footage_digest(replace(seen, frames=masked))
 
 
 def test_without_a_fit_all_frames_of_a_group_share_the_decomposition_of_their_texture_maps():
@@ -210,10 +212,11 @@ def test_options_without_a_meaning_for_clips_are_refused_by_name(given, code):
     assert error.value.code == code and next(iter(given)).replace("_", "-") in str(error.value)
 
 
-def test_a_clip_needs_a_mesh():
-    with pytest.raises(OptionError) as error:
-        encode_footage(footage(1.0))
-    assert error.value.code == "clip-proxy" and "`eigenfield proxy CAPTURE --clip -o mesh.ply`" in str(error.value)
+def test_sheets_are_refused():
+    sheets = Proxy(MESH, sheets=Sheets((len(MESH.faces),), np.ones((8, 8), np.float32)))
+    with pytest.raises(OptionError, match="not on sheets") as error:
+        encode_clip(footage(1.0), sheets, OPTIONS)
+    assert error.value.code == "clip-proxy"
 
 
 @pytest.mark.parametrize(("text", "frames"), [("1s", 30), ("0.5s", 15), ("12", 12), (" 2s ", 60), ("0.04s", 1)])

@@ -17,6 +17,7 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.open_options import OpenOptions
 from eigenfield.core.shell import shell_word
 from eigenfield.encoding import EncodeOptions
+from eigenfield.reconstruction import SurfaceOptions
 
 if TYPE_CHECKING:
     from eigenfield.core.clip import Clip
@@ -37,6 +38,7 @@ def encode_clip(
     proxy: Path | None,
     place: OpenOptions,
     options: EncodeOptions,
+    surface: SurfaceOptions,
     without: str | None,
     work: Path,
     output: Path,
@@ -49,12 +51,13 @@ def encode_clip(
     from eigenfield.capture import open_footage
     from eigenfield.capture.messages import count_phrase
     from eigenfield.encoding import encode_footage
-    from eigenfield.encoding.clip.encode import refuse_no_proxy, refuse_still_options
+    from eigenfield.encoding.clip.encode import refuse_still_options
+    from eigenfield.encoding.clip.still import surface_of_clip
     from eigenfield.gltf import save
 
     started = time.monotonic()
     refuse_still_options(options)
-    refuse_no_proxy(proxy)
+    surface_of_clip(options, surface, proxy is not None)  # raises
     with chosen_workers(workers, cluster) as reached, progress_bars(quiet) as progress:
         found = open_footage(capture, options=replace(place, work=work / "frames"))
         note_all(found.problems, quiet)
@@ -62,7 +65,9 @@ def encode_clip(
         frames = count_phrase(range(len(footage)), "frame", "frames")
         note(f"{len(footage.names)} cameras, {frames} at {float(footage.timeline.rate):g} a second", quiet)
         note("Ctrl-C stops it; the same command goes on after the last finished frame", quiet)
-        clip = encode_footage(footage, proxy, options, work=work, workers=reached, progress=progress)
+        clip = encode_footage(
+            footage, proxy, options, surface_options=surface, work=work, workers=reached, progress=progress
+        )
         save(clip, output, overwrite=overwrite, progress=progress)
     log.info("%.0f s", time.monotonic() - started)
     click.echo("\n".join(clip_lines(output, clip)))

@@ -102,7 +102,7 @@ Examples:
   eigenfield encode photos/ --target-size 300kB -o small.glb
   eigenfield encode photos/ --hold-out every:5 -o scene.glb
   eigenfield encode photos/ --residual 70 -o archive.glb
-  eigenfield encode footage/ --clip 0:2s --proxy mesh.ply -o clip.glb
+  eigenfield encode footage/ --clip 0:2s -o clip.glb
   eigenfield encode footage/ --clip 0:2s --proxy 'mesh_%04d.ply' -o clip.glb
   eigenfield encode photos/ --proxy mesh.obj --fit none --uv-ssim 0.98 -o paper.glb""",
 )
@@ -198,9 +198,8 @@ def command(
         raise OptionError("group-unused", "--group is about clips", remedy="say --clip, or leave it out")
     if place.clip is not None:
         refuse_for_clips({"draft": draft, "view": look, "blind": blind})
-        surface_to_make(options, from_fields(SurfaceOptions, settings), False, True, {})
-        stages = work or whole.with_suffix(".work")
-        encode_clip(capture, proxy, place, options, without, stages, output, overwrite, quiet, workers, cluster)
+        given, stages = from_fields(SurfaceOptions, settings), work or whole.with_suffix(".work")
+        encode_clip(capture, proxy, place, options, given, without, stages, output, overwrite, quiet, workers, cluster)
         return
     projected = options.resolved().fit == "none"
     surface = surface_to_make(

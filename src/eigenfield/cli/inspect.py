@@ -419,7 +419,7 @@ def report_lines(report: dict[str, Any], offsets: Mapping[str, int] | None = Non
     lines += [f"    - {problem}" for problem in report["problems"]]
     if report["verdict"] is not None:
         lines.append(f"  verdict    {report['verdict']['says']}")
-    runs = "would run" if report["footage"] is None else clip_needs(bool(report["views"]), report["proxy"] is not None)
+    runs = "would run" if report["footage"] is None else clip_needs(report["views"], report["proxy"] is not None)
     lines.append(f"  encode     {runs if report['refused'] is None else _refusal_text(report['refused'])}")
     return lines + [f"  next       {command}" for command in report["next"]]
 

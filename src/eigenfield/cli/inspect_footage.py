@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from eigenfield.core.progress import Progress
 
 DRIFT_MIN_STOPS = 0.3
-PROXY_MIN_CAMERAS = 3
+SURFACE_MIN_CAMERAS = 3  # from which a surface is estimated
 STILL_LEAST, STILL_MOST = 0.1, 0.995  # shares of pixels
 
 
@@ -99,24 +99,28 @@ def _named(cameras: list[dict[str, Any]], key: str, form: str) -> str:
     return list_names([f"{camera['name']} ({form.format(camera[key])})" for camera in cameras if camera[key]])
 
 
-def clip_needs(cameras: bool, mesh: bool) -> str:
-    """Whether `encode --clip` would run, and with what that is not here yet."""
-    missing = [*([] if cameras else ["cameras"]), *([] if mesh else ["a mesh"])]
-    return f"would run, with {' and '.join(missing)}" if missing else "would run"
-
-
-def clip_commands(chosen: str, words: str, cameras: int, mesh: bool) -> list[str]:
-    """Commands that make sense now, in the order in which they are run.
+def clip_needs(cameras: int, mesh: bool) -> str:
+    """Whether `encode --clip` would run, and with what that is not here yet.
 
     Args:
-        chosen: The capture and the options of this command, and which cameras are left out.
-        words: The capture and these options.
         cameras: How many are known.
         mesh: Whether one is among the options.
     """
     if not cameras:
+        return "would run, with cameras"
+    return "would run" if mesh or cameras >= SURFACE_MIN_CAMERAS else "would run, with a mesh"
+
+
+def clip_commands(chosen: str, words: str, cameras: int, mesh: bool) -> list[str]:
+    """Commands that make sense now.
+
+    Args:
+        chosen: The capture and the options of this command, and which cameras are left out.
+        words: The capture and these options.
+        cameras: As of `clip_needs`.
+        mesh: As of `clip_needs`.
+    """
+    if not cameras:
         return [f"eigenfield calibrate {words}"]
-    if mesh:
-        return [f"eigenfield encode {chosen} -o clip.glb"]
-    made = [f"eigenfield proxy {chosen} -o mesh.glb"] if cameras >= PROXY_MIN_CAMERAS else []
-    return [*made, f"eigenfield encode {chosen} --proxy mesh.glb -o clip.glb"]
+    given = "" if mesh or cameras >= SURFACE_MIN_CAMERAS else " --proxy mesh.glb"
+    return [f"eigenfield encode {chosen}{given} -o clip.glb"]

@@ -27,6 +27,7 @@ from eigenfield.reconstruction.options import MESH_KINDS
 
 if TYPE_CHECKING:
     from eigenfield.capture import Capture
+    from eigenfield.core.progress import Progress
 
 
 @click.command(
@@ -67,7 +68,8 @@ def command(
     """Make a proxy mesh from the photographs in CAPTURE, and their cameras where these are not known.
 
     The mesh is in the world of the capture's calibration. Cameras that were estimated are written beside it
-    (OUTPUT.cameras), and it is in their world. Of footage (--clip) it is made of the middle frame.
+    (OUTPUT.cameras), and it is in their world. Of footage (--clip) it is made of what stands still, averaged
+    over time; what never does is as in the middle frame.
     """  # fmt: skip
     from eigenfield.capture.writers.save import save_calibration
     from eigenfield.proxy import check_mesh_name, write_mesh
@@ -78,7 +80,7 @@ def command(
     refuse_existing(output, overwrite)
     work = work if work is not None else output.with_suffix(".work")
     with progress_bars(quiet) as progress:
-        opened = _open(capture, place, without, work, quiet)
+        opened = _open(capture, place, without, work, progress, quiet)
         surface = replace(from_fields(SurfaceOptions, settings), layers=1)  # a file holds no layers
         result = reconstruct_capture(opened, surface, work, progress, quiet)
     note_all(result.report.lines(result.light_field.names), quiet)
@@ -94,14 +96,16 @@ def command(
     )
 
 
-def _open(capture: Path, place: OpenOptions, without: str | None, work: Path, quiet: bool) -> Capture:
+def _open(
+    capture: Path, place: OpenOptions, without: str | None, work: Path, progress: Progress | None, quiet: bool
+) -> Capture:
     """The photographs that the mesh is made of."""
     if place.clip is None:
         return leave_out(open_for_work(capture, place, work, quiet), without, quiet)
     from eigenfield.capture import open_footage
+    from eigenfield.encoding.clip.still import still_capture
+    from eigenfield.runtime.stages import Stages
 
     footage = open_footage(capture, options=replace(place, work=work / "frames"))
     note_all(footage.problems, quiet)
-    middle = len(footage) // 2  # by which `encode` makes the atlas, too
-    note(f"the mesh is made of the frame at {footage.timeline.times[middle]:.4g} s", quiet)
-    return leave_out_cameras(footage, without, quiet).instant(middle)
+    return still_capture(leave_out_cameras(footage, without, quiet), Stages(work), progress)

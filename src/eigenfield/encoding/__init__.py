@@ -137,6 +137,7 @@ def encode_footage(
     proxy: str | os.PathLike[str] | Mesh | Sequence[str | os.PathLike[str] | Mesh] | None = None,
     options: EncodeOptions | None = None,
     *,
+    surface_options: SurfaceOptions | None = None,
     work: str | os.PathLike[str] | None = None,
     workers: Workers | None = None,
     progress: Progress | None = notebook_progress,
@@ -148,8 +149,10 @@ def encode_footage(
         footage: Of cameras that are known.
         proxy: A triangle mesh in the world of the cameras, or its file. A list of them, one for each frame, or a path
             with %04d in place of their number: a mesh that moves. All have the same triangles, and the texture
-            coordinates of the first, whose vertices then stay where they are.
+            coordinates of the first, whose vertices then stay where they are. None: the surface of what stands still,
+            made from photographs that are averaged over time, and of what never does in the middle frame.
         options: What is asked for; None for the defaults. Those that are for one instant are refused.
+        surface_options: How a surface is made that is not given; None for the defaults. It is opaque.
         work: Folder that keeps finished stages, so that the same call goes on from there. None: a temporary one.
         workers: Of `open_executor`: they make the groups after the first, with the same bytes. They see `work` and the
             footage.
@@ -157,8 +160,8 @@ def encode_footage(
         changes: Fields of `EncodeOptions` by name, in place of those of `options`.
 
     Raises:
-        OptionError: `clip-proxy`, there is no proxy; `clip-cameras`, the cameras are not known; `clip-option`, an
-            option is for one instant; `group-unknown`.
+        OptionError: `clip-proxy`, the surface would be of sheets; `clip-cameras`, the cameras are not known;
+            `clip-option`, an option is for one instant; `group-unknown`.
         CaptureError, ProxyError, OutputError: Each names the file and the remedy.
     """
     from eigenfield.encoding.clip.encode import encode_clip
@@ -166,4 +169,4 @@ def encode_footage(
     refuse_unknown(changes, OPTION_NAMES, "encode")
     options = replace(options or EncodeOptions(), **changes)
     folder = None if work is None or find_objects(work) else Path(work)
-    return encode_clip(footage, proxy, options, folder, progress, workers)
+    return encode_clip(footage, proxy, options, folder, progress, workers, surface_options)

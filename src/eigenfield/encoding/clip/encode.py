@@ -1,4 +1,4 @@
-"""Footage of a rig and a proxy in, a clip out: the whole way on one page."""
+"""Footage of a rig in, a clip out: the whole way on one page."""
 
 from __future__ import annotations
 
@@ -8,12 +8,8 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
-
-import numpy as np
-from numpy.typing import NDArray
 
 from eigenfield.core.arguments import kind_in_words
 from eigenfield.core.clip import Clip
@@ -23,20 +19,22 @@ from eigenfield.core.observations import CalibratedObservations
 from eigenfield.core.progress import Progress, begin_step
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.version import __version__
+from eigenfield.encoding.clip.digest import footage_digest
 from eigenfield.encoding.clip.groups import Groups, MadeGroup
 from eigenfield.encoding.clip.motion import MovingMesh, moving_mesh
 from eigenfield.encoding.clip.plan import open_clip_plan
+from eigenfield.encoding.clip.still import estimate_still_surface, refuse_sheets, surface_of_clip
 from eigenfield.encoding.fitted.colour import to_rgb
 from eigenfield.encoding.options import EncodeOptions
 from eigenfield.encoding.plan import EncodePlan
 from eigenfield.encoding.prepare import plan_encoding
 from eigenfield.gltf.clips import coded_clip
-from eigenfield.imaging.metrics import to_codes
 from eigenfield.proxy import refuse_no_mesh
 from eigenfield.proxy.atlas.unwrap import UNWRAP_MIN_TRIANGLES
 from eigenfield.proxy.meshes.sequence import is_sequence, read_sequence
+from eigenfield.reconstruction import SurfaceOptions
 from eigenfield.runtime.files import output_errors
-from eigenfield.runtime.parallel import even_pieces, parallel_map
+from eigenfield.runtime.parallel import even_pieces
 from eigenfield.runtime.stages import SCENE_ROOMS, Stages, stage_key
 from eigenfield.runtime.tasks import Workers
 
@@ -59,32 +57,37 @@ def encode_clip(
     work: Path | None = None,
     progress: Progress | None = None,
     workers: Workers | None = None,
+    given: SurfaceOptions | None = None,
 ) -> Clip:
     """A clip on a proxy that stands still, or on a mesh for each frame.
 
     Its frames share the weights of their group (equation 6, summed over its frames).
 
     Args:
-        proxy: Opaque; or a mesh for each frame (`read_sequence`). None is refused: nothing estimates the surface of a
-            clip yet.
+        proxy: Opaque; or a mesh for each frame (`read_sequence`). None: the surface that `still_capture` shows.
         asked: Options; those that clips have no use for are refused.
         work: Folder that keeps finished stages; None: nothing is kept.
         workers: That make all groups but the first, which says how many textures there are; they see `work` and the
             footage. None: this process makes all.
+        given: How a surface is made that is not given; None for the defaults.
 
     Raises:
         OptionError: `clip-proxy`, `clip-cameras`, `clip-option`, `group-unknown`.
         CaptureError, ProxyError, OutputError: As `encode`.
     """
     refuse_still_options(asked)
-    proxy = _checked_proxy(footage, proxy, asked)
+    surface = surface_of_clip(asked, given or SurfaceOptions(), has_proxy=proxy is not None)
+    _refuse_proxy(footage, proxy, asked)
     length = group_length(asked.group or DEFAULT_GROUP, footage.timeline.rate)
     if work is not None:
         with output_errors(work):
             work.mkdir(parents=True, exist_ok=True)
+    if surface is not None:
+        footage, proxy, asked = estimate_still_surface(footage, asked, surface, work, progress)
+    assert proxy is not None
     plan, moving = _plan(footage, proxy, asked, work, progress)
     motion = None if moving is None else moving.digest
-    identity = stage_key([_footage_digest(footage), asked, _plan_digest(plan), motion], SCENE_ROOMS)
+    identity = stage_key([footage_digest(footage), asked, _plan_digest(plan), motion], SCENE_ROOMS)
     spans = even_pieces(len(footage), -(-len(footage) // length))
     if moving is not None:
         moving.check_groups(spans)
@@ -146,22 +149,13 @@ def refuse_still_options(asked: EncodeOptions) -> None:
         raise OptionError("clip-option", f"{name} is for scenes of one instant", remedy=remedy)
 
 
-def refuse_no_proxy(proxy: object) -> None:
-    """Raise OptionError `clip-proxy` where no mesh is given."""
-    if proxy is None:
-        remedy = "give one as --proxy; `eigenfield proxy CAPTURE --clip -o mesh.ply` makes one of the middle frame"
-        raise OptionError("clip-proxy", "a clip is encoded on a mesh that is given", remedy=remedy)
-
-
-def _checked_proxy(footage: Footage, proxy: GivenProxy | None, asked: EncodeOptions) -> GivenProxy:
-    """The proxy, where it is one for clips and its cameras are known."""
-    refuse_no_proxy(proxy)
-    assert proxy is not None
+def _refuse_proxy(footage: Footage, proxy: GivenProxy | None, asked: EncodeOptions) -> None:
+    """Raise an error where cameras are not known, or the proxy is none for clips."""
     if footage.cameras is None:
         remedy = "find them with calibrate --clip, and give the result as --calibration"
         raise OptionError("clip-cameras", "the cameras of this footage are not known", remedy=remedy)
     several: list[Any] = [] if isinstance(proxy, str) or not isinstance(proxy, Sequence) else list(proxy)
-    for one in several or [proxy]:
+    for one in several or ([] if proxy is None else [proxy]):
         if not isinstance(one, str | os.PathLike | Mesh) and (several or not isinstance(one, Proxy | Sequence)):
             remedy = "give a mesh, its file, or one of them for each frame"
             raise OptionError("proxy", f"{kind_in_words(one)} is no proxy", remedy=remedy)
@@ -174,23 +168,7 @@ def _checked_proxy(footage: Footage, proxy: GivenProxy | None, asked: EncodeOpti
     elif isinstance(proxy, str | os.PathLike):
         refuse_no_mesh(Path(proxy))
     elif isinstance(proxy, Proxy) and proxy.sheets is not None:
-        raise OptionError("clip-proxy", "a clip is encoded on one opaque surface, not on sheets", remedy="give a mesh")
-    return proxy
-
-
-def _footage_digest(footage: Footage) -> list[Any]:
-    """What stands for footage: its clock, its bytes, and the pixels and masks of three instants."""
-    digest = hashlib.sha256()
-    for number in (0, len(footage) // 2, len(footage) - 1):
-        instant = cast("CalibratedObservations", footage.instant(number))
-
-        def codes(index: int, instant: CalibratedObservations = instant) -> list[NDArray[np.uint8]]:
-            photograph = instant.photograph(index)
-            return [to_codes(one) for one in (photograph.pixels, photograph.mask) if one is not None]
-
-        for found in chain.from_iterable(parallel_map(codes, range(len(instant)))):
-            digest.update(found.data)
-    return [list(footage.names), str(footage.timeline), footage.bytes, digest.hexdigest()]
+        refuse_sheets()
 
 
 def _plan_digest(plan: EncodePlan) -> list[Any]:
