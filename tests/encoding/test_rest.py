@@ -66,3 +66,10 @@ def test_frames_that_are_masked_out_do_not_count():
     frames[2] = Photograph(np.zeros_like(PICTURE, np.float32), np.zeros(PICTURE.shape[:2], np.float32))
     found = camera_at_rest(frames, FRAMES)
     np.testing.assert_allclose(found.average / 255, PICTURE, atol=1.5 / 255)
+
+
+def test_a_speck_that_is_masked_out_has_no_average():
+    mask = np.ones(PICTURE.shape[:2], np.float32)
+    mask[30, 40] = 0
+    found = camera_at_rest([Photograph(one.pixels, mask) for one in filmed(nothing)], FRAMES)
+    assert found.share[30, 40] == 0 and found.average[30, 40].max() == 0 and (found.share[:20] == 255).all()

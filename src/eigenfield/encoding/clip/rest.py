@@ -115,10 +115,11 @@ def camera_at_rest(
     both = totals[0] + totals[1]
     moves = (high - low).max(axis=2) > max(RANGE_SIGMAS * noise, MIN_RANGE)
     moves |= np.abs(first - second).max(axis=2) > max(2 * DRIFT_SIGMAS * noise / math.sqrt(frames), MIN_DRIFT)
-    moves |= np.minimum(totals[0][..., 3], totals[1][..., 3]) < 1
     moves = cv2.morphologyEx(moves.astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))  # specks are noise
+    unseen = np.minimum(totals[0][..., 3], totals[1][..., 3]) < 1  # also a speck of these has no average
+    moves = np.maximum(moves, unseen.astype(np.uint8))
     if surface_moves is not None:
-        moves = np.maximum(np.asarray(moves, np.uint8), surface_moves.astype(np.uint8))
+        moves = np.maximum(moves, surface_moves.astype(np.uint8))
     around = cv2.dilate(moves, np.ones((MARGIN_PIXELS, MARGIN_PIXELS), np.uint8))
     share = np.minimum(cv2.blur(1 - around.astype(np.float32), (BLEND_PIXELS, BLEND_PIXELS)), 1 - moves)
     average = both[..., :3] / np.maximum(both[..., 3:], 1)
