@@ -7,14 +7,13 @@ import hashlib
 import threading
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding import limits
 from eigenfield.coding.codecs import CODECS
-from eigenfield.coding.mesh.coder import PlacedMesh, decode_placed
 from eigenfield.coding.pictures.quantise import mean_values
 from eigenfield.coding.video.film import decode_film
 from eigenfield.coding.video.film_layout import pictures_of
@@ -28,6 +27,9 @@ from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
 from eigenfield.gltf.group import read_group, read_head
 from eigenfield.gltf.source import ByteSource, HeldBytes, StoredBytes, name_file_in_errors
+
+if TYPE_CHECKING:
+    from eigenfield.coding.mesh.coder import PlacedMesh
 
 _AGAIN = "copy or download the file again"
 
@@ -149,6 +151,8 @@ class CodedGroups:
 
     def _motion(self, stream: Payload, frames: int, where: str) -> Motion:
         if not self._placed:
+            from eigenfield.coding.mesh.coder import decode_placed  # loads numba, which files without it do not want
+
             (mesh,) = next(found for (kind, _), found in self.payloads.items() if kind == "mesh")
             self._placed.append(decode_placed(mesh.data, where, mesh.data[0]))
         placed = self._placed[0]
