@@ -7,7 +7,7 @@ import pytest
 
 from eigenfield.core.proxy import Proxy
 from eigenfield.encoding import EncodeOptions, encode_footage
-from eigenfield.encoding.clip.active import open_active_plane
+from eigenfield.encoding.clip.active import active_texels, open_active_plane
 from eigenfield.encoding.clip.plan import ClipPlan
 from eigenfield.encoding.fitted.fit import PlaneSettings
 from eigenfield.encoding.fitted.kernels import adjoint
@@ -34,7 +34,7 @@ def square(camera: int) -> np.ndarray:
 def test_pixels_that_are_left_out_see_no_texel_that_changes():
     with (
         open_camera_footprints(CAMERAS, Proxy(MESH), (128, 128)) as whole,
-        open_active_plane(whole, SETTINGS, square, None) as active,
+        open_active_plane(whole, active_texels(whole, SETTINGS, square), square, None) as active,
     ):
         kept = [active.footprints.of(camera)[0] > 0 for camera in range(len(CAMERAS))]
         every = [whole.of(camera)[0] > 0 for camera in range(len(CAMERAS))]
@@ -51,7 +51,7 @@ def test_pixels_that_are_left_out_see_no_texel_that_changes():
 def test_points_of_a_pixel_that_is_kept_are_its_own():
     with (
         open_camera_footprints(CAMERAS, Proxy(MESH), (128, 128)) as whole,
-        open_active_plane(whole, SETTINGS, square, None) as active,
+        open_active_plane(whole, active_texels(whole, SETTINGS, square), square, None) as active,
     ):
         counts, points, _ = whole.of(2)
         few, own, _ = active.footprints.of(2)
@@ -76,7 +76,7 @@ def test_a_group_is_as_good_as_one_that_is_fitted_as_a_whole(waving, monkeypatch
     options = EncodeOptions(quality=90)
     quick = encode_footage(waving, MESH, options, group="4")
     open_frame = ClipPlan.open_frame
-    monkeypatch.setattr(ClipPlan, "open_frame", lambda plan, photographs, active: open_frame(plan, photographs))
+    monkeypatch.setattr(ClipPlan, "open_frame", lambda plan, number, photos, active: open_frame(plan, number, photos))
     whole = encode_footage(waving, MESH, options, group="4")
     before, after = (np.mean(one.settings["clip"]["psnr"]) for one in (whole, quick))
     sizes = [sum(len(unit) for frame in one.groups.coded(0).units for unit in frame) for one in (whole, quick)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import signal
 import sys
 from typing import NamedTuple
@@ -25,13 +26,15 @@ def call(*words: object) -> int:
     """
     from eigenfield.cli import main
 
-    before = {number: signal.getsignal(number) for number in STOP_SIGNALS}
+    before, log = {number: signal.getsignal(number) for number in STOP_SIGNALS}, logging.getLogger("eigenfield")
+    level = log.level  # which -v changes
     try:
         with mock.patch.object(sys, "argv", ["eigenfield", *map(str, words)]):
             main()
     except SystemExit as stop:
         return int(stop.code or 0)
     finally:
+        log.setLevel(level)
         for number, handler in before.items():
             signal.signal(number, handler)
     return 0
