@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 
 import cv2
@@ -20,6 +19,7 @@ from eigenfield.demo.light import radiance
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy import atlas_fault, atlas_statistics, read_mesh
 from eigenfield.runtime.parallel import set_threads
+from support.folders import folder_digest
 
 SIZE = 64
 
@@ -30,14 +30,6 @@ def capture(tmp_path_factory):
     calls = []
     draw_demo_capture(folder, rows=3, columns=4, size=SIZE, progress=lambda *call: calls.append(call))
     return folder, calls
-
-
-def digest(folder):
-    total = hashlib.sha256()
-    for file in sorted(folder.rglob("*")):
-        total.update(str(file.relative_to(folder)).encode())
-        total.update(file.read_bytes() if file.is_file() else b"")
-    return total.hexdigest()
 
 
 def test_the_folder_is_complete_and_progress_ends(capture):
@@ -125,7 +117,7 @@ def test_two_drawings_have_the_same_bytes_at_one_and_two_threads(tmp_path):
             draw_demo_capture(tmp_path / str(threads), rows=1, columns=3, size=32)
         finally:
             set_threads(None)
-        digests.append(digest(tmp_path / str(threads)))
+        digests.append(folder_digest(tmp_path / str(threads)))
     assert digests[0] == digests[1]
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 
 import cv2
@@ -22,6 +21,7 @@ from eigenfield.evaluation.flicker import StillPixels
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy import read_mesh
 from eigenfield.runtime.parallel import set_threads
+from support.folders import folder_digest
 
 SIZE, FRAMES, COLUMNS = 128, 4, 3
 
@@ -40,14 +40,6 @@ def meshes(drawn):
 
 def pictures(folder, frame):
     return [cv2.imread(str(folder / f"cam_0_{column}" / f"{frame:06d}.png")) for column in range(COLUMNS)]
-
-
-def digest(folder):
-    total = hashlib.sha256()
-    for file in sorted(folder.rglob("*")):
-        total.update(str(file.relative_to(folder)).encode())
-        total.update(file.read_bytes() if file.is_file() else b"")
-    return total.hexdigest()
 
 
 def test_the_folder_is_complete_and_progress_ends(drawn):
@@ -150,18 +142,18 @@ def test_two_drawings_have_the_same_bytes_at_one_and_two_threads_and_after_a_sto
     before = kept.stat().st_mtime_ns
     draw("stopped")
     assert kept.stat().st_mtime_ns == before
-    assert digest(tmp_path / "1") == digest(tmp_path / "2") == digest(tmp_path / "stopped")
+    assert folder_digest(tmp_path / "1") == folder_digest(tmp_path / "2") == folder_digest(tmp_path / "stopped")
 
 
 def test_what_is_there_is_kept(drawn):
-    before = digest(drawn[0])
+    before = folder_digest(drawn[0])
     (drawn[0] / "cam_0_1" / "000001.png").rename(drawn[0] / "moved.png")
     try:
         draw_demo_clip(drawn[0], rows=1, columns=COLUMNS, size=SIZE, frames=FRAMES)
         assert not (drawn[0] / "cam_0_1" / "000001.png").exists()
     finally:
         (drawn[0] / "moved.png").rename(drawn[0] / "cam_0_1" / "000001.png")
-    assert digest(drawn[0]) == before
+    assert folder_digest(drawn[0]) == before
 
 
 def test_times_are_those_of_the_frames(drawn):

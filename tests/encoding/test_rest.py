@@ -7,21 +7,14 @@ import pytest
 
 from eigenfield.core.observations import Photograph
 from eigenfield.encoding.clip.rest import camera_at_rest
-from support.scenes import smooth_pictures
+from support.changing import PICTURE, changed_frames
 
-PICTURE = 0.5 + 0.3 * smooth_pictures(1, 60, 80, 3, 4)[0]
 FRAMES = 16
 
 
 def filmed(change, noise=2.0):
     """Frames with noise of so many grey levels, after `change(number, pixels)`."""
-    random, made = np.random.default_rng(1), []
-    for number in range(FRAMES):
-        pixels = PICTURE.copy()
-        change(number, pixels)
-        pixels += random.normal(0, noise / 255, pixels.shape)
-        made.append(Photograph(np.clip(pixels, 0, 1).astype(np.float32), None))
-    return made
+    return [Photograph(pixels, None) for pixels in changed_frames(change, FRAMES, noise)]
 
 
 def nothing(number, pixels):

@@ -18,22 +18,16 @@ from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy import read_mesh
 from eigenfield.reconstruction.whole import reconstruct
 from eigenfield.runtime.stages import Stages
+from support.changing import PICTURE, changed_frames
 from support.moving_clips import FootageInMemory
 from support.passing import FRAMES, SIDE, SQUARE, WALL, write_passing
-from support.scenes import smooth_pictures
 
-PICTURE = 0.5 + 0.3 * smooth_pictures(1, 60, 80, 3, 4)[0]
 COUNT = 11
 
 
 def filmed(change, noise=0.0):
     """Codes of COUNT frames, after `change(number, pixels)`."""
-    random, made = np.random.default_rng(1), []
-    for number in range(COUNT):
-        pixels = PICTURE.copy()
-        change(number, pixels)
-        made.append(to_codes(np.clip(pixels + random.normal(0, noise / 255, pixels.shape), 0, 1)))
-    return np.stack(made)
+    return np.stack([to_codes(pixels) for pixels in changed_frames(change, COUNT, noise)])
 
 
 def off(pixels):

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eigenfield.cli.common import PATH, common_options, note
-from eigenfield.cli.progress import StepProgress, progress_bars
-from eigenfield.core.progress import begin_step
+from eigenfield.cli.common import PATH, common_options
+from eigenfield.cli.progress import planned_steps
 from eigenfield.core.shell import shell_word
 
 if TYPE_CHECKING:
@@ -75,7 +74,6 @@ def make_demo(output: Path, quiet: bool) -> None:
     started = time.monotonic()
     there = (output / "capture").exists()
     seconds = {**DEMO_STEP_SECONDS, **({"draw": 0.0} if there else {})}
-    note(f"this takes about {sum(seconds.values()) / 60:.0f} minutes on two cores, in {len(seconds)} steps", quiet)
     make_folder(output)
     folder, path, page = output / "capture", output / "scene.glb", output / "scene.html"
     words = {
@@ -85,19 +83,12 @@ def make_demo(output: Path, quiet: bool) -> None:
         "measure": f"measuring it: {output / 'evaluation.json'}, {output / 'plots'}",
         "page": f"one page of it: {page}",
     }
-    with progress_bars(quiet) as shown:
-
-        def progress(stage: str, done: int, total: int) -> None:  # `encode` has steps, which are one here
-            if shown is not None:
-                shown(stage, done, total)
-
-        if isinstance(shown, StepProgress):
-            shown.plan(seconds, words)
-        begin_step(shown, "draw")
+    with planned_steps(quiet, seconds, words) as (begin, progress):
+        begin("draw")
         if not there:
             draw_demo_capture(folder, progress=progress)
         capture = open_capture(folder)
-        begin_step(shown, "encode")
+        begin("encode")
         scene = encode(
             capture,
             folder / "proxy.ply",
@@ -108,15 +99,15 @@ def make_demo(output: Path, quiet: bool) -> None:
         )
         save(scene, path, overwrite=True, progress=progress)
         scene = load(path)
-        begin_step(shown, "fly")
+        begin("fly")
         points = path_points("circle", DEMO_FRAMES)
         write_flight(RenderJob(scene), points, output / "flight.mp4", Fraction(30), overwrite=True, progress=progress)
-        begin_step(shown, "measure")
+        begin("measure")
         figures = evaluate(scene, capture, path=path, progress=progress)
         write_bytes(output / "evaluation.json", json.dumps(figures, indent=1).encode(), overwrite=True)
         write_plots(figures, scene, capture, output / "plots", overwrite=True)
         store_scores(path, stored_scores(figures))
-        begin_step(shown, "page")
+        begin("page")
         export(path, page, overwrite=True, progress=progress)
     click.echo(_summary(path, page, scene, figures, time.monotonic() - started))
 

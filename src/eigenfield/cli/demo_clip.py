@@ -10,9 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from eigenfield.cli.clip import clip_lines
-from eigenfield.cli.common import note
-from eigenfield.cli.progress import StepProgress, progress_bars
-from eigenfield.core.progress import begin_step
+from eigenfield.cli.progress import planned_steps
 from eigenfield.core.shell import shell_word
 
 if TYPE_CHECKING:
@@ -43,7 +41,6 @@ def make_demo_clip(output: Path, quiet: bool) -> None:
     work = path.with_suffix(".work")  # what is finished of the clip stays there, as of `encode --clip`
     there = drawing.is_drawn(folder)
     seconds = {**CLIP_STEP_SECONDS, **({"draw": 0.0} if there else {})}
-    note(f"this takes about {sum(seconds.values()) / 60:.0f} minutes on two cores, in {len(seconds)} steps", quiet)
     pictures = drawing.CLIP_ROWS * drawing.CLIP_COLUMNS
     words = {
         "draw": "footage that is there" if there else f"drawing {drawing.CLIP_FRAMES} frames of {pictures} cameras",
@@ -52,33 +49,26 @@ def make_demo_clip(output: Path, quiet: bool) -> None:
         "measure": f"measuring it: {output / 'evaluation.json'}, {plots}",
         "page": f"one page of it: {page}",
     }
-    with progress_bars(quiet) as shown:
-
-        def progress(stage: str, done: int, total: int) -> None:  # `encode_footage` has steps, which are one here
-            if shown is not None:
-                shown(stage, done, total)
-
-        if isinstance(shown, StepProgress):
-            shown.plan(seconds, words)
-        begin_step(shown, "draw")
+    with planned_steps(quiet, seconds, words) as (begin, progress):
+        begin("draw")
         drawing.draw_demo_clip(folder, progress=progress)
         footage = open_footage(folder)
-        begin_step(shown, "encode")
+        begin("encode")
         options = EncodeOptions(hold_out=CLIP_HOLD_OUT)
         clip = encode_footage(footage, folder / drawing.CLIP_MESHES, options, work=work, progress=progress)
         save(clip, path, overwrite=True, progress=progress)
         clip = load_clip(path)
-        begin_step(shown, "fly")
+        begin("fly")
         frames = range(clip.timeline.frames)
         places = [{"at": tuple(point)} for point in path_points("circle", len(frames)).tolist()]
         rate = clip.timeline.rate
         write_clip_flight(clip, frames, places, output / "flight.mp4", rate, overwrite=True, progress=progress)
-        begin_step(shown, "measure")
+        begin("measure")
         figures = evaluate_clip(clip, footage, path=path, every=CLIP_EVERY, progress=progress)
         write_bytes(output / "evaluation.json", json.dumps(figures, indent=1).encode(), overwrite=True)
         write_strip(figures, plots, overwrite=True)
         write_clip_sheet(clip, footage, plots, overwrite=True)
-        begin_step(shown, "page")
+        begin("page")
         export(path, page, overwrite=True, progress=progress)
     click.echo(_summary(path, page, clip, figures, time.monotonic() - started))
 

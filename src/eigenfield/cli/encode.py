@@ -315,12 +315,11 @@ def announce(
 def _open_capture(capture: Path, place: OpenOptions, scratch: Path | None, quiet: bool) -> LightField:
     """A calibrated capture, and a folder for scratch files."""
     from eigenfield.capture import open_capture
-    from eigenfield.runtime.files import output_errors
+    from eigenfield.runtime.files import make_folder
     from eigenfield.runtime.objects import find_objects
 
     light_field = open_capture(capture, place)
     if scratch is not None and not find_objects(scratch):
-        with output_errors(scratch):
-            scratch.mkdir(parents=True, exist_ok=True)
+        make_folder(scratch)
     note_all(light_field.problems, quiet)
     return light_field

@@ -9,12 +9,14 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
+from functools import partial
 from typing import Any
 
 import click
 
+from eigenfield.cli.common import note
 from eigenfield.cli.time_left import RANGE_HIGH_RATIO, RANGE_LOW_RATIO, TimeLeft
-from eigenfield.core.progress import Progress
+from eigenfield.core.progress import Progress, begin_step
 
 LINE_SECONDS = 15.0  # between two lines about a stage, where there is no terminal
 JSON_SECONDS = 0.2  # likewise, for another program
@@ -38,6 +40,29 @@ def progress_bars(quiet: bool) -> Iterator[Progress | None]:
         shown = _JsonLines() if as_json else _Bars(stack) if sys.stderr.isatty() else _Lines()
         stack.enter_context(watch_compilation(shown.compiling))
         yield shown
+
+
+@contextmanager
+def planned_steps(
+    quiet: bool, seconds: Mapping[str, float], words: Mapping[str, str]
+) -> Iterator[tuple[Callable[[str], None], Progress]]:
+    """Steps that are known from the start: a function that begins one, and a Progress for the work in it, whose own
+    steps are passed over.
+
+    Args:
+        seconds: Expected of each step on two cores, by its name, in order.
+        words: What each step says.
+    """
+    note(f"this takes about {sum(seconds.values()) / 60:.0f} minutes on two cores, in {len(seconds)} steps", quiet)
+    with progress_bars(quiet) as shown:
+
+        def progress(stage: str, done: int, total: int) -> None:
+            if shown is not None:
+                shown(stage, done, total)
+
+        if isinstance(shown, StepProgress):
+            shown.plan(seconds, words)
+        yield partial(begin_step, shown), progress
 
 
 class StepProgress:

@@ -15,7 +15,7 @@ from eigenfield.evaluation.clip import Instants, open_clip_session
 from eigenfield.evaluation.plots import new_figure, png_bytes
 from eigenfield.evaluation.strip import CLIP_SHEET_FILE
 from eigenfield.imaging.metrics import PictureArray, to_codes
-from eigenfield.runtime.files import output_errors, write_bytes
+from eigenfield.runtime.files import make_folder, write_bytes
 
 CLIP_SHEET_FRAMES, CLIP_SHEET_VIEWS = 6, 3  # at most
 CLIP_SHEET_INCHES = 2.2  # width of a picture
@@ -27,8 +27,7 @@ def write_clip_sheet(clip: Clip, footage: Instants, folder: str | os.PathLike[st
     """Write the contact sheet of a clip into a folder, which is created if need be; its path. OutputError
     `output-exists`, or the folder cannot be written; errors of `evaluate_clip`."""
     folder = Path(folder)
-    with output_errors(folder):
-        folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     write_bytes(folder / CLIP_SHEET_FILE, png_bytes(_figure(sheet_rows(clip, footage))), overwrite=overwrite)
     return folder / CLIP_SHEET_FILE
 

@@ -22,7 +22,7 @@ from eigenfield.core.errors import OutputError
 from eigenfield.core.scene import Scene
 from eigenfield.evaluation.session import Session, start_session
 from eigenfield.imaging.metrics import PictureArray, to_codes
-from eigenfield.runtime.files import output_errors, write_bytes
+from eigenfield.runtime.files import make_folder, write_bytes
 from eigenfield.runtime.objects import refuse_objects
 
 ContactSheetRow = tuple[str, PictureArray, PictureArray, PictureArray]  # title, photograph, drawn, error
@@ -75,8 +75,7 @@ def write_plots(
         scene, capture, textures=scores["textures"], filter=scores["filter"], weights=scores["weights"]
     )
     refuse_existing_plots(folder, overwrite)
-    with output_errors(folder):
-        folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     figures = {}
     if scores.get("curve") and scores["uv"] is not None:
         figures[PLOT_CURVE_FILE] = curve_figure(scores)

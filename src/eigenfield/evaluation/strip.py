@@ -18,7 +18,7 @@ from eigenfield.evaluation.plots import (
     refuse_existing_pictures,
     style_axes,
 )
-from eigenfield.runtime.files import output_errors, write_bytes
+from eigenfield.runtime.files import make_folder, write_bytes
 
 STRIP_FILE, CLIP_SHEET_FILE = CLIP_PLOT_FILES = "over-time.png", "contact-sheet.png"
 STRIP_KINDS = (("encoded", "encoded", PLOT_BLUE), ("held_out", "held out", PLOT_ORANGE))
@@ -34,8 +34,7 @@ def write_strip(scores: Mapping[str, Any], folder: str | os.PathLike[str], *, ov
     """Write the strip chart of `evaluate_clip`'s scores into a folder, which is created if need be; its path.
     OutputError `output-exists`, or the folder cannot be written."""
     folder = Path(folder)
-    with output_errors(folder):
-        folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     write_bytes(folder / STRIP_FILE, png_bytes(strip_figure(scores)), overwrite=overwrite)
     return folder / STRIP_FILE
 

@@ -33,7 +33,7 @@ from eigenfield.proxy import refuse_no_mesh
 from eigenfield.proxy.atlas.unwrap import UNWRAP_MIN_TRIANGLES
 from eigenfield.proxy.meshes.sequence import is_sequence, read_sequence
 from eigenfield.reconstruction import SurfaceOptions
-from eigenfield.runtime.files import output_errors
+from eigenfield.runtime.files import make_folder
 from eigenfield.runtime.parallel import even_pieces
 from eigenfield.runtime.stages import SCENE_ROOMS, Stages, stage_key
 from eigenfield.runtime.tasks import Workers
@@ -80,8 +80,7 @@ def encode_clip(
     _refuse_proxy(footage, proxy, asked)
     length = group_length(asked.group or DEFAULT_GROUP, footage.timeline.rate)
     if work is not None:
-        with output_errors(work):
-            work.mkdir(parents=True, exist_ok=True)
+        make_folder(work)
     if surface is not None:
         footage, proxy, asked = estimate_still_surface(footage, asked, surface, work, progress)
     assert proxy is not None

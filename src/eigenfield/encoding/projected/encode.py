@@ -25,7 +25,7 @@ from eigenfield.encoding.projected.uv_measure import smallest_count
 from eigenfield.encoding.spread import Spreader, make_spreader
 from eigenfield.encoding.views import nothing_seen_error
 from eigenfield.imaging.png import png_bytes
-from eigenfield.runtime.files import output_errors, write_bytes
+from eigenfield.runtime.files import make_folder, write_bytes
 from eigenfield.runtime.parallel import tracked_map
 from eigenfield.runtime.tasks import Workers
 
@@ -123,8 +123,7 @@ def write_maps(
         names: Of the observations, each once.
         folder: Is made if it does not exist.
     """
-    with output_errors(folder):
-        folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
 
     flat = [name.replace("/", "_").replace("\\", "_") for name in names]
     stems = [Path(name).stem for name in flat]
