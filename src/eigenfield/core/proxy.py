@@ -49,6 +49,23 @@ class Proxy:
     __repr__ = brief_repr
 
 
+@dataclass(frozen=True, eq=False)
+class MovingProxy:
+    """A proxy over the frames of a clip. Faces, texture coordinates and the division into sheets stay as they are.
+
+    Attributes:
+        proxy: Of the first frame.
+        positions: (T, v, 3) float32, the vertices of each frame.
+        opacity: (T, H, W) float32 in 0..1 of each frame, maybe of a file on disk; None without sheets.
+    """
+
+    proxy: Proxy
+    positions: NDArray[np.float32]
+    opacity: NDArray[np.float32] | None = None
+
+    __repr__ = brief_repr
+
+
 def opaque_mesh(proxy: Proxy) -> Mesh:
     """The mesh; of sheets the faces in whose middle they are at least half opaque."""
     mesh, sheets = proxy.mesh, proxy.sheets
