@@ -14,7 +14,7 @@ from eigenfield.gltf import load, save
 from eigenfield.gltf.deflate import deflate, inflate
 from eigenfield.gltf.group import HEAD, read_group
 from support import glb_surgery
-from support.clips import groups_of, moving_clip, numbered_clip, read_all, with_groups
+from support.clips import finer_mesh, groups_of, moving_clip, numbered_clip, read_all, with_groups
 from support.fuzzed import fuzzed
 from support.glb_surgery import outcome
 
@@ -27,7 +27,8 @@ FILE: dict[str, bytes] = {}
 
 def clip_file(folder) -> bytes:
     if not FILE:
-        save(moving_clip(numbered_clip((3, 2)), lambda number, places: places + number), folder / "clip.glb")
+        still = numbered_clip((3, 2))
+        save(moving_clip(still, lambda number, places: places + number, {1: finer_mesh(still)}), folder / "clip.glb")
         FILE["clip"] = (folder / "clip.glb").read_bytes()
     return FILE["clip"]
 

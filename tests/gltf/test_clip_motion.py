@@ -15,7 +15,7 @@ from eigenfield.core.payloads import Payload
 from eigenfield.gltf import load, load_clip, parts, save, validate
 from eigenfield.gltf.group import group_bytes
 from support import glb_surgery
-from support.clips import groups_of, moving_clip, numbered_clip, read_all, with_groups
+from support.clips import finer_mesh, groups_of, moving_clip, numbered_clip, read_all, with_groups
 from support.glb_surgery import outcome
 
 LENGTHS = 3, 4
@@ -42,8 +42,7 @@ def path(still, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def placed(still):
-    (stream,) = next(found for (kind, _), found in still.groups.payloads.items() if kind == "mesh")
-    return decode_placed(stream.data)
+    return decode_placed(still.groups.payloads.only("mesh").data)
 
 
 def test_each_frame_has_its_own_vertices_in_any_order(path, placed):
@@ -99,6 +98,40 @@ def other_motion(path, change):
     made = group_bytes(replace(coded, motion=Payload("motion-1", motion)))
     data = path.read_bytes()
     return with_groups(data, [made, *groups_of(data)[1:]])
+
+
+@pytest.fixture(scope="module")
+def own(still, tmp_path_factory):
+    """The second group has a mesh of its own."""
+    path = tmp_path_factory.mktemp("own") / "clip.glb"
+    save(moving_clip(still, rising, {1: finer_mesh(still)}), path)
+    return path
+
+
+def test_a_group_has_its_own_mesh_and_the_others_that_of_the_file(own, still, placed, tmp_path):
+    clip, finer = load_clip(own), decode_placed(finer_mesh(still).data)
+    for number in (5, 0, 6, 2, 3):
+        mesh, expected = clip.scene(clip.timeline.times[number]).proxy.mesh, placed if number < LENGTHS[0] else finer
+        points = expected.lattice.points(rising(number, expected.places)).astype(np.float32)
+        np.testing.assert_array_equal(mesh.vertices, points)
+        np.testing.assert_array_equal(mesh.faces, expected.mesh.faces)
+        np.testing.assert_array_equal(mesh.uv, expected.mesh.uv)
+    assert validate(own) == []
+    save(clip, tmp_path / "again.glb")
+    assert (tmp_path / "again.glb").read_bytes() == own.read_bytes()
+    again = pickle.loads(pickle.dumps(clip))
+    np.testing.assert_array_equal(again.scene(0.5).proxy.mesh.faces, finer.mesh.faces)
+    save(clip.scene(0.5), tmp_path / "frame.glb")
+    np.testing.assert_array_equal(load(tmp_path / "frame.glb").proxy.mesh.faces, finer.mesh.faces)
+
+
+@pytest.mark.parametrize("keep", [0, 20, -1])
+def test_a_damaged_mesh_of_a_group_is_refused_by_its_code(own, tmp_path, keep):
+    data = own.read_bytes()
+    coded = load_clip(own).groups.coded(1)
+    made = group_bytes(replace(coded, mesh=Payload("mesh-2", coded.mesh.data[:keep] or b"x")))
+    code = outcome(tmp_path / "a.glb", with_groups(data, [groups_of(data)[0], made]), read_all)
+    assert code.startswith("coded-")
 
 
 def test_damaged_motion_is_refused_by_its_code(path, placed, tmp_path):

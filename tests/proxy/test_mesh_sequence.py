@@ -8,7 +8,7 @@ import pytest
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.proxy import unwrap_mesh, write_ply
-from eigenfield.proxy.meshes.sequence import is_sequence, mesh_files, read_sequence
+from eigenfield.proxy.meshes.sequence import is_sequence, mesh_files, read_sequences
 from support.scenes import bumpy_square
 
 
@@ -23,7 +23,7 @@ def two_sheets(apart):
 
 def test_vertices_are_found_again_after_cleaning_and_cutting_charts():
     meshes = [two_sheets(apart) for apart in (0.25, 0.5, 0.75)]
-    sequence = read_sequence(meshes, 3)
+    (sequence,) = read_sequences(meshes, 3)
     assert len(sequence.mesh.faces) == 36 and sequence.positions.shape == (3, 33, 3)
     unwrapped = unwrap_mesh(sequence.mesh)
     for mesh in (sequence.mesh, unwrapped):
@@ -38,9 +38,23 @@ def test_sheets_that_lie_on_each_other_are_told_apart_by_their_triangles():
     other = Mesh(square.vertices, np.array([[0, 1, 4], [0, 4, 3]], np.int32), None)  # the same places, cut otherwise
     vertices = np.concatenate([square.vertices, other.vertices])
     faces = np.concatenate([square.faces, other.faces + len(square.vertices)])
-    sequence = read_sequence([Mesh(vertices, faces), Mesh(vertices + np.float32(1), faces)], 2)
+    (sequence,) = read_sequences([Mesh(vertices, faces), Mesh(vertices + np.float32(1), faces)], 2)
     found = sequence.vertices_of(Mesh(vertices, faces))
     np.testing.assert_array_equal(found[faces], faces)
+
+
+def test_other_triangles_begin_another_sequence():
+    one, other = bumpy_square(4), bumpy_square(5)
+    turned = Mesh(one.vertices, np.roll(one.faces, 1, axis=0))
+    found = read_sequences([one, one, other, turned, turned, one], 6)
+    assert [(part.first, len(part.positions)) for part in found] == [(0, 2), (2, 1), (3, 2), (5, 1)]
+    assert [part.faces.shape for part in found] == [
+        one.faces.shape,
+        other.faces.shape,
+        one.faces.shape,
+        one.faces.shape,
+    ]
+    np.testing.assert_array_equal(found[2].faces, turned.faces)
 
 
 def test_the_files_of_a_sequence_are_in_the_order_of_their_numbers(tmp_path):

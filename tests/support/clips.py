@@ -9,10 +9,11 @@ scales, so that no frame looks right with what another group has.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -146,20 +147,31 @@ def read_all(path: Path) -> None:
         clip.scene(time)
 
 
-def moving_clip(clip: Clip, steps: Callable[[int, NDArray[np.int64]], NDArray[np.int64]]) -> Clip:
+def finer_mesh(clip: Clip) -> Payload:
+    """Another mesh for the groups of a numbered clip: the same square with more vertices."""
+    rig = clip.rig
+    return coded_mesh(Proxy(bumpy_square(9)), rig.cameras, rig.reference).payloads.only("mesh")
+
+
+def moving_clip(
+    clip: Clip,
+    steps: Callable[[int, NDArray[np.int64]], NDArray[np.int64]],
+    meshes: Mapping[int, Payload] = MappingProxyType({}),
+) -> Clip:
     """A clip of coded groups on a mesh that moves, but in groups in which it is where it was.
 
     steps: from a frame's number and the lattice coordinates (v, 3) of the mesh to those in that frame.
+    meshes: those of groups that have their own.
     """
     groups = clip.groups
     assert isinstance(groups, CodedGroups)
-    (stream,) = next(found for (kind, _), found in groups.payloads.items() if kind == "mesh")
-    placed, made, first = decode_placed(stream.data), [], 0
+    made, first = [], 0
     for index, count in enumerate(groups.lengths):
+        placed = decode_placed(meshes.get(index, groups.payloads.only("mesh")).data)
         frames = np.stack([steps(number, placed.places) for number in range(first, first + count)])
         data = encoder("motion-1")(placed.places, placed.mesh.faces, frames)
         motion = Payload("motion-1", data) if (frames != placed.places).any() else None
-        made.append(group_bytes(replace(groups.coded(index), motion=motion)))
+        made.append(group_bytes(replace(groups.coded(index), motion=motion, mesh=meshes.get(index))))
         first += count
     return coded_clip(
         clip.rig, groups.mesh, clip.timeline, groups.layout, made, groups.lengths, to_rgb=groups.to_rgb,

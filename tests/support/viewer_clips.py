@@ -5,7 +5,8 @@
 writes into FOLDER
 
     clip.glb     frames that show their numbers (`support.clips`), in groups of 5, 7, 1 and 12
-    moving.glb   the same on a mesh that moves, but for the third group, in which it is where the file's mesh is
+    moving.glb   the same on a mesh that moves, but for the third group, in which it is where the file's mesh is; the
+                 second group has a mesh of its own
     moving.json  for each frame the positions of all vertices, three numbers each
     clip.json    {"groups": frames of each, "strengths" of each, "places": first byte of each and that behind it,
                  "rate", "bits" of a number, "textures", "codes": for each frame the SHA-256 of the codes of each film,
@@ -26,7 +27,7 @@ from eigenfield.coding.video.film import decode_film
 from eigenfield.core.clip import Clip
 from eigenfield.gltf import save
 from eigenfield.gltf.clips import CodedGroups
-from support.clips import BITS, STRENGTHS, TEXTURES_COUNT, groups_of, moving_clip, numbered_clip
+from support.clips import BITS, STRENGTHS, TEXTURES_COUNT, finer_mesh, groups_of, moving_clip, numbered_clip
 
 GROUPS = (5, 7, 1, 12)
 
@@ -43,7 +44,7 @@ def write(folder: Path) -> None:
         "rate": [rate.numerator, rate.denominator], "bits": BITS, "textures": TEXTURES_COUNT, "codes": digests(clip),
     }  # fmt: skip
     (folder / "clip.json").write_text(json.dumps(facts), encoding="utf-8")
-    moving = moving_clip(clip, steps)
+    moving = moving_clip(clip, steps, {1: finer_mesh(clip)})
     save(moving, folder / "moving.glb", overwrite=True)
     found = [moving.scene(float(time)).proxy.mesh.vertices.reshape(-1).tolist() for time in moving.timeline.times]
     (folder / "moving.json").write_text(json.dumps(found), encoding="utf-8")

@@ -99,14 +99,15 @@ test("groups are opened with weights, scales and units; what is damaged says whe
   await assert.rejects(new built.Groups(scene, scene.timeline, mesh, read(wrong)).open(1), damaged("groups/1"));
 });
 
-test("a mesh that moves is in each frame where Python puts it, in whatever order frames are asked for", async () => {
+test("a mesh that moves is in each frame where Python puts it, also a group's own, in whatever order frames are asked for", async () => {
   const expected = JSON.parse(readFileSync(moving.positions, "utf8"));
   const scene = built.readDocument(moving.json);
   const groups = new built.Groups(scene, scene.timeline, moving.mesh, read(moving.chunk));
   for (const [index, { first, frames }] of scene.timeline.groups.entries()) {
-    const { motion } = await groups.open(index);
+    const { mesh, motion } = await groups.open(index);
     assert.equal(motion === null, index === 2);
-    const positions = Float32Array.from(moving.mesh.positions);
+    assert.equal(mesh === moving.mesh, index !== 1);
+    const positions = Float32Array.from(mesh.positions);
     for (const frame of [0, frames - 1, 1 % frames, frames >> 1]) {
       motion?.read(frame);
       motion?.place(frame, positions);

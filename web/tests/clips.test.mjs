@@ -291,7 +291,7 @@ test("a graphics context that was lost comes back with the frame that was shown,
   await close();
 });
 
-test("a mesh that moves is drawn in each frame where it is, played and sought", async () => {
+test("a mesh that moves is drawn in each frame where it is, and each group on its own mesh, played and sought", async () => {
   const expected = JSON.parse(readFileSync(scenePath("moving.json"), "utf8"));
   const { page, close } = await openClip("moving.glb");
   const places = (frame) => page.evaluate(async (frame) => {

@@ -71,6 +71,7 @@ class CodedGroup:
         bases: Of each basis of each plane, likewise for each channel of each texture.
         units: For each frame the temporal unit of each film; the first of a film is a key picture.
         motion: Where the mesh's vertices are in each frame; None: where the mesh has them.
+        mesh: The mesh of the group; None: that of the file.
     """
 
     weights: tuple[tuple[Payload, ...], ...]
@@ -78,5 +79,6 @@ class CodedGroup:
     bases: tuple[tuple[Affine, ...], ...]
     units: tuple[tuple[bytes, ...], ...]
     motion: Payload | None = None
+    mesh: Payload | None = None
 
     __repr__ = brief_repr

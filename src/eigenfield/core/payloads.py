@@ -93,6 +93,15 @@ class Payloads(Mapping[Key, tuple[Payload, ...]]):
         """All payloads but those of one kind of content."""
         return Payloads({key: payloads for key, payloads in self._found.items() if key[0] != kind})
 
+    def only(self, kind: str) -> Payload:
+        """The one payload of a kind of content of which there is no other.
+
+        Raises:
+            ValueError: There is none, or there are several.
+        """
+        (stream,) = (payload for key, payloads in self._found.items() if key[0] == kind for payload in payloads)
+        return stream
+
     @staticmethod
     def merge(several: Iterable[Payloads]) -> Payloads:
         """The payloads of several."""

@@ -22,7 +22,7 @@ from eigenfield.core.clip import Clip, Frame, Group, Timeline
 from eigenfield.core.errors import FormatError
 from eigenfield.core.films import CodedGroup, FilmLayout, FilmPart
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.payloads import Payload, Payloads, weights_key
+from eigenfield.core.payloads import Payload, Payloads, mesh_key, weights_key
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
 from eigenfield.gltf.group import read_group, read_head
@@ -84,7 +84,8 @@ class CodedGroups:
     """The groups of a clip as they are coded. The one that was decoded last is kept.
 
     Attributes:
-        payloads: Of what is the same in all groups: the mesh, and maybe the cameras.
+        mesh: Of the groups that have none of their own.
+        payloads: Of this mesh, and maybe the cameras.
     """
 
     layout: FilmLayout
@@ -94,7 +95,7 @@ class CodedGroups:
     to_rgb: NDArray[np.float32] | None
     payloads: Payloads
     _kept: dict[int, Group] = field(default_factory=dict, init=False, repr=False)
-    _placed: list[PlacedMesh] = field(default_factory=list, init=False, repr=False)
+    _placed: dict[bytes, PlacedMesh] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def lengths(self) -> Sequence[int]:
@@ -133,9 +134,13 @@ class CodedGroups:
 
     def _decode(self, index: int) -> Group:
         coded, where = self.coded(index), group_place(index)
-        motion = None if coded.motion is None else self._motion(coded.motion, len(coded.units), where)
+        mesh, payloads = self.mesh, self.payloads
+        if coded.mesh is not None:
+            mesh = self._placed_mesh(coded.mesh, where).mesh
+            payloads = payloads.without("mesh") | {mesh_key(mesh): [coded.mesh]}
+        motion = None if coded.motion is None else self._motion(coded, where)
         frames = CodedFrames(coded, self.layout, where, self.stored[index], motion)
-        first, planes, payloads = frames[0], [], self.payloads
+        first, planes = frames[0], []
         parts = zip(first.means, first.textures, coded.bases, coded.weights, strict=True)
         for mean, own, affines, streams in parts:
             bases = []
@@ -146,16 +151,25 @@ class CodedGroups:
                 bases.append(Basis(textures, scale, zero, weights))
                 payloads |= {weights_key(weights): [stream]}
             planes.append(Plane(mean, tuple(bases)))
-        mesh = self.mesh if first.vertices is None else replace(self.mesh, vertices=first.vertices)
+        mesh = mesh if first.vertices is None else replace(mesh, vertices=first.vertices)
         return Group(Proxy(mesh), Appearance(tuple(planes), self.to_rgb), frames, payloads)
 
-    def _motion(self, stream: Payload, frames: int, where: str) -> Motion:
-        if not self._placed:
+    def _placed_mesh(self, stream: Payload, where: str) -> PlacedMesh:
+        """A mesh on its lattice; the last one is kept. FormatError `coded-*`."""
+        if stream.data not in self._placed:
             from eigenfield.coding.mesh.coder import decode_placed  # loads numba, which files without it do not want
 
-            (mesh,) = next(found for (kind, _), found in self.payloads.items() if kind == "mesh")
-            self._placed.append(decode_placed(mesh.data, where, mesh.data[0]))
-        placed = self._placed[0]
+            placed = decode_placed(stream.data, where, stream.data[0])
+            if not len(placed.mesh.faces):
+                raise FormatError("coded-damaged", "a mesh without faces", where=where)
+            self._placed.clear()
+            self._placed[stream.data] = placed
+        return self._placed[stream.data]
+
+    def _motion(self, coded: CodedGroup, where: str) -> Motion:
+        stream, frames = coded.motion, len(coded.units)
+        assert stream is not None
+        placed = self._placed_mesh(coded.mesh or self.payloads.only("mesh"), where)
         moving, steps = CODECS[stream.codec].decode(stream.data, placed.places, placed.mesh.faces, where)
         if len(steps) != frames:
             message = f"vertices move in {len(steps)} frames, the group has {frames}"
@@ -172,7 +186,7 @@ class CodedGroups:
         return weights
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_kept": {}, "_placed": []}
+        return {**self.__dict__, "_kept": {}, "_placed": {}}
 
 
 @dataclass(frozen=True, eq=False)

@@ -59,7 +59,7 @@ def describe_clip(path: str | os.PathLike[str]) -> tuple[ClipLayout, list[GroupH
         means = {plane.mean.film for plane in layout.films.planes}
         for head in heads:
             made["weights"] += sum(map(sum, head.weights))
-            made["mesh"] += head.motion
+            made["mesh"] += head.mesh + head.motion
             for units in head.frames:
                 for film, length in enumerate(units):
                     made["mean" if film in means else "textures"] += length

@@ -1,7 +1,7 @@
 """A group of frames as bytes (`group-1`): a deflated JSON head, then its streams one behind the other.
 
-First come the weights, then maybe the motion of the mesh, then frame by frame a unit of each film. A group that is
-still arriving can be shown as far as it is there.
+First come the weights, then maybe a mesh of its own and the motion of the mesh, then frame by frame a unit of each
+film. A group that is still arriving can be shown as far as it is there.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from eigenfield.gltf.strict_json import Value
 
 HEAD = struct.Struct("<I")  # bytes of the deflated JSON, which follows
 WEIGHTS_CODEC = "weights-1"
+MESH_CODEC = "mesh-2"
 MOTION_CODEC = "motion-1"
 
 
@@ -36,6 +37,7 @@ class GroupHead:
         first: The first byte of the streams.
         weights: Lengths, of each basis of each plane.
         frames: Lengths: for each frame the unit of each film.
+        mesh: The length; 0: it has the mesh of the file.
         motion: The length; 0: the mesh stands still.
     """
 
@@ -44,18 +46,21 @@ class GroupHead:
     means: tuple[Affine, ...]
     bases: tuple[tuple[Affine, ...], ...]
     frames: tuple[tuple[int, ...], ...]
+    mesh: int
     motion: int
 
     @property
     def lengths(self) -> list[int]:
         """Of all streams, in their order."""
-        motion = [self.motion] if self.motion else []
-        return [*chain.from_iterable(self.weights), *motion, *chain.from_iterable(self.frames)]
+        geometry = [length for length in (self.mesh, self.motion) if length]
+        return [*chain.from_iterable(self.weights), *geometry, *chain.from_iterable(self.frames)]
 
 
 def group_bytes(group: CodedGroup) -> bytes:
     """The bytes of a group, the same each time."""
     assert all(weights.codec == WEIGHTS_CODEC for plane in group.weights for weights in plane)
+    assert group.mesh is None or group.mesh.codec == MESH_CODEC
+    geometry = {"mesh": group.mesh, "motion": group.motion}
     head = {
         "weights": [[len(weights.data) for weights in plane] for plane in group.weights],
         "means": [_affine(mean, len(mean.scale)) for mean in group.means],
@@ -64,11 +69,11 @@ def group_bytes(group: CodedGroup) -> bytes:
             for mean, plane in zip(group.means, group.bases, strict=True)
         ],
         "frames": [list(map(len, units)) for units in group.units],
-        **({} if group.motion is None else {"motion": len(group.motion.data)}),
+        **{name: len(one.data) for name, one in geometry.items() if one is not None},
     }
     text = deflate(json_bytes(head).rstrip(b" "))
     streams = [weights.data for plane in group.weights for weights in plane]
-    streams += [] if group.motion is None else [group.motion.data]
+    streams += [one.data for one in geometry.values() if one is not None]
     return b"".join([HEAD.pack(len(text)), text, *streams, *chain.from_iterable(group.units)])
 
 
@@ -85,6 +90,7 @@ def read_group(data: bytes, layout: FilmLayout, where: str) -> CodedGroup:
     streams = (data[start:end] for start, end in pairwise(ends))
     return CodedGroup(
         weights=tuple(tuple(Payload(WEIGHTS_CODEC, next(streams)) for _ in plane) for plane in head.weights),
+        mesh=Payload(MESH_CODEC, next(streams)) if head.mesh else None,
         motion=Payload(MOTION_CODEC, next(streams)) if head.motion else None,
         means=head.means,
         bases=head.bases,
@@ -133,6 +139,7 @@ def _head_of(entry: Value, first: int, layout: FilmLayout) -> GroupHead:
             for own, plane in zip(bases, layout.planes, strict=True)
         ),
         frames=tuple(tuple(map(_length, units.items(films, films))) for units in frames),
+        mesh=_length(entry["mesh"]) if entry.has("mesh") else 0,
         motion=_length(entry["motion"]) if entry.has("motion") else 0,
     )
 

@@ -97,7 +97,7 @@ def check_readable(text: bytes, binary: bytes, length: int) -> None:
 def _head(clip: Clip, groups: CodedGroups, scene: Scene, chunk: _GroupsChunk) -> tuple[bytes, bytes]:
     """The JSON and the binary chunk; scene: of the first frame, which other viewers are shown."""
     poses = cached_payloads(scene).one("cameras")
-    mesh = next(stream for (kind, _), (stream, *_) in groups.payloads.items() if kind == "mesh")
+    mesh = groups.payloads.only("mesh")
     buffer = Buffer(packed=None if poses is None else [])
     shown = make_fallback(scene, shown_mean(scene), groups.stored[0].data.size + len(mesh.data))
     drawn = {} if shown is None else write_drawn(scene, *shown, buffer, True)

@@ -17,7 +17,7 @@ export interface Clip {
   timeline: Timeline;
   group: Group; // the first
   films: Codes[]; // of the first frame
-  mesh: DecodedMesh; // where it is in groups in which nothing moves
+  mesh: DecodedMesh; // of groups that have none of their own
   ring: (user: RingUser) => FrameRing;
 }
 

@@ -19,11 +19,13 @@ import { FILTERS, VIEWS, compareWith, type Filter } from "./material.js";
 import { FilmTextures } from "./film-textures.js";
 import type { ClipFrame } from "./frame-ring.js";
 import { setScales, type Group } from "./groups.js";
+import type { DecodedMesh } from "./mesh-decoder.js";
 import type { EigenfieldOptions } from "./options.js";
 import { opacityPart, partsOf, rescale, type Part } from "./parts.js";
 import { Player } from "./player.js";
 import type { Reduction } from "./memory.js";
 import { onPlane } from "./passes.js";
+import { geometryOf } from "./proxy.js";
 import { Surface } from "./surface.js";
 import type { TextureSource } from "./texture-source.js";
 import { Textures, type TextureParts } from "./textures.js";
@@ -82,7 +84,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
   private readonly textures: Textures;
   private weights: EigenWeights;
   private group: Group | null; // of the frame that is shown
-  private readonly moved: BufferGeometry | null; // of a clip, whose frames may have vertices of their own
+  private moved: BufferGeometry | null; // of a clip, whose groups may have another mesh, and frames their own vertices
   private summed: { parts: Part[]; opacity: Part | null } = { parts: [], opacity: null };
   private readonly composers = new Map<number, Composer>(); // by `coarser`, each when it is first asked for
   private readonly encoded: CaptureCamera[];
@@ -109,7 +111,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     this.group = parts.clip && parts.clip.group;
     this.player = parts.clip && this.makePlayer(parts.clip);
     this.moved = parts.clip && this.surface.geometry;
-    if (parts.clip?.group.motion) this.move(parts.clip.group, 0);
+    if (parts.clip) this.shape(parts.clip.group, 0, parts.clip.mesh, false);
     this.textures = new Textures(parts, source, this.surface, options);
     this.complete = new Promise((resolve, reject) => {
       this.addEventListener("complete", () => resolve());
@@ -217,19 +219,21 @@ export class EigenField extends EventDispatcher<FieldEvents> {
 
   /** All of a frame at once: what its group has, and its textures. */
   private showFrame({ number, group, films }: ClipFrame): void {
-    if (group.motion ?? this.group?.motion) this.move(group, number - group.first);
+    if (this.group) this.shape(group, number - group.first, this.group.mesh, this.group.motion !== null);
     if (group !== this.group) this.enter(group);
     if (this.source instanceof FilmTextures) this.source.show(films);
   }
 
-  /** Puts the vertices where they are in a frame of a group, unless the surface is another by now. */
-  private move({ motion }: Group, frame: number): void {
-    const { geometry } = this.surface;
-    if (geometry !== this.moved) return;
+  /** Gives the surface the shape of a frame of a group, unless it was exchanged for another by now. `shown`: the mesh
+   * that it has, whose vertices may have `moved`. */
+  private shape({ mesh, motion }: Group, frame: number, shown: DecodedMesh, moved: boolean): void {
+    if (this.surface.geometry !== this.moved || (mesh === shown && !motion && !moved)) return;
+    const geometry = mesh === shown ? this.moved : geometryOf(mesh);
     const position = geometry.getAttribute("position") as BufferAttribute;
     if (motion) motion.place(frame, position.array as Float32Array);
-    else position.copyArray(this.parts.clip!.mesh.positions);
+    else position.copyArray(mesh.positions);
     position.needsUpdate = true;
+    this.moved = geometry;
     this.surface.setGeometry(geometry);
   }
 

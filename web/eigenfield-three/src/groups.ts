@@ -30,13 +30,14 @@ export interface Group {
   means: Affine[]; // of each plane
   bases: Affine[]; // of all planes
   units: Uint8Array[][]; // of each frame, one for each film
+  mesh: DecodedMesh; // as its stream decodes
   motion: Motion | null; // null: the mesh stands still
 }
 
 export class Groups {
   private readonly kept = new Map<number, Promise<Group>>(); // that was wanted last is the last
 
-  /** `read`: bytes of the chunk of groups. */
+  /** `mesh`: of groups that have none of their own. `read`: bytes of the chunk of groups. */
   constructor(
     private readonly scene: SceneDocument,
     private readonly timeline: Timeline,
@@ -61,18 +62,19 @@ export class Groups {
     const { head, at } = await readHead(bytes, place);
     const streams = takeStreams(bytes, at, place);
     const omega = this.weightsOf(head, streams);
-    const motion = this.motionOf(head, streams, place);
+    const mesh = this.meshOf(head, streams);
+    const motion = motionOf(head, streams, mesh, place);
     const { first, frames } = place;
     const units = unitsOf(head, place, this.timeline.films.length, streams);
-    return { index, first, frames, omega, ...this.scalesOf(head), units, motion };
+    return { index, first, frames, omega, ...this.scalesOf(head), units, mesh, motion };
   }
 
-  private motionOf(head: Value<GroupHeadJson>, streams: Streams, { frames }: GroupPlace): Motion | null {
-    const length = head.key("motion");
-    if (!length.exists) return null;
-    const motion = CODECS["motion-1"].decode(streams(length as Value<number>), this.mesh, length.where);
-    if (motion.frames !== frames) throw length.wrong(`${motion.frames} frames of ${frames}`);
-    return motion;
+  private meshOf(head: Value<GroupHeadJson>, streams: Streams): DecodedMesh {
+    const length = head.key("mesh");
+    if (!length.exists) return this.mesh;
+    const mesh = CODECS["mesh-2"].decode(streams(length as Value<number>), length.where);
+    if (!mesh.indices.length) throw damaged(length.where, "a mesh without faces");
+    return mesh;
   }
 
   private weightsOf(head: Value<GroupHeadJson>, streams: Streams): Float32Array {
@@ -138,6 +140,19 @@ function takeStreams(bytes: Uint8Array, start: number, place: GroupPlace): Strea
     if (at > bytes.length) throw length.wrong("beyond the end of the group");
     return bytes.subarray(from, at);
   };
+}
+
+function motionOf(
+  head: Value<GroupHeadJson>,
+  streams: Streams,
+  mesh: DecodedMesh,
+  { frames }: GroupPlace,
+): Motion | null {
+  const length = head.key("motion");
+  if (!length.exists) return null;
+  const motion = CODECS["motion-1"].decode(streams(length as Value<number>), mesh, length.where);
+  if (motion.frames !== frames) throw length.wrong(`${motion.frames} frames of ${frames}`);
+  return motion;
 }
 
 /** Of each frame a unit for each film. */

@@ -374,6 +374,8 @@ export interface GroupHeadJson {
   bases: AffineJson[][];
   /** For each frame the bytes of each film's unit. */
   frames: number[][];
+  /** Bytes of the group's mesh, as mesh-2 codes it. Absent: the group has the mesh of the file. */
+  mesh?: number;
   /** Bytes of the motion of the mesh's vertices. Absent: they stand still. */
   motion?: number;
 }

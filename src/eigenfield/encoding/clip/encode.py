@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import logging
 import os
 import re
 from collections.abc import Sequence
@@ -20,9 +21,8 @@ from eigenfield.core.progress import Progress, begin_step
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.version import __version__
 from eigenfield.encoding.clip.digest import footage_digest
-from eigenfield.encoding.clip.groups import Groups, MadeGroup
-from eigenfield.encoding.clip.motion import MovingMesh, moving_mesh
-from eigenfield.encoding.clip.plan import open_clip_plan
+from eigenfield.encoding.clip.groups import Groups, MadeGroup, Run
+from eigenfield.encoding.clip.motion import moving_mesh
 from eigenfield.encoding.clip.still import estimate_still_surface, refuse_sheets, surface_of_clip
 from eigenfield.encoding.fitted.colour import to_rgb
 from eigenfield.encoding.options import EncodeOptions
@@ -31,7 +31,7 @@ from eigenfield.encoding.prepare import plan_encoding
 from eigenfield.gltf.clips import coded_clip
 from eigenfield.proxy import refuse_no_mesh
 from eigenfield.proxy.atlas.unwrap import UNWRAP_MIN_TRIANGLES
-from eigenfield.proxy.meshes.sequence import is_sequence, read_sequence
+from eigenfield.proxy.meshes.sequence import is_sequence, read_sequences
 from eigenfield.reconstruction import SurfaceOptions
 from eigenfield.runtime.files import make_folder
 from eigenfield.runtime.parallel import even_pieces
@@ -41,10 +41,13 @@ from eigenfield.runtime.tasks import Workers
 if TYPE_CHECKING:
     from eigenfield.capture.footage import Footage
 
+log = logging.getLogger("eigenfield.encode")
+
 GivenProxy = str | os.PathLike[str] | Mesh | Proxy | Sequence[str | os.PathLike[str] | Mesh]
 DEFAULT_GROUP = "1s"
 GROUP_PATTERN = re.compile(r"(\d{1,9})|(\d{1,9}(?:\.\d*)?|\.\d+)s")  # frames, or seconds
 GROUP_LIMITS = 1, 1024  # frames
+SHOWN_NUMBERS = 8  # of frames in a message
 STILL_OPTIONS = (  # that have no meaning for clips
     "uv_ssim", "align", "max_angle", "codec", "keep_maps", "residual", "target", "harmonise",
 )  # fmt: skip
@@ -64,7 +67,7 @@ def encode_clip(
     Its frames share the weights of their group (equation 6, summed over its frames).
 
     Args:
-        proxy: Opaque; or a mesh for each frame (`read_sequence`). None: the surface that `still_capture` shows.
+        proxy: Opaque; or a mesh for each frame (`read_sequences`). None: the surface that `still_capture` shows.
         asked: Options; those that clips have no use for are refused.
         work: Folder that keeps finished stages; None: nothing is kept.
         workers: That make all groups but the first, which says how many textures there are; they see `work` and the
@@ -84,28 +87,21 @@ def encode_clip(
     if surface is not None:
         footage, proxy, asked = estimate_still_surface(footage, asked, surface, work, progress)
     assert proxy is not None
-    plan, moving = _plan(footage, proxy, asked, work, progress)
-    motion = None if moving is None else moving.digest
-    identity = stage_key([footage_digest(footage), asked, _plan_digest(plan), motion], SCENE_ROOMS)
-    spans = even_pieces(len(footage), -(-len(footage) // length))
-    if moving is not None:
-        moving.check_groups(spans)
-    groups = Groups(footage, plan, identity, tuple(spans), work, moving)
+    runs = _runs(footage, proxy, asked, length, work, progress)
+    plan = runs[0].plan
+    meshes = [[_plan_digest(run.plan), None if run.moving is None else run.moving.digest] for run in runs]
+    identity = stage_key([footage_digest(footage), asked, meshes], SCENE_ROOMS)
+    groups = Groups(footage, tuple(runs), identity, work)
     begin_step(progress, "fit")
-    with Stages(None if work is None else work / "clip") as stages, open_clip_plan(plan, work, moving) as clip:
-        made = [groups.make(clip, stages, 0, None, progress)]
-        counts = made[0].counts
-        if workers is not None and len(spans) > 1:
-            groups.make_on_workers(clip, stages, counts, workers, progress)
-        made += [groups.make(clip, stages, number, counts, progress) for number in range(1, len(spans))]
-        layout = clip.layout(counts)
+    with Stages(None if work is None else work / "clip") as stages:
+        made, layout = groups.make_all(stages, workers, progress)
     return coded_clip(
         plan.views.rig,
         plan.mesh,
         footage.timeline,
         layout,
         [one.data for one in made],
-        [last - first for first, last in spans],
+        [last - first for first, last in groups.spans],
         to_rgb=to_rgb(),
         settings=_settings(plan, made, asked),
         scores={},
@@ -114,18 +110,49 @@ def encode_clip(
     )
 
 
-def _plan(
-    footage: Footage, proxy: GivenProxy, asked: EncodeOptions, work: Path | None, progress: Progress | None
-) -> tuple[EncodePlan, MovingMesh | None]:
-    """The plan of the middle instant; or of the first on its own mesh as it is given, and the meshes of all."""
+def _runs(
+    footage: Footage,
+    proxy: GivenProxy,
+    asked: EncodeOptions,
+    length: int,
+    work: Path | None,
+    progress: Progress | None,
+) -> list[Run]:
+    """All frames on a mesh that stands still, which is planned by the middle instant. Or frames in a row whose meshes
+    have the same triangles, each planned by its first instant on its own mesh as it is given.
+
+    Args:
+        length: Of a group, in frames, at most.
+    """
     if not is_sequence(proxy):
         middle = cast("CalibratedObservations", footage.instant(len(footage) // 2))
-        return plan_encoding(middle, cast("Mesh", proxy), asked, work, progress), None
-    first = cast("CalibratedObservations", footage.instant(0))
-    sequence = read_sequence(cast("str", proxy), len(footage), first.origin)
-    whole = replace(asked, triangles=max(len(sequence.mesh.faces), UNWRAP_MIN_TRIANGLES))
-    plan = plan_encoding(first, sequence.mesh, whole, work, progress, exact=True)
-    return plan, moving_mesh(plan, sequence)
+        plan = plan_encoding(middle, cast("Mesh", proxy), asked, work, progress)
+        return [Run(_spans(0, len(footage), length), plan)]
+    sequences = read_sequences(cast("str", proxy), len(footage), footage.origin)
+    runs: list[Run] = []
+    for sequence in sequences:
+        whole = replace(asked, triangles=max(len(sequence.mesh.faces), UNWRAP_MIN_TRIANGLES))
+        if runs:  # cameras and the size of films are those of the clip
+            rig = runs[0].plan.views.rig
+            whole = replace(whole, atlas=runs[0].plan.atlas, reference=rig.names[rig.reference])
+        first = cast("CalibratedObservations", footage.instant(sequence.first))
+        plan = plan_encoding(first, sequence.mesh, whole, work, progress, exact=True)
+        if runs:
+            plan = replace(plan, views=plan.views.with_cameras(rig.cameras))
+        moving, end = moving_mesh(plan, sequence), sequence.first + len(sequence.positions)
+        runs.append(Run(_spans(sequence.first, end, length), plan, moving))
+        moving.check_groups(runs[-1].spans)
+    if len(runs) > 1:
+        numbers = ", ".join(str(sequence.first) for sequence in sequences[1:][:SHOWN_NUMBERS])
+        more = "" if len(runs) <= SHOWN_NUMBERS + 1 else ", ..."
+        log.info("meshes with other triangles begin at frames %s%s: a group begins there", numbers, more)
+    return runs
+
+
+def _spans(first: int, end: int, length: int) -> tuple[tuple[int, int], ...]:
+    """Groups of about the same length from a frame up to, and without, another one."""
+    count = end - first
+    return tuple((first + start, first + stop) for start, stop in even_pieces(count, -(-count // length)))
 
 
 def group_length(text: str, rate: Fraction) -> int:

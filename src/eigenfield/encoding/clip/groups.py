@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import contextlib
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eigenfield.core.films import CodedGroup
+from eigenfield.core.films import CodedGroup, FilmLayout
 from eigenfield.core.progress import Progress, track
 from eigenfield.encoding.clip.closed_loop import code_group, texture_counts
 from eigenfield.encoding.clip.frames import GroupFrames, load_arrays, save_arrays
@@ -48,22 +50,68 @@ class MadeGroup:
 
 
 @dataclass(frozen=True, eq=False)
+class Run:
+    """Frames in a row that are encoded on one mesh, or on meshes with the same triangles.
+
+    Attributes:
+        spans: The first frame of each of its groups, and the one after the group's last.
+        moving: The mesh at each frame; None: it stands still.
+    """
+
+    spans: tuple[tuple[int, int], ...]
+    plan: EncodePlan
+    moving: MovingMesh | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class Groups:
     """What the groups of a clip are made of. It is the same in all processes.
 
     Attributes:
+        runs: In the order of time. The first one's plan is that of the clip.
         identity: What every group depends on.
-        spans: The first frame of each group, and the one after its last.
         work: Folder for scratch files; None: the system's.
-        moving: The mesh at each frame; None: it stands still.
     """
 
     footage: Footage
-    plan: EncodePlan
+    runs: tuple[Run, ...]
     identity: str
-    spans: tuple[tuple[int, int], ...]
     work: Path | None
-    moving: MovingMesh | None = None
+
+    @property
+    def spans(self) -> list[tuple[int, int]]:
+        """The first frame of each group, and the one after its last."""
+        return [span for run in self.runs for span in run.spans]
+
+    @contextlib.contextmanager
+    def open_run(self, run: Run) -> Iterator[ClipPlan]:
+        """The plan of a run, whose textures are as large as those of all others."""
+        with open_clip_plan(run.plan, self.work, run.moving, self.runs[0].plan.density) as clip:
+            yield clip
+
+    def run_of(self, number: int) -> Run:
+        """The run of a group."""
+        return next(run for run in self.runs if self.spans[number] in run.spans)
+
+    def make_all(
+        self, stages: Stages, workers: Workers | None, progress: Progress | None
+    ) -> tuple[list[MadeGroup], FilmLayout]:
+        """All groups, and how their films are laid out.
+
+        Args:
+            workers: That make all groups but the first, which says how many textures there are.
+        """
+        made: list[MadeGroup] = []
+        for run in self.runs:
+            with self.open_run(run) as clip:
+                for _ in run.spans:
+                    counts = made[0].counts if made else None
+                    made.append(self.make(clip, stages, len(made), counts, progress))
+                    if len(made) == 1:
+                        layout = clip.layout(made[0].counts)
+                        if workers is not None and len(self.spans) > 1:
+                            self.make_on_workers(layout, stages, made[0].counts, workers, progress)
+        return made, layout
 
     def key(self, number: int, counts: tuple[int, ...] | None) -> str:
         """Of the stage of a group."""
@@ -84,6 +132,8 @@ class Groups:
 
         def build(folder: Path) -> None:
             coded, psnr, kept = _projected(frames) if projected else _fitted(frames, counts)
+            if self.run_of(number) is not self.runs[0]:
+                coded = replace(coded, mesh=clip.plan.payloads.only("mesh"))
             (folder / GROUP_FILE).write_bytes(group_bytes(coded))
             save_arrays(folder, {"counts": np.array(kept), "psnr": np.array(psnr)})
 
@@ -95,7 +145,7 @@ class Groups:
         )
 
     def make_on_workers(
-        self, clip: ClipPlan, stages: Stages, counts: tuple[int, ...], workers: Workers, progress: Progress | None
+        self, layout: FilmLayout, stages: Stages, counts: tuple[int, ...], workers: Workers, progress: Progress | None
     ) -> None:
         """Have workers make all groups but the first, as finished stages.
 
@@ -103,7 +153,7 @@ class Groups:
             OutputError: `folder-not-shared`, a worker does not see the stages.
         """
         refuse_unshared(workers, stages.folder)
-        films = sum(width * height for width, height in clip.layout(counts).sizes)
+        films = sum(width * height for width, height in layout.sizes)
         task = Task(make_group, PASSES_MEMORY_BYTES + FILM_PIXEL_MEMORY_BYTES * films)
         with share([self], stages.folder) as (shared,):
             calls = [(task, stages.folder, shared, number, counts) for number in range(1, len(self.spans))]
@@ -136,7 +186,7 @@ def make_group(folder: Path, shared: Shared[Groups], number: int, counts: tuple[
     groups = shared.value()
     with Stages(folder) as stages:
         if stages.find(_name(number), groups.key(number, counts)) is None:
-            with open_clip_plan(groups.plan, groups.work, groups.moving) as clip:
+            with groups.open_run(groups.run_of(number)) as clip:
                 groups.make(clip, stages, number, counts, None)
 
 

@@ -253,12 +253,15 @@ class ClipPlan:
 
 
 @contextlib.contextmanager
-def open_clip_plan(plan: EncodePlan, work: Path | None = None, moving: MovingMesh | None = None) -> Iterator[ClipPlan]:
-    """The plan of a clip.
+def open_clip_plan(
+    plan: EncodePlan, work: Path | None = None, moving: MovingMesh | None = None, density: float | None = None
+) -> Iterator[ClipPlan]:
+    """The plan of a clip, or of frames in a row whose meshes have the same triangles.
 
     Args:
-        plan: For a fit, of one of the clip's instants.
+        plan: For a fit, of one of the instants.
         moving: The mesh at each frame; None: it stands still.
+        density: By which textures are sized, which is the same for all of a clip; None: that of the plan.
 
     Raises:
         CaptureError: `nothing-seen`, no camera covers a pixel.
@@ -275,7 +278,7 @@ def open_clip_plan(plan: EncodePlan, work: Path | None = None, moving: MovingMes
         whole = FitData(_of_cameras(cameras, np.zeros((0, 3), np.uint8), None), footprints)  # all count, none is known
 
         def plane_of(preset: PlanePreset) -> ClipPlane:
-            settings = preset.settings(size, plan.density, textures, views.scattered)
+            settings = preset.settings(size, density or plan.density, textures, views.scattered)
             settings = replace(settings, textures=max(1, min(settings.textures, count - 1)), local=0)
             composer = make_composer(footprints.surface, settings.grey_model())
             rate, scales = preset.rate(step), _scales(whole, settings)

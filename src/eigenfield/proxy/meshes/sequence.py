@@ -1,4 +1,4 @@
-"""A mesh for each frame of a clip: the same triangles in all of them, each with its own positions."""
+"""A mesh for each frame of a clip: the same triangles for some frames in a row, each with its own positions."""
 
 from __future__ import annotations
 
@@ -18,19 +18,21 @@ from eigenfield.proxy.meshes.formats import RawMesh
 from eigenfield.proxy.meshes.read import check_mesh, raw_of, read_raw
 
 NUMBER = re.compile(r"%0?\d*d")  # where the number stands in the name of a sequence
-SEQUENCE_REMEDY = "give one mesh for each frame of the clip, all of them with the same triangles"
+SEQUENCE_REMEDY = "give one mesh for each frame of the clip"
 
 
 @dataclass(frozen=True, eq=False)
 class MeshSequence:
-    """A mesh over the frames of a clip.
+    """A mesh over frames in a row whose meshes have the same triangles.
 
     Attributes:
-        mesh: That of the first frame, without what cannot be used of it; with its own texture coordinates or none.
+        first: The first of these frames, counted in the clip.
+        mesh: Its mesh, without what cannot be used of it; with its own texture coordinates or none.
         faces: (m, 3) of all that were given.
         positions: (T, v, 3) float32 of all that were given.
     """
 
+    first: int
     mesh: Mesh
     faces: NDArray[np.int64]
     positions: NDArray[np.float32]
@@ -85,45 +87,43 @@ def is_sequence(proxy: object) -> bool:
     return isinstance(proxy, Sequence)
 
 
-def read_sequence(
+def read_sequences(
     given: str | os.PathLike[str] | Sequence[str | os.PathLike[str] | Mesh],
     frames: int,
     origin: NDArray[np.float64] | None = None,
-) -> MeshSequence:
-    """Read a mesh for each of so many frames.
+) -> list[MeshSequence]:
+    """Read a mesh for each of so many frames. Where a mesh has other triangles than the one before, another sequence
+    begins.
 
     Args:
         given: Meshes, their files, or the pattern of `mesh_files`.
         origin: As of `read_mesh`, of files alone.
 
     Raises:
-        ProxyError: As `mesh_files` and `read_mesh`; `proxy-count`, not as many meshes as frames; `proxy-topology`, one
-            has other triangles than the first.
+        ProxyError: As `mesh_files` and `read_mesh`; `proxy-count`, not as many meshes as frames; `proxy-not-finite`.
     """
     path = Path(given) if isinstance(given, str | os.PathLike) else None
     meshes = mesh_files(path) if path is not None else cast("Sequence[Path | Mesh]", given)
     if len(meshes) != frames:
         message = f"{len(meshes)} meshes, the clip has {frames} frames"
         raise ProxyError("proxy-count", message, path=path, remedy=SEQUENCE_REMEDY)
-    first = _raw(meshes[0], origin)
-    head = None if isinstance(meshes[0], Mesh) else Path(meshes[0])
-    mesh, used = check_mesh(first, head), np.unique(first.faces)
-    positions = np.empty((frames, *first.vertices.shape), np.float32)
+    found: list[tuple[int, Mesh, RawMesh, list[NDArray[np.float32]]]] = []
     for number, one in enumerate(meshes):
-        raw, name = (first if number == 0 else _raw(one, origin)), None if isinstance(one, Mesh) else Path(one)
-        if raw.vertices.shape != first.vertices.shape or not np.array_equal(raw.faces, first.faces):
-            shown = "mesh" if name is None else "this mesh"
-            message = (
-                f"frame {number}: {shown} has {len(raw.vertices)} vertices and {len(raw.faces)} triangles, and not the "
-                f"same as the first, which has {len(first.vertices)} and {len(first.faces)}"
-            )
-            raise ProxyError("proxy-topology", message, path=name, remedy=SEQUENCE_REMEDY)
+        raw, name = _raw(one, origin), None if isinstance(one, Mesh) else Path(one)
+        if not found or not _same_faces(raw, found[-1][2]):
+            found.append((number, check_mesh(raw, name), raw, []))
         with np.errstate(over="ignore"):
-            positions[number] = raw.vertices
-        if number and not np.isfinite(positions[number][used]).all():
+            positions = raw.vertices.astype(np.float32)
+        if found[-1][3] and not np.isfinite(positions[np.unique(raw.faces)]).all():
             message = f"frame {number}: vertices have NaN or infinite positions"
             raise ProxyError("proxy-not-finite", message, path=name, remedy="export it again")
-    return MeshSequence(mesh, first.faces.astype(np.int64), positions)
+        found[-1][3].append(positions)
+    return [MeshSequence(first, mesh, raw.faces.astype(np.int64), np.stack(positions))
+            for first, mesh, raw, positions in found]  # fmt: skip
+
+
+def _same_faces(one: RawMesh, other: RawMesh) -> bool:
+    return one.vertices.shape == other.vertices.shape and np.array_equal(one.faces, other.faces)
 
 
 def _raw(one: str | os.PathLike[str] | Mesh, origin: NDArray[np.float64] | None) -> RawMesh:
