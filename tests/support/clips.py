@@ -130,13 +130,16 @@ def groups_of(data: bytes) -> list[bytes]:
     return [chunk[one["offset"] : one["offset"] + one["length"]] for one in timeline["groups"]]
 
 
-def with_groups(data: bytes, groups: Sequence[bytes]) -> bytes:
-    """A clip's file with other groups in the place of its own, whose digests and places are right."""
+def with_groups(data: bytes, groups: Sequence[bytes], gap: int = 0) -> bytes:
+    """A clip's file with other groups in the place of its own, whose digests and places are right.
+
+    gap: bytes behind each group, a multiple of 4.
+    """
     gltf, binary = glb_surgery.split(data)
     chunk = b""
     for entry, group in zip(gltf["extensions"][glb_surgery.EXTENSION]["timeline"]["groups"], groups, strict=True):
         entry |= {"offset": len(chunk), "length": len(group), "sha256": hashlib.sha256(group).hexdigest()}
-        chunk += group + bytes(-len(group) % 4)
+        chunk += group + bytes(-len(group) % 4 + gap)
     return glb_surgery.join(gltf, binary, glb_surgery.chunk(b"EFTL", chunk))
 
 

@@ -5,6 +5,7 @@
 writes into FOLDER
 
     clip.glb     frames that show their numbers (`support.clips`), in groups of 5, 7, 1 and 12
+    far.glb      the same, 2 MB from group to group
     moving.glb   the same on a mesh that moves, but for the third group, in which it is where the file's mesh is; the
                  second group has a mesh of its own
     moving.json  for each frame the positions of all vertices, three numbers each
@@ -27,7 +28,16 @@ from eigenfield.coding.video.film import decode_film
 from eigenfield.core.clip import Clip
 from eigenfield.gltf import save
 from eigenfield.gltf.clips import CodedGroups
-from support.clips import BITS, STRENGTHS, TEXTURES_COUNT, finer_mesh, groups_of, moving_clip, numbered_clip
+from support.clips import (
+    BITS,
+    STRENGTHS,
+    TEXTURES_COUNT,
+    finer_mesh,
+    groups_of,
+    moving_clip,
+    numbered_clip,
+    with_groups,
+)
 
 GROUPS = (5, 7, 1, 12)
 
@@ -43,6 +53,7 @@ def write(folder: Path) -> None:
         "groups": list(GROUPS), "strengths": STRENGTHS[: len(GROUPS)], "places": places,
         "rate": [rate.numerator, rate.denominator], "bits": BITS, "textures": TEXTURES_COUNT, "codes": digests(clip),
     }  # fmt: skip
+    (folder / "far.glb").write_bytes(with_groups(data, groups_of(data), gap=2**21))
     (folder / "clip.json").write_text(json.dumps(facts), encoding="utf-8")
     moving = moving_clip(clip, steps, {1: finer_mesh(clip)})
     save(moving, folder / "moving.glb", overwrite=True)

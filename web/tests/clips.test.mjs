@@ -34,6 +34,40 @@ const ROUTES = {
   },
   "/damaged.glb": bytes.map((byte, at) => (at === middleOf(places[1]) ? byte ^ 1 : byte)),
 };
+
+/** A clip whose first answer never goes on behind the first group: `answers` are to those that ask for a range, in turn,
+ * the last again and again. */
+function farRoutes() {
+  const far = sceneBytes("far.glb");
+  const held = places[0][1];
+  const ranged = (request) => /^bytes=(\d+)-(\d+)$/.exec(request.headers.range).slice(1).map(Number);
+  const part = (request, response, length = Infinity) => {
+    const [from, last] = ranged(request);
+    const range = `bytes ${from}-${last}/${far.length}`;
+    response.writeHead(206, { ...head, "Content-Length": last + 1 - from, "Content-Range": range });
+    if (length > last - from) return response.end(far.subarray(from, last + 1));
+    return response.write(far.subarray(from, from + length), () => response.destroy());
+  };
+  const kinds = {
+    ranges: [part],
+    short: [(request, response) => part(request, response, 99), part],
+    refused: [(request, response) => response.writeHead(503).end(), part],
+    whole: [(request, response) => response.writeHead(200, { ...head, "Content-Length": far.length }).end(far)],
+    never: [(request, response) => response.writeHead(404).end()],
+  };
+  return Object.entries(kinds).map(([kind, answers]) => {
+    const seen = { asked: 0, parted: false };
+    const route = (request, response) => {
+      if (request.headers.range) return answers[Math.min(seen.asked++, answers.length - 1)](request, response);
+      response.on("close", () => (seen.parted = true));
+      response.writeHead(200, { ...head, "Content-Length": far.length });
+      return response.write(far.subarray(0, held));
+    };
+    return [kind, route, seen];
+  });
+}
+const FAR = farRoutes();
+for (const [kind, route] of FAR) ROUTES[`/far-${kind}.glb`] = route;
 let lab;
 before(async () => (lab = await startLab(ROUTES)));
 after(() => lab?.close());
@@ -133,6 +167,25 @@ test("a file that comes slowly, a group in pieces, is played as far as it is the
   assert.deepEqual(errors, []);
   await close();
 });
+
+for (const [kind, , seen] of FAR) {
+  test(`groups that lie far behind are read by range, of a server that knows them or not: ${kind}`, async () => {
+    const { page, close } = await openClip(`far-${kind}.glb`, { allowed: /status of (404|503)|ERR_/ });
+    const { played, errors } = await playThrough(page, 4, kind === "never" ? 10 : FRAMES);
+    played.forEach(assertSame);
+    assert.equal(seen.parted, true, "the first answer is given up");
+    const shown = new Set(played.map(([frame]) => groupOf(frame)));
+    if (kind === "never") {
+      assert.deepEqual([...shown], [0]);
+      assert.deepEqual([...new Set(errors)], ["network"]);
+    } else {
+      assert.deepEqual(errors, []);
+      assert.ok(shown.has(3) && shown.has(1));
+      assert.ok(kind === "whole" ? seen.asked === 1 : seen.asked >= groups.length - 1, `${seen.asked} ranges`);
+    }
+    await close();
+  });
+}
 
 const LOSSES = { "/cut.glb": ["network", [0, 1]], "/damaged.glb": ["damaged", [0, 2, 3]] };
 for (const [path, [code, left]] of Object.entries(LOSSES)) {

@@ -11,6 +11,7 @@ interface Waiter {
 
 export class Arrival {
   received = 0;
+  onPush: () => void = () => undefined; // after bytes came
   private readonly chunks: { start: number; bytes: Uint8Array }[] = [];
   private waiters: Waiter[] = [];
   private ended = false;
@@ -31,6 +32,7 @@ export class Arrival {
     this.chunks.push({ start: this.received, bytes });
     this.received += bytes.length;
     this.settle();
+    this.onPush();
   }
 
   end(): void {

@@ -9,6 +9,7 @@ import type { Codes } from "./pieces.js";
 import { groupOf, type Timeline } from "./timeline.js";
 
 const AHEAD = 8; // frames that are kept
+const SOON = 2 / 3; // of a group, from where on the next one is fetched
 const OF_A_GROUP = new Set(["damaged", "truncated", "network"]); // errors that leave the other groups as they are
 
 /** A frame of which all films are there. */
@@ -174,6 +175,7 @@ export class FrameRing {
       const group = this.given?.index === index ? this.given : await this.groups.open(index);
       const within = number - group.first;
       const units = group.units[within] ?? [];
+      if (within >= group.frames * SOON) this.prepare((index + 1) % this.timeline.groups.length);
       group.motion?.read(within);
       if (within === 0) await Promise.all(this.decoders.map((decoder, film) => decoder.start(units[film]!)));
       if (turn !== this.turn) return;
@@ -183,6 +185,11 @@ export class FrameRing {
       if (within === group.frames - 1) await Promise.all(this.decoders.map((decoder) => decoder.flush()));
       if (turn !== this.turn) return;
     }
+  }
+
+  /** Has a group fetched before it is wanted; what goes wrong is heard when it is. */
+  private prepare(index: number): void {
+    if ((index || this.loop) && !this.broken.has(index)) this.groups.open(index).catch(() => undefined);
   }
 
   private async receive(film: number, position: number, frame: VideoFrame): Promise<void> {

@@ -48,6 +48,7 @@ export class Groups {
   /** Raises SceneError: `damaged`, `truncated`, `codec-unknown`. */
   open(index: number): Promise<Group> {
     const group = this.kept.get(index) ?? this.opened(index);
+    group.catch(() => this.kept.get(index) === group && this.kept.delete(index)); // the next one asks again
     this.kept.delete(index);
     this.kept.set(index, group);
     for (const [oldest] of this.kept) if (this.kept.size > KEPT) this.kept.delete(oldest);

@@ -7,6 +7,7 @@ import { SceneError, asSceneError } from "./errors.js";
 import { EigenField } from "./field.js";
 import type { ByteStream, EigenfieldOptions } from "./options.js";
 import { EigenfieldPlugin } from "./plugin.js";
+import { Ranges } from "./ranges.js";
 
 export interface LoadOptions extends EigenfieldOptions {
   signal?: AbortSignal | undefined;
@@ -26,19 +27,23 @@ export async function loadEigenfield(source: string | Blob | ArrayBuffer, option
   const { signal } = options;
   signal?.throwIfAborted();
   const arrival = new Arrival();
-  const stop = new AbortController();
+  const [stop, first] = [new AbortController(), new AbortController()]; // of all, and of the first answer alone
   const onAbort = (): void => {
     arrival.fail(new DOMException("The load was stopped.", "AbortError"));
     stop.abort();
   };
   signal?.addEventListener("abort", onAbort);
-  const fetching = receive(source, arrival, stop.signal, options.onBytes)
+  stop.signal.addEventListener("abort", () => first.abort());
+  const fetching = receive(source, arrival, first.signal, options.onBytes)
     .catch((reason: unknown) => arrival.fail(reason))
     .finally(() => signal?.removeEventListener("abort", onAbort));
   try {
     const container = await openContainer(arrival);
     if (!isScene(container.json)) return { gltf: await parsePlain(arrival, container, fetching), field: null };
-    const gltf = await parseScene(arrival, container, options);
+    const ranges = (file: string | Blob): Ranges =>
+      new Ranges(file, arrival, container.length, () => first.abort(), stop.signal);
+    const far = source instanceof ArrayBuffer ? arrival : ranges(source);
+    const gltf = await parseScene(arrival, container, far, options);
     signal?.throwIfAborted();
     const field: unknown = gltf.userData["eigenfield"];
     return { gltf, field: field instanceof EigenField ? field : null };
@@ -49,16 +54,22 @@ export async function loadEigenfield(source: string | Blob | ArrayBuffer, option
   }
 }
 
-async function parseScene(arrival: Arrival, container: Container, options: EigenfieldOptions): Promise<GLTF> {
+/** `far`: where groups of a clip are read. */
+async function parseScene(
+  arrival: Arrival,
+  container: Container,
+  far: Pick<Arrival, "read">,
+  options: EigenfieldOptions,
+): Promise<GLTF> {
   const loader = new GLTFLoader();
-  const from = (start: Promise<number>) => async (offset: number, length: number): Promise<ArrayBuffer> => {
+  const from = (start: Promise<number>, bytes = far) => async (offset: number, length: number): Promise<ArrayBuffer> => {
     const at = (await start) + offset;
-    return arrival.read(at, at + length);
+    return bytes.read(at, at + length);
   };
   const start = container.binary();
   start.catch(() => undefined); // reads hear of it
   const readGroups: ByteStream["read"] = (...place) => from(container.groups())(...place);
-  const stream: ByteStream = { total: container.length, read: from(start), readGroups };
+  const stream: ByteStream = { total: container.length, read: from(start, arrival), readGroups };
   loader.register((parser) => new EigenfieldPlugin(parser, { ...options, stream }));
   return loader.parseAsync(container.text, "");
 }
