@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import http.client
 import io
 import re
 import urllib.request
@@ -63,6 +64,22 @@ def test_the_server_gives_the_clip_s_file(file):
     for clip in (file, load_clip(file)):
         with view(clip, browser=False) as server, urllib.request.urlopen(f"{server.address}scene.glb") as answer:
             assert answer.read() == file.read_bytes()
+
+
+def test_a_clip_on_disk_is_read_for_each_answer_and_one_that_was_cut_meanwhile_ends_it(file, tmp_path):
+    path = tmp_path / "clip.glb"
+    path.write_bytes(file.read_bytes())
+    size = path.stat().st_size
+    with view(path, browser=False) as server:
+        asked = urllib.request.Request(
+            f"{server.address}scene.glb", headers={"Range": f"bytes={size - 20}-{size - 11}"}
+        )
+        with urllib.request.urlopen(asked) as answer:
+            assert answer.status == 206 and answer.headers["Content-Range"] == f"bytes {size - 20}-{size - 11}/{size}"
+            assert answer.read() == file.read_bytes()[-20:-10]
+        path.write_bytes(file.read_bytes()[:-100])
+        with urllib.request.urlopen(f"{server.address}scene.glb") as answer, pytest.raises(http.client.IncompleteRead):
+            answer.read()
 
 
 def test_photographs_are_not_shown_beside_a_clip(file, tmp_path):

@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from eigenfield.core.errors import OptionError
+from eigenfield.gltf.source import HeldBytes
 from eigenfield.viewer import Server
 from eigenfield.viewer.request import StrictHandler
 from support.http_client import Client
@@ -172,7 +173,7 @@ class Understood(StrictHandler):
 
     def answer(self):
         Understood.last = (self.command, self.target, self.host, dict(self.headers.items()), self.has_body)
-        self.reply(200, {}, b"\n")
+        self.reply(200, {}, HeldBytes(b"\n"))
 
 
 @given(

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import hashlib
 import json
+import secrets
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from eigenfield.core.version import __version__
+from eigenfield.gltf.source import ByteSource, HeldBytes
 from eigenfield.viewer.page import page_html, static_file
 from eigenfield.viewer.photographs import Photographs
 
+SCENE_TYPE = "model/gltf-binary"
 JAVASCRIPT_TYPE = "text/javascript; charset=utf-8"
 STATIC_TYPES = {
     "viewer.js": JAVASCRIPT_TYPE,
@@ -24,24 +27,25 @@ class Content:
     """What a path is answered with.
 
     Attributes:
+        data: In memory, or in a file that is read for each answer.
         tag: The strong ETag, quotes included.
     """
 
     type: str
-    data: bytes
+    data: ByteSource
     tag: str
 
     @staticmethod
     def of(type: str, data: bytes) -> Content:
         """Bytes with their ETag."""
-        return Content(type, data, f'"{hashlib.sha256(data).hexdigest()[:32]}"')
+        return Content(type, HeldBytes(data), f'"{hashlib.sha256(data).hexdigest()[:32]}"')
 
 
 Manifest = Mapping[str, Callable[[], Content]]
 
 
 def make_manifest(
-    glb: bytes,
+    glb: bytes | ByteSource,
     title: str,
     photographs: Photographs | None = None,
     metres_per_unit: float | None = None,
@@ -49,9 +53,11 @@ def make_manifest(
 ) -> Manifest:
     """The page, its files, the scene, and a picture for each photograph: path to what makes the content.
 
-    All but photographs is held in memory, so that files replaced on disk never mix with those that were checked.
+    All but photographs and clips is held in memory, so that files replaced on disk never mix with those that were checked.
+    Of a clip, whose groups have digests, the page finds that out by itself.
 
     Args:
+        glb: The scene's file: its bytes, or where they are.
         metres_per_unit: Metres in one unit of the capture, for headsets.
         seconds_left: The scene is a draft: about when the whole scene takes its place, None where that is not known.
             The page asks for it, and opens anew where there is no such answer any longer.
@@ -59,7 +65,12 @@ def make_manifest(
     Raises:
         OutputError: `viewer-build`: the page was not built.
     """
-    config: dict[str, object] = {"title": title, "scene": "scene.glb", "bytes": len(glb), "version": __version__}
+    scene = (
+        Content.of(SCENE_TYPE, glb)
+        if isinstance(glb, bytes)
+        else Content(SCENE_TYPE, glb, f'"{secrets.token_hex(16)}"')  # of this server alone
+    )
+    config: dict[str, object] = {"title": title, "scene": "scene.glb", "bytes": scene.data.size, "version": __version__}
     if metres_per_unit is not None:
         config["metresPerUnit"] = metres_per_unit
     if photographs is not None:
@@ -68,7 +79,7 @@ def make_manifest(
         config["draft"] = "draft"
     fixed = {f"/{name}": Content.of(type, static_file(name)) for name, type in STATIC_TYPES.items()}
     fixed["/"] = Content.of("text/html; charset=utf-8", page_html(config))
-    fixed["/scene.glb"] = Content.of("model/gltf-binary", glb)
+    fixed["/scene.glb"] = scene
     manifest: dict[str, Callable[[], Content]] = {path: _answer_fixed(content) for path, content in fixed.items()}
     if seconds_left is not None:
         manifest["/draft"] = _answer_seconds(seconds_left)

@@ -25,6 +25,9 @@ from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler
 from typing import ClassVar
 
+from eigenfield.core.errors import FormatError
+from eigenfield.gltf.source import ByteSource, HeldBytes
+
 REQUEST_LINE_MAX_BYTES = 8192
 REQUEST_HEAD_MAX_BYTES = 32768  # request line and headers together
 REQUEST_SECONDS = 10.0  # for a request's head, from the first moment it may come
@@ -104,28 +107,34 @@ class StrictHandler(BaseHTTPRequestHandler, ABC):
     def refuse(self, error: RefusedError) -> None:
         """Answer with an error: one line of text."""
         headers = {"Content-Type": "text/plain; charset=utf-8", **error.headers}
-        self.reply(error.status, headers, f"{error.reason}\n".encode())
+        self.reply(error.status, headers, HeldBytes(f"{error.reason}\n".encode()))
 
-    def reply(self, status: int, headers: Mapping[str, str], content: bytes | memoryview | None) -> None:
+    def reply(self, status: int, headers: Mapping[str, str], content: ByteSource | None) -> None:
         """Send an answer, to HEAD without the content.
 
         Args:
             headers: Beside those of every answer.
             content: None: the answer has none (304).
+
+        Raises:
+            OSError: The connection is gone, or the content could not be read to its end.
         """
         self.connection.settimeout(SEND_SECONDS)
         self.send_response_only(status)
-        length = {} if content is None else {"Content-Length": str(len(content))}
+        length = {} if content is None else {"Content-Length": str(content.size)}
         connection = {"Connection": "close" if self.close_connection else "keep-alive"}
         date = {"Date": self.date_time_string()}
         for name, value in {**date, **self.always, **headers, **length, **connection}.items():
             self.send_header(name, value)
         self.end_headers()
         if content is not None and self.command != "HEAD":
-            view = memoryview(content)
-            for start in range(0, len(view), SEND_PIECE_BYTES):
+            for first in range(0, content.size, SEND_PIECE_BYTES):
+                try:
+                    piece = content.read(first, min(first + SEND_PIECE_BYTES, content.size))
+                except FormatError as error:
+                    raise ConnectionError(str(error)) from error
                 self.connection.settimeout(SEND_SECONDS)
-                self.connection.sendall(view[start : start + SEND_PIECE_BYTES])
+                self.connection.sendall(piece)
 
     def _read_request(self) -> None:
         """The next request. Raises RefusedError; OSError if the client closes, or lets the time pass without a byte."""

@@ -22,6 +22,7 @@ from http.server import ThreadingHTTPServer
 from typing import Any
 
 from eigenfield.core.errors import EigenfieldError, OptionError
+from eigenfield.gltf.source import ByteRange
 from eigenfield.viewer.manifest import Content, Manifest
 from eigenfield.viewer.request import RefusedError, StrictHandler, is_known, wanted_range
 
@@ -194,14 +195,14 @@ class _Answers(StrictHandler):
         if is_known(headers, content.tag):
             self.reply(304, {"ETag": content.tag}, None)
             return
-        size, status = len(content.data), 200
+        size, status = content.data.size, 200
         about = {"Content-Type": content.type, "ETag": content.tag, "Accept-Ranges": "bytes"}
         part = wanted_range(headers, size, content.tag) if self.command == "GET" else None
         first, last = part or (0, size)
         if part is not None:
             status, about["Content-Range"] = 206, f"bytes {first}-{last - 1}/{size}"
         log.info("%s %r: %d, %d bytes", self.command, self.target, status, last - first)
-        self.reply(status, about, memoryview(content.data)[first:last])
+        self.reply(status, about, ByteRange(content.data, first, last))
 
     def refuse(self, error: RefusedError) -> None:
         log.info("%r: %d %s", self.raw_requestline, error.status, error.reason)

@@ -13,7 +13,9 @@ from eigenfield.core.arguments import checked
 from eigenfield.core.clip import Clip
 from eigenfield.core.errors import FormatError, OptionError
 from eigenfield.core.scene import Scene, check_scale
-from eigenfield.gltf import encode_scene, outline, stores_clip, without_residual
+from eigenfield.gltf import encode_scene, load_clip, outline, stores_clip, without_residual
+from eigenfield.gltf.source import ByteSource, StoredBytes
+from eigenfield.runtime.objects import find_objects
 from eigenfield.viewer.manifest import make_manifest
 from eigenfield.viewer.photographs import Photographs
 from eigenfield.viewer.server import LOOPBACK, Server
@@ -59,14 +61,13 @@ def view(
     name = "scene.glb" if isinstance(scene, Scene | Clip) else Path(scene).name
     photographs = None
     try:
-        loaded, data = (scene, encode_scene(scene)) if isinstance(scene, Scene | Clip) else outline(scene)
+        loaded, data = _opened(scene)
     except FormatError as error:
         if error.code != "not-a-scene" or capture is not None or isinstance(scene, Scene | Clip):
             raise
         log.warning("%s has no eigen textures: it is shown as the plain glTF file that it is", scene)
         data = Path(scene).read_bytes()
     else:
-        data = without_residual(data)
         if given and not isinstance(capture, str | os.PathLike):
             message = f"--{next(iter(given)).replace('_', '-')} is for a capture, and no folder of one is named"
             raise OptionError("no-capture", message, remedy="name it behind the scene")
@@ -80,6 +81,18 @@ def view(
     if browser and not webbrowser.open(server.address):
         log.warning("no browser was found: open %s in one", server.address)
     return server
+
+
+def _opened(scene: Scene | Clip | str | os.PathLike[str]) -> tuple[Scene | Clip, bytes | ByteSource]:
+    """A scene or a clip, and its file for the page. That of a clip on disk is read for each answer, and not held."""
+    if isinstance(scene, Scene | Clip):
+        return scene, without_residual(encode_scene(scene))
+    if find_objects(Path(scene)) is None and stores_clip(scene):
+        clip = load_clip(scene)
+        clip.scene(clip.timeline.first)
+        return clip, StoredBytes(Path(scene), 0, Path(scene).stat().st_size)
+    loaded, data = outline(scene)
+    return loaded, without_residual(data)
 
 
 def _photographs(
