@@ -53,8 +53,8 @@ def make_manifest(
 ) -> Manifest:
     """The page, its files, the scene, and a picture for each photograph: path to what makes the content.
 
-    All but photographs and clips is held in memory, so that files replaced on disk never mix with those that were checked.
-    Of a clip, whose groups have digests, the page finds that out by itself.
+    All but photographs and clips is held in memory, so that files replaced on disk never mix with those that were
+    checked. Of a clip, whose groups have digests, the page finds that out by itself.
 
     Args:
         glb: The scene's file: its bytes, or where they are.
