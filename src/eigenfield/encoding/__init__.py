@@ -148,9 +148,10 @@ def encode_footage(
     Args:
         footage: Of cameras that are known.
         proxy: A triangle mesh in the world of the cameras, or its file. A list of them, one for each frame, or a path
-            with %04d in place of their number: a mesh that moves. All have the same triangles, and the texture
-            coordinates of the first, whose vertices then stay where they are. None: the surface of what stands still,
-            made from photographs that are averaged over time, and of what never does in the middle frame.
+            with %04d in place of their number: a mesh that moves, whose vertices stay where they are given. Those
+            with the same triangles share the texture coordinates of the first of them; other triangles begin a group.
+            None: the surface of what stands still, made from photographs that are averaged over time, and of what never
+            does in the middle frame.
         options: What is asked for; None for the defaults. Those that are for one instant are refused.
         surface_options: How a surface is made that is not given; None for the defaults. It is opaque.
         work: Folder that keeps finished stages, so that the same call goes on from there. None: a temporary one.
