@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import av
 import numpy as np
@@ -10,10 +11,12 @@ import pytest
 from PIL import Image
 
 import eigenfield as ef
+from eigenfield.core.clip import Audio
 from eigenfield.core.errors import FormatError, OptionError
 from eigenfield.gltf import store_scores
 from eigenfield.gltf.container import parse_glb
 from support.clips import numbered_clip, shown_number
+from support.sounds import opus
 
 
 @pytest.fixture(scope="module")
@@ -101,6 +104,23 @@ def test_a_film_has_the_rate_of_the_clip_and_follows_a_path(clip, run, tmp_path)
     with av.open(output) as film:
         stream = film.streams.video[0]
         assert (stream.frames, stream.average_rate) == (12, 10)
+
+
+@pytest.mark.parametrize(("fps", "seconds"), [([], 0.5), (["--fps", "5"], None)])
+def test_a_film_that_plays_as_the_clip_does_has_its_sound(clip, run, tmp_path, fps, seconds):
+    heard, output = tmp_path / "heard.glb", tmp_path / "a.mp4"
+    ef.save(replace(numbered_clip((5, 7)), audio=Audio(opus(3), 0.0)), heard)
+    words = ["--time", "4:9", "--at", "0,0", "--resolution", "96x80", *fps]
+    assert run("render", heard, *words, "-o", output).code == 0
+    with av.open(output) as film:
+        if seconds is None:
+            assert not film.streams.audio
+            return
+        samples = np.concatenate([one.to_ndarray()[0] for one in film.decode(audio=0)])
+        rate = film.streams.audio[0].rate
+    assert abs(len(samples) / rate - seconds) < 0.05
+    steps = np.flatnonzero(np.diff(np.sign(samples[rate // 20 : rate // 2])))
+    assert abs(len(steps) / 2 / 0.45 - 200) < 10  # of the first second; the film begins at 0.4 s of it
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import eigenfield as ef
-from eigenfield.core.errors import OptionError
+from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.proxy import Proxy, Sheets
 from eigenfield.encoding import EncodeOptions, encode_footage
 from eigenfield.encoding.atlas import make_atlas
@@ -27,6 +27,7 @@ from support.captures import backdrop, shaded_texture
 from support.moving_clips import FootageInMemory
 from support.observations import CalibratedInMemory, InMemory
 from support.scenes import row_grid
+from support.sounds import opus
 
 CAMERAS, MESH = row_grid(9, 64, 56), backdrop()
 
@@ -49,6 +50,20 @@ def measured(scene, instant) -> float:
         drawn = Renderer(scene).draw(scene.rig.cameras[index], camera_weights(scene, index))
         found.append(psnr(drawn.image, to_codes(instant.photograph(index).pixels), drawn.covered))
     return float(np.mean(found))
+
+
+def test_a_sound_is_kept_and_another_kind_of_file_is_refused_before_any_work(tmp_path):
+    sound, other = tmp_path / "sound.opus", tmp_path / "sound.mp3"
+    sound.write_bytes(opus(0.2))
+    other.write_bytes(b"ID3 nonsense")
+    two = footage(1.0, 0.9)
+    clip = encode_footage(two, MESH, OPTIONS, audio=sound)
+    assert clip.audio.data == sound.read_bytes() and clip.audio.first == 0.0
+    for path, code in ((other, "audio-unknown"), (tmp_path / "none.opus", "audio-unreadable")):
+        two.asked.clear()
+        with pytest.raises(CaptureError) as caught:
+            encode_footage(two, MESH, OPTIONS, audio=path)
+        assert caught.value.code == code and path.name in str(caught.value) and not two.asked
 
 
 def stored_bytes(group) -> bytes:

@@ -6,6 +6,7 @@ writes into FOLDER
 
     clip.glb     frames that show their numbers (`support.clips`), in groups of 5, 7, 1 and 12
     far.glb      the same, 2 MB from group to group
+    heard.glb    the same with a sound of three seconds, which begins half a second late
     moving.glb   the same on a mesh that moves, but for the third group, in which it is where the file's mesh is; the
                  second group has a mesh of its own
     moving.json  for each frame the positions of all vertices, three numbers each
@@ -19,13 +20,14 @@ from __future__ import annotations
 import hashlib
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding.video.film import decode_film
-from eigenfield.core.clip import Clip
+from eigenfield.core.clip import Audio, Clip
 from eigenfield.gltf import save
 from eigenfield.gltf.clips import CodedGroups
 from support.clips import (
@@ -38,6 +40,8 @@ from support.clips import (
     numbered_clip,
     with_groups,
 )
+from support.sounds import opus
+
 
 GROUPS = (5, 7, 1, 12)
 
@@ -53,6 +57,7 @@ def write(folder: Path) -> None:
         "groups": list(GROUPS), "strengths": STRENGTHS[: len(GROUPS)], "places": places,
         "rate": [rate.numerator, rate.denominator], "bits": BITS, "textures": TEXTURES_COUNT, "codes": digests(clip),
     }  # fmt: skip
+    save(replace(clip, audio=Audio(opus(3), 0.5)), folder / "heard.glb", overwrite=True)
     (folder / "far.glb").write_bytes(with_groups(data, groups_of(data), gap=2**21))
     (folder / "clip.json").write_text(json.dumps(facts), encoding="utf-8")
     moving = moving_clip(clip, steps, {1: finer_mesh(clip)})

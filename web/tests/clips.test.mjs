@@ -187,6 +187,34 @@ for (const [kind, , seen] of FAR) {
   });
 }
 
+test("the sound is in step with the frames at any speed, rests while they stand, and follows what is sought", async () => {
+  const { page, close } = await openClip("heard.glb");
+  await page.evaluate(() => window.field.player.play());
+  await page.mouse.click(5, 5); // somebody is there: it may be heard
+  for (const speed of [1, 2, 0.5]) {
+    const apart = await page.evaluate(async (speed) => {
+      const { player } = window.field;
+      player.speed = speed;
+      await player.seek(0.6);
+      const list = [];
+      while (list.length < 40) {
+        await new Promise((resolve) => setTimeout(resolve, 25));
+        if (player.sound.time !== null) list.push(player.sound.time - player.clock / player.rate);
+        if (player.frame > player.frames - 3) await player.seek(0.6);
+      }
+      return list.slice(20).sort((a, b) => a - b);
+    }, speed);
+    assert.ok(Math.abs(apart[10]) < 1 / (rate[0] / rate[1]), `at ${speed}: ${apart}`);
+  }
+  const rested = await page.evaluate(async () => {
+    const { player } = window.field;
+    player.pause();
+    return [player.sound.time, player.sound.playable, player.sound.muted];
+  });
+  assert.deepEqual(rested, [null, true, false]);
+  await close();
+});
+
 const LOSSES = { "/cut.glb": ["network", [0, 1]], "/damaged.glb": ["damaged", [0, 2, 3]] };
 for (const [path, [code, left]] of Object.entries(LOSSES)) {
   test(`${path}: what is wrong is said, and the groups that are whole are played again and again`, async () => {

@@ -46,6 +46,7 @@ def encode_clip(
     quiet: bool,
     workers: int | None,
     cluster: str | None,
+    audio: Path | None,
 ) -> None:
     """Footage in, a clip out."""
     from eigenfield.capture import open_footage
@@ -66,7 +67,7 @@ def encode_clip(
         note(f"{len(footage.names)} cameras, {frames} at {float(footage.timeline.rate):g} a second", quiet)
         note("Ctrl-C stops it; the same command goes on after the last finished frame", quiet)
         clip = encode_footage(
-            footage, proxy, options, surface_options=surface, work=work, workers=reached, progress=progress
+            footage, proxy, options, surface_options=surface, audio=audio, work=work, workers=reached, progress=progress
         )
         save(clip, output, overwrite=overwrite, progress=progress)
     log.info("%.0f s", time.monotonic() - started)

@@ -58,7 +58,7 @@ GROUPS = {  # of options in the help, those of every day first; the empty one ha
     "What the capture is": (
         "format", "pattern", "frame", "walk_frames", "masks", "reference", "metres_per_unit",
     ),
-    "Clips": ("clip", "offset", "rate", "group"),
+    "Clips": ("clip", "offset", "rate", "group", "audio"),
     "Quality and size": (
         "quality", "target_psnr", "target_ssim", "hold_out", "blind", "density", "atlas", "harmonise", "residual",
         "fallback",
@@ -104,6 +104,7 @@ Examples:
   eigenfield encode photos/ --residual 70 -o archive.glb
   eigenfield encode footage/ --clip 0:2s -o clip.glb
   eigenfield encode footage/ --clip 0:2s --proxy 'mesh_%04d.ply' -o clip.glb
+  eigenfield encode footage/ --clip --audio sound.opus -o clip.glb
   eigenfield encode photos/ --proxy mesh.obj --fit none --uv-ssim 0.98 -o paper.glb""",
 )
 @capture_argument()
@@ -139,6 +140,12 @@ Examples:
     "in the finished scene, and is left out if it cannot.",
 )
 @click.option(
+    "--audio",
+    type=PATH,
+    metavar="FILE",
+    help="Sound of a clip: an Ogg file of Opus, kept as it is, which begins with the footage.",
+)
+@click.option(
     "--draft",
     is_flag=True,
     help="Only a first look, in about half a minute.",
@@ -165,6 +172,7 @@ def command(
     blind: bool,
     workers: int | None,
     cluster: str | None,
+    audio: Path | None,
     **settings: Any,
 ) -> None:
     """Turn photographs into one .glb in which you can look around.
@@ -196,10 +204,14 @@ def command(
     options = from_fields(EncodeOptions, settings)
     if place.clip is None and options.group is not None:
         raise OptionError("group-unused", "--group is about clips", remedy="say --clip, or leave it out")
+    if place.clip is None and audio is not None:
+        raise OptionError("audio-unused", "--audio is about clips", remedy="say --clip, or leave it out")
     if place.clip is not None:
         refuse_for_clips({"draft": draft, "view": look, "blind": blind})
         given, stages = from_fields(SurfaceOptions, settings), work or whole.with_suffix(".work")
-        encode_clip(capture, proxy, place, options, given, without, stages, output, overwrite, quiet, workers, cluster)
+        encode_clip(
+            capture, proxy, place, options, given, without, stages, output, overwrite, quiet, workers, cluster, audio
+        )
         return
     projected = options.resolved().fit == "none"
     surface = surface_to_make(

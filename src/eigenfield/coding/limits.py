@@ -39,6 +39,7 @@ MAX_FRAMES = 2**20  # of a clip
 MAX_GROUP_FRAMES = 1_024
 MAX_GROUP = 2**30  # bytes
 MAX_GROUP_JSON = 2**22  # bytes of a group's head, inflated
+MAX_AUDIO = 2**28  # bytes of the sound of a clip
 MAX_RATE = 1_000  # frames a second, and at least its reciprocal
 MAX_RATE_TERM = 2**31 - 1  # of the fraction that a rate is
 MAX_TIME = 10**9  # seconds

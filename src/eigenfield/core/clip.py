@@ -62,6 +62,21 @@ class Timeline:
 
 
 @dataclass(frozen=True, eq=False)
+class Audio:
+    """The sound of a clip.
+
+    Attributes:
+        data: An Ogg file of Opus.
+        first: The time, in seconds of the clip, of its beginning.
+    """
+
+    data: bytes
+    first: float = 0.0
+
+    __repr__ = brief_repr
+
+
+@dataclass(frozen=True, eq=False)
 class Frame:
     """What one frame of a group has of its own.
 
@@ -146,6 +161,7 @@ class Clip:
     Attributes:
         timeline: When frames are shown.
         groups: As many frames in all as the timeline has.
+        audio: None: it is silent.
     """
 
     rig: Rig
@@ -154,6 +170,7 @@ class Clip:
     settings: Mapping[str, Any] = field(default_factory=dict)
     scores: Mapping[str, Any] = field(default_factory=dict)
     generator: str = ""
+    audio: Audio | None = None
 
     __repr__ = brief_repr
 

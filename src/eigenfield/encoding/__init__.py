@@ -138,6 +138,7 @@ def encode_footage(
     options: EncodeOptions | None = None,
     *,
     surface_options: SurfaceOptions | None = None,
+    audio: str | os.PathLike[str] | None = None,
     work: str | os.PathLike[str] | None = None,
     workers: Workers | None = None,
     progress: Progress | None = notebook_progress,
@@ -154,6 +155,7 @@ def encode_footage(
             does in the middle frame.
         options: What is asked for; None for the defaults. Those that are for one instant are refused.
         surface_options: How a surface is made that is not given; None for the defaults. It is opaque.
+        audio: An Ogg file of Opus, kept as it is, which begins at second 0 of the footage.
         work: Folder that keeps finished stages, so that the same call goes on from there. None: a temporary one.
         workers: Of `open_executor`: they make the groups after the first, with the same bytes. They see `work` and the
             footage.
@@ -170,4 +172,4 @@ def encode_footage(
     refuse_unknown(changes, OPTION_NAMES, "encode")
     options = replace(options or EncodeOptions(), **changes)
     folder = None if work is None or find_objects(work) else Path(work)
-    return encode_clip(footage, proxy, options, folder, progress, workers, surface_options)
+    return encode_clip(footage, proxy, options, folder, progress, workers, surface_options, audio)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from eigenfield.coding import limits
 from eigenfield.coding.codecs import CODECS
+from eigenfield.coding.opus import OPUS_TYPE
 from eigenfield.coding.video.film_layout import PLACE_STEP, SIDE_STEP
 from eigenfield.core.clip import Timeline
 from eigenfield.core.films import FilmLayout, FilmPart, FilmPlane, Size
@@ -34,6 +35,20 @@ class GroupEntry:
     offset: int
     length: int
     digest: str
+
+
+@dataclass(frozen=True)
+class AudioEntry:
+    """The sound of a clip in the chunk of groups.
+
+    Attributes:
+        offset: Of its first byte.
+        first: Seconds, of its beginning.
+    """
+
+    offset: int
+    length: int
+    first: float
 
 
 def read_films(extension: Value) -> FilmLayout:
@@ -143,3 +158,28 @@ def read_groups(entry: Value, frames: int, available: int) -> tuple[GroupEntry, 
     if total != frames:
         entry["groups"].fail("timeline-frames", f"groups of {total} frames, the timeline has {frames}")
     return tuple(groups)
+
+
+def read_audio(entry: Value, groups: tuple[GroupEntry, ...], available: int) -> AudioEntry | None:
+    """Where the sound lies, behind the groups; None: there is none.
+
+    Args:
+        entry: The timeline.
+        available: As of `read_groups`.
+
+    Raises:
+        FormatError: `audio-unknown`, of another kind than Opus in Ogg; `group-range`.
+    """
+    if not entry.has("audio"):
+        return None
+    item = entry["audio"]
+    kind = item["mimeType"].text()
+    if kind != OPUS_TYPE:
+        item["mimeType"].fail("audio-unknown", f"sound of the kind {quote(kind)}, {OPUS_TYPE} expected")
+    first = item["first"].number(limits.MAX_TIME) if item.has("first") else 0.0
+    found = AudioEntry(item["offset"].integer(0, limits.MAX_FILE), item["length"].integer(1, limits.MAX_AUDIO), first)
+    behind = groups[-1].offset + groups[-1].length
+    if found.offset < behind or found.offset % GROUP_ALIGNMENT or found.offset + found.length > available:
+        message = f"sound from byte {found.offset} to {found.offset + found.length}"
+        item.fail("group-range", f"{message}; a multiple of {GROUP_ALIGNMENT} from {behind} to {available} is expected")
+    return found

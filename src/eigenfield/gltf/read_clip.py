@@ -7,8 +7,9 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
+from eigenfield.coding.opus import is_opus
 from eigenfield.core.arguments import checked
-from eigenfield.core.clip import Clip, Timeline
+from eigenfield.core.clip import Audio, Clip, Timeline
 from eigenfield.core.errors import FormatError
 from eigenfield.core.films import FilmLayout
 from eigenfield.gltf.clips import CodedGroups, StoredGroup, group_place
@@ -26,7 +27,7 @@ from eigenfield.gltf.layout import (
 )
 from eigenfield.gltf.layout_geometry import read_cameras
 from eigenfield.gltf.layout_sheets import check_sheets, read_faces
-from eigenfield.gltf.layout_timeline import GroupEntry, read_films, read_groups, read_timeline
+from eigenfield.gltf.layout_timeline import AudioEntry, GroupEntry, read_audio, read_films, read_groups, read_timeline
 from eigenfield.gltf.source import ByteRange, ByteSource, StoredBytes, name_file_in_errors, open_source
 from eigenfield.gltf.strict_json import Value
 from eigenfield.runtime.objects import find_objects
@@ -48,6 +49,7 @@ class ClipLayout(Surroundings):
     films: FilmLayout | None
     groups: tuple[GroupEntry, ...] | None
     first: int
+    audio: AudioEntry | None = None
 
 
 def read_clip_layout(document: Document, findings: Findings) -> ClipLayout | None:
@@ -80,8 +82,17 @@ def read_clip_layout(document: Document, findings: Findings) -> ClipLayout | Non
     groups = None
     if timeline is not None:
         groups = attempt(lambda: read_groups(entry, timeline.frames, chunk.size + document.glb.missing_groups))
+    audio = groups and attempt(lambda: read_audio(entry, groups, chunk.size + document.glb.missing_groups))
     attempt(document.check_addresses)
-    return ClipLayout(**vars(around), sheets=sheets, timeline=timeline, films=films, groups=groups, first=chunk.first)
+    return ClipLayout(
+        **vars(around),
+        sheets=sheets,
+        timeline=timeline,
+        films=films,
+        groups=groups,
+        first=chunk.first,
+        audio=audio or None,
+    )
 
 
 def check_clip(document: Document, findings: Findings) -> bool:
@@ -161,17 +172,33 @@ def read_clip(data: ByteSource) -> Clip:
 
 def _clip_of(layout: ClipLayout, place: ByteSource | Path) -> Clip:
     assert layout.timeline is not None
-    groups = _groups_of(layout, place)
-    return Clip(layout.rig, layout.timeline, groups, layout.settings, layout.scores, layout.generator)
+    groups, audio = _groups_of(layout, place), _audio_of(layout, place)
+    return Clip(layout.rig, layout.timeline, groups, layout.settings, layout.scores, layout.generator, audio)
+
+
+def _stored(layout: ClipLayout, place: ByteSource | Path, entry: GroupEntry | AudioEntry) -> ByteSource:
+    """The bytes of an entry of the chunk of groups."""
+    first = layout.first + entry.offset
+    last = first + entry.length
+    return StoredBytes(place, first, last) if isinstance(place, Path) else ByteRange(place, first, last)
+
+
+def _audio_of(layout: ClipLayout, place: ByteSource | Path) -> Audio | None:
+    """The sound; None, and a line, if the file ends before it does. FormatError `audio-unknown`."""
+    if layout.audio is None:
+        return None
+    data = bytes(_stored(layout, place, layout.audio).read(0, layout.audio.length))
+    if len(data) < layout.audio.length:
+        log.warning("the file ends within its sound: the clip is silent (copy or download it again)")
+        return None
+    if not is_opus(data):
+        message, remedy = "the sound is no Ogg file of Opus", "copy or download it again"
+        raise FormatError("audio-unknown", message, where="/timeline/audio", remedy=remedy)
+    return Audio(data, layout.audio.first)
 
 
 def _groups_of(layout: ClipLayout, place: ByteSource | Path) -> CodedGroups:
     """The groups, none of which is read. place: the file, or its path where it is opened for each read."""
     assert layout.films is not None and layout.mesh is not None
-    stored = []
-    for entry in layout.groups or ():
-        first = layout.first + entry.offset
-        last = first + entry.length
-        data = StoredBytes(place, first, last) if isinstance(place, Path) else ByteRange(place, first, last)
-        stored.append(StoredGroup(data, entry.frames, entry.digest))
+    stored = [StoredGroup(_stored(layout, place, one), one.frames, one.digest) for one in layout.groups or ()]
     return CodedGroups(layout.films, stored, layout.rig, layout.mesh, layout.to_rgb, layout.payloads, layout.sheets)

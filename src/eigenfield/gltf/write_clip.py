@@ -11,7 +11,8 @@ from typing import Any
 
 from eigenfield.coding import limits
 from eigenfield.coding.codecs import CODECS
-from eigenfield.core.clip import Clip
+from eigenfield.coding.opus import OPUS_TYPE
+from eigenfield.core.clip import Audio, Clip
 from eigenfield.core.errors import OptionError, OutputError
 from eigenfield.core.films import FilmPart, FilmPlane
 from eigenfield.core.scene import Scene
@@ -27,7 +28,7 @@ from eigenfield.gltf.group import MOTION_CODEC
 from eigenfield.gltf.layout import TIMELINE, unpacked_document
 from eigenfield.gltf.layout_timeline import GROUP_ALIGNMENT
 from eigenfield.gltf.read_clip import read_clip_layout
-from eigenfield.gltf.source import ByteRange, HeldBytes
+from eigenfield.gltf.source import ByteRange, ByteSource, HeldBytes
 from eigenfield.gltf.streams import FEATURES, minor
 from eigenfield.gltf.writable import check_writable
 from eigenfield.gltf.write_geometry import write_cameras, write_stream, write_view_plane
@@ -38,14 +39,20 @@ FILM_CODEC = "film-1"
 
 @dataclass(frozen=True, eq=False)
 class _GroupsChunk:
-    """The chunk of groups with its head, each at a multiple of GROUP_ALIGNMENT."""
+    """The chunk of groups with its head: these, and the sound behind them, each at a multiple of GROUP_ALIGNMENT."""
 
     groups: Sequence[StoredGroup]
+    audio: Audio | None
+
+    @property
+    def sources(self) -> list[ByteSource]:
+        """The groups, and then the sound if there is any."""
+        return [*(one.data for one in self.groups), *([] if self.audio is None else [HeldBytes(self.audio.data)])]
 
     @property
     def offsets(self) -> list[int]:
-        """Of each group, and last the length of all."""
-        return list(accumulate((_aligned(one.data.size) for one in self.groups), initial=0))
+        """Of each source, and last the length of all."""
+        return list(accumulate((_aligned(one.size) for one in self.sources), initial=0))
 
     @property
     def size(self) -> int:
@@ -53,9 +60,9 @@ class _GroupsChunk:
 
     def pieces(self) -> Iterator[memoryview]:
         yield memoryview(CHUNK.pack(self.size - CHUNK.size, GROUPS_CHUNK))
-        for one in self.groups:
-            yield from ByteRange(one.data, 0, one.data.size).pieces()
-            yield memoryview(bytes(_aligned(one.data.size) - one.data.size))
+        for one in self.sources:
+            yield from ByteRange(one, 0, one.size).pieces()
+            yield memoryview(bytes(_aligned(one.size) - one.size))
 
 
 def clip_blocks(clip: Clip, path: Path | None) -> Iterable[bytes | memoryview]:
@@ -72,7 +79,7 @@ def clip_blocks(clip: Clip, path: Path | None) -> Iterable[bytes | memoryview]:
         raise OptionError("clip-groups", message, path=path, remedy=remedy)
     scene = replace(clip.scene(clip.timeline.first), scores=clip.scores)
     check_writable(scene, path)
-    chunk = _GroupsChunk(groups.stored)
+    chunk = _GroupsChunk(groups.stored, clip.audio)
     text, binary = _head(clip, groups, scene, chunk)
     if len(text) > limits.MAX_JSON:
         message = f"{len(text)} bytes of JSON, {limits.MAX_JSON} are allowed"
@@ -161,7 +168,15 @@ def _timeline(clip: Clip, groups: CodedGroups, chunk: _GroupsChunk) -> dict[str,
             {"frames": one.frames, "offset": offset, "length": one.data.size, "sha256": one.digest or _digest(one)}
             for one, offset in zip(groups.stored, chunk.offsets, strict=False)
         ],
+        **_audio(clip.audio, chunk),
     }
+
+
+def _audio(audio: Audio | None, chunk: _GroupsChunk) -> dict[str, Any]:
+    if audio is None:
+        return {}
+    place = {"offset": chunk.offsets[len(chunk.groups)], "length": len(audio.data)}
+    return {"audio": {"mimeType": OPUS_TYPE, "first": audio.first, **place}}
 
 
 def _digest(group: StoredGroup) -> str:

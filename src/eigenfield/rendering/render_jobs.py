@@ -183,7 +183,7 @@ def write_clip_flight(
     progress: Progress | None = None,
     **picture: Any,
 ) -> None:
-    """As `write_flight`, of frames of a clip.
+    """As `write_flight`, of frames of a clip. A video in which time passes as in the clip has its sound, too.
 
     Args:
         frames: Their numbers.
@@ -204,7 +204,10 @@ def write_clip_flight(
     if numbered:
         _write_numbered(made, len(frames), output, overwrite)
     else:
-        write_video(output, made, fps, overwrite=overwrite)
+        audio, sound = clip.audio, None
+        if audio is not None and fps == clip.timeline.rate:
+            sound = audio.data, float(clip.timeline.times[frames.start]) - audio.first
+        write_video(output, made, fps, sound=sound, overwrite=overwrite)
 
 
 def _write_numbered(pictures: Iterator[bytes], count: int, output: Path, overwrite: bool) -> None:

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterable
 from fractions import Fraction
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.imaging.colour import LUMA_BT709
 from eigenfield.runtime.files import atomic_writer
+
+if TYPE_CHECKING:
+    from av.container import OutputContainer
 
 VIDEO_CRF = 16  # x264's constant rate factor: visually lossless
 VIDEO_ENCODER_THREADS = 2  # fixed: x264's bytes depend on it
@@ -19,7 +24,14 @@ VIDEO_ENCODER_OPTIONS = {"crf": str(VIDEO_CRF), "preset": "medium", "x264-params
 VIDEO_BT709, VIDEO_LIMITED_RANGE = 1, 1  # as libavutil numbers them
 
 
-def write_video(path: Path, pictures: Iterable[NDArray[np.uint8]], fps: Fraction, *, overwrite: bool = False) -> None:
+def write_video(
+    path: Path,
+    pictures: Iterable[NDArray[np.uint8]],
+    fps: Fraction,
+    *,
+    sound: tuple[bytes, float] | None = None,
+    overwrite: bool = False,
+) -> None:
     """Write pictures as H.264 in an .mp4, which appears whole or not at all.
 
     Odd sizes gain a row or column, a copy of the last: 4:2:0 needs even ones.
@@ -27,6 +39,7 @@ def write_video(path: Path, pictures: Iterable[NDArray[np.uint8]], fps: Fraction
     Args:
         pictures: (H, W, 3) uint8, of one size.
         fps: Pictures a second.
+        sound: An Ogg file of Opus, kept as it is, and the second of it with which the first picture is shown.
 
     Raises:
         OutputError: The file cannot be written.
@@ -34,7 +47,8 @@ def write_video(path: Path, pictures: Iterable[NDArray[np.uint8]], fps: Fraction
     import av
 
     with atomic_writer(path, overwrite=overwrite) as file, av.open(file, "w", format="mp4") as container:
-        stream = None
+        stream, number = None, -1
+        heard = None if sound is None else _Sound(container, *sound)
         for number, picture in enumerate(pictures):
             planes = yuv420(picture)
             if stream is None:
@@ -51,8 +65,37 @@ def write_video(path: Path, pictures: Iterable[NDArray[np.uint8]], fps: Fraction
             frame.color_range = VIDEO_LIMITED_RANGE
             frame.pts, frame.time_base = number, 1 / fps
             container.mux(stream.encode(frame))
+            if heard is not None:
+                heard.mux((number + 1) / fps)
         if stream is not None:
             container.mux(stream.encode(None))
+
+
+class _Sound:
+    """The sound of a film: packets of a file, moved in time."""
+
+    def __init__(self, container: OutputContainer, data: bytes, start: float) -> None:
+        import av
+
+        self._container, self._start = container, start
+        self._source = av.open(io.BytesIO(data))
+        (given, *_) = self._source.streams.audio
+        self._stream = container.add_stream_from_template(given)
+        self._packets = self._source.demux(given)
+        self._next = next(self._packets, None)
+
+    def mux(self, until: Fraction) -> None:
+        """Write the packets that are heard before a time of the film in seconds."""
+        while (packet := self._next) is not None and packet.pts is not None:
+            assert packet.time_base is not None
+            time = packet.pts * packet.time_base - Fraction(self._start)
+            if time >= until:
+                return
+            if time >= 0:
+                packet.pts = packet.dts = round(time / packet.time_base)
+                packet.stream = self._stream
+                self._container.mux(packet)
+            self._next = next(self._packets, None)
 
 
 def yuv420(picture: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.uint8], NDArray[np.uint8]]:

@@ -9,6 +9,7 @@ import type { DecodedMesh } from "./mesh-decoder.js";
 import type { ByteReader } from "./packed.js";
 import { decodeTenBits } from "./pictures-10bit.js";
 import { closePieces, type Codes } from "./pieces.js";
+import { Sound } from "./sound.js";
 import type { Film, Timeline } from "./timeline.js";
 
 const FORMAT = { mimeType: "video/AV1", bits: 10 };
@@ -19,6 +20,7 @@ export interface Clip {
   films: Codes[]; // of the first frame
   mesh: DecodedMesh; // of groups that have none of their own
   ring: (user: RingUser) => FrameRing;
+  sound: ((changed: () => void) => Sound) | null; // null: it is silent
 }
 
 /** Opens the first group of a clip and decodes its first frame. `read`: bytes of the chunk of groups. Raises SceneError. */
@@ -33,7 +35,9 @@ export async function openClip(
   group.motion?.read(0);
   setScales(scene, group);
   const films = await Promise.all(timeline.films.map((film, i) => keyPicture(group.units[0]![i]!, film)));
-  return { timeline, group, films, mesh, ring: (user) => new FrameRing(timeline, groups, user) };
+  const { sound: place } = timeline;
+  const sound = place && ((changed: () => void) => new Sound(place, () => read(place.offset, place.length), changed));
+  return { timeline, group, films, mesh, ring: (user) => new FrameRing(timeline, groups, user), sound };
 }
 
 /** The codes of the first unit of a group, which is a picture by itself: no decoder of videos is needed for it. */

@@ -211,10 +211,10 @@ export class EigenField extends EventDispatcher<FieldEvents> {
 
   // ---- clips
 
-  private makePlayer({ timeline, ring }: Clip): Player {
+  private makePlayer({ timeline, ring, sound }: Clip): Player {
     const show = (frame: ClipFrame): void => this.showFrame(frame);
     const failed = (reason: unknown): void => this.dispatchEvent({ type: "error", error: asSceneError(reason) });
-    return new Player(timeline, ring, { show, failed });
+    return new Player(timeline, ring, { show, failed }, sound);
   }
 
   /** All of a frame at once: what its group has, and its textures. */

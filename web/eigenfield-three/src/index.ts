@@ -16,5 +16,6 @@ export { defaultMemory, type Reduction } from "./memory.js";
 export type { ByteStream, EigenfieldOptions } from "./options.js";
 export { Player, type PlayerEvents } from "./player.js";
 export { EigenfieldPlugin } from "./plugin.js";
+export type { Sound } from "./sound.js";
 export { SHEETS } from "./sheet-stack.js";
 export type { Mixing } from "./weights.js";

@@ -32,6 +32,7 @@ export const MAX_GROUPS = 2 ** 16;
 export const MAX_GROUP = 2 ** 30; // bytes
 export const MAX_GROUP_FRAMES = 1_024;
 export const MAX_GROUP_JSON = 2 ** 22; // bytes of its head, inflated
+export const MAX_AUDIO = 2 ** 28; // bytes of its sound
 export const MAX_RATE = 1_000; // frames a second
 export const MAX_RATE_TERM = 2 ** 31 - 1;
 export const MAX_WEIGHTS = 2 ** 28;

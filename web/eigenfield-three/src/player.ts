@@ -2,6 +2,7 @@
 
 import { EventDispatcher } from "three";
 import type { ClipFrame, FrameRing, RingUser } from "./frame-ring.js";
+import type { Sound } from "./sound.js";
 import { frameAt, groupOf, timeOf, type Timeline } from "./timeline.js";
 
 const LONGEST = 0.25; // seconds: after a pause of the page the clock goes on by no more
@@ -9,7 +10,7 @@ const LONGEST = 0.25; // seconds: after a pause of the page the clock goes on by
 export interface PlayerEvents {
   /** Another frame is shown; who draws on demand draws. */
   frame: {};
-  /** It plays, or stands still, or waits, or plays otherwise. */
+  /** It plays, or stands still, or waits, or plays otherwise, or is heard or not. */
   change: {};
 }
 
@@ -26,6 +27,7 @@ export class Player extends EventDispatcher<PlayerEvents> {
   readonly duration: number;
   readonly frames: number;
   readonly rate: number; // frames a second
+  readonly sound: Sound | null; // null: it is silent
 
   private readonly ring: FrameRing;
   private shown: { position: number; number: number };
@@ -39,11 +41,12 @@ export class Player extends EventDispatcher<PlayerEvents> {
   private asked: number | null = null; // for a frame of the page
   private disposed = false;
 
-  /** Made with a field. `makeRing`: of the clip's frames. */
+  /** Made with a field. `makeRing`: of the clip's frames. `makeSound`: null, it is silent. */
   constructor(
     private readonly timeline: Timeline,
     makeRing: (user: RingUser) => FrameRing,
     private readonly user: PlayerUser,
+    makeSound: ((changed: () => void) => Sound) | null = null,
   ) {
     super();
     this.rate = timeline.rate;
@@ -53,6 +56,7 @@ export class Player extends EventDispatcher<PlayerEvents> {
     this.shown = { position: 0, number: 0 };
     this.clock = 0;
     this.ring = makeRing({ ready: () => this.wake(), failed: (reason, group) => this.fail(reason, group) });
+    this.sound = makeSound && makeSound(() => void this.dispatchEvent({ type: "change" }));
   }
 
   get playing(): boolean {
@@ -132,6 +136,7 @@ export class Player extends EventDispatcher<PlayerEvents> {
     if (!this.plays) return;
     this.plays = false;
     this.clock = this.shown.position;
+    this.sound?.rest();
     this.dispatchEvent({ type: "change" });
   }
 
@@ -160,7 +165,10 @@ export class Player extends EventDispatcher<PlayerEvents> {
     const seconds = this.last === null ? 0 : Math.min((now - this.last) / 1000, LONGEST);
     this.last = this.plays && this.goal === null ? now : null;
     if (this.goal === null && !this.plays) return;
-    if (this.goal === null) this.clock = this.advanced(seconds);
+    if (this.goal === null) {
+      this.clock = this.advanced(seconds);
+      this.sound?.follow(this.first + (this.clock % this.frames) / this.rate, this.pace);
+    } else this.sound?.rest();
     const frame = this.ring.take(this.goal ?? Math.floor(this.clock));
     if (frame) this.show(frame);
     if (this.goal === null && !this.loop && this.clock >= this.end && this.ring.isOver(this.end)) this.pause();
@@ -170,6 +178,7 @@ export class Player extends EventDispatcher<PlayerEvents> {
     this.disposed = true;
     this.plays = false;
     this.ring.dispose();
+    this.sound?.dispose();
     this.settle();
   }
 

@@ -107,18 +107,22 @@ export interface CodedMeshJson {
 export interface SheetsJson {
   /** Triangles of each sheet, back to front; the proxy has them in this order. */
   faces: number[];
-  /** A picture of one channel over the whole atlas, whose largest code is opaque. */
+  /** A picture of one channel over the whole atlas, or its place in a film; the largest code is opaque. */
   opacity: OpacityJson;
 }
 
-/** A picture of one channel over the whole atlas, whose largest code is opaque. */
+/** A picture of one channel over the whole atlas, or its place in a film; the largest code is opaque. */
 export interface OpacityJson {
   /** Index of a buffer view. */
-  bufferView: number;
+  bufferView?: number;
+  /** Number of a film. */
+  film?: number;
+  /** Column and row in the film of each channel of each texture, by rank. */
+  at?: ([number, number])[];
   /** Codecs of pictures. */
   codec?: PictureCodec;
   /** Type of a picture. */
-  mimeType: MimeType;
+  mimeType?: MimeType;
   /** Width and height in texels. */
   size: [number, number];
   /** Bits of a sample. */
@@ -342,6 +346,20 @@ export interface TimelineJson {
   films: FilmJson[];
   /** Groups in the order of time. */
   groups: GroupJson[];
+  /** The sound of a clip, which lies in the chunk of groups behind the last of them. */
+  audio?: AudioJson;
+}
+
+/** The sound of a clip, which lies in the chunk of groups behind the last of them. */
+export interface AudioJson {
+  /** Opus in Ogg. */
+  mimeType: "audio/ogg";
+  /** When it begins, in seconds. */
+  first?: number;
+  /** Its first byte in the chunk. */
+  offset: number;
+  /** Its bytes. */
+  length: number;
 }
 
 /** A grey video in which textures lie side by side. */

@@ -5,10 +5,11 @@ import { damaged } from "./errors.js";
 import type { Value } from "./json.js";
 import * as limits from "./limits.js";
 import type { FilmPart, Picture, Plane } from "./planes.js";
-import type { FilmJson, GroupJson, TimelineJson } from "./schema.js";
+import type { AudioJson, FilmJson, GroupJson, TimelineJson } from "./schema.js";
 
 const FILM_STEP = 64; // sides of films are multiples of it
 const PLACE_STEP = 16; // columns and rows at which textures begin
+const OPUS = "audio/ogg";
 const DIGEST = /^[0-9a-f]{64}$/;
 
 /** A grey video in which textures lie side by side. */
@@ -28,12 +29,21 @@ export interface GroupPlace {
   where: string;
 }
 
+/** The sound of a clip in the chunk of groups. */
+export interface SoundPlace {
+  mimeType: string;
+  first: number; // seconds, of its beginning
+  offset: number;
+  length: number;
+}
+
 export interface Timeline {
   rate: number; // frames a second
   first: number; // seconds
   frames: number;
   films: Film[];
   groups: GroupPlace[];
+  sound: SoundPlace | null;
 }
 
 /** The timeline of a clip; null: a scene of one instant. Raises SceneError: `damaged`, `codec-unknown`. */
@@ -51,7 +61,20 @@ export function readTimeline(value: Value<TimelineJson>, planes: Plane[]): Timel
   const films = value.key("films").items(limits.MAX_FILMS).map(readFilm);
   const frames = value.key("frames").integer(1, limits.MAX_FRAMES);
   checkPlaces(planes, films);
-  return { rate, first: first.exists ? first.number() : 0, frames, films, groups: readGroups(value, frames) };
+  const groups = readGroups(value, frames);
+  return { rate, first: first.exists ? first.number() : 0, frames, films, groups, sound: readSound(value, groups) };
+}
+
+function readSound(value: Value<TimelineJson>, groups: GroupPlace[]): SoundPlace | null {
+  const sound = value.key("audio") as Value<AudioJson>;
+  if (!sound.exists) return null;
+  if (sound.key("mimeType").text(64) !== OPUS) throw sound.key("mimeType").wrong(`no ${OPUS}`);
+  const last = groups.at(-1)!;
+  const offset = sound.key("offset").integer(last.offset + last.length, Number.MAX_SAFE_INTEGER);
+  if (offset % 4) throw sound.key("offset").wrong("no multiple of 4");
+  const first = sound.key("first");
+  const length = sound.key("length").integer(1, limits.MAX_AUDIO);
+  return { mimeType: OPUS, first: first.exists ? first.number() : 0, offset, length };
 }
 
 function readFilm(value: Value<FilmJson>): Film {

@@ -19,6 +19,7 @@ const CONTROLS: readonly (readonly [keys: string, does: string, touch?: string])
   [words("keySpace"), words("doesFlip")],
   [`${words("keySpace")} · , · .`, words("doesPlay")],
   ["[ ]", words("doesSpeed")],
+  ["V", words("doesSound")],
   ["B", words("doesDivide")],
   ["1 2 3 4", words("doesViews")],
   ["− +", words("doesCount")],

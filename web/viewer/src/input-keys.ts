@@ -79,6 +79,7 @@ export function listenToKeys(viewer: Viewer, actions: Actions): Keys {
       ".": () => viewer.step(1),
       "[": () => viewer.changeSpeed(-1),
       "]": () => viewer.changeSpeed(1),
+      v: () => viewer.mute(viewer.player()?.sound?.muted === false),
     };
     return viewer.player() ? table[key] : undefined;
   };

@@ -16,6 +16,7 @@ export interface Playback {
   /** The next speed, or the one before; behind the last the first follows if `around`. */
   changeSpeed(step: 1 | -1, around?: boolean): void;
   setLoop(on: boolean): void;
+  mute(on: boolean): void;
 }
 
 export interface Clips extends Playback {
@@ -47,6 +48,10 @@ export function createPlayback(session: Session, request: () => void, changed: (
     setLoop: (on) => {
       const own = player();
       if (own) own.loop = on;
+    },
+    mute: (on) => {
+      const sound = player()?.sound;
+      if (sound) sound.muted = on;
     },
     opened: () => {
       const own = player();

@@ -20,7 +20,8 @@ export function createPlaybar(viewer: Viewer): Playbar {
   const speed = element("button", { type: "button", class: "speed figures" });
   speed.addEventListener("click", () => viewer.changeSpeed(1, true));
   const loop = button(words("repeat"), ICONS.loop, () => viewer.setLoop(viewer.player()?.loop === false));
-  const root = element("div", { class: "playbar", role: "group", "aria-label": words("playback") }, play, place, time, speed, loop);
+  const sound = button(words("sound"), ICONS.sound, () => viewer.mute(viewer.player()?.sound?.muted === false));
+  const root = element("div", { class: "playbar", role: "group", "aria-label": words("playback") }, play, place, time, speed, sound, loop);
 
   const tick = (): void => {
     const player = viewer.player();
@@ -49,6 +50,12 @@ export function createPlaybar(viewer: Viewer): Playbar {
       speed.textContent = rate;
       speed.title = words("speed");
       speed.setAttribute("aria-label", `${words("speed")} ${rate}`);
+      const heard = player.sound?.playable === true && !player.sound.muted;
+      sound.hidden = player.sound === null;
+      sound.disabled = player.sound?.playable === false;
+      sound.title = words(sound.disabled ? "noSound" : "sound");
+      sound.replaceChildren(icon(heard ? ICONS.sound : ICONS.muted), keyCaps("V"));
+      sound.setAttribute("aria-pressed", String(heard));
       loop.setAttribute("aria-pressed", String(player.loop));
       tick();
     },

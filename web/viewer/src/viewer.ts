@@ -203,6 +203,7 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
     step: moves(clips.step),
     changeSpeed: clips.changeSpeed,
     setLoop: clips.setLoop,
+    mute: clips.mute,
     moving: moves(() => {
       frames.touch();
       return movement.moving();

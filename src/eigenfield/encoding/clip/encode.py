@@ -12,8 +12,9 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
+from eigenfield.capture.readers.audio import read_opus
 from eigenfield.core.arguments import kind_in_words
-from eigenfield.core.clip import Clip
+from eigenfield.core.clip import Audio, Clip
 from eigenfield.core.errors import OptionError, one_line
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import CalibratedObservations
@@ -61,6 +62,7 @@ def encode_clip(
     progress: Progress | None = None,
     workers: Workers | None = None,
     given: SurfaceOptions | None = None,
+    sound: str | os.PathLike[str] | None = None,
 ) -> Clip:
     """A clip on a proxy that stands still, or on a mesh for each frame.
 
@@ -73,6 +75,7 @@ def encode_clip(
         workers: That make all groups but the first, which says how many textures there are; they see `work` and the
             footage. None: this process makes all.
         given: How a surface is made that is not given; None for the defaults.
+        sound: An Ogg file of Opus, which begins at second 0 of the footage.
 
     Raises:
         OptionError: `clip-proxy`, `clip-cameras`, `clip-option`, `group-unknown`.
@@ -81,6 +84,7 @@ def encode_clip(
     refuse_still_options(asked)
     surface = surface_of_clip(asked, given or SurfaceOptions(), has_proxy=proxy is not None)
     _refuse_proxy(footage, proxy, asked)
+    audio = None if sound is None else Audio(read_opus(sound))
     length = group_length(asked.group or DEFAULT_GROUP, footage.timeline.rate)
     if work is not None:
         make_folder(work)
@@ -95,7 +99,7 @@ def encode_clip(
     begin_step(progress, "fit")
     with Stages(None if work is None else work / "clip") as stages:
         made, layout = groups.make_all(stages, workers, progress)
-    return coded_clip(
+    clip = coded_clip(
         plan.views.rig,
         plan.mesh,
         footage.timeline,
@@ -108,6 +112,7 @@ def encode_clip(
         generator=f"eigenfield {__version__}",
         payloads=plan.payloads,
     )
+    return replace(clip, audio=audio)
 
 
 def _runs(
