@@ -42,7 +42,6 @@ from support.clips import (
 )
 from support.sounds import opus
 
-
 GROUPS = (5, 7, 1, 12)
 
 
