@@ -116,6 +116,23 @@ test("a mesh that moves is in each frame where Python puts it, also a group's ow
   }
 });
 
+test("the first frame is there before the others of its group are", async () => {
+  const scene = changed();
+  let last = 0;
+  const counted = (offset, length) => {
+    last = Math.max(last, offset + length);
+    return read(chunk)(offset, length);
+  };
+  const groups = new built.Groups(scene, scene.timeline, mesh, counted);
+  const [first, whole] = [await groups.begin(), await new built.Groups(scene, scene.timeline, mesh, read(chunk)).open(0)];
+  assert.deepEqual(first.units, whole.units.slice(0, 1));
+  assert.deepEqual([first.omega, first.means, first.bases], [whole.omega, whole.means, whole.bases]);
+  const rest = whole.units.slice(1).flat().reduce((sum, unit) => sum + unit.length, 0);
+  assert.equal(last, scene.timeline.groups[0].length - rest);
+  const none = new built.Groups(scene, scene.timeline, mesh, () => Promise.resolve(new ArrayBuffer(2)));
+  await assert.rejects(none.begin(), { code: "damaged" });
+});
+
 test("heads of groups that cannot be are refused", async () => {
   const scene = changed();
   const [place] = scene.timeline.groups;

@@ -16,14 +16,14 @@ const FORMAT = { mimeType: "video/AV1", bits: 10 };
 
 export interface Clip {
   timeline: Timeline;
-  group: Group; // the first
+  group: Group; // the first, as far as its first frame
   films: Codes[]; // of the first frame
   mesh: DecodedMesh; // of groups that have none of their own
   ring: (user: RingUser) => FrameRing;
   sound: ((changed: () => void) => Sound) | null; // null: it is silent
 }
 
-/** Opens the first group of a clip and decodes its first frame. `read`: bytes of the chunk of groups. Raises SceneError. */
+/** Decodes the first frame of a clip, once it is there. `read`: bytes of the chunk of groups. Raises SceneError. */
 export async function openClip(
   scene: SceneDocument,
   timeline: Timeline,
@@ -31,7 +31,7 @@ export async function openClip(
   read: ByteReader,
 ): Promise<Clip> {
   const groups = new Groups(scene, timeline, mesh, read);
-  const group = await groups.open(0);
+  const group = await groups.begin();
   group.motion?.read(0);
   setScales(scene, group);
   const films = await Promise.all(timeline.films.map((film, i) => keyPicture(group.units[0]![i]!, film)));

@@ -6,7 +6,7 @@ import type { SceneDocument } from "./document.js";
 import { damaged } from "./errors.js";
 import { basesOf, checkWeights, sideBySide } from "./info.js";
 import { inflated } from "./inflate.js";
-import { Value } from "./json.js";
+import { Value, type Json } from "./json.js";
 import * as limits from "./limits.js";
 import type { DecodedMesh } from "./mesh-decoder.js";
 import type { Motion } from "./mesh-motion.js";
@@ -55,18 +55,42 @@ export class Groups {
     return group;
   }
 
-  private async opened(index: number): Promise<Group> {
+  /** The first group as far as its first frame, which can be shown before the others are there. Nothing compares its
+   * digest. Raises SceneError, as `open`. */
+  async begin(): Promise<Group> {
+    const place = this.placeOf(0);
+    const read = async (length: number): Promise<Uint8Array<ArrayBuffer>> =>
+      new Uint8Array(await this.read(place.offset, Math.min(length, place.length)));
+    const start = await read(HEAD);
+    const { head, at } = await readHead(await read(HEAD + sizeOfHead(start, place)), place);
+    const before = [head.key("weights"), head.key("mesh"), head.key("motion"), head.key("frames").at(0)];
+    const end = before.reduce((sum, { raw }) => sum + totalOf(raw), at);
+    return this.build(0, await read(end), head, at, 1);
+  }
+
+  private placeOf(index: number): GroupPlace {
     const place = this.timeline.groups[index];
     if (!place) throw new RangeError(`no group ${index}`);
+    return place;
+  }
+
+  private async opened(index: number): Promise<Group> {
+    const place = this.placeOf(index);
     const bytes = new Uint8Array(await this.read(place.offset, place.length));
     await checkDigest(bytes, place);
     const { head, at } = await readHead(bytes, place);
+    return this.build(index, bytes, head, at, place.frames);
+  }
+
+  /** `at`: the first byte behind the head. `count`: frames whose units are there. */
+  private build(index: number, bytes: Uint8Array, head: Value<GroupHeadJson>, at: number, count: number): Group {
+    const place = this.placeOf(index);
     const streams = takeStreams(bytes, at, place);
     const omega = this.weightsOf(head, streams);
     const mesh = this.meshOf(head, streams);
     const motion = motionOf(head, streams, mesh, place);
     const { first, frames } = place;
-    const units = unitsOf(head, place, this.timeline.films.length, streams);
+    const units = unitsOf(head, place, this.timeline.films.length, streams, count);
     return { index, first, frames, omega, ...this.scalesOf(head), units, mesh, motion };
   }
 
@@ -118,12 +142,23 @@ async function checkDigest(bytes: Uint8Array<ArrayBuffer>, { sha256, where }: Gr
   if (found !== sha256) throw damaged(where, "other bytes than its SHA-256 says");
 }
 
+/** Of the deflated JSON, in bytes. */
+function sizeOfHead(bytes: Uint8Array<ArrayBuffer>, { where }: Pick<GroupPlace, "where">): number {
+  if (bytes.length < HEAD) throw damaged(where, "no head");
+  return new DataView(bytes.buffer).getUint32(0, true);
+}
+
+/** The sum of all numbers in it. */
+function totalOf(raw: Json | undefined): number {
+  if (typeof raw === "number") return raw;
+  return Array.isArray(raw) ? raw.reduce<number>((sum, one) => sum + totalOf(one), 0) : 0;
+}
+
 async function readHead(
   bytes: Uint8Array<ArrayBuffer>,
   { where }: GroupPlace,
 ): Promise<{ head: Value<GroupHeadJson>; at: number }> {
-  if (bytes.length < HEAD) throw damaged(where, "no head");
-  const at = HEAD + new DataView(bytes.buffer).getUint32(0, true);
+  const at = HEAD + sizeOfHead(bytes, { where });
   if (at > bytes.length) throw damaged(where, "a head longer than the group");
   const json = await inflated(bytes.subarray(HEAD, at), "deflate-raw", limits.MAX_GROUP_JSON, where);
   const text = new TextDecoder("utf-8").decode(json);
@@ -156,9 +191,15 @@ function motionOf(
   return motion;
 }
 
-/** Of each frame a unit for each film. */
-function unitsOf(head: Value<GroupHeadJson>, place: GroupPlace, films: number, streams: Streams): Uint8Array[][] {
-  return exactly(head.key("frames"), place.frames).map((frame) => {
+/** Of each of so many frames a unit for each film. */
+function unitsOf(
+  head: Value<GroupHeadJson>,
+  place: GroupPlace,
+  films: number,
+  streams: Streams,
+  count: number,
+): Uint8Array[][] {
+  return exactly(head.key("frames"), place.frames).slice(0, count).map((frame) => {
     return exactly(frame as Value<number[]>, films).map((length) => streams(length as Value<number>));
   });
 }
