@@ -18,6 +18,7 @@ from eigenfield.encoding.clip.encode import encode_clip, group_length
 from eigenfield.encoding.clip.plan import KeptPhotographs
 from eigenfield.encoding.projected.mean import mean_map
 from eigenfield.encoding.projected.project import texture_maps
+from eigenfield.encoding.target import Target
 from eigenfield.gltf import load_clip, save, validate
 from eigenfield.imaging.metrics import psnr, to_codes
 from eigenfield.rendering import Renderer, camera_weights, draw_texture
@@ -64,6 +65,29 @@ def test_a_sound_is_kept_and_another_kind_of_file_is_refused_before_any_work(tmp
         with pytest.raises(CaptureError) as caught:
             encode_footage(two, MESH, OPTIONS, audio=path)
         assert caught.value.code == code and path.name in str(caught.value) and not two.asked
+
+
+@pytest.mark.parametrize(
+    "target", [Target(size=9000), Target(bitrate=round(8 * 9000 / 0.4)), Target(psnr=33.0), Target(size=1200)]
+)
+def test_a_target_is_reached_by_the_quality_or_the_nearest_is_taken(target, tmp_path):
+    levels = (1.0, 0.95, 0.9, 0.95)
+    four = replace(footage(*levels), rate=Fraction(10))
+    clip = encode_footage(four, MESH, EncodeOptions(target=target), group="2", work=tmp_path / "work")
+    save(clip, tmp_path / "clip.glb")
+    size = (tmp_path / "clip.glb").stat().st_size
+    quality = clip.settings["clip"]["quality"]
+    if target.psnr is not None:
+        found = np.mean([measured(clip.scene(number / 10), four.frames[number]) for number in range(4)])
+        assert abs(found - target.psnr) < 1.0
+    elif target.size == 1200:
+        assert quality == 20 and size > 1200
+    else:
+        assert 6000 < size <= 9000
+    again = encode_footage(four, MESH, EncodeOptions(quality=quality), group="2")
+    assert [stored_bytes(one.data) for one in again.groups.stored] == [
+        stored_bytes(one.data) for one in clip.groups.stored
+    ]
 
 
 def stored_bytes(group) -> bytes:
@@ -215,7 +239,6 @@ def test_a_run_that_was_stopped_goes_on_after_the_last_finished_frame(tmp_path):
     [
         ({"residual": 40}, "clip-option"),
         ({"harmonise": "gain"}, "clip-option"),
-        ({"target": ef.Target(psnr=30)}, "clip-option"),
         ({"group": "a while"}, "group-unknown"),
         ({"group": "0"}, "group-unknown"),
         ({"group": "1000s"}, "group-unknown"),

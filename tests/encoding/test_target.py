@@ -52,7 +52,7 @@ def test_what_cannot_be_reached_gives_the_nearest(target, quality):
 
 
 @pytest.mark.parametrize(
-    "target", [Target(), Target(size=5, psnr=3), Target(size=10), Target(ssim=1.5), Target(psnr=-1)]
+    "target", [Target(), Target(size=5, psnr=3), Target(size=10), Target(ssim=1.5), Target(psnr=-1), Target(bitrate=5)]
 )
 def test_targets_that_cannot_be(target):
     with pytest.raises(OptionError) as caught:

@@ -28,7 +28,7 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.open_options import OpenOptions
 from eigenfield.core.shell import shell_word
 from eigenfield.encoding import EncodeOptions
-from eigenfield.encoding.target import parse_size
+from eigenfield.encoding.target import parse_bitrate, parse_size
 from eigenfield.reconstruction import SurfaceOptions
 
 if TYPE_CHECKING:
@@ -48,6 +48,10 @@ def parse_atlas(context: click.Context, parameter: click.Parameter, value: str |
     return int(found[1]) if found[2] is None else (int(found[1]), int(found[2]))
 
 
+def parse_target_bitrate(context: click.Context, parameter: click.Parameter, value: str | None) -> int | None:
+    return None if value is None else parse_bitrate(value)
+
+
 def parse_target_size(context: click.Context, parameter: click.Parameter, value: str | None) -> int | None:
     return None if value is None else parse_size(value)
 
@@ -58,7 +62,7 @@ GROUPS = {  # of options in the help, those of every day first; the empty one ha
     "What the capture is": (
         "format", "pattern", "frame", "walk_frames", "masks", "reference", "metres_per_unit",
     ),
-    "Clips": ("clip", "offset", "rate", "group", "audio"),
+    "Clips": ("clip", "offset", "rate", "group", "audio", "target_bitrate"),
     "Quality and size": (
         "quality", "target_psnr", "target_ssim", "hold_out", "blind", "density", "atlas", "harmonise", "residual",
         "fallback",
@@ -123,7 +127,7 @@ Examples:
 )
 @capture_options
 @leave_out_option
-@field_options(EncodeOptions, atlas=parse_atlas, target_size=parse_target_size)
+@field_options(EncodeOptions, atlas=parse_atlas, target_size=parse_target_size, target_bitrate=parse_target_bitrate)
 @click.option(
     "--work",
     type=PATH,
@@ -202,10 +206,10 @@ def command(
     elif proxy is not None:
         refuse_no_mesh(proxy)
     options = from_fields(EncodeOptions, settings)
-    if place.clip is None and options.group is not None:
-        raise OptionError("group-unused", "--group is about clips", remedy="say --clip, or leave it out")
-    if place.clip is None and audio is not None:
-        raise OptionError("audio-unused", "--audio is about clips", remedy="say --clip, or leave it out")
+    if place.clip is None:
+        options.refuse_clip_options()
+        if audio is not None:
+            raise OptionError("audio-unused", "--audio is about clips", remedy="say --clip, or leave it out")
     if place.clip is not None:
         refuse_for_clips({"draft": draft, "view": look, "blind": blind})
         given, stages = from_fields(SurfaceOptions, settings), work or whole.with_suffix(".work")

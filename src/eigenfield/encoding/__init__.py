@@ -92,6 +92,7 @@ def encode(
     refuse_unknown(changes, (*OPTION_NAMES, *SURFACE_NAMES), "encode")
     of_surface = {name: changes.pop(name) for name in SURFACE_NAMES if name in changes}
     options = replace(options or EncodeOptions(), **changes)
+    options.refuse_clip_options()
     if options.keep_maps is not None:
         refuse_objects(options.keep_maps)
     surface = surface_to_make(

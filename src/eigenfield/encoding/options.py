@@ -213,6 +213,14 @@ class EncodeOptions(Options):
         """`coding` for the scene that `encode` returns, whose pictures are coded already if it has a residual."""
         return {"codec": None, "quality": None} if self.residual is not None else self.coding
 
+    def refuse_clip_options(self) -> None:
+        """Raise OptionError `group-unused`, `target` for what only a clip has."""
+        remedy = "say --clip, or leave it out"
+        if self.group is not None:
+            raise OptionError("group-unused", "--group is about clips", remedy=remedy)
+        if self.target is not None and self.target.bitrate is not None:
+            raise OptionError("target", "--target-bitrate is about clips", remedy=remedy)
+
     @property
     def map_options(self) -> list[str]:
         """The given options that are about texture maps, as the command line writes them."""

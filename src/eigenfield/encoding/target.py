@@ -20,8 +20,21 @@ log = logging.getLogger("eigenfield.fit")
 TARGET_MAX_ATTEMPTS = 7
 TARGET_MIN_QUALITY, TARGET_MAX_QUALITY = 20, 99  # below, pictures are not recognisable
 TARGET_FIRST_QUALITY = 80
-TARGET_RANGES = {"size": (1000, math.inf, " bytes"), "psnr": (1, 99, " dB"), "ssim": (0, 1, "")}  # both excluded
+TARGET_RANGES = {  # both excluded
+    "size": (1000, math.inf, " bytes"),
+    "psnr": (1, 99, " dB"),
+    "ssim": (0, 1, ""),
+    "bitrate": (1000, math.inf, " bit/s"),
+}
 TARGET_NEAR_SIZE_RATIO = 0.985  # of a target size: such files are near enough
+
+
+def parse_bitrate(text: str) -> int:
+    """Bits a second from a text: "4Mbps", "800kbps" or "4000000". Raises OptionError `target`."""
+    found = re.fullmatch(r"(\d{1,18}(?:\.\d+)?) *(k|m|)(?:bps|bit/s)?", text.strip().lower())
+    if found is None:
+        raise OptionError("target", f"{text!r} is no bitrate", remedy="say Mbps, kbps or bits a second: 4Mbps, 800kbps")
+    return round(float(found[1]) * {"": 1, "k": 1e3, "m": 1e6}[found[2]])
 
 
 def parse_size(text: str) -> int:
@@ -35,7 +48,7 @@ def parse_size(text: str) -> int:
 @document_options
 @dataclass(frozen=True)
 class Target(Options):
-    """The target of a file: one of a size, a PSNR and an SSIM.
+    """The target of a file: one of a size, a PSNR, an SSIM, and of a clip a bitrate.
 
     PSNR (dB, RGB) and SSIM are means over captured cameras (docs/measures.md).
     """
@@ -43,13 +56,14 @@ class Target(Options):
     size: int | None = option("The best file of at most this size: 500kB, 1.5MB, 300000.", metavar="SIZE")
     psnr: float | None = option("The smallest file whose captured views reach this PSNR, RGB.", metavar="DB")
     ssim: float | None = option("The smallest file whose captured views reach this SSIM.", metavar="S")
+    bitrate: int | None = option("The best clip of at most so many bits a second: 4Mbps, 800kbps.", metavar="RATE")
 
     def check(self) -> None:
         """Raise OptionError `target` for none, several, or one out of range."""
         given = [(name, value) for name, value in vars(self).items() if value is not None]
         if len(given) != 1:
             names = ", ".join(f"--target-{name}" for name, _ in given) or "no target"
-            raise OptionError("target", f"{names} at a time", remedy="say one: size, psnr or ssim")
+            raise OptionError("target", f"{names} at a time", remedy="say one: size, psnr, ssim or bitrate")
         name, value = given[0]
         low, high, unit = TARGET_RANGES[name]
         if isinstance(value, bool) or not isinstance(value, Real) or not low < float(value) < high:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import logging
+import math
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -25,10 +26,13 @@ from eigenfield.encoding.clip.digest import footage_digest
 from eigenfield.encoding.clip.groups import Groups, MadeGroup, Run
 from eigenfield.encoding.clip.motion import moving_mesh
 from eigenfield.encoding.clip.still import estimate_still_surface, refuse_sheets, surface_of_clip
+from eigenfield.encoding.clip.target import reach_quality
 from eigenfield.encoding.fitted.colour import to_rgb
-from eigenfield.encoding.options import EncodeOptions
+from eigenfield.encoding.options import PRESETS, EncodeOptions, resolved_value
 from eigenfield.encoding.plan import EncodePlan
 from eigenfield.encoding.prepare import plan_encoding
+from eigenfield.encoding.reach_target import REFIT_MAX_NEAR_QUALITIES
+from eigenfield.encoding.target import Target
 from eigenfield.gltf.clips import coded_clip
 from eigenfield.proxy import refuse_no_mesh
 from eigenfield.proxy.atlas.unwrap import UNWRAP_MIN_TRIANGLES
@@ -48,9 +52,10 @@ GivenProxy = str | os.PathLike[str] | Mesh | Proxy | Sequence[str | os.PathLike[
 DEFAULT_GROUP = "1s"
 GROUP_PATTERN = re.compile(r"(\d{1,9})|(\d{1,9}(?:\.\d*)?|\.\d+)s")  # frames, or seconds
 GROUP_LIMITS = 1, 1024  # frames
+TARGET_ROUNDS = 2  # of searches, the second one on another mesh
 SHOWN_NUMBERS = 8  # of frames in a message
 STILL_OPTIONS = (  # that have no meaning for clips
-    "uv_ssim", "align", "max_angle", "codec", "keep_maps", "residual", "target", "harmonise",
+    "uv_ssim", "align", "max_angle", "codec", "keep_maps", "residual", "harmonise",
 )  # fmt: skip
 
 
@@ -91,14 +96,21 @@ def encode_clip(
     if surface is not None:
         footage, proxy, asked = estimate_still_surface(footage, asked, surface, work, progress)
     assert proxy is not None
-    runs = _runs(footage, proxy, asked, length, work, progress)
-    plan = runs[0].plan
-    meshes = [[_plan_digest(run.plan), None if run.moving is None else run.moving.digest] for run in runs]
-    identity = stage_key([footage_digest(footage), asked, meshes], SCENE_ROOMS)
-    groups = Groups(footage, tuple(runs), identity, work)
-    begin_step(progress, "fit")
+    digest = footage_digest(footage)
+
+    def groups_of(asked: EncodeOptions) -> Groups:
+        runs = _runs(footage, proxy, asked, length, work, progress)
+        meshes = [[_plan_digest(run.plan), None if run.moving is None else run.moving.digest] for run in runs]
+        return Groups(footage, tuple(runs), stage_key([digest, asked, meshes], SCENE_ROOMS), work)
+
     with Stages(None if work is None else work / "clip") as stages:
+        groups = groups_of(asked)
+        if asked.target is not None:
+            asked = _reach_target(groups, groups_of, asked, stages, progress)
+            groups = groups_of(asked)
+        begin_step(progress, "fit")
         made, layout = groups.make_all(stages, workers, progress)
+    plan = groups.runs[0].plan
     clip = coded_clip(
         plan.views.rig,
         plan.mesh,
@@ -113,6 +125,33 @@ def encode_clip(
         payloads=plan.payloads,
     )
     return replace(clip, audio=audio)
+
+
+def _reach_target(
+    groups: Groups,
+    groups_of: Callable[[EncodeOptions], Groups],
+    asked: EncodeOptions,
+    stages: Stages,
+    progress: Progress | None,
+) -> EncodeOptions:
+    """The options with the quality that reaches the target. Where that is far from the preset's, it is searched again
+    on the mesh and the atlas that belong to it."""
+    target = asked.target
+    assert target is not None
+    if target.bitrate is not None:
+        timeline = groups.footage.timeline
+        target = Target(size=math.floor(target.bitrate / 8 * timeline.frames / timeline.rate))
+    begin_step(progress, "trial")
+    usual = PRESETS[resolved_value(groups.runs[0].plan.options.preset)].quality
+    found = usual
+    for _ in range(TARGET_ROUNDS):
+        before = found
+        found = reach_quality(groups, target, stages, before, progress)
+        asked = replace(asked, target=None, quality=found)
+        if abs(found - before) <= REFIT_MAX_NEAR_QUALITIES:
+            break
+        groups = groups_of(asked)
+    return asked
 
 
 def _runs(
@@ -133,7 +172,8 @@ def _runs(
         middle = cast("CalibratedObservations", footage.instant(len(footage) // 2))
         plan = plan_encoding(middle, cast("Mesh", proxy), asked, work, progress)
         return [Run(_spans(0, len(footage), length), plan)]
-    sequences = read_sequences(cast("str", proxy), len(footage), footage.origin)
+    origin = cast("CalibratedObservations", footage.instant(0)).origin
+    sequences = read_sequences(cast("str", proxy), len(footage), origin)
     runs: list[Run] = []
     for sequence in sequences:
         whole = replace(asked, triangles=max(len(sequence.mesh.faces), UNWRAP_MIN_TRIANGLES))

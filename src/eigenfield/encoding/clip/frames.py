@@ -170,8 +170,8 @@ class GroupFrames:
         """A function that makes a finished stage of the whole group by one that writes its files, or finds it."""
 
         def keep(write: Callable[[Path], None]) -> Path:
-            number = f"{self.numbers.start:05d}"
-            folder = self.stages.run(f"{name}-{number}", stage_key([after.key, name], SCENE_ROOMS), write)
+            key = stage_key([self.identity, after.key, name], SCENE_ROOMS)
+            folder = self.stages.run(f"{name}-{self.numbers.start:05d}", key, write)
             self.made.append(folder)
             return folder
 

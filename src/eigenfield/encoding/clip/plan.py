@@ -168,6 +168,11 @@ class ClipPlan:
         planes = tuple(replace(one, settings=replace(one.settings, textures=count)) for one, count in pairs)
         return replace(self, planes=planes)
 
+    def at_quality(self, quality: int) -> ClipPlan:
+        """The same coded at another quality, 0 to 100."""
+        planes = [replace(one, rate=one.preset.rate(step_of(quality))) for one in self.planes]
+        return replace(self, planes=tuple(planes))
+
     def layout(self, counts: Sequence[int]) -> FilmLayout:
         """Where so many eigen textures of each plane, and its mean, lie in films. OptionError `film-size`."""
         pairs = zip((one.settings for one in self.planes), counts, strict=True)
