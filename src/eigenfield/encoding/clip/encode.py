@@ -128,7 +128,8 @@ def _runs(
         middle = cast("CalibratedObservations", footage.instant(len(footage) // 2))
         plan = plan_encoding(middle, cast("Mesh", proxy), asked, work, progress)
         return [Run(_spans(0, len(footage), length), plan)]
-    sequences = read_sequences(cast("str", proxy), len(footage), footage.origin)
+    origin = cast("CalibratedObservations", footage.instant(0)).origin
+    sequences = read_sequences(cast("str", proxy), len(footage), origin)
     runs: list[Run] = []
     for sequence in sequences:
         whole = replace(asked, triangles=max(len(sequence.mesh.faces), UNWRAP_MIN_TRIANGLES))
