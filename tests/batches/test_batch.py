@@ -25,7 +25,7 @@ from eigenfield.batches.sheet import sheet_html
 from eigenfield.batches.table import as_csv, as_markdown
 from eigenfield.core.errors import one_line
 from eigenfield.core.open_options import OpenOptions
-from eigenfield.demo import draw_demo_capture
+from eigenfield.demo import draw_demo_capture, draw_demo_clip
 from eigenfield.runtime import executor
 from support import tasks
 from support.fuzzed import fuzzed
@@ -51,6 +51,25 @@ def listed(capture, tmp_path):
         '[[capture]]\npath = "empty"\n'
     )
     return tmp_path / "captures.toml"
+
+
+def test_clips_lie_beside_scenes_and_are_taken_up_again(capture, tmp_path):
+    draw_demo_clip(tmp_path / "footage", rows=2, columns=3, size=48, frames=2)
+    (tmp_path / "captures.toml").write_text(
+        f'[[capture]]\npath = "{capture}"\nproxy = "{capture}/proxy.ply"\n{FAST}'
+        '[[capture]]\npath = "footage"\nclip = ":"\nproxy = "footage/mesh_%04d.ply"\nquality = 60\ngroup = "2"\n'
+    )
+    result = ef.batch(tmp_path / "captures.toml", tmp_path / "out")
+    assert [record["name"] for record in result.records if "error" not in record] == ["jar", "footage"]
+    still, clip = result.records
+    assert (clip["photographs"], still["photographs"]) == (12, 9) and clip["psnr"] > 20
+    file = result.folder / clip["folder"] / clip["scene"]
+    assert ef.load_clip(file).timeline.frames == 2
+    assert (file.parent / clip["page"]).stat().st_size > file.stat().st_size and (file.parent / clip["poster"]).exists()
+    again = ef.batch(tmp_path / "captures.toml", tmp_path / "out")
+    assert [record["seconds"] for record in again.records] == [record["seconds"] for record in result.records]
+    with pytest.raises(ef.OptionError, match="--group is about clips"):
+        read_jobs([capture], {"group": "2"})
 
 
 def scenes_of(result):

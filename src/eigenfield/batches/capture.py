@@ -1,4 +1,4 @@
-"""One capture of a batch, as a worker does it: paths and small numbers come in and go out.
+"""One capture or clip of a batch, as a worker does it: paths and small numbers come in and go out.
 
 A finished scene is a stage: the folder `NAME-KEY` with scene, page, poster and record appears by rename. Its key is of
 the options, the program, and the names, sizes and times of the photographs' files, which need not be read for it.
@@ -9,20 +9,22 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Mapping
-from dataclasses import asdict
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 from eigenfield.batches.jobs import CaptureJob
-from eigenfield.capture import Capture, open_any
+from eigenfield.capture import Capture, open_any, open_footage
+from eigenfield.capture.footage import Footage
 from eigenfield.capture.identity import capture_identity
-from eigenfield.encoding import encode
+from eigenfield.encoding import encode, encode_footage
 from eigenfield.encoding.cost import expected_cost
 from eigenfield.encoding.views import check_selection
-from eigenfield.evaluation import evaluate, stored_scores
+from eigenfield.evaluation import evaluate, evaluate_clip, stored_scores
 from eigenfield.gltf import load, save, store_scores
 from eigenfield.proxy import refuse_no_mesh
+from eigenfield.proxy.meshes.sequence import is_sequence, mesh_files
 from eigenfield.runtime.objects import DONE, find_objects, own_copies
 from eigenfield.runtime.parallel import threads
 from eigenfield.runtime.stages import Stages, stage_key
@@ -31,6 +33,8 @@ from eigenfield.viewer.exports import write_guests_page
 
 SCENES_FOLDER, WORK_FOLDER, LOGS_FOLDER = "scenes", "work", "logs"
 RECORD_FILE = "record.json"
+FRAME_COST_RATIO = 0.3  # of a still's expected time, for each frame of a clip
+MEASURED_FRAMES = 20  # of a clip, at least if it has so many
 
 
 @own_copies()
@@ -43,15 +47,20 @@ def look_at(job: CaptureJob, output: Path) -> dict[str, Any]:
     Raises:
         CaptureError, ProxyError, OptionError: The capture, or an option of it, cannot be used.
     """
-    capture = None if _in_store(job) else _opened(job, output)
+    capture = None if _in_store(job) or job.place.clip is not None else _opened(job, output)
     key = stage_key([_inputs(job, capture), installed()])
     record = _finished(output / SCENES_FOLDER / f"{job.name}-{key}")
     if record is not None:
         return {"key": key, "seconds": 0.0, "memory": 0.0, "record": record}
+    if job.proxy is not None and not is_sequence(Path(job.proxy)):
+        refuse_no_mesh(Path(job.proxy))
+    if job.place.clip is not None:
+        footage = _footage(job, output)
+        cost = expected_cost(footage.instant(len(footage) // 2), job.options, job.surface, threads())
+        return {"key": key, "seconds": (1 + FRAME_COST_RATIO * len(footage)) * cost.seconds, "memory": cost.memory,
+                "record": None}  # fmt: skip
     capture = capture or _opened(job, output)
     check_selection(capture, job.options)
-    if job.proxy is not None:
-        refuse_no_mesh(Path(job.proxy))
     cost = expected_cost(capture, job.options, job.surface, threads())
     return {"key": key, "seconds": cost.seconds, "memory": cost.memory, "record": None}
 
@@ -96,6 +105,11 @@ def _opened(job: CaptureJob, output: Path) -> Capture:
     return open_any(job.path, job.place, work=frames)
 
 
+def _footage(job: CaptureJob, output: Path) -> Footage:
+    frames = None if find_objects(output) else output / WORK_FOLDER / job.name / "frames"
+    return open_footage(job.path, options=replace(job.place, work=frames))
+
+
 def _in_store(job: CaptureJob) -> bool:
     """Whether anything of a capture lies in an object store, so that its files here are copies."""
     return any(find_objects(path) for path in job.sources)
@@ -114,7 +128,10 @@ def _inputs(job: CaptureJob, capture: Capture | None) -> list[Any]:
             return objects.stamps()
         return [of_file(one) for one in (sorted(place.rglob("*")) if place.is_dir() else [place])]
 
-    proxy = None if job.proxy is None else of_place(job.proxy)
+    def of_mesh(path: str) -> list[Any]:
+        return list(map(of_file, mesh_files(path))) if is_sequence(path) else of_place(path)
+
+    proxy = None if job.proxy is None else of_mesh(job.proxy)
     options = asdict(job.options) | {"surface": None if job.surface is None else asdict(job.surface)}
     if capture is None:
         return [job.name, options, proxy, asdict(job.place), [of_place(path) for path in job.sources]]
@@ -122,25 +139,15 @@ def _inputs(job: CaptureJob, capture: Capture | None) -> list[Any]:
 
 
 def _make(job: CaptureJob, output: Path, work: Path, folder: Path) -> dict[str, Any]:
-    """Scene, page and poster in a folder, and their record."""
+    """Scene or clip, page and poster in a folder, and their record."""
     started = time.monotonic()
     warnings: list[str] = []
     scene_file, page = folder / f"{job.name}.glb", folder / f"{job.name}.html"
     with log_into(warnings):
-        capture = _opened(job, output)
         if not find_objects(work):
             work.mkdir(parents=True, exist_ok=True)
-        made = encode(
-            capture, job.proxy, job.options, surface_options=job.surface, work=work, progress=None,
-            blind=job.surface is not None and job.surface.blind is not None,
-        )  # fmt: skip
-        save(made, scene_file, **job.options.for_save)
-        encoded = time.monotonic()
-        scene = load(scene_file)
-        figures = evaluate(scene, capture, path=scene_file, png_maps="none", progress=None)
-        store_scores(scene_file, {**scene.scores, **stored_scores(figures)})
-        write_guests_page(scene, page, title=job.name)
-    image: Mapping[str, Any] = figures["image"]
+        make = _make_still if job.place.clip is None else _make_clip
+        encoded, problems, own = make(job, output, work, scene_file, page)
     return {
         "name": job.name,
         "capture": job.path,
@@ -148,18 +155,74 @@ def _make(job: CaptureJob, output: Path, work: Path, folder: Path) -> dict[str, 
         "page": page.name,
         "poster": page.with_suffix(".jpg").name,
         "bytes": scene_file.stat().st_size,
-        "photographs": len(capture.sizes),
-        "photographs_bytes": made.settings["photographs"]["bytes"],
-        "textures": scene.appearance.textures,
-        "psnr": _score(image["encoded"], "psnr"),
-        "ssim": _score(image["encoded"], "ssim"),
-        "held_out_psnr": _score(image["held_out"], "psnr"),
-        "between_psnr_luma": _score(scene.scores.get("between"), "psnr_luma_at_least"),
-        "between_psnr": _score(scene.scores.get("between"), "psnr"),
+        **own,
         "seconds": round(time.monotonic() - started, 1),
         "encode_seconds": round(encoded - started, 1),
         "worker": worker_name(),
-        "warnings": [*capture.problems, *(line for line in warnings if line not in capture.problems)],
+        "warnings": [*problems, *(line for line in warnings if line not in problems)],
+    }
+
+
+Made = tuple[float, Sequence[str], dict[str, Any]]  # when it was encoded, problems of the capture, what is its own
+
+
+def _make_still(job: CaptureJob, output: Path, work: Path, scene_file: Path, page: Path) -> Made:
+    capture = _opened(job, output)
+    made = encode(
+        capture, job.proxy, job.options, surface_options=job.surface, work=work, progress=None,
+        blind=job.surface is not None and job.surface.blind is not None,
+    )  # fmt: skip
+    save(made, scene_file, **job.options.for_save)
+    encoded = time.monotonic()
+    scene = load(scene_file)
+    figures = evaluate(scene, capture, path=scene_file, png_maps="none", progress=None)
+    store_scores(scene_file, {**scene.scores, **stored_scores(figures)})
+    write_guests_page(scene, page, title=job.name)
+    return (
+        encoded,
+        capture.problems,
+        {
+            "photographs": len(capture.sizes),
+            "photographs_bytes": made.settings["photographs"]["bytes"],
+            "textures": scene.appearance.textures,
+            **_scores(figures["image"]),
+            "between_psnr_luma": _score(scene.scores.get("between"), "psnr_luma_at_least"),
+            "between_psnr": _score(scene.scores.get("between"), "psnr"),
+        },
+    )
+
+
+def _make_clip(job: CaptureJob, output: Path, work: Path, clip_file: Path, page: Path) -> Made:
+    footage = _footage(job, output)
+    clip = encode_footage(
+        footage, job.proxy, job.options, surface_options=job.surface, work=None if find_objects(work) else work,
+        progress=None,
+    )  # fmt: skip
+    save(clip, clip_file)
+    encoded = time.monotonic()
+    every = max(1, len(footage) // MEASURED_FRAMES)
+    figures = evaluate_clip(clip, footage, path=clip_file, every=every, progress=None)
+    first = clip.scene(clip.timeline.first)
+    write_guests_page(first, page, title=job.name, glb=clip_file.read_bytes())
+    return (
+        encoded,
+        footage.problems,
+        {
+            "photographs": len(footage.names) * len(footage),
+            "photographs_bytes": footage.bytes,
+            "textures": first.appearance.textures,
+            **_scores(figures["image"]),
+            "between_psnr_luma": None,
+            "between_psnr": None,
+        },
+    )
+
+
+def _scores(image: Mapping[str, Any]) -> dict[str, float | None]:
+    return {
+        "psnr": _score(image["encoded"], "psnr"),
+        "ssim": _score(image["encoded"], "ssim"),
+        "held_out_psnr": _score(image["held_out"], "psnr"),
     }
 
 

@@ -17,7 +17,7 @@ from eigenfield.core.errors import EigenfieldError, OptionError
 from eigenfield.core.open_options import OpenOptions
 from eigenfield.encoding import SURFACE_NAMES, EncodeOptions, Target
 from eigenfield.encoding.estimated import surface_to_make
-from eigenfield.encoding.target import parse_size
+from eigenfield.encoding.target import parse_bitrate, parse_size
 from eigenfield.reconstruction import SurfaceOptions
 from eigenfield.runtime.objects import absolute_place, address_of, find_objects, local_copy
 from eigenfield.runtime.temporary import is_temporary
@@ -190,11 +190,15 @@ def _checked(given: dict[str, Any], base: Path) -> CaptureJob:
     proxy = given.get("proxy")
     if isinstance(given.get("target_size"), str):
         given["target_size"] = parse_size(given["target_size"])
+    if isinstance(given.get("target_bitrate"), str):
+        given["target_bitrate"] = parse_bitrate(given["target_bitrate"])
     target = Target(**{key.removeprefix("target_"): value for key, value in _some(given, TARGET_KEYS).items()})
     named = _some(given, OPTION_KEYS)
     if isinstance(named.get("atlas"), list):
         named["atlas"] = tuple(named["atlas"])
     options = EncodeOptions(**named, target=None if target == Target() else target)
+    if place.clip is None:
+        options.refuse_clip_options()
     surface = surface_to_make(
         options, SurfaceOptions(**_some(given, SURFACE_NAMES)), bool(given.get("blind", False)), proxy is not None
     )
