@@ -59,14 +59,14 @@ def test_clips_lie_beside_scenes_and_are_taken_up_again(capture, tmp_path):
         f'[[capture]]\npath = "{capture}"\nproxy = "{capture}/proxy.ply"\n{FAST}'
         '[[capture]]\npath = "footage"\nclip = ":"\nproxy = "footage/mesh_%04d.ply"\nquality = 60\ngroup = "2"\n'
     )
-    result = ef.batch(tmp_path / "captures.toml", tmp_path / "out")
+    result = ef.batch(tmp_path / "captures.toml", tmp_path / "out", progress=None)
     assert [record["name"] for record in result.records if "error" not in record] == ["jar", "footage"]
     still, clip = result.records
     assert (clip["photographs"], still["photographs"]) == (12, 9) and clip["psnr"] > 20
     file = result.folder / clip["folder"] / clip["scene"]
     assert ef.load_clip(file).timeline.frames == 2
     assert (file.parent / clip["page"]).stat().st_size > file.stat().st_size and (file.parent / clip["poster"]).exists()
-    again = ef.batch(tmp_path / "captures.toml", tmp_path / "out")
+    again = ef.batch(tmp_path / "captures.toml", tmp_path / "out", progress=None)
     assert [record["seconds"] for record in again.records] == [record["seconds"] for record in result.records]
     with pytest.raises(ef.OptionError, match="--group is about clips"):
         read_jobs([capture], {"group": "2"})
