@@ -7,6 +7,7 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
+from eigenfield.coding import limits
 from eigenfield.coding.opus import is_opus
 from eigenfield.core.arguments import checked
 from eigenfield.core.clip import Audio, Clip, Timeline
@@ -109,7 +110,9 @@ def check_clip(document: Document, findings: Findings) -> bool:
             for _ in groups.group(index).frames:
                 pass
         if any(finding.code == "truncated" for finding in findings.found):
-            break  # nor are those behind it there
+            return True  # nor are those behind it there
+    with findings.part():
+        _audio_of(layout, document.glb.source)
     return True
 
 
@@ -172,7 +175,13 @@ def read_clip(data: ByteSource) -> Clip:
 
 def _clip_of(layout: ClipLayout, place: ByteSource | Path) -> Clip:
     assert layout.timeline is not None
-    groups, audio = _groups_of(layout, place), _audio_of(layout, place)
+    groups, audio = _groups_of(layout, place), None
+    try:
+        audio = _audio_of(layout, place)
+    except FormatError as error:
+        if error.code != "truncated":
+            raise
+        log.warning("the file ends within its sound: the clip is silent (copy or download it again)")
     return Clip(layout.rig, layout.timeline, groups, layout.settings, layout.scores, layout.generator, audio)
 
 
@@ -184,16 +193,16 @@ def _stored(layout: ClipLayout, place: ByteSource | Path, entry: GroupEntry | Au
 
 
 def _audio_of(layout: ClipLayout, place: ByteSource | Path) -> Audio | None:
-    """The sound; None, and a line, if the file ends before it does. FormatError `audio-unknown`."""
+    """The sound; None: there is none. FormatError `audio-unknown`, `truncated`."""
     if layout.audio is None:
         return None
     data = bytes(_stored(layout, place, layout.audio).read(0, layout.audio.length))
+    where, remedy = f"/extensions/{limits.EXTENSION}/timeline/audio", "copy or download it again"
     if len(data) < layout.audio.length:
-        log.warning("the file ends within its sound: the clip is silent (copy or download it again)")
-        return None
+        message = f"the file ends after {len(data)} of the sound's {layout.audio.length} bytes"
+        raise FormatError("truncated", message, where=where, remedy=remedy)
     if not is_opus(data):
-        message, remedy = "the sound is no Ogg file of Opus", "copy or download it again"
-        raise FormatError("audio-unknown", message, where="/timeline/audio", remedy=remedy)
+        raise FormatError("audio-unknown", "the sound is no Ogg file of Opus", where=where, remedy=remedy)
     return Audio(data, layout.audio.first)
 
 
