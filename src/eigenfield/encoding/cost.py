@@ -57,6 +57,7 @@ FEW_VIEWS = {  # of below SUBSAMPLE_MIN_OBSERVATIONS: more rounds, and all pixel
     "fit": StepCost("fit", 5, of_root=32),
     "code": StepCost("coding", 4, of_root=15),
 }
+AROUND = {"code": StepCost("coding", 6, 1.2)}  # of more views that look around: their textures are rotated
 TEXTURE_MAPS = {"mesh": StepCost("mesh", 5)}  # without a fit: its surface and triangles stay as they are
 DENSE_TRIAL = StepCost("trial of layers", 20)  # which ends with the fewest layers, as a rule
 LAYERED = {"layers": STEPS["layers"], "mesh": StepCost("mesh", 5, 28), "fit": StepCost("fit", 5, 30)}
@@ -106,7 +107,8 @@ def expected_cost(capture: Capture, options: EncodeOptions, surface: SurfaceOpti
     estimation, textures = [] if surface is None else _estimation(capture, surface), _textures(options)
     encoded = encoded_ratio(capture, options)
     few = encoded * len(sizes) < SUBSAMPLE_MIN_OBSERVATIONS
-    costs = STEPS | (TEXTURE_MAPS if "maps" in textures else FEW_VIEWS if few else {})
+    around = AROUND if _looks_around(capture) else {}
+    costs = STEPS | (TEXTURE_MAPS if "maps" in textures else FEW_VIEWS if few else around)
 
     def seconds(name: str, step: StepCost) -> float:
         seen = 1e-6 * pixels * (encoded if name in textures else 1)
@@ -126,12 +128,17 @@ def expected_cost(capture: Capture, options: EncodeOptions, surface: SurfaceOpti
     return Cost(steps, layered, memory, SCRATCH_BYTES_A_PIXEL * pixels)
 
 
+def _looks_around(capture: Any) -> bool:
+    """Whether cameras are known, and look to all sides."""
+    light_field = capture.light_field
+    return light_field is not None and not looks_one_way(light_field.cameras)
+
+
 def _estimation(capture: Any, settings: SurfaceOptions) -> list[str]:
     """The names of the steps that make cameras and proxy."""
-    light_field = capture.light_field
-    unknown = light_field is None
+    unknown = capture.light_field is None
     found = ["motion"] if unknown and capture.layout is None else []
-    one_way = unknown or looks_one_way(light_field.cameras)
+    one_way = not _looks_around(capture)
     if settings.surface != "layers":
         found += ["array", "relief"] if one_way and settings.surface != "poisson" else ["surface", "proxy"]
     elif one_way:
