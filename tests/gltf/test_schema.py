@@ -342,6 +342,7 @@ def test_the_document_names_the_same_keys():
         "timeline": keys_of("timeline"),
         "film": keys_of("film"),
         "textures in films": in_film,
+        "audio": keys_of("audio"),
         "group": keys_of("group"),
     }
     assert tables("field") == {"the bytes of a group": keys_of("groupHead")}

@@ -11,6 +11,7 @@ writes into FOLDER
                  second group has a mesh of its own
     moving.json  for each frame the positions of all vertices, three numbers each
     clip.json    {"groups": frames of each, "strengths" of each, "places": first byte of each and that behind it,
+                 "held": in far.glb the byte behind the first,
                  "rate", "bits" of a number, "textures", "codes": for each frame the SHA-256 of the codes of each film,
                  two bytes a code, the lower first}
 """
@@ -57,7 +58,9 @@ def write(folder: Path) -> None:
         "rate": [rate.numerator, rate.denominator], "bits": BITS, "textures": TEXTURES_COUNT, "codes": digests(clip),
     }  # fmt: skip
     save(replace(clip, audio=Audio(opus(3), 0.5)), folder / "heard.glb", overwrite=True)
-    (folder / "far.glb").write_bytes(with_groups(data, groups_of(data), gap=2**21))
+    far = with_groups(data, groups_of(data), gap=2**21)
+    (folder / "far.glb").write_bytes(far)
+    facts["held"] = far.index(groups_of(data)[0]) + len(groups_of(data)[0])
     (folder / "clip.json").write_text(json.dumps(facts), encoding="utf-8")
     moving = moving_clip(clip, steps, {1: finer_mesh(clip)})
     save(moving, folder / "moving.glb", overwrite=True)
