@@ -345,6 +345,8 @@ test("the opacity of sheets after a lost context, and where frames have eight bi
   });
   found.forEach(assertSame);
   assert.deepEqual(found.map(([frame]) => frame), [14, 14]);
+  const brightest = found.map((one) => Math.max(...one[4].split(",")));
+  assert.ok(brightest.every((shade) => shade > 228), `white of ${brightest}: nothing behind what is opaque is seen`); // 232
   const { played, errors } = await playThrough(page, 2, FRAMES);
   played.forEach(assertSame);
   assert.deepEqual(errors, []);
