@@ -8,10 +8,11 @@ writes into FOLDER
     moving.glb   the same on a mesh that moves, but for the third group, in which it is where the file's mesh is
     moving.json  for each frame the positions of all vertices, three numbers each
     clip-sheets.glb  the same with a second sheet, which moves and shows the number by its opacity
+    clip-sheets-N.png  what its last camera sees in frame N
     clip.json    {"groups": frames of each, "strengths" of each, "places": first byte of each and that behind it,
                  "rate", "bits" of a number, "textures", "codes": for each frame the SHA-256 of the codes of each film,
                  two bytes a code, the lower first, "sheetCodes": those of clip-sheets.glb, "front": the row of the
-                 atlas at which its second sheet is read}
+                 atlas at which its second sheet is read, "drawn": frames of which there is a picture, "size" of these}
 """
 
 from __future__ import annotations
@@ -23,14 +24,17 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 
 from eigenfield.coding.video.film import decode_film
 from eigenfield.core.clip import Clip
 from eigenfield.gltf import save
 from eigenfield.gltf.clips import CodedGroups
+from eigenfield.rendering import ViewWeights, renderer_of
 from support.clips import BITS, FRONT_MIDDLE, STRENGTHS, TEXTURES_COUNT, groups_of, moving_clip, numbered_clip
 
 GROUPS = (5, 7, 1, 12)
+DRAWN, SHOWN = (0, 7, 22), (288, 240)
 
 
 def write(folder: Path) -> None:
@@ -42,10 +46,14 @@ def write(folder: Path) -> None:
     save(sheets, folder / "clip-sheets.glb", overwrite=True)
     data = (folder / "clip.glb").read_bytes()
     places = [(data.index(group), data.index(group) + len(group)) for group in groups_of(data)]
+    for number in DRAWN:
+        last = sheets.scene(float(sheets.timeline.times[number]))
+        picture = renderer_of(last).draw(last.rig.cameras[-1].resize(*SHOWN), ViewWeights.one(3), samples=1)
+        Image.fromarray(picture.to_uint8()).save(folder / f"clip-sheets-{number}.png")
     facts = {
         "groups": list(GROUPS), "strengths": STRENGTHS[: len(GROUPS)], "places": places,
         "rate": [rate.numerator, rate.denominator], "bits": BITS, "textures": TEXTURES_COUNT, "codes": digests(clip),
-        "front": FRONT_MIDDLE, "sheetCodes": digests(sheets),
+        "front": FRONT_MIDDLE, "sheetCodes": digests(sheets), "drawn": DRAWN, "size": SHOWN,
     }  # fmt: skip
     (folder / "clip.json").write_text(json.dumps(facts), encoding="utf-8")
     moving = moving_clip(clip, steps)

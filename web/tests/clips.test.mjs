@@ -5,7 +5,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, before, test } from "node:test";
-import { sceneBytes, scenePath, startLab } from "./harness.mjs";
+import { canvasPixels, decodePng, difference, sceneBytes, scenePath, startLab } from "./harness.mjs";
 
 const facts = JSON.parse(readFileSync(scenePath("clip.json"), "utf8"));
 const { groups, strengths, places, rate, bits, textures, front } = facts;
@@ -332,6 +332,23 @@ test("a clip with sheets shows its number a fourth way, by what of the second sh
   const { played, errors } = await playThrough(page, 0.5, 20);
   assert.deepEqual(errors, []);
   played.forEach(assertSame);
+  await close();
+});
+
+test("frames of a clip with sheets are drawn as the software renderer draws them", async () => {
+  const { page, close } = await openClip("clip-sheets.glb");
+  for (const number of facts.drawn) {
+    await page.evaluate(async ([number, [width, height]]) => {
+      const { field, lab } = window;
+      await field.player.toFrame(number);
+      lab.renderer.setSize(width, height);
+      lab.placeCamera(field, lab.camera, field.info.cameras.at(-1), width / height);
+      lab.draw();
+    }, [number, facts.size]);
+    const expected = decodePng(readFileSync(scenePath(`clip-sheets-${number}.png`)));
+    const { largest, mean, pixels } = difference(await canvasPixels(page), expected);
+    assert.ok(mean <= 0.5 && largest <= 16 && pixels > 30_000, `${number}: ${largest}, ${mean} of ${pixels} pixels`);
+  }
   await close();
 });
 
