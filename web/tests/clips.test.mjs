@@ -347,7 +347,7 @@ test("frames of a clip with sheets are drawn as the software renderer draws them
     }, [number, facts.size]);
     const expected = decodePng(readFileSync(scenePath(`clip-sheets-${number}.png`)));
     const { largest, mean, pixels } = difference(await canvasPixels(page), expected);
-    assert.ok(mean <= 0.5 && largest <= 16 && pixels > 30_000, `${number}: ${largest}, ${mean} of ${pixels} pixels`);
+    assert.ok(mean <= 0.5 && largest <= 8 && pixels > 30_000, `${number}: ${largest}, ${mean} of ${pixels} pixels`);
   }
   await close();
 });
