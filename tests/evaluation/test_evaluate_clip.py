@@ -15,7 +15,9 @@ from eigenfield.core.errors import CaptureError, OptionError, OutputError
 from eigenfield.evaluation.clip import evaluate_clip
 from eigenfield.evaluation.strip import STRIP_FILE, write_strip
 from eigenfield.imaging.metrics import PSNR_MAX_DECIBELS
+from support.clips import moving_clip, numbered_clip
 from support.moving_clips import Instants, tiny_clip, write_footage
+from support.viewer_clips import front_steps
 
 HELD = (4,)
 TEN_LEVELS = 20 * np.log10(25.5)  # dB
@@ -53,6 +55,14 @@ def test_a_clip_against_its_own_pictures_is_perfect(clip, tmp_path):
     assert [frame["time"] for frame in figures["over_time"]] == pytest.approx([n / 30 for n in range(5)], abs=1e-6)
     assert figures["group_times"] == pytest.approx([0, 0.1])
     json.dumps(figures, allow_nan=False)
+
+
+def test_a_clip_whose_sheets_move_against_its_own_pictures_is_perfect(tmp_path):
+    clip = moving_clip(numbered_clip((2, 2), sheets=True), front_steps)
+    figures = evaluate_clip(clip, write_footage(clip, tmp_path / "f"))
+    assert figures["image"]["encoded"]["psnr"] == PSNR_MAX_DECIBELS and figures["measured"] == 4
+    assert figures["flicker"]["encoded"]["still"] < 0.1  # of a level: photographs are rounded
+    assert figures["flicker"]["encoded"]["moving_ssim"] > 0.999
 
 
 @pytest.mark.parametrize(("at", "kind"), [(2, "encoded"), (HELD[0], "held_out")])

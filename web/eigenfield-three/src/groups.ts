@@ -97,6 +97,7 @@ export class Groups {
   private meshOf(head: Value<GroupHeadJson>, streams: Streams): DecodedMesh {
     const length = head.key("mesh");
     if (!length.exists) return this.mesh;
+    if (this.scene.sheets) throw length.wrong("a mesh of its own, in a clip with sheets");
     const mesh = CODECS["mesh-2"].decode(streams(length as Value<number>), length.where);
     if (!mesh.indices.length) throw damaged(length.where, "a mesh without faces");
     return mesh;
