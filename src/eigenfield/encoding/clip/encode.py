@@ -17,7 +17,7 @@ from eigenfield.core.errors import OptionError, one_line
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import CalibratedObservations
 from eigenfield.core.progress import Progress, begin_step
-from eigenfield.core.proxy import Proxy
+from eigenfield.core.proxy import MovingProxy, Proxy
 from eigenfield.core.version import __version__
 from eigenfield.encoding.clip.digest import footage_digest
 from eigenfield.encoding.clip.groups import Groups, MadeGroup
@@ -41,7 +41,7 @@ from eigenfield.runtime.tasks import Workers
 if TYPE_CHECKING:
     from eigenfield.capture.footage import Footage
 
-GivenProxy = str | os.PathLike[str] | Mesh | Proxy | Sequence[str | os.PathLike[str] | Mesh]
+GivenProxy = str | os.PathLike[str] | Mesh | Proxy | MovingProxy | Sequence[str | os.PathLike[str] | Mesh]
 DEFAULT_GROUP = "1s"
 GROUP_PATTERN = re.compile(r"(\d{1,9})|(\d{1,9}(?:\.\d*)?|\.\d+)s")  # frames, or seconds
 GROUP_LIMITS = 1, 1024  # frames
