@@ -87,10 +87,10 @@ def test_what_is_seen_behind_where_something_was_has_a_place():
 
 def test_depth_stays_where_the_pictures_stay():
     first = moving(seen(square(40)))
-    noisy = seen(square(40), noise=30.0, seed=2)
-    steady, alone = moving(noisy, before=first), moving(noisy)
+    again = seen(square(40), seed=2)
+    steady, alone = moving(again, before=first), moving(again)
     inner = square_mask(40)
-    assert np.abs(steady.d - first.d)[inner].mean() < 0.9 * np.abs(alone.d - first.d)[inner].mean()
+    assert np.abs(steady.d - first.d)[inner].mean() < 0.5 * np.abs(alone.d - first.d)[inner].mean()
     moved = moving(seen(square(52), seed=2), before=first)
     assert agreement(moved.opacity, square_mask(52)) > 0.9
 

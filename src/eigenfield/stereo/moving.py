@@ -44,8 +44,8 @@ MOVING_ROOM_PIXELS = 8  # of half the resolution, around the part that is looked
 MOVING_ROOM_STEPS = 3  # of labels, that are tried beyond those at which enough cameras see a change
 MOVING_STILL_LEVELS = 1.5  # by which another label must be better than the still surface
 MOVING_NEAR_STILL_LABELS = 1.5  # steps of labels from the still surface that count as on it
-MOVING_CHANGE_LEVELS = 2.0  # price of a label far from that of the frame before
-MOVING_SAME_LEVELS = 8.0  # difference from the frame before at which that price is halved
+MOVING_KEPT_SHARE = 0.7  # of a label of the frame before, where the views show the same as then
+MOVING_SAME_LEVELS = 8.0  # difference from the frame before at which that is halved
 MOVING_MIN_GAIN_LEVELS = 1.0  # by which a region's labels must be better than the still surface, on average
 MOVING_MIN_REGION_FRACTION = 0.0002  # of the reference view; smaller regions are errors
 MOVING_HOLE_REGIONS = 4  # of such regions, up to which a hole is closed
@@ -217,7 +217,6 @@ def _match(
     if hidden is not None:
         known &= warp_reference_picture(_as_pictures(hidden < 0), matrices, d.shape)[0][..., 0] > 254
     beside = mean_texture(packed, matrices, d, hidden)[0]
-    price = _price_of_change(packed, still, before, hidden)
     found, moves, confidence = d, may_move, np.zeros(d.shape, np.float32)
     for _ in range(MOVING_ROUNDS):
         cost = plane_sweep(
@@ -227,7 +226,7 @@ def _match(
             unseen_cost=DEPTH_UNSEEN_COST_LEVELS,
         )  # fmt: skip
         guide = np.where(known[..., None], guide, beside).astype(np.float32)
-        cost, gain = _priced(cost, window, price)
+        cost, gain = _priced(cost, window)
         found, confidence = semi_global_matching(cost, guide.mean(axis=2), still.labels)
         moves = _moving_regions(found, gain, still, may_move)
         if not moves.any():
@@ -236,6 +235,8 @@ def _match(
         beside = mean_texture(packed, matrices, np.where(moves, found, d), buffers, DEPTH_SWEEP_BIAS_LABELS)[0]
     nearest = distance_transform_edt(~moves, return_distances=False, return_indices=True)
     smooth = smooth_depth(found[tuple(nearest)], np.where(moves, confidence, 0), guide)
+    if before is not None:
+        smooth = smooth + _kept_share(packed, still, before, hidden) * (before.d - smooth)
     smooth = np.clip(smooth, still.labels[0], still.labels[-1])
     texture, count = mean_texture(packed, matrices, np.where(moves, smooth, d), hidden)
     return MovingDepth(smooth, _soft_outlines(moves, guide), np.where(count[..., None] > 0, texture, guide))
@@ -263,21 +264,18 @@ def _changed_share(flags: NDArray[np.uint32], still: StillDepth, buffers: NDArra
     return share
 
 
-def _price_of_change(
-    packed: NDArray[np.uint32], still: StillDepth, before: MovingDepth | None, hidden: NDArray[np.float32] | None
-) -> tuple[NDArray[np.float32], NDArray[np.float32]] | None:
-    """(h, w) the labels of the frame before, and (h, w) what it costs in grey levels to be far from them."""
-    if before is None:
-        return None
+def _kept_share(
+    packed: NDArray[np.uint32], still: StillDepth, before: MovingDepth, hidden: NDArray[np.float32] | None
+) -> NDArray[np.float32]:
+    """(h, w) how much of the labels of the frame before stays: much where the views show the same as then."""
     d = np.where(before.opacity >= 0.5, before.d, still.d)
     now = mean_texture(packed, still.matrices, d, hidden)[0]
-    apart = np.abs(now - before.texture).max(axis=2) / MOVING_SAME_LEVELS
-    return d, (MOVING_CHANGE_LEVELS / (1 + apart**2)).astype(np.float32)
+    apart = np.abs(now - before.texture).max(axis=2) / np.float32(MOVING_SAME_LEVELS)
+    share = MOVING_KEPT_SHARE / (1 + apart**2) * (before.opacity >= 0.5)
+    return np.asarray(share, np.float32)
 
 
-def _priced(
-    cost: NDArray[np.uint8], window: _Window, price: tuple[NDArray[np.float32], NDArray[np.float32]] | None
-) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+def _priced(cost: NDArray[np.uint8], window: _Window) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
     """(h, w, L) costs of labels with all that speaks for or against them, and (h, w) by how many grey levels the
     photographs agree better on the best label than on the still surface."""
     still, units, top = window.still, float(SWEEP_COST_UNITS_PER_LEVEL), SWEEP_EXCLUDED_COST - 1
@@ -293,9 +291,6 @@ def _priced(
         stays = np.where(on_still, agree, np.inf).min(axis=1, initial=top)
         gain[row] = (stays - np.where(on_still, top, moving).min(axis=1)) / units
         own = np.where(on_still, np.maximum(stays - units * MOVING_STILL_LEVELS, 0)[:, None], moving)
-        if price is not None:
-            far = np.abs(index - ((price[0][row] - still.labels[0]) / still.step)[:, None])
-            own += units * price[1][row][:, None] * np.minimum(far / 2, 1)
         at_rest = ~window.may_move[row]
         own[at_rest] = np.where(on_still[at_rest], 0, top)
         result[row] = np.minimum(np.rint(own), top)
