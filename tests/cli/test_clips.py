@@ -13,13 +13,21 @@ import eigenfield as ef
 from eigenfield.core.errors import FormatError, OptionError
 from eigenfield.gltf import store_scores
 from eigenfield.gltf.container import parse_glb
-from support.clips import numbered_clip, shown_number
+from support.clips import moving_clip, numbered_clip, shown_number, shown_opacity
+from support.viewer_clips import front_steps
 
 
 @pytest.fixture(scope="module")
 def clip(tmp_path_factory):
     path = tmp_path_factory.mktemp("clip") / "clip.glb"
     ef.save(numbered_clip((5, 7)), path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def sheets(tmp_path_factory):
+    path = tmp_path_factory.mktemp("sheets") / "clip.glb"
+    ef.save(moving_clip(numbered_clip((5, 7), sheets=True), front_steps), path)
     return path
 
 
@@ -135,6 +143,26 @@ def test_export_writes_one_frame(clip, run, tmp_path):
     assert made.is_dir() and "with clip to choose from" in what
     with pytest.raises(OptionError, match="time is not for app"):
         ef.export([clip], tmp_path / "app", "app", time=0.5)
+
+
+EXPORTS = {
+    "page.html": [], "flight.mp4": ["--frames", 2], "f%02d.png": ["--frames", 2], "plain.glb": [], "mesh.obj": [],
+    "maps": ["--as", "maps"], "q.png": ["--as", "quilt", "--quilt", "2x2"], "capture": ["--as", "colmap"],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("output", EXPORTS)
+def test_a_frame_with_sheets_is_exported_as_still_sheets_are(sheets, run, tmp_path, output):
+    code, _, err = run("export", sheets, "--time", "9", "-o", tmp_path / output, *EXPORTS[output])
+    assert code == 0, err
+    if output == "plain.glb":
+        primitives = parse_glb((tmp_path / output).read_bytes()).json["meshes"][0]["primitives"]
+        assert len(primitives) == 2
+    elif output == "maps":
+        picture = np.asarray(Image.open(next((tmp_path / output).glob("*.png"))))
+        assert shown_opacity(picture[..., 3].astype(np.float32) / 255) == 9
+    elif output == "capture":
+        assert (tmp_path / output / "sparse" / "0" / "points3D.bin").is_file()
 
 
 def test_a_clip_in_python(clip, tmp_path):

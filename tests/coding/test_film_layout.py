@@ -27,10 +27,10 @@ PLANES = st.lists(
 )
 
 
-@given(PLANES)
+@given(PLANES, st.none() | SIDES)
 @settings(max_examples=60, deadline=None)
-def test_what_goes_into_a_film_comes_out_of_it(planes):
-    layout = film_layout(planes)
+def test_what_goes_into_a_film_comes_out_of_it(planes, opacity):
+    layout = film_layout(planes, opacity)
     assert [plane.channels for plane in layout.planes] == [plane.channels for plane in planes]
     rng = np.random.default_rng(1)
     for film, size in enumerate(layout.sizes):
@@ -44,6 +44,17 @@ def test_what_goes_into_a_film_comes_out_of_it(planes):
             assert np.array_equal(pictures_of(part, frame), own)
     counts = [[len(part.at) for part in plane.bases] for plane in layout.planes]
     assert counts == [[plane.channels * count for _, count in plane.bases] for plane in planes]
+
+
+@pytest.mark.parametrize("textures", [0, 3])
+def test_an_opacity_has_the_last_film_to_itself(textures):
+    bases = (((384, 384), textures),) if textures else ()
+    layout = film_layout([PlaneSizes(1, (704, 704), bases)], (300, 700))
+    last = len(layout.sizes) - 1
+    assert layout.sizes[last] == (320, 704) and last == (2 if textures else 1)
+    assert film_parts(layout, last) == [layout.opacity]
+    assert layout.opacity.at == ((0, 0),) and layout.opacity.size == (300, 700) and layout.opacity.film == last
+    assert film_layout([PlaneSizes(1, (704, 704), bases)]).opacity is None
 
 
 def test_halves_stand_below_each_other():

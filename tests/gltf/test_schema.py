@@ -46,7 +46,8 @@ def files(good):
     made |= {name: encode_scene(coded_scene(name)) for name, codec in CODECS.items() if codec.kind == "weights"}
     made["precise"] = encode_scene(precise_scene())
     made["residual"] = encode_scene(replace(coded, residual=video))
-    made["clip"] = encode_scene(moving_clip(numbered_clip(), lambda number, places: places + number))
+    for kind, sheets in (("clip", False), ("sheets-clip", True)):
+        made[kind] = encode_scene(moving_clip(numbered_clip(sheets=sheets), lambda number, places: places + number))
     return made
 
 
@@ -225,8 +226,16 @@ WRONG = [
     ("clip", ("planes", 0, "mean", "at"), [[8, 0]]),
     ("clip", (*BASIS, "at"), MISSING),
     ("clip", (*BASIS, "size"), MISSING),
+    ("sheets-clip", ("sheets", "faces"), MISSING),
+    ("sheets-clip", ("sheets", "opacity", "film"), MISSING),
+    ("sheets-clip", ("sheets", "opacity", "film"), 4),
+    ("sheets-clip", ("sheets", "opacity", "at"), MISSING),
+    ("sheets-clip", ("sheets", "opacity", "at"), []),
+    ("sheets-clip", ("sheets", "opacity", "at"), [[0, 0], [0, 0]]),
+    ("sheets-clip", ("sheets", "opacity", "at"), [[0, 8]]),
+    ("sheets-clip", ("sheets", "opacity", "size"), MISSING),
 ]
-READ = {"clip": read_all}  # of the others it is `load`
+READ = {"clip": read_all, "sheets-clip": read_all}  # of the others it is `load`
 
 
 @pytest.mark.parametrize(("kind", "keys", "value"), WRONG)

@@ -4,6 +4,9 @@ The upper half of the mean has n as black and white blocks, the lowest bit on th
 for each eigen texture, and of frame n the texture n modulo their number alone is not zero, there and nowhere else: that
 column differs in the last camera from its ground by the group's strength. Groups take turns in strengths, weights and
 scales, so that no frame looks right with what another group has.
+
+With sheets there is a second one before the lower rim of the first, white before black. It has the blocks of n by its
+opacity: all that can be seen of it is what is 1 there.
 """
 
 from __future__ import annotations
@@ -23,8 +26,9 @@ from eigenfield.coding.video.film import encode_film
 from eigenfield.coding.video.film_layout import EMPTY_CODE, MEANS, TEXTURES, PlaneSizes, film_layout, join_parts
 from eigenfield.core.clip import Clip, Timeline
 from eigenfield.core.films import CodedGroup, FilmLayout
+from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Affine, Payload
-from eigenfield.core.proxy import Proxy
+from eigenfield.core.proxy import Proxy, Sheets
 from eigenfield.encoding.geometry.coded import coded_cameras, coded_mesh
 from eigenfield.gltf import coded_clip, load_clip
 from eigenfield.gltf.clips import CodedGroups
@@ -35,6 +39,10 @@ from support.scenes import bumpy_square, tiny_scene
 BITS = 8  # of a frame's number
 TEXTURES_COUNT = 4
 LUMA, CHROMA, BASIS = (128, 128), (64, 64), (128, 128)
+OPACITY = 64, 128
+OPAQUE = 1023  # code
+RIM, FRONT = 0.78, 0.875  # rows of the atlas: of those of the first sheet from which on it is black, and of the second
+FRONT_MIDDLE = 0.94  # row of the atlas, at which the second sheet is read
 TO_RGB = np.array([[1, 0, 1.5748], [1, -0.187324, -0.468124], [1, 1.8556, 0]], np.float32)
 BLACK, WHITE, GREY, CONTRAST = 160, 930, 512, 590  # codes, within those that encoders use
 TEXTURE_SCALE = 0.5 / CONTRAST  # a weight of 1 is half of the range
@@ -45,14 +53,17 @@ MEAN_STEPS = 1, 2, 1, 2  # codes that a code of the mean stands for
 
 
 def numbered_clip(
-    lengths: Sequence[int] = (5, 7), rate: Fraction = Fraction(10), cameras: int = 4, first: float = 0.0, crf: int = 8
-) -> Clip:
+    lengths: Sequence[int] = (5, 7), rate: Fraction = Fraction(10), cameras: int = 4, first: float = 0.0, crf: int = 8,
+    sheets: bool = False,
+) -> Clip:  # fmt: skip
     """Luma of `LUMA` with textures, and flat chroma without, in groups of so many frames."""
     plain = tiny_scene(cameras=cameras)
-    surface = coded_mesh(Proxy(bumpy_square()), plain.rig.cameras, plain.rig.reference)
+    proxy = two_sheets() if sheets else Proxy(bumpy_square())
+    surface = coded_mesh(proxy, plain.rig.cameras, plain.rig.reference)
     views = coded_cameras(plain.rig.cameras, surface.value.mesh, None)
     rig = replace(plain.rig, cameras=views.value)
-    layout = film_layout([PlaneSizes(1, LUMA, ((BASIS, TEXTURES_COUNT),)), PlaneSizes(2, CHROMA, ())])
+    planes = [PlaneSizes(1, LUMA, ((BASIS, TEXTURES_COUNT),)), PlaneSizes(2, CHROMA, ())]
+    layout = film_layout(planes, OPACITY if sheets else None)
     starts = np.cumsum([0, *lengths])
     groups = [
         group_bytes(numbered_group(layout, index % len(STRENGTHS), range(start, start + count), cameras, crf))
@@ -63,7 +74,21 @@ def numbered_clip(
         rig, surface.value.mesh, timeline, layout, groups, list(lengths),
         to_rgb=TO_RGB, settings={"clip": {"group": 0.5}}, scores={}, generator="eigenfield test",
         payloads=surface.payloads | views.payloads,
+        sheets=None if surface.value.sheets is None else surface.value.sheets.faces,
     )  # fmt: skip
+
+
+def two_sheets() -> Proxy:
+    """A bumpy square, and before its lower rim a flat strip."""
+    square, strip = bumpy_square(), bumpy_square(4)
+    assert square.uv is not None and strip.uv is not None
+    flat = strip.vertices * np.float32((0.93, 0.1, 0)) + np.float32((0, 0.845, -0.3))
+    mesh = Mesh(
+        np.concatenate([square.vertices, flat]).astype(np.float32),
+        np.concatenate([square.faces, strip.faces + len(square.vertices)]).astype(np.int32),
+        np.concatenate([square.uv * (1, FRONT - 0.015), strip.uv * (1, 0.09) + (0, FRONT + 0.02)]).astype(np.float32),
+    )
+    return Proxy(mesh, sheets=Sheets((len(square.faces), len(strip.faces)), opacity_of(0) / np.float32(OPAQUE)))
 
 
 def numbered_group(layout: FilmLayout, turn: int, numbers: range, cameras: int, crf: int) -> CodedGroup:
@@ -72,8 +97,12 @@ def numbered_group(layout: FilmLayout, turn: int, numbers: range, cameras: int, 
     own = np.tile(across[:, None], (1, TEXTURES_COUNT))
     stream, _ = encoder("weights-1")(own, 0.01)
     chroma = np.full((2, *CHROMA), EMPTY_CODE, np.uint16)
-    frames = [(join_parts(layout, MEANS, [mean_of(n)[None] // MEAN_STEPS[turn], chroma]) for n in numbers)]
-    frames += [(join_parts(layout, TEXTURES, [textures_of(n)]) for n in numbers)]
+    part = layout.opacity
+    sheets = part is not None
+    frames = [(join_parts(layout, MEANS, [mean_of(n, sheets)[None] // MEAN_STEPS[turn], chroma]) for n in numbers)]
+    frames += [(join_parts(layout, TEXTURES, [textures_of(n, sheets)]) for n in numbers)]
+    if part is not None:
+        frames += [(join_parts(layout, part.film, [opacity_of(n)[None]]) for n in numbers)]
     films = [encode_film(own, size, crf, 8) for own, size in zip(frames, layout.sizes, strict=True)]
     zeros, ones = np.full(TEXTURES_COUNT, float(EMPTY_CODE)), np.full(TEXTURES_COUNT, SCALES[turn] * TEXTURE_SCALE)
     return CodedGroup(
@@ -87,21 +116,34 @@ def numbered_group(layout: FilmLayout, turn: int, numbers: range, cameras: int, 
     )
 
 
-def mean_of(number: int) -> NDArray[np.uint16]:
+def mean_of(number: int, sheets: bool = False) -> NDArray[np.uint16]:
     """(rows, columns) codes of luma."""
     rows, columns = LUMA
     codes = np.full(LUMA, GREY, np.uint16)
     for bit in range(BITS):
         codes[: rows // 2, block(bit, columns)] = WHITE if number >> bit & 1 else BLACK
+    if sheets:
+        codes[round(RIM * rows) :] = BLACK
+        codes[round(FRONT * rows) :] = WHITE
     return codes
 
 
-def textures_of(number: int) -> NDArray[np.uint16]:
+def opacity_of(number: int) -> NDArray[np.uint16]:
+    """(rows, columns) codes of an opacity."""
+    rows, columns = OPACITY
+    codes = np.full(OPACITY, OPAQUE, np.uint16)
+    for bit in range(BITS):
+        codes[round(FRONT * rows) :, block(bit, columns)] = OPAQUE * (number >> bit & 1)
+    return codes
+
+
+def textures_of(number: int, sheets: bool = False) -> NDArray[np.uint16]:
     """(TEXTURES_COUNT, rows, columns) codes of luma."""
     rows, columns = BASIS
     codes = np.full((TEXTURES_COUNT, *BASIS), EMPTY_CODE, np.uint16)
     index, wide = number % TEXTURES_COUNT, columns // TEXTURES_COUNT
-    codes[index, rows // 2 :, index * wide : (index + 1) * wide] = EMPTY_CODE + CONTRAST
+    end = round(RIM * rows) if sheets else rows
+    codes[index, rows // 2 : end, index * wide : (index + 1) * wide] = EMPTY_CODE + CONTRAST
     return codes
 
 
@@ -113,6 +155,13 @@ def shown_number(luma: NDArray[np.float32]) -> int:
     """The number that the upper half of a mean shows; luma: (rows, columns) in 0..1."""
     rows, columns = luma.shape
     middle = luma[rows // 8 : 3 * rows // 8]
+    return sum(int(middle[:, block(bit, columns)].mean() > 0.5) << bit for bit in range(BITS))
+
+
+def shown_opacity(opacity: NDArray[np.float32]) -> int:
+    """The number that the second sheet's part of an opacity shows."""
+    rows, columns = opacity.shape
+    middle = opacity[round(FRONT * rows) + 2 : -2]
     return sum(int(middle[:, block(bit, columns)].mean() > 0.5) << bit for bit in range(BITS))
 
 
@@ -164,4 +213,5 @@ def moving_clip(clip: Clip, steps: Callable[[int, NDArray[np.int64]], NDArray[np
     return coded_clip(
         clip.rig, groups.mesh, clip.timeline, groups.layout, made, groups.lengths, to_rgb=groups.to_rgb,
         settings=clip.settings, scores=clip.scores, generator=clip.generator, payloads=groups.payloads,
+        sheets=groups.sheets,
     )  # fmt: skip

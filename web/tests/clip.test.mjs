@@ -11,7 +11,7 @@ import { FakeFrame, installClock, installFakes } from "./fake-video.mjs";
 import { buildModule } from "./module.mjs";
 
 const EXTENSION = "EIGENFIELD_eigen_textures";
-let built, close, json, chunk, facts, moving, mesh;
+let built, close, json, chunk, facts, moving, sheets, mesh;
 
 before(async () => {
   let folder;
@@ -19,6 +19,7 @@ before(async () => {
   python("-m", "support.viewer_clips", folder);
   facts = JSON.parse(readFileSync(join(folder, "clip.json"), "utf8"));
   ({ json, chunk, mesh } = await opened(join(folder, "clip.glb")));
+  sheets = await opened(join(folder, "clip-sheets.glb"));
   moving = { ...(await opened(join(folder, "moving.glb"))), positions: join(folder, "moving.json") };
 });
 after(() => close());
@@ -38,8 +39,8 @@ async function opened(path) {
 }
 
 /** The document after its extension was changed. */
-function changed(change = () => undefined) {
-  const copy = structuredClone(json);
+function changed(change = () => undefined, document = json) {
+  const copy = structuredClone(document);
   change(copy.extensions[EXTENSION].timeline, copy.extensions[EXTENSION]);
   return built.readDocument(copy);
 }
@@ -82,6 +83,29 @@ const FAULTS = {
 
 test("a timeline that cannot be is refused with its place", () => {
   for (const [name, [part, change]] of Object.entries(FAULTS)) assert.throws(() => changed(change), damaged(part), name);
+});
+
+const SHEET_FAULTS = {
+  "two places": ["opacity/at", ({ opacity }) => opacity.at.push([64, 0])],
+  "no place": ["opacity/at", ({ opacity }) => (opacity.at = [])],
+  "a place at 8": ["opacity", ({ opacity }) => (opacity.at = [[8, 0]])],
+  "a film of others": ["opacity", ({ opacity }) => (opacity.film = 0)],
+  "a film that is not there": ["opacity", ({ opacity }) => (opacity.film = 3)],
+  "a side beyond the film": ["opacity", ({ opacity }) => (opacity.size = [129, 64])],
+  "no faces": ["sheets/faces", (own) => (own.faces = [])],
+  "a picture in a clip": ["opacity", (own) => (own.opacity = { bufferView: 0, mimeType: "image/png", size: [8, 8] })],
+  "a film in a scene": ["mean", (_, extension) => delete extension.timeline],
+};
+
+test("the opacity of sheets lies in a film of its own; where that cannot be it is refused with its place", () => {
+  const { sheets: own, timeline } = changed(undefined, sheets.json);
+  assert.deepEqual([own.faces.length, own.opacity.mean.part.film, own.opacity.meanSize], [2, 2, [128, 64]]);
+  assert.ok(Math.abs(1023 * own.opacity.mean.scale[0] - 1) < 1e-12 && own.opacity.mean.zero[0] === 0);
+  assert.deepEqual(timeline.films.map(({ opacity }) => opacity), [false, false, true]);
+  for (const [name, [part, change]] of Object.entries(SHEET_FAULTS)) {
+    const wrong = (_, extension) => change(extension.sheets, extension);
+    assert.throws(() => changed(wrong, sheets.json), damaged(part), name);
+  }
 });
 
 test("groups are opened with weights, scales and units; what is damaged says where", async () => {
@@ -305,5 +329,6 @@ test("frames of eight bits, and those of colours, become codes of ten", async ()
   const greys = Array.from({ length: 17 }, (_, i) => (i % 4 === 2 ? [80, 0, 130, 255][(i - 2) / 4] : 1));
   const stretched = { ...frame("BGRX", greys, 8), colorSpace: { fullRange: false } };
   assert.deepEqual(codes(await built.codesOf(stretched, null)), [341, 64, 514, 943]); // made of 85, 16, 128 and 235
+  assert.deepEqual(codes(await built.codesOf(stretched, null, true)), [341, 0, 514, 1023]); // of an opacity: none and all
   await assert.rejects(built.codesOf(frame(null, [], 0), null), { code: "unsupported" });
 });

@@ -7,7 +7,8 @@ import { readFileSync } from "node:fs";
 import { after, before, test } from "node:test";
 import { sceneBytes, scenePath, startLab } from "./harness.mjs";
 
-const { groups, strengths, places, rate, bits, textures, codes } = JSON.parse(readFileSync(scenePath("clip.json"), "utf8"));
+const facts = JSON.parse(readFileSync(scenePath("clip.json"), "utf8"));
+const { groups, strengths, places, rate, bits, textures, front } = facts;
 const FRAMES = groups.reduce((a, b) => a + b);
 const STARTS = groups.map((_, i) => groups.slice(0, i).reduce((a, b) => a + b, 0));
 const groupOf = (frame) => STARTS.findLastIndex((start) => start <= frame);
@@ -39,11 +40,11 @@ before(async () => (lab = await startLab(ROUTES)));
 after(() => lab?.close());
 
 /** Loads the clip as `window.field`; `window.read` draws and tells the number of the player, that of the mean, that of the
- * textures, and the strength of theirs; `window.played` collects that of each frame, `window.errors` what the field says. */
+ * textures, the strength of theirs, and where there are sheets the number of the opacity; `window.played` collects that of each frame, `window.errors` what the field says. */
 async function openClip(name = "clip.glb", options = {}) {
   const opened = await lab.open(options);
   await opened.page.evaluate(
-    async ([url, bits, textures]) => {
+    async ([url, bits, textures, front]) => {
       const { gltf, field } = await window.lab.loadEigenfield(url);
       const { lab } = window;
       lab.show(gltf);
@@ -54,29 +55,32 @@ async function openClip(name = "clip.glb", options = {}) {
       const places = [
         ...Array.from({ length: bits }, (_, bit) => [(bit + 0.5) / bits, 0.25]),
         ...Array.from({ length: textures }, (_, index) => [(index + 0.5) / textures, 0.75]),
+        ...Array.from({ length: field.info.sheets ? bits : 0 }, (_, bit) => [(bit + 0.5) / bits, front]),
       ];
+      const numberOf = (shades) => shades.reduce((sum, shade, bit) => sum + (shade > 128 ? 2 ** bit : 0), 0);
       window.field = field;
       window.read = () => {
         view();
         const shades = lab.greens(lab.pixelsOf(field, places));
-        const strengths = shades.slice(bits).map((shade) => (shade - 128) / 127);
-        const byMean = shades.slice(0, bits).reduce((sum, shade, bit) => sum + (shade > 128 ? 2 ** bit : 0), 0);
+        const strengths = shades.slice(bits, bits + textures).map((shade) => (shade - 128) / 127);
+        const byMean = numberOf(shades.slice(0, bits));
+        const byOpacity = field.info.sheets ? numberOf(shades.slice(bits + textures)) : null;
         const strongest = strengths.reduce((best, own) => (Math.abs(own) > Math.abs(best) ? own : best));
-        return [field.player.frame, byMean, strengths.indexOf(strongest), strongest, shades.join()];
+        return [field.player.frame, byMean, strengths.indexOf(strongest), strongest, shades.join(), byOpacity];
       };
       window.errors = [];
       field.addEventListener("error", ({ error }) => window.errors.push(error.code));
       window.played = [];
       field.player.addEventListener("frame", () => window.played.push(window.read()));
     },
-    [name, bits, textures],
+    [name, bits, textures, front],
   );
   return opened;
 }
 
-function assertSame([frame, byMean, texture, strength, shades]) {
-  const shown = `frame ${frame} shows ${byMean}, ${texture}, ${strength}: ${shades}`;
-  assert.deepEqual([byMean, texture], [frame, frame % textures], shown);
+function assertSame([frame, byMean, texture, strength, shades, byOpacity]) {
+  const shown = `frame ${frame} shows ${byMean}, ${texture}, ${strength}, ${byOpacity}: ${shades}`;
+  assert.deepEqual([byMean, texture, byOpacity ?? frame], [frame, frame % textures, frame], shown);
   const nearest = strengths.toSorted((a, b) => Math.abs(a - strength) - Math.abs(b - strength))[0];
   assert.equal(nearest, strengths[groupOf(frame)], shown);
 }
@@ -231,25 +235,27 @@ test("after fifty random seeks, steps both ways and scrubbing, the frame that wa
   await close();
 });
 
-test("the codes of every frame are those that Python decodes", async () => {
-  const { page, close } = await openClip();
-  const found = await page.evaluate(async (count) => {
-    const digest = async ({ data, width, height, stride }) => {
-      const whole = new Uint8Array(2 * width * height);
-      for (let y = 0; y < height; y++) whole.set(data.subarray(y * stride, y * stride + 2 * width), 2 * width * y);
-      const hash = new Uint8Array(await crypto.subtle.digest("SHA-256", whole));
-      return Array.from(hash, (byte) => byte.toString(16).padStart(2, "0")).join("");
-    };
-    const list = [];
-    for (let frame = 0; frame < count; frame++) {
-      await window.field.player.toFrame(frame);
-      list.push(await Promise.all(window.field.source.films.map(digest)));
-    }
-    return list;
-  }, FRAMES);
-  assert.deepEqual(found, codes);
-  await close();
-});
+for (const [name, codes] of Object.entries({ "clip.glb": facts.codes, "clip-sheets.glb": facts.sheetCodes })) {
+  test(`${name}: the codes of every frame are those that Python decodes`, async () => {
+    const { page, close } = await openClip(name);
+    const found = await page.evaluate(async (count) => {
+      const digest = async ({ data, width, height, stride }) => {
+        const whole = new Uint8Array(2 * width * height);
+        for (let y = 0; y < height; y++) whole.set(data.subarray(y * stride, y * stride + 2 * width), 2 * width * y);
+        const hash = new Uint8Array(await crypto.subtle.digest("SHA-256", whole));
+        return Array.from(hash, (byte) => byte.toString(16).padStart(2, "0")).join("");
+      };
+      const list = [];
+      for (let frame = 0; frame < count; frame++) {
+        await window.field.player.toFrame(frame);
+        list.push(await Promise.all(window.field.source.films.map(digest)));
+      }
+      return list;
+    }, FRAMES);
+    assert.deepEqual(found, codes);
+    await close();
+  });
+}
 
 test("a clip that does not repeat ends with its last frame, and begins anew", async () => {
   const { page, close } = await openClip();
@@ -309,3 +315,63 @@ test("a mesh that moves is drawn in each frame where it is, played and sought", 
   played.forEach(assertSame);
   await close();
 });
+
+test("a clip with sheets shows its number a fourth way, by what of the second sheet is there, played and sought", async () => {
+  const { page, close } = await openClip("clip-sheets.glb");
+  assert.equal(await page.evaluate(() => window.field.info.sheets), 2);
+  const seen = await page.evaluate(async (frames) => {
+    const list = [window.read()];
+    for (const frame of frames) {
+      await window.field.player.toFrame(frame);
+      list.push(window.read());
+    }
+    return list;
+  }, [3, 12, 5, 24, 11, 0, 13]);
+  seen.forEach(assertSame);
+  assert.deepEqual(seen.map((one) => one.at(-1)), [0, 3, 12, 5, 24, 11, 0, 13]);
+  const { played, errors } = await playThrough(page, 0.5, 20);
+  assert.deepEqual(errors, []);
+  played.forEach(assertSame);
+  await close();
+});
+
+test("the opacity of sheets after a lost context, and where frames have eight bits in the range of videos", async () => {
+  const { page, close } = await openClip("clip-sheets.glb", { allowed: /Context (Lost|Restored)/, init: ofEightBits });
+  const found = await page.evaluate(async () => {
+    await window.field.player.toFrame(14);
+    const before = window.read();
+    await window.lab.loseContext(window.field);
+    return [before, window.read()];
+  });
+  found.forEach(assertSame);
+  assert.deepEqual(found.map(([frame]) => frame), [14, 14]);
+  const brightest = found.map((one) => Math.max(...one[4].split(",")));
+  assert.ok(brightest.every((shade) => shade > 228), `white of ${brightest}: nothing behind what is opaque is seen`); // 232
+  const { played, errors } = await playThrough(page, 2, FRAMES);
+  played.forEach(assertSame);
+  assert.deepEqual(errors, []);
+  await close();
+});
+
+/** Has frames of decoders as Firefox hands them out: greys of eight bits, stretched as if luma were 16 to 235. */
+function ofEightBits() {
+  const { copyTo, allocationSize } = VideoFrame.prototype;
+  const greyOf = (low, high) => Math.min(255, Math.max(0, Math.round((((low + 256 * high) / 4 - 16) * 255) / 219)));
+  Object.defineProperty(VideoFrame.prototype, "format", { get: () => "BGRX" });
+  Object.defineProperty(VideoFrame.prototype, "colorSpace", { get: () => ({ fullRange: false }) });
+  VideoFrame.prototype.allocationSize = function () {
+    return 4 * this.visibleRect.width * this.visibleRect.height;
+  };
+  VideoFrame.prototype.copyTo = async function (data) {
+    const { width, height } = this.visibleRect;
+    const own = new Uint8Array(allocationSize.call(this));
+    const [{ offset, stride }] = await copyTo.call(this, own);
+    for (let y = 0; y < height; y++) {
+      for (let x = 0; x < width; x++) {
+        const at = offset + y * stride + 2 * x;
+        data.fill(greyOf(own[at], own[at + 1]), 4 * (y * width + x), 4 * (y * width + x) + 4);
+      }
+    }
+    return [{ offset: 0, stride: 4 * width }];
+  };
+}

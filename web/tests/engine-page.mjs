@@ -62,31 +62,33 @@ export function testEngine(start) {
     });
   }
 
-  test("a clip plays, each frame as Chromium draws it; or its first frame is shown, and a line says why", async () => {
-    const options = { ...SIZE, hash: PLACE, config: { ui: "plain" }, routes: { "/frame": FRAME } };
-    const { page, server, close } = await openViewer(browser, "clip.glb", options);
-    await engine.open(`${server.url}/frame`);
-    const plays = await engine.evaluate(async () => {
-      const errors = (window.errors = []);
-      for (const kind of ["error", "unhandledrejection"]) {
-        frames[0].addEventListener(kind, ({ message, reason }) => errors.push(String(message ?? reason)));
+  for (const name of ["clip.glb", "clip-sheets.glb"]) {
+    test(`${name} plays, each frame as Chromium draws it; or its first frame is shown, and a line says why`, async () => {
+      const options = { ...SIZE, hash: PLACE, config: { ui: "plain" }, routes: { "/frame": FRAME } };
+      const { page, server, close } = await openViewer(browser, name, options);
+      await engine.open(`${server.url}/frame`);
+      const plays = await engine.evaluate(async () => {
+        const errors = (window.errors = []);
+        for (const kind of ["error", "unhandledrejection"]) {
+          frames[0].addEventListener(kind, ({ message, reason }) => errors.push(String(message ?? reason)));
+        }
+        const later = () => new Promise((resolve) => setTimeout(resolve, 50));
+        while (window.eigenfield?.state().status !== "ready") await later();
+        const { player } = window.eigenfield.field;
+        player.play();
+        while (window.eigenfield.state().message === null && player.frame < 6) await later();
+        player.pause();
+        return player.frame > 0;
+      });
+      const { message } = await engine.evaluate(() => window.eigenfield.state());
+      assert.ok(plays ? message === null : message.code === "codec" && /first frame is shown/.test(message.text), message?.text);
+      for (const frame of plays ? [14, 3, 24, 5] : [0]) {
+        for (const one of [engine, page]) await one.evaluate((frame) => window.eigenfield.field.player.toFrame(frame), frame);
+        const { mean, largest } = difference(await picture(engine), await picture(page), GROUND);
+        assert.ok(mean <= 0.5 && largest <= 4, `frame ${frame}: mean ${mean}, largest ${largest}`);
       }
-      const later = () => new Promise((resolve) => setTimeout(resolve, 50));
-      while (window.eigenfield?.state().status !== "ready") await later();
-      const { player } = window.eigenfield.field;
-      player.play();
-      while (window.eigenfield.state().message === null && player.frame < 6) await later();
-      player.pause();
-      return player.frame > 0;
+      assert.deepEqual(await engine.evaluate(() => window.errors), []);
+      await close();
     });
-    const { message } = await engine.evaluate(() => window.eigenfield.state());
-    assert.ok(plays ? message === null : message.code === "codec" && /first frame is shown/.test(message.text), message?.text);
-    for (const frame of plays ? [14, 3, 24, 5] : [0]) {
-      for (const one of [engine, page]) await one.evaluate((frame) => window.eigenfield.field.player.toFrame(frame), frame);
-      const { mean, largest } = difference(await picture(engine), await picture(page), GROUND);
-      assert.ok(mean <= 0.5 && largest <= 4, `frame ${frame}: mean ${mean}, largest ${largest}`);
-    }
-    assert.deepEqual(await engine.evaluate(() => window.errors), []);
-    await close();
-  });
+  }
 }

@@ -194,9 +194,14 @@ test("opacity is drawn when it comes, and not with each frame", () => {
   source.show(1);
   draw(...NEAR);
   assert.deepEqual([fake.drawn.length > 0, finer()], [true, 0]);
-  source.show(2, { opacity: true });
-  draw(...NEAR);
-  assert.equal(finer(), 1);
+  const targets = [];
+  for (const frame of [2, 3]) {
+    source.show(frame, { opacity: true });
+    draw(...NEAR);
+    assert.equal(finer(), 1);
+    targets.push(new Set(fake.drawn.map(({ target }) => target)));
+  }
+  assert.ok([...targets[1]].every((target) => targets[0].has(target)), "into what the frame before was drawn");
 });
 
 test("textures that are gone are filled no more, and those in their place from the start", async () => {

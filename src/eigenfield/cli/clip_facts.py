@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from eigenfield.gltf.read_clip import ClipLayout
 
 BITS = 8  # of a byte
+FILM_TYPE = "video/AV1"
 
 
 def clip_facts(layout: ClipLayout, heads: Sequence[GroupHead]) -> dict[str, Any]:
@@ -48,12 +49,20 @@ def film_plane_facts(plane: FilmPlane) -> dict[str, Any]:
     """As of a plane of pictures."""
     return {
         "channels": plane.channels,
-        "mean": {"size": _size(plane.mean), "type": "video/AV1"},
+        "mean": {"size": _size(plane.mean), "type": FILM_TYPE},
         "bases": [
-            {"textures": len(basis.at) // plane.channels, "size": _size(basis), "types": ["video/AV1"]}
+            {"textures": len(basis.at) // plane.channels, "size": _size(basis), "types": [FILM_TYPE]}
             for basis in plane.bases
         ],
     }
+
+
+def film_sheet_facts(layout: ClipLayout) -> dict[str, Any] | None:
+    """As of sheets whose opacity is a picture; None: one opaque surface."""
+    if layout.sheets is None or layout.films is None or layout.films.opacity is None:
+        return None
+    opacity = {"size": _size(layout.films.opacity), "type": FILM_TYPE}
+    return {"triangles": list(layout.sheets), "opacity": opacity}
 
 
 def _size(part: FilmPart) -> list[int]:
@@ -73,7 +82,7 @@ def clip_lines(clip: dict[str, Any]) -> list[str]:
         lines.append(f"cut off       the file ends behind {whole} frames")
     films = [
         f"{film['size'][0]}x{film['size'][1]}, {film['bytes']:,} bytes ({film['key_bytes']:,} in groups' first frames)"
-        for film in clip["films"][:2]
+        for film in clip["films"][:3]
     ]
     lines.append(f"films         {'; '.join(films)}")
     if clip["motion_bytes"]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eigenfield.cli.clip_facts import clip_facts, clip_lines, film_plane_facts
+from eigenfield.cli.clip_facts import clip_facts, clip_lines, film_plane_facts, film_sheet_facts
 from eigenfield.cli.common import PATH, common_options, echo_json, first_names
 
 if TYPE_CHECKING:
@@ -65,7 +65,8 @@ def _clip_facts(file: Path) -> dict[str, Any]:
 
     layout, heads, parts = describe_clip(file)
     assert layout.films is not None
-    facts = _facts(layout, parts, [film_plane_facts(plane) for plane in layout.films.planes], None)
+    planes = [film_plane_facts(plane) for plane in layout.films.planes]
+    facts = _facts(layout, parts, planes, film_sheet_facts(layout))
     return {**facts, "clip": clip_facts(layout, heads)}
 
 

@@ -1,7 +1,7 @@
 """How the textures of a clip lie in films, and a group of frames as it is coded.
 
-A film is a grey video in which each texture has a rectangle of its own. Means are one film and eigen textures another,
-since each is coded at its own turn.
+A film is a grey video in which each texture has a rectangle of its own. Means are one film, eigen textures another and
+the opacity of sheets a third, since each is coded at its own turn.
 """
 
 from __future__ import annotations
@@ -55,10 +55,12 @@ class FilmLayout:
     Attributes:
         sizes: (rows, columns) of each film, multiples of 64.
         planes: As in `Appearance`.
+        opacity: Where that of sheets lies, at a single place; None: the proxy is one opaque surface.
     """
 
     sizes: tuple[Size, ...]
     planes: tuple[FilmPlane, ...]
+    opacity: FilmPart | None = None
 
 
 @dataclass(frozen=True, eq=False)

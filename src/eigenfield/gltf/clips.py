@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from eigenfield.coding import limits
 from eigenfield.coding.codecs import CODECS
-from eigenfield.coding.pictures.quantise import mean_values
+from eigenfield.coding.pictures.quantise import mean_values, opacity_values
 from eigenfield.coding.video.film import decode_film
 from eigenfield.coding.video.film_layout import pictures_of
 from eigenfield.core.appearance import Appearance, Basis, Plane
@@ -23,7 +23,7 @@ from eigenfield.core.errors import FormatError
 from eigenfield.core.films import CodedGroup, FilmLayout, FilmPart
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Payload, Payloads, weights_key
-from eigenfield.core.proxy import Proxy
+from eigenfield.core.proxy import Proxy, Sheets
 from eigenfield.core.rig import Rig
 from eigenfield.gltf.group import read_group, read_head
 from eigenfield.gltf.source import ByteSource, HeldBytes, StoredBytes, name_file_in_errors
@@ -64,6 +64,7 @@ def coded_clip(
     scores: Mapping[str, Any],
     generator: str,
     payloads: Payloads,
+    sheets: tuple[int, ...] | None = None,
 ) -> Clip:
     """A clip of coded groups.
 
@@ -72,10 +73,11 @@ def coded_clip(
         groups: Bytes of each (`group.group_bytes`).
         lengths: Frames of each.
         payloads: What the mesh, and maybe the rig's cameras, were coded to.
+        sheets: Faces of each, back to front, where the layout has an opacity; else None.
     """
     sources = [HeldBytes(one) if isinstance(one, bytes) else one for one in groups]
     stored = [StoredGroup(source, frames) for source, frames in zip(sources, lengths, strict=True)]
-    made = CodedGroups(layout, stored, rig, mesh, to_rgb, payloads)
+    made = CodedGroups(layout, stored, rig, mesh, to_rgb, payloads, sheets)
     return Clip(rig, timeline, made, settings, scores, generator)
 
 
@@ -85,6 +87,7 @@ class CodedGroups:
 
     Attributes:
         payloads: Of what is the same in all groups: the mesh, and maybe the cameras.
+        sheets: Faces of each, back to front; None: one opaque surface.
     """
 
     layout: FilmLayout
@@ -93,6 +96,7 @@ class CodedGroups:
     mesh: Mesh
     to_rgb: NDArray[np.float32] | None
     payloads: Payloads
+    sheets: tuple[int, ...] | None = None
     _kept: dict[int, Group] = field(default_factory=dict, init=False, repr=False)
     _placed: list[PlacedMesh] = field(default_factory=list, init=False, repr=False)
 
@@ -147,7 +151,8 @@ class CodedGroups:
                 payloads |= {weights_key(weights): [stream]}
             planes.append(Plane(mean, tuple(bases)))
         mesh = self.mesh if first.vertices is None else replace(self.mesh, vertices=first.vertices)
-        return Group(Proxy(mesh), Appearance(tuple(planes), self.to_rgb), frames, payloads)
+        sheets = None if self.sheets is None or first.opacity is None else Sheets(self.sheets, first.opacity)
+        return Group(Proxy(mesh, sheets=sheets), Appearance(tuple(planes), self.to_rgb), frames, payloads)
 
     def _motion(self, stream: Payload, frames: int, where: str) -> Motion:
         if not self._placed:
@@ -258,8 +263,10 @@ class CodedFrames(Sequence[Frame]):
             mean = pictures_of(plane.mean, pictures[plane.mean.film])
             means.append(mean_values(np.moveaxis(mean, 0, -1), affine))
             textures.append(tuple(_texture_codes(part, pictures[part.film], plane.channels) for part in plane.bases))
+        part = self._layout.opacity
+        opacity = None if part is None else opacity_values(pictures_of(part, pictures[part.film])[0])
         vertices = None if self._motion is None else self._motion.vertices(number)
-        return Frame(tuple(means), tuple(textures), vertices=vertices)
+        return Frame(tuple(means), tuple(textures), opacity, vertices)
 
 
 def _texture_codes(part: FilmPart, picture: NDArray[np.uint16], channels: int) -> NDArray[np.uint16]:

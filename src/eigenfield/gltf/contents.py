@@ -56,13 +56,15 @@ def describe_clip(path: str | os.PathLike[str]) -> tuple[ClipLayout, list[GroupH
         heads = read_heads(layout, source)
         made = _parts(document)
         assert layout.films is not None
-        means = {plane.mean.film for plane in layout.films.planes}
+        names = dict.fromkeys(range(len(layout.films.sizes)), "textures")
+        names |= {} if layout.films.opacity is None else {layout.films.opacity.film: "opacity"}
+        names |= {plane.mean.film: "mean" for plane in layout.films.planes}
         for head in heads:
             made["weights"] += sum(map(sum, head.weights))
             made["mesh"] += head.motion
             for units in head.frames:
                 for film, length in enumerate(units):
-                    made["mean" if film in means else "textures"] += length
+                    made[names[film]] += length
         made["other"] = made["total"] - sum(made[name] for name in PARTS)
         return layout, heads, made
 

@@ -129,7 +129,8 @@ def read_layout(document: Document, findings: Findings) -> FileLayout | None:
     planes = attempt(lambda: read_planes(document, extension["planes"], cameras, findings))
     channels = None if planes is None else [plane.mean.channels for plane in planes]
     around = read_surroundings(document, extension, cameras, channels, findings)
-    attempt(lambda: check_sheets(extension["sheets"], sheets, around.mesh) if extension.has("sheets") else None)
+    if sheets is not None:
+        attempt(lambda: check_sheets(extension["sheets"], sheets.faces, around.mesh))
     with findings.part():
         if not findings.strict and any(plane.lost for plane in planes or ()):
             raise document.glb.cut_off()  # a fault, though what is left can be drawn

@@ -33,20 +33,23 @@ class SheetsLayout:
 
 def read_sheets(document: Document, entry: Value) -> SheetsLayout:
     """The sheets, not compared with the mesh yet. FormatError `picture-*`, `codec-unknown`, `view-*`, `json-*`."""
-    faces = tuple(item.integer(1, limits.MAX_TRIANGLES) for item in entry["faces"].items(limits.MAX_SHEETS, 1))
-    opacity = entry["opacity"]
+    faces, opacity = read_faces(entry), entry["opacity"]
     return SheetsLayout(faces, read_picture(document, opacity, "opacity", read_size(opacity["size"], 1), 1, 1))
 
 
-def check_sheets(entry: Value, sheets: SheetsLayout | None, mesh: Mesh | None) -> None:
-    """Check that the sheets divide the mesh. None: only while validating a damaged file. FormatError `sheets-faces`,
-    `sheets-vertex`."""
-    if sheets is None or mesh is None:
+def read_faces(entry: Value) -> tuple[int, ...]:
+    """Number of faces of each sheet. FormatError `json-*`."""
+    return tuple(item.integer(1, limits.MAX_TRIANGLES) for item in entry["faces"].items(limits.MAX_SHEETS, 1))
+
+
+def check_sheets(entry: Value, faces: tuple[int, ...], mesh: Mesh | None) -> None:
+    """Check that sheets of so many faces divide the mesh. None: only while validating a damaged file. FormatError
+    `sheets-faces`, `sheets-vertex`."""
+    if mesh is None:
         return
-    if sum(sheets.faces) != len(mesh.faces):
-        message = f"the sheets have {sum(sheets.faces)} faces, the mesh has {len(mesh.faces)}"
-        entry["faces"].fail("sheets-faces", message)
-    sheet = np.repeat(np.arange(len(sheets.faces)), sheets.faces)[:, None]
+    if sum(faces) != len(mesh.faces):
+        entry["faces"].fail("sheets-faces", f"the sheets have {sum(faces)} faces, the mesh has {len(mesh.faces)}")
+    sheet = np.repeat(np.arange(len(faces)), faces)[:, None]
     owner = np.zeros(len(mesh.vertices), np.int64)
     owner[mesh.faces] = sheet
     shared = owner[mesh.faces] != sheet

@@ -37,15 +37,21 @@ class GroupEntry:
 
 
 def read_films(extension: Value) -> FilmLayout:
-    """Films, and the places of all textures in them. FormatError `film-size`, `film-place`, `codec-unknown`,
-    `plane-*`, `picture-limit`."""
+    """Films, and the places of all textures and of the opacity in them. FormatError `film-size`, `film-place`,
+    `codec-unknown`, `plane-*`, `picture-limit`."""
     sizes = [_read_film(film) for film in extension["timeline"]["films"].items(limits.MAX_FILMS, 1)]
     taken = [np.zeros((rows // PLACE_STEP, columns // PLACE_STEP), bool) for rows, columns in sizes]
     planes = tuple(_read_plane(plane, sizes, taken) for plane in extension["planes"].items(limits.MAX_PLANES, 1))
     count = sum(len(part.at) // plane.channels for plane in planes for part in plane.bases)
     if count > limits.MAX_COMPONENTS:
         extension["planes"].fail("plane-components", f"{count} eigen textures, {limits.MAX_COMPONENTS} are allowed")
-    return FilmLayout(tuple(sizes), planes)
+    opacity = None
+    if extension.has("sheets"):
+        entry = extension["sheets"]["opacity"]
+        opacity = _read_part(entry, 1, sizes, taken)
+        if len(opacity.at) != 1:
+            entry["at"].fail("film-place", f"{len(opacity.at)} places, one expected")
+    return FilmLayout(tuple(sizes), planes, opacity)
 
 
 def _read_film(entry: Value) -> Size:

@@ -103,7 +103,8 @@ def outline(path: str | os.PathLike[str]) -> tuple[Scene, bytes]:
         if holds_clip(HeldBytes(data)):
             clip = read_clip(HeldBytes(data))
             scene = clip.scene(clip.timeline.first)
-            return replace(scene, appearance=Appearance((), scene.appearance.to_rgb), scores=clip.scores), data
+            bare = Appearance((), scene.appearance.to_rgb)
+            return replace(scene, proxy=Proxy(scene.proxy.mesh), appearance=bare, scores=clip.scores), data
         return _scene_of(data, pictures=False), data
 
 

@@ -25,6 +25,7 @@ from eigenfield.gltf.layout import (
     read_surroundings,
 )
 from eigenfield.gltf.layout_geometry import read_cameras
+from eigenfield.gltf.layout_sheets import check_sheets, read_faces
 from eigenfield.gltf.layout_timeline import GroupEntry, read_films, read_groups, read_timeline
 from eigenfield.gltf.source import ByteRange, ByteSource, StoredBytes, name_file_in_errors, open_source
 from eigenfield.gltf.strict_json import Value
@@ -38,9 +39,11 @@ class ClipLayout(Surroundings):
     """The file of a clip without its groups; a part that could not be read is None (only while validating).
 
     Attributes:
+        sheets: Faces of each, back to front; None: one opaque surface.
         first: The first byte of the chunk of groups in the file.
     """
 
+    sheets: tuple[int, ...] | None
     timeline: Timeline | None
     films: FilmLayout | None
     groups: tuple[GroupEntry, ...] | None
@@ -67,6 +70,9 @@ def read_clip_layout(document: Document, findings: Findings) -> ClipLayout | Non
     films = attempt(lambda: read_films(extension))
     channels = None if films is None else [plane.channels for plane in films.planes]
     around = read_surroundings(document, extension, cameras, channels, findings)
+    sheets = attempt(lambda: read_faces(extension["sheets"])) if extension.has("sheets") else None
+    if sheets is not None:
+        attempt(lambda: check_sheets(extension["sheets"], sheets, around.mesh))
     if cameras is not None and cameras.colours is not None:
         attempt(lambda: extension["cameras"].fail("camera-colour", "cameras of a clip have no colours of their own"))
     entry, chunk = extension["timeline"], document.glb.chunks[GROUPS_CHUNK]
@@ -75,7 +81,7 @@ def read_clip_layout(document: Document, findings: Findings) -> ClipLayout | Non
     if timeline is not None:
         groups = attempt(lambda: read_groups(entry, timeline.frames, chunk.size + document.glb.missing_groups))
     attempt(document.check_addresses)
-    return ClipLayout(**vars(around), timeline=timeline, films=films, groups=groups, first=chunk.first)
+    return ClipLayout(**vars(around), sheets=sheets, timeline=timeline, films=films, groups=groups, first=chunk.first)
 
 
 def check_clip(document: Document, findings: Findings) -> bool:
@@ -168,4 +174,4 @@ def _groups_of(layout: ClipLayout, place: ByteSource | Path) -> CodedGroups:
         last = first + entry.length
         data = StoredBytes(place, first, last) if isinstance(place, Path) else ByteRange(place, first, last)
         stored.append(StoredGroup(data, entry.frames, entry.digest))
-    return CodedGroups(layout.films, stored, layout.rig, layout.mesh, layout.to_rgb, layout.payloads)
+    return CodedGroups(layout.films, stored, layout.rig, layout.mesh, layout.to_rgb, layout.payloads, layout.sheets)

@@ -108,6 +108,7 @@ def _head(clip: Clip, groups: CodedGroups, scene: Scene, chunk: _GroupsChunk) ->
     extension = {
         "needs": needs,
         "mesh": proxy,
+        **_sheets(groups),
         "planes": [_plane(plane) for plane in groups.layout.planes],
         **write_rest(scene, cameras, view_plane),
         TIMELINE: _timeline(clip, groups, chunk),
@@ -125,10 +126,19 @@ def _needs(groups: CodedGroups, codecs: Iterable[str], cameras: Mapping[str, Any
         TIMELINE: True,
         "namePattern": "pattern" in cameras,
         "noFallback": not fallback,
+        "sheets": groups.layout.opacity is not None,
         "toRGB": groups.to_rgb is not None,
     }
     own = {CODECS[codec].needs for codec in named}
     return sorted({name for name, needed in found.items() if needed} | {need for need in own if need is not None})
+
+
+def _sheets(groups: CodedGroups) -> dict[str, Any]:
+    opacity = groups.layout.opacity
+    if opacity is None:
+        return {}
+    assert groups.sheets is not None
+    return {"sheets": {"faces": list(map(int, groups.sheets)), "opacity": _part(opacity)}}
 
 
 def _plane(plane: FilmPlane) -> dict[str, Any]:

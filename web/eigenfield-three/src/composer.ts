@@ -61,10 +61,18 @@ interface Grid {
   places: { target: WebGLRenderTarget; version: number } | null; // where its texels lie, once that is needed
 }
 
+/** The opacity of sheets: summed into a target of its own, and from there brought to the atlas's size. */
+interface OpacityPass {
+  target: WebGLRenderTarget;
+  sum: Scene;
+  finer: Scene;
+}
+
 /** Sums means and eigen textures into one texture of the whole atlas, for one viewpoint after the other. */
 export class Composer {
   private readonly grids: Grid[]; // that of the whole atlas last
   private composed: Recipe | null = null;
+  private readonly opacity: OpacityPass | null;
   private opacityDrawn = 0; // its version
   private readonly camera = new Camera();
 
@@ -73,8 +81,8 @@ export class Composer {
   constructor(
     atlas: [number, number],
     parts: Part[],
-    private readonly opacity: Part | null,
-    private readonly down: number,
+    opacity: Part | null,
+    down: number,
     private readonly snaps: boolean,
     private readonly surface: Surface,
     private readonly plane: ViewPlane,
@@ -96,6 +104,7 @@ export class Composer {
       whole.scene.add(Object.assign(quad, { renderOrder: whole.scene.children.length }));
     }
     this.grids.push(whole);
+    this.opacity = opacity && opacityPass(opacity, down);
   }
 
   /** R, G, B and the opacity of sheets, as half-floats with mips, v = 0 in row 0. */
@@ -124,22 +133,17 @@ export class Composer {
       places?.target.dispose();
       freeQuads(scene);
     }
+    this.opacity?.target.dispose();
+    if (this.opacity) [this.opacity.sum, this.opacity.finer].forEach(freeQuads);
   }
 
-  /** Opacity does not change from view to view: it is drawn when it comes, and stays in the alpha of what is composed. */
+  /** Opacity does not change from view to view: it is drawn when it comes, of a clip with each frame, and stays in the
+   * alpha of what is composed. */
   private drawOpacity(renderer: WebGLRenderer, version: number): void {
-    const whole = this.grids.at(-1);
-    if (!this.opacity || !whole) return;
-    const own = makeTarget(smaller(this.opacity.grid, this.down), false);
-    const steps = stepsOf(this.opacity, null);
-    for (const step of steps) setStep(step, null, STILL);
-    const [sum, finer] = [new Scene(), new Scene()];
-    sum.add(...steps.map(({ quad }) => quad));
-    finer.add(makeQuad(FINER_OPACITY, [0, 0, 1, 1], { coarse: { value: own.texture } }));
-    this.draw(renderer, sum, own);
-    this.draw(renderer, finer, whole.target);
-    for (const scene of [sum, finer]) freeQuads(scene);
-    own.dispose();
+    const [whole, own] = [this.grids.at(-1), this.opacity];
+    if (!own || !whole) return;
+    this.draw(renderer, own.sum, own.target);
+    this.draw(renderer, own.finer, whole.target);
     this.opacityDrawn = version;
   }
 
@@ -162,6 +166,16 @@ export class Composer {
     if (keep) gl.colorMask(true, true, true, true);
     renderer.render(scene, this.camera);
   }
+}
+
+function opacityPass(part: Part, down: number): OpacityPass {
+  const target = makeTarget(smaller(part.grid, down), false);
+  const steps = stepsOf(part, null);
+  for (const step of steps) setStep(step, null, STILL);
+  const [sum, finer] = [new Scene(), new Scene()];
+  sum.add(...steps.map(({ quad }) => quad));
+  finer.add(makeQuad(FINER_OPACITY, [0, 0, 1, 1], { coarse: { value: target.texture } }));
+  return { target, sum, finer };
 }
 
 function freeQuads(scene: Scene): void {

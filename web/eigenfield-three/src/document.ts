@@ -104,6 +104,7 @@ export function readDocument(json: Json): SceneDocument {
   const [triangles, codedTriangles] = [viewPlane.key("triangles"), viewPlane.key("codedTriangles")];
   const generator = extension.key("generator");
   const [mesh, timeline] = [extension.key("mesh"), extension.key("timeline")];
+  const sheets = readSheets(extension.key("sheets"), viewOf);
   return {
     version,
     generator: generator.exists ? generator.text(limits.MAX_NAME) : "",
@@ -129,10 +130,10 @@ export function readDocument(json: Json): SceneDocument {
     scores: freeForm(extension.key("scores")),
     views,
     mesh: mesh.exists || timeline.exists ? streamOf("mesh", mesh, viewOf) : null,
-    sheets: readSheets(extension.key("sheets"), viewOf),
+    sheets,
     shown: mesh.exists && !root.key("meshes").exists ? null : readShown(root, accessor),
     preview,
-    timeline: readTimeline(timeline, planes),
+    timeline: readTimeline(timeline, planes, sheets && sheets.opacity.mean),
   };
 }
 

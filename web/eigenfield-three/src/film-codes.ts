@@ -13,9 +13,16 @@ const GREEN = 1; // of a texel's bytes
 const GROWN = Uint16Array.from({ length: 256 }, (_, code) => Math.round((code * 1023) / 255));
 /** The same, of a grey that was made as if luma were 16 to 235; films hold no other. */
 const STRETCHED = Uint16Array.from({ length: 256 }, (_, grey) => GROWN[16 + Math.round((grey * 219) / 255)]!);
+/** The same of an opacity: what was cut off at either end is taken for that end. */
+const CUT = STRETCHED.map((code, grey) => (grey === 0 ? 0 : grey === 255 ? 1023 : code));
 
-/** The codes of a frame. `room`: of a frame that is needed no more. Raises SceneError `unsupported`. */
-export async function codesOf(frame: VideoFrame, room: Uint8Array<ArrayBuffer> | null): Promise<Codes> {
+/** The codes of a frame. `room`: of a frame that is needed no more; `opacity`: it is of the film of an opacity. Raises
+ * SceneError `unsupported`. */
+export async function codesOf(
+  frame: VideoFrame,
+  room: Uint8Array<ArrayBuffer> | null,
+  opacity = false,
+): Promise<Codes> {
   const format = frame.format ?? "";
   const { width, height } = frame.visibleRect ?? { width: 0, height: 0 };
   if (!TEN_BITS.has(format) && !LUMA_FIRST.has(format) && !COLOURED.has(format)) {
@@ -28,7 +35,8 @@ export async function codesOf(frame: VideoFrame, room: Uint8Array<ArrayBuffer> |
   if (TEN_BITS.has(format)) return { data: data.subarray(offset), width, height, stride, room: data };
   const coloured = COLOURED.has(format);
   const [step, from] = coloured ? [4, offset + GREEN] : [1, offset];
-  const table = coloured && frame.colorSpace?.fullRange === false ? STRETCHED : GROWN; // films are full, whatever it says
+  const limited = coloured && frame.colorSpace?.fullRange === false; // films are full, whatever it says
+  const table = limited ? (opacity ? CUT : STRETCHED) : GROWN;
   return grownCodes(data.subarray(from), stride, step, [width, height], table);
 }
 

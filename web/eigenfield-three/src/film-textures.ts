@@ -1,7 +1,7 @@
 // The textures of a clip: those of the frame that is shown, which are put over those of the one before.
 
 import { basesOf } from "./info.js";
-import type { SceneDocument } from "./document.js";
+import { stillsOf, type SceneDocument } from "./document.js";
 import { partsOf } from "./film-codes.js";
 import type { Codes, Piece } from "./pieces.js";
 import type { Picture } from "./planes.js";
@@ -46,7 +46,7 @@ export class FilmTextures implements TextureSource {
 
   private put(filling: Filling): void {
     filling.together(() => {
-      this.scene.planes.forEach(({ mean }, i) => filling.putMean(i, { pieces: this.piecesOf(mean), precision: null }));
+      stillsOf(this.scene).forEach(({ mean }, i) => filling.putMean(i, { pieces: this.piecesOf(mean), precision: null }));
       basesOf(this.scene).forEach(({ pictures: [picture] }, i) => {
         if (picture) filling.putTextures(i, 0, this.piecesOf(picture), picture);
       });

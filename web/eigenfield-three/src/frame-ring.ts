@@ -188,7 +188,7 @@ export class FrameRing {
   private async receive(film: number, position: number, frame: VideoFrame): Promise<void> {
     const [{ turn }, slot] = [this, this.slotOf(position)];
     if (!slot) return;
-    const codes = await codesOf(frame, this.rooms[film]?.pop() ?? null);
+    const codes = await codesOf(frame, this.rooms[film]?.pop() ?? null, this.timeline.films[film]?.opacity);
     if (turn !== this.turn || this.slots.get(position) !== slot) return this.reuseOne(film, codes);
     slot.films[film] = codes;
     if (!slot.films.includes(null)) this.user.ready();

@@ -21,7 +21,7 @@ export interface DeviceLimits {
 export interface Needs {
   atlas: Size;
   // of planes, and of the opacity; pieces: pictures one below the other
-  means: { size: Size; channels: number; pieces: number; tenBits: boolean }[];
+  means: { size: Size; channels: number; pieces: number; tenBits: boolean; opacity?: boolean }[];
   bases: { size: Size; grid: Size; channels: number; count: number; tenBits: boolean }[]; // codes of 10 bits
   rays: boolean; // weights may be looked up texel by texel
   geometry: number; // bytes
@@ -133,10 +133,11 @@ export function makePlan(needs: Needs, limits: DeviceLimits): Plan {
 
 /** Bytes of means and opacity and of what is composed: the atlas with its mips, sums at other sizes, where texels lie. */
 function composing(needs: Needs, down: number): number {
-  const means = needs.means.map(({ size, channels, tenBits }) => {
-    return bytesOf({ components: channels, halves: tenBits }) * meanLayers(channels) * texels(size, down);
+  const means = needs.means.map(({ size, channels, tenBits, opacity }) => {
+    const own = opacity ? COMPOSED : 0; // it is summed by itself
+    return (bytesOf({ components: channels, halves: tenBits }) * meanLayers(channels) + own) * texels(size, down);
   });
-  const sums = gridsOf(needs).map((size) => {
+  const sums = gridsOf({ ...needs, means: needs.means.filter(({ opacity }) => !opacity) }).map((size) => {
     const mips = size.join() === needs.atlas.join() ? MIPS : 1;
     const places = needs.rays && needs.bases.some(({ grid }) => grid.join() === size.join());
     return COMPOSED * texels(size, down) * (mips + (places ? 1 : 0));

@@ -150,7 +150,7 @@ function formatOf(value: Value<schema.MeanJson | schema.TextureJson | schema.Opa
 
 /** Textures in a film, `channels` to each; a group says what their codes stand for. */
 function readInFilm(
-  value: Value<schema.MeanJson | schema.BasisJson>,
+  value: Value<schema.MeanJson | schema.BasisJson | schema.OpacityJson>,
   channels: number,
   size: [number, number],
 ): Picture {
@@ -164,6 +164,17 @@ function readInFilm(
   const part = { film: value.key("film").integer(0, limits.MAX_FILMS - 1), size, at: places, where };
   const none = { scale: Array<number>(places.length).fill(0), zero: Array<number>(places.length).fill(0) };
   return { view: -1, codec: CODECS[KEY_PICTURE], textures: places.length / channels, pieces: channels, where, part, ...none };
+}
+
+/** As `readInFilm`, of a single texture. */
+function readOneInFilm(
+  value: Value<schema.MeanJson | schema.OpacityJson>,
+  channels: number,
+  size: [number, number],
+): Picture {
+  const one = readInFilm(value, channels, size);
+  if (one.textures !== 1) throw value.key("at").wrong(`${channels} places are needed`);
+  return one;
 }
 
 function asTheyAre(channels: number): Pick<Picture, "scale" | "zero"> {
@@ -207,9 +218,7 @@ function readMean(
   }
   const meanSize = readSize(own.key("size"));
   if (own.key("film").exists) {
-    const mean = readInFilm(own, channels, meanSize);
-    if (mean.textures !== 1) throw own.key("at").wrong(`${channels} places are needed`);
-    return { mean, meanSize, precision: null };
+    return { mean: readOneInFilm(own, channels, meanSize), meanSize, precision: null };
   }
   const mean = readPicture(own, channels, 1, meanSize, viewOf, true);
   return { mean, meanSize, precision: readPrecision(own.key("precision"), mean, viewOf) };
@@ -218,10 +227,13 @@ function readMean(
 /** The opacity of sheets: its largest code is opaque. */
 export function readOpacity(value: Value<schema.OpacityJson>, viewOf: ViewReader): Still {
   const size = readSize(value.key("size"));
-  const codec = formatOf(value);
-  checkRows(value, 1, size);
-  const made = { view: viewOf(value.key("bufferView")), codec, textures: 1, pieces: 1, where: value.where, part: null };
-  const mean = { ...made, scale: [1 / (2 ** codec.bits - 1)], zero: [0] };
+  const picture = (): Omit<Picture, "scale" | "zero"> => {
+    const codec = formatOf(value);
+    checkRows(value, 1, size);
+    return { view: viewOf(value.key("bufferView")), codec, textures: 1, pieces: 1, where: value.where, part: null };
+  };
+  const made = value.key("film").exists ? readOneInFilm(value, 1, size) : picture();
+  const mean = { ...made, scale: [1 / (2 ** made.codec.bits - 1)], zero: [0] };
   return { channels: 1, mean, meanSize: size, precision: null };
 }
 

@@ -105,7 +105,7 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
     const places = Float64Array.from(encoded.flatMap((camera) => planeCoordinates(scene, camera.centre)));
     const weights = new ViewWeights(places, triangles, scene.extent[1] === 0);
     const sizeOf = ({ pieces: [first] }: Mean): [number, number] => [first?.picture.width ?? 1, first?.rows ?? 1];
-    const meanSizes = clip ? scene.planes.map(({ meanSize }): Size => meanSize ?? [1, 1]) : means.map(sizeOf);
+    const meanSizes = clip ? stillsOf(scene).map(({ meanSize }): Size => meanSize ?? [1, 1]) : means.map(sizeOf);
     const info = sceneInfo(scene, cameras, meanSizes, weights.grid, this.fileBytes(), countsOf(mesh.geometry));
     const parts = { scene, info, meshes, meanSizes, omega, weights, clip };
     const source = clip ? new FilmTextures(scene, clip.films) : stillTextures(scene, bytes, means);

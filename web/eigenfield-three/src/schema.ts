@@ -107,18 +107,22 @@ export interface CodedMeshJson {
 export interface SheetsJson {
   /** Triangles of each sheet, back to front; the proxy has them in this order. */
   faces: number[];
-  /** A picture of one channel over the whole atlas, whose largest code is opaque. */
+  /** A picture of one channel over the whole atlas, or its place in a film; the largest code is opaque. */
   opacity: OpacityJson;
 }
 
-/** A picture of one channel over the whole atlas, whose largest code is opaque. */
+/** A picture of one channel over the whole atlas, or its place in a film; the largest code is opaque. */
 export interface OpacityJson {
   /** Index of a buffer view. */
-  bufferView: number;
+  bufferView?: number;
+  /** Number of a film. */
+  film?: number;
+  /** Column and row in the film of each channel of each texture, by rank. */
+  at?: ([number, number])[];
   /** Codecs of pictures. */
   codec?: PictureCodec;
   /** Type of a picture. */
-  mimeType: MimeType;
+  mimeType?: MimeType;
   /** Width and height in texels. */
   size: [number, number];
   /** Bits of a sample. */

@@ -53,7 +53,8 @@ export class Textures {
     );
     this.layout = bases;
     const means = stillsOf(scene).map(({ channels, mean }, i): memory.Needs["means"][number] => {
-      return { size: meanSizes[i] ?? [1, 1], channels, pieces: mean.pieces, tenBits: hasTenBits([mean]) };
+      const opacity = i === scene.planes.length;
+      return { size: meanSizes[i] ?? [1, 1], channels, pieces: mean.pieces, tenBits: hasTenBits([mean]), opacity };
     });
     this.needs = { atlas: info.size, means, bases, rays: info.facesPlane, geometry: geometryBytes(surface.geometry) };
     this.means = means.map(() => new ExternalTexture());

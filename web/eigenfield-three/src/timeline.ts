@@ -4,7 +4,7 @@ import { codecOf, type Codec } from "./codecs.js";
 import { damaged } from "./errors.js";
 import type { Value } from "./json.js";
 import * as limits from "./limits.js";
-import type { FilmPart, Picture, Plane } from "./planes.js";
+import type { Picture, Plane } from "./planes.js";
 import type { FilmJson, GroupJson, TimelineJson } from "./schema.js";
 
 const FILM_STEP = 64; // sides of films are multiples of it
@@ -15,6 +15,7 @@ const DIGEST = /^[0-9a-f]{64}$/;
 export interface Film {
   codec: Codec<"film">;
   size: [number, number];
+  opacity: boolean; // of sheets: codes 0 and 1023 are nothing and all; of others only 64 to 940 are used
   where: string;
 }
 
@@ -36,11 +37,17 @@ export interface Timeline {
   groups: GroupPlace[];
 }
 
-/** The timeline of a clip; null: a scene of one instant. Raises SceneError: `damaged`, `codec-unknown`. */
-export function readTimeline(value: Value<TimelineJson>, planes: Plane[]): Timeline | null {
+/** The timeline of a clip; null: a scene of one instant. `opacity`: of sheets. Raises SceneError: `damaged`,
+ * `codec-unknown`. */
+export function readTimeline(
+  value: Value<TimelineJson>,
+  planes: Plane[],
+  opacity: Picture | null,
+): Timeline | null {
+  const pictures = [...picturesOf(planes), ...(opacity ? [opacity] : [])];
   if (!value.exists) {
-    const part = partsOf(planes)[0];
-    if (part) throw damaged(part.where, "a texture in a film, and no timeline");
+    const inFilm = pictures.find(({ part }) => part);
+    if (inFilm) throw damaged(inFilm.where, "a texture in a film, and no timeline");
     return null;
   }
   const [numerator = 1, denominator = 1] = value.key("rate").numbers(2, 1, limits.MAX_RATE_TERM);
@@ -50,7 +57,8 @@ export function readTimeline(value: Value<TimelineJson>, planes: Plane[]): Timel
   const first = value.key("first");
   const films = value.key("films").items(limits.MAX_FILMS).map(readFilm);
   const frames = value.key("frames").integer(1, limits.MAX_FRAMES);
-  checkPlaces(planes, films);
+  checkPlaces(pictures, films);
+  for (const film of films) film.opacity = film === films[opacity?.part?.film ?? -1];
   return { rate, first: first.exists ? first.number() : 0, frames, films, groups: readGroups(value, frames) };
 }
 
@@ -60,7 +68,7 @@ function readFilm(value: Value<FilmJson>): Film {
   if (width % FILM_STEP || height % FILM_STEP || width * height > limits.MAX_FILM_PIXELS) {
     throw value.key("size").wrong(`a film of ${width} x ${height}`);
   }
-  return { codec, size: [width, height], where: value.where };
+  return { codec, size: [width, height], opacity: false, where: value.where };
 }
 
 function readGroups(value: Value<TimelineJson>, frames: number): GroupPlace[] {
@@ -79,18 +87,14 @@ function readGroups(value: Value<TimelineJson>, frames: number): GroupPlace[] {
   return groups;
 }
 
-function partsOf(planes: Plane[]): FilmPart[] {
-  return picturesOf(planes).flatMap(({ part }) => (part ? [part] : []));
-}
-
 function picturesOf(planes: Plane[]): Picture[] {
   return planes.flatMap(({ mean, bases }) => [mean, ...bases.flatMap((basis) => basis.pictures)]);
 }
 
 /** Raises SceneError `damaged` unless all textures lie in films, each in a place of its own. */
-function checkPlaces(planes: Plane[], films: Film[]): void {
+function checkPlaces(pictures: Picture[], films: Film[]): void {
   const taken = films.map(({ size }) => new Uint8Array((size[0] * size[1]) / PLACE_STEP ** 2));
-  for (const { part, where } of picturesOf(planes)) {
+  for (const { part, where } of pictures) {
     const film = part && films[part.film];
     if (!part || !film) throw damaged(where, "it lies in no film");
     const [columns, cells] = [film.size[0] / PLACE_STEP, taken[part.film]!];

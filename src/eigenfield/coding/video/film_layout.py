@@ -32,9 +32,15 @@ class PlaneSizes:
     bases: tuple[tuple[Size, int], ...]
 
 
-def film_layout(planes: Sequence[PlaneSizes]) -> FilmLayout:
-    """A film of all means, and one of all eigen textures where there are any. OptionError `film-size`: a film would be
-    larger than readers take."""
+def film_layout(planes: Sequence[PlaneSizes], opacity: Size | None = None) -> FilmLayout:
+    """A film of all means, one of all eigen textures where there are any, and last one of the opacity of sheets.
+
+    Args:
+        opacity: Its size; None: there are no sheets.
+
+    Raises:
+        OptionError: `film-size`: a film would be larger than readers take.
+    """
     means = [(plane.mean, plane.channels) for plane in planes]
     textures = [(size, plane.channels * count) for plane in planes for size, count in plane.bases]
     films = [_pack(group) for group in (means, textures) if group]
@@ -43,13 +49,17 @@ def film_layout(planes: Sequence[PlaneSizes]) -> FilmLayout:
     for plane in planes:
         bases = tuple(FilmPart(size, TEXTURES, next(texture_places)) for size, _ in plane.bases)
         made.append(FilmPlane(FilmPart(plane.mean, MEANS, next(mean_places)), bases))
-    return FilmLayout(tuple(size for size, _ in films), tuple(made))
+    alone = None
+    if opacity is not None:
+        films.append(_pack([(opacity, 1)]))
+        alone = FilmPart(opacity, len(films) - 1, films[-1][1][0])
+    return FilmLayout(tuple(size for size, _ in films), tuple(made), alone)
 
 
 def film_parts(layout: FilmLayout, film: int) -> list[FilmPart]:
-    """The parts of a film: of each plane its mean, then its bases."""
+    """The parts of a film: of each plane its mean, then its bases; last the opacity."""
     parts = [part for plane in layout.planes for part in (plane.mean, *plane.bases)]
-    return [part for part in parts if part.film == film]
+    return [part for part in (*parts, layout.opacity) if part is not None and part.film == film]
 
 
 def join_parts(layout: FilmLayout, film: int, codes: Sequence[NDArray[np.uint16]]) -> NDArray[np.uint16]:

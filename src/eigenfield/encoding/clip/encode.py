@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING, Any, cast
 
 from eigenfield.core.arguments import kind_in_words
 from eigenfield.core.clip import Clip
-from eigenfield.core.errors import OptionError, one_line
+from eigenfield.core.errors import OptionError, ProxyError, one_line
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import CalibratedObservations
 from eigenfield.core.progress import Progress, begin_step
 from eigenfield.core.proxy import MovingProxy, Proxy
 from eigenfield.core.version import __version__
+from eigenfield.encoding.clip.backmost import settle_backmost
 from eigenfield.encoding.clip.digest import footage_digest
 from eigenfield.encoding.clip.groups import Groups, MadeGroup
 from eigenfield.encoding.clip.motion import MovingMesh, moving_mesh
@@ -59,12 +60,13 @@ def encode_clip(
     workers: Workers | None = None,
     given: SurfaceOptions | None = None,
 ) -> Clip:
-    """A clip on a proxy that stands still, or on a mesh for each frame.
+    """A clip on a proxy that stands still, or on a mesh for each frame, or on sheets that change with time.
 
     Its frames share the weights of their group (equation 6, summed over its frames).
 
     Args:
-        proxy: Opaque; or a mesh for each frame (`read_sequence`). None: the surface that `still_capture` shows.
+        proxy: Opaque; or a mesh for each frame (`read_sequence`), or a `MovingProxy`, maybe of sheets, the backmost of
+            which is opaque. None: the surface that `still_capture` shows.
         asked: Options; those that clips have no use for are refused.
         work: Folder that keeps finished stages; None: nothing is kept.
         workers: That make all groups but the first, which says how many textures there are; they see `work` and the
@@ -76,6 +78,8 @@ def encode_clip(
         CaptureError, ProxyError, OutputError: As `encode`.
     """
     refuse_still_options(asked)
+    if isinstance(proxy, MovingProxy) and proxy.proxy.sheets is None:
+        proxy = [replace(proxy.proxy.mesh, vertices=own) for own in proxy.positions]
     surface = surface_of_clip(asked, given or SurfaceOptions(), has_proxy=proxy is not None)
     _refuse_proxy(footage, proxy, asked)
     length = group_length(asked.group or DEFAULT_GROUP, footage.timeline.rate)
@@ -111,21 +115,26 @@ def encode_clip(
         scores={},
         generator=f"eigenfield {__version__}",
         payloads=plan.payloads,
+        sheets=None if plan.proxy.sheets is None else plan.proxy.sheets.faces,
     )
 
 
 def _plan(
     footage: Footage, proxy: GivenProxy, asked: EncodeOptions, work: Path | None, progress: Progress | None
 ) -> tuple[EncodePlan, MovingMesh | None]:
-    """The plan of the middle instant; or of the first on its own mesh as it is given, and the meshes of all."""
+    """The plan of the middle instant, and what moves; with a mesh for each frame, of the first instant on its own."""
     if not is_sequence(proxy):
         middle = cast("CalibratedObservations", footage.instant(len(footage) // 2))
-        return plan_encoding(middle, cast("Mesh", proxy), asked, work, progress), None
+        if not isinstance(proxy, MovingProxy):
+            return plan_encoding(middle, cast("Mesh", proxy), asked, work, progress), None
+        settled = settle_backmost(middle, len(footage) // 2, proxy, asked, work, progress)
+        plan = plan_encoding(middle, settled.proxy, asked, work, progress, exact=True)
+        return plan, moving_mesh(plan, settled.positions, opacity=settled.opacity)
     first = cast("CalibratedObservations", footage.instant(0))
     sequence = read_sequence(cast("str", proxy), len(footage), first.origin)
     whole = replace(asked, triangles=max(len(sequence.mesh.faces), UNWRAP_MIN_TRIANGLES))
     plan = plan_encoding(first, sequence.mesh, whole, work, progress, exact=True)
-    return plan, moving_mesh(plan, sequence)
+    return plan, moving_mesh(plan, sequence.positions, sequence.vertices_of(plan.prepared.proxy.mesh))
 
 
 def group_length(text: str, rate: Fraction) -> int:
@@ -155,10 +164,11 @@ def _refuse_proxy(footage: Footage, proxy: GivenProxy | None, asked: EncodeOptio
         raise OptionError("clip-cameras", "the cameras of this footage are not known", remedy=remedy)
     several: list[Any] = [] if isinstance(proxy, str) or not isinstance(proxy, Sequence) else list(proxy)
     for one in several or ([] if proxy is None else [proxy]):
-        if not isinstance(one, str | os.PathLike | Mesh) and (several or not isinstance(one, Proxy | Sequence)):
+        single = isinstance(one, Proxy | MovingProxy | Sequence) and not several
+        if not isinstance(one, str | os.PathLike | Mesh) and not single:
             remedy = "give a mesh, its file, or one of them for each frame"
             raise OptionError("proxy", f"{kind_in_words(one)} is no proxy", remedy=remedy)
-    if is_sequence(proxy):
+    if is_sequence(proxy) or isinstance(proxy, MovingProxy):
         given = [name for name, is_given in (("triangles", asked.triangles is not None), ("fit", asked.fit == "none"))
                  if is_given]  # fmt: skip
         if given:
@@ -168,6 +178,9 @@ def _refuse_proxy(footage: Footage, proxy: GivenProxy | None, asked: EncodeOptio
         refuse_no_mesh(Path(proxy))
     elif isinstance(proxy, Proxy) and proxy.sheets is not None:
         refuse_sheets()
+    if isinstance(proxy, MovingProxy) and len(proxy.positions) != len(footage):
+        message = f"a surface in {len(proxy.positions)} frames, the clip has {len(footage)}"
+        raise ProxyError("proxy-count", message, remedy="make it for this footage")
 
 
 def _plan_digest(plan: EncodePlan) -> list[Any]:

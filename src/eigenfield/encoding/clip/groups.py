@@ -13,6 +13,7 @@ from eigenfield.core.progress import Progress, track
 from eigenfield.encoding.clip.closed_loop import code_group, texture_counts
 from eigenfield.encoding.clip.frames import GroupFrames, load_arrays, save_arrays
 from eigenfield.encoding.clip.motion import MovingMesh
+from eigenfield.encoding.clip.opacity import open_coded_opacity
 from eigenfield.encoding.clip.open_loop import fit_group
 from eigenfield.encoding.clip.plan import ClipPlan, open_clip_plan
 from eigenfield.encoding.clip.projected import project_group
@@ -118,17 +119,21 @@ def _fitted(frames: GroupFrames, counts: tuple[int, ...] | None) -> tuple[CodedG
         counts: As in `Groups.make`.
     """
     clip = frames.clip
-    with frames.opened() as group:
+    with (
+        frames.opened() as seen,
+        open_coded_opacity(seen) as (sheets, opacity),
+        sheets.changing() as group,
+    ):
         opened = fit_group(group, PRESETS[resolved_value(clip.plan.options.preset)].rounds)
         kept = texture_counts(clip, opened) if counts is None else counts
-        return *code_group(group, opened, clip.layout(kept)), kept
+        return *code_group(group, opened, clip.layout(kept), opacity), kept
 
 
 def _projected(frames: GroupFrames) -> tuple[CodedGroup, list[float], tuple[int, ...]]:
     """A group the paper's way; see `_fitted`."""
     opened = project_group(frames)
     kept = tuple(one.weights.shape[1] for one in opened.weights)
-    return *code_group(frames, opened, frames.clip.layout(kept), closed=False), kept
+    return *code_group(frames, opened, frames.clip.layout(kept), None, closed=False), kept
 
 
 def make_group(folder: Path, shared: Shared[Groups], number: int, counts: tuple[int, ...]) -> None:

@@ -194,11 +194,11 @@ async function be(e, t, n, r) {
 	return s;
 }
 // eigenfield-three/src/limits.ts
-var xe = "EIGENFIELD_eigen_textures", Se = 64 * 2 ** 20, Ce = 16384, we = 16384, Te = 1024, Ee = 2 ** 27, De = 4096, Oe = 8 * 2 ** 30, ke = 1e5, Ae = 65535, je = 2 ** 29, I = 1024, Me = 2 ** 25, Ne = 2 ** 26, Pe = 2 ** 27, Fe = 8192, Ie = 2 ** 24, Le = 2 ** 25, Re = 2 ** 20, ze = 2 ** 16, Be = 2 ** 30, Ve = 1024, He = 2 ** 22, Ue = 2 ** 31 - 1, We = 2 ** 28, Ge = 1e30, L = 65536, Ke = 126, qe = 64, Je = 0, Ye = 1, Xe = 2, Ze = 24, Qe = 44, $e = 21, et = 26214, tt = 4, nt = Float64Array.from({ length: 4095 }, (e, t) => Math.round(L / (1 + Math.exp((2047 - t) / 256)))), rt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), it = Float64Array.from({ length: 127 }, (e, t) => Math.round(L / (t + 1.5)));
-function R(e) {
-	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + R(Math.floor(e / 4294967296));
+var xe = "EIGENFIELD_eigen_textures", Se = 64 * 2 ** 20, Ce = 16384, we = 16384, Te = 1024, Ee = 2 ** 27, De = 4096, Oe = 8 * 2 ** 30, ke = 1e5, Ae = 65535, je = 2 ** 29, I = 1024, Me = 2 ** 25, Ne = 2 ** 26, Pe = 2 ** 27, Fe = 8192, Ie = 2 ** 24, Le = 2 ** 25, Re = 2 ** 20, ze = 2 ** 16, Be = 2 ** 30, Ve = 1024, He = 2 ** 22, Ue = 2 ** 31 - 1, We = 2 ** 28, Ge = 1e30, L = 65536, Ke = 126, R = 64, qe = 0, Je = 1, Ye = 2, Xe = 24, Ze = 44, Qe = 21, $e = 26214, et = 4, tt = Float64Array.from({ length: 4095 }, (e, t) => Math.round(L / (1 + Math.exp((2047 - t) / 256)))), nt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), rt = Float64Array.from({ length: 127 }, (e, t) => Math.round(L / (t + 1.5)));
+function z(e) {
+	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + z(Math.floor(e / 4294967296));
 }
-var at = class {
+var it = class {
 	bytes;
 	low = 0;
 	high = 4294967295;
@@ -208,11 +208,11 @@ var at = class {
 	seen;
 	weights;
 	constructor(e, t, n) {
-		this.bytes = e, this.probability = new Uint16Array(t * qe).fill(L / 2), this.seen = new Uint8Array(t * qe), this.weights = new Float64Array(n * qe * 3).fill(et);
-		for (let e = 0; e < tt; e++) this.code = this.code * 256 + this.next();
+		this.bytes = e, this.probability = new Uint16Array(t * R).fill(L / 2), this.seen = new Uint8Array(t * R), this.weights = new Float64Array(n * R * 3).fill($e);
+		for (let e = 0; e < et; e++) this.code = this.code * 256 + this.next();
 	}
 	checkEnd(e) {
-		if (this.at > this.bytes.length + tt) throw ue(e);
+		if (this.at > this.bytes.length + et) throw ue(e);
 	}
 	flag(e, t, n, r) {
 		return this.node(e, t, n, r, 0) === 1;
@@ -224,30 +224,30 @@ var at = class {
 	}
 	integer(e, t, n, r) {
 		let i = this.magnitude(e, t, n, r);
-		return i === 0 ? 0 : this.node(e, t, n, r, Ye) ? -i : i;
+		return i === 0 ? 0 : this.node(e, t, n, r, Je) ? -i : i;
 	}
 	magnitude(e, t, n, r) {
-		if (!this.node(e, t, n, r, Je)) return 0;
+		if (!this.node(e, t, n, r, qe)) return 0;
 		let i = 0;
-		for (; i < $e && this.node(e, t, n, r, Xe + i);) i += 1;
+		for (; i < Qe && this.node(e, t, n, r, Ye + i);) i += 1;
 		if (i < 2) return i + 1;
 		let a = 1;
 		for (let o = i - 2; o >= 0; o--) {
 			let s;
-			s = o === i - 2 ? this.node(e, t, n, r, Ze + i) : o === i - 3 ? this.node(e, t, n, r, Qe + 2 * Math.min(i, 9) + (a & 1)) : this.split(L / 2), a = a * 2 + s;
+			s = o === i - 2 ? this.node(e, t, n, r, Xe + i) : o === i - 3 ? this.node(e, t, n, r, Ze + 2 * Math.min(i, 9) + (a & 1)) : this.split(L / 2), a = a * 2 + s;
 		}
 		return a + 1;
 	}
 	node(e, t, n, r, i) {
-		return this.bit(e * qe + i, t * qe + i, n * qe + i, (r * qe + i) * 3);
+		return this.bit(e * R + i, t * R + i, n * R + i, (r * R + i) * 3);
 	}
 	bit(e, t, n, r) {
-		let { probability: i, weights: a } = this, o = rt[i[e] >> 4], s = rt[i[t] >> 4], c = rt[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / L), u = nt[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? L - u : -u;
+		let { probability: i, weights: a } = this, o = nt[i[e] >> 4], s = nt[i[t] >> 4], c = nt[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / L), u = tt[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? L - u : -u;
 		return a[r] += o * f >> 14, a[r + 1] += s * f >> 14, a[r + 2] += c * f >> 14, this.learn(e, d), this.learn(t, d), this.learn(n, d), d;
 	}
 	learn(e, t) {
 		let [n, r] = [this.probability[e], this.seen[e]];
-		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * it[r] / L), r < Ke && (this.seen[e] = r + 1);
+		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * rt[r] / L), r < Ke && (this.seen[e] = r + 1);
 	}
 	split(e) {
 		let t = this.low + Math.floor((this.high - this.low) * e / L), n = +(this.code <= t);
@@ -258,26 +258,26 @@ var at = class {
 		return this.bytes[this.at++] ?? 0;
 	}
 };
-function z(e, t, n, r = 1) {
+function B(e, t, n, r = 1) {
 	if (e.length < t) throw ue(n);
 	if (e[0] !== r) throw M(n, `coded numbers of version ${e[0]}`);
 	return new DataView(e.buffer, e.byteOffset, e.byteLength);
 }
-function ot(e, t, n, r) {
+function at(e, t, n, r) {
 	if (t > n || t > 16 * e.length + 1024) throw M(r, `${t} numbers announced`);
 }
 // eigenfield-three/src/table-decoder.ts
-var st = 12, ct = 1, lt = 3, ut = 312, dt = lt * ut, ft = 938, pt = 24, mt = 16, ht = 1722, gt = 1726, _t = 4, vt = 5;
+var ot = 12, st = 1, ct = 3, lt = 312, ut = ct * lt, dt = 938, ft = 24, pt = 16, mt = 1722, ht = 1726, gt = 4, _t = 5;
+function vt(e) {
+	return new it(e, ht, 21);
+}
 function yt(e) {
-	return new at(e, gt, 21);
+	return e.flag(ut, ut, ut, ct) ? 2 : e.flag(937, 937, 937, ct) ? st : 0;
 }
 function bt(e) {
-	return e.flag(dt, dt, dt, lt) ? 2 : e.flag(937, 937, 937, lt) ? ct : 0;
+	return Math.min(z(e), 11);
 }
-function xt(e) {
-	return Math.min(R(e), 11);
-}
-function St(e, t, n, r) {
+function xt(e, t, n, r) {
 	let i = new Float64Array(n.length), a = n.length / t, o = (e, n, r) => n < 0 || r < 0 || r >= t ? 0 : e[n * t + r], s = 0;
 	for (let c = 0; c < a; c++) for (let a = 0; a < t; a++) {
 		let [l, u] = [o(i, c, a - 1), o(i, c - 1, a)], [d, f] = [o(i, c - 1, a - 1), o(i, c - 1, a + 1)], [p, m, h] = [
@@ -285,32 +285,32 @@ function St(e, t, n, r) {
 			0,
 			s
 		];
-		r === ct ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
-		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * ut, y = e.integer(v + xt(m) * st + xt(g), v + 144 + xt(m + h), v + 144 + 24 + _ * st + xt(g + Math.abs(l)), r);
+		r === st ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
+		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * lt, y = e.integer(v + bt(m) * ot + bt(g), v + 144 + bt(m + h), v + 144 + 24 + _ * ot + bt(g + Math.abs(l)), r);
 		i[c * t + a] = p + y, s = Math.abs(y);
 	}
 	return i;
 }
-function Ct(e, t, n, r) {
+function St(e, t, n, r) {
 	let i = new Float64Array(t * n), a = new Float64Array(n);
 	for (let o = 0; o < t; o++) {
 		let t = 0;
 		for (let s = 0; s < n; s++) {
-			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(R(a[s]), 23), d = Math.min(R(t), 23), f = e.integer(ft + l * pt + u, ft + (mt + l) * pt + d, 1706 + l, vt + l);
+			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(z(a[s]), 23), d = Math.min(z(t), 23), f = e.integer(dt + l * ft + u, dt + (pt + l) * ft + d, 1706 + l, _t + l);
 			i[o * n + s] = c + f, t = Math.abs(f), a[s] = Math.floor((a[s] + t + 1) / 2);
 		}
 	}
 	return i;
 }
-function wt(e, t, n, r) {
+function Ct(e, t, n, r) {
 	let i = new Float64Array(t).fill(-1), a = new Uint8Array(n), [o, s, c] = [
 		0,
 		1,
 		0
 	];
 	for (let l = 0; l < t; l++) {
-		if (s = +!!e.flag(ht + s, ht + s, 1724, _t), !s) continue;
-		let t = o + e.integer(1725, 1725, 1725, _t);
+		if (s = +!!e.flag(mt + s, mt + s, 1724, gt), !s) continue;
+		let t = o + e.integer(1725, 1725, 1725, gt);
 		if (!(t >= 0 && t < n) || a[t]) throw M(r, "a grid with a camera out of place");
 		a[t] = 1, i[l] = t, o = t + 1, c += 1;
 	}
@@ -318,20 +318,20 @@ function wt(e, t, n, r) {
 	return i;
 }
 // eigenfield-three/src/camera-decoder.ts
-var Tt = 130, B = 11, Et = 1, Dt = 2, Ot = 2, kt = 44 * ke + 1024;
+var wt = 130, Tt = 11, Et = 1, Dt = 2, Ot = 2, kt = 44 * ke + 1024;
 async function At(e, t) {
 	if (e[0] !== Ot) throw M(t, `version ${e[0]}`);
 	let n = await be(Uint8Array.from(e.subarray(1)), "deflate-raw", kt, t);
 	return jt(Uint8Array.from([1, ...n]), t);
 }
 function jt(e, t) {
-	let n = z(e, Tt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Et) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
+	let n = B(e, wt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Et) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
 	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw M(t, "cameras that cannot be");
 	if (i > 1e5 || a && o * s < i) throw M(t, `${i} cameras`);
-	ot(e, Math.max(B * i, o * s), B * ke, t);
-	let l = Tt + (a ? 132 : 0);
-	z(e, l, t);
-	let u = (e, t) => a ? n.getFloat32(Tt + 4 * (e * B + t), !0) : 0, d = yt(e.subarray(l)), f = a ? wt(d, o * s, i, t) : null, p = Ct(d, i, B, (r & Dt) !== 0);
+	at(e, Math.max(Tt * i, o * s), Tt * ke, t);
+	let l = wt + (a ? 132 : 0);
+	B(e, l, t);
+	let u = (e, t) => a ? n.getFloat32(wt + 4 * (e * Tt + t), !0) : 0, d = vt(e.subarray(l)), f = a ? Ct(d, o * s, i, t) : null, p = St(d, i, Tt, (r & Dt) !== 0);
 	d.checkEnd(t);
 	let m = {
 		intrinsics: new Float32Array(5 * i),
@@ -342,14 +342,14 @@ function jt(e, t) {
 		0,
 		0,
 		...c.subarray(12)
-	], g = Nt(c[3], c[4], c[5], c[6]), _ = new Float64Array(B), v = 0;
+	], g = Nt(c[3], c[4], c[5], c[6]), _ = new Float64Array(Tt), v = 0;
 	for (let e = 0; e < (f ? f.length : i); e++) {
 		let t = f ? f[e] : e;
 		if (t < 0) continue;
 		let [n, r] = f ? [Math.floor(e / s), e % s] : [0, 0];
-		for (let e = 0; e < B; e++) {
+		for (let e = 0; e < Tt; e++) {
 			let t = c[e < 5 ? 0 : e < 8 ? 1 : 2], i = u(0, e) + u(1, e) * n + u(2, e) * r;
-			_[e] = p[v * B + e] * t + h[e] + i;
+			_[e] = p[v * Tt + e] * t + h[e] + i;
 		}
 		Mt(_, g, m, t), v += 1;
 	}
@@ -570,7 +570,7 @@ function nn(e, t, n, r, i) {
 		t[3 * a + 1],
 		t[3 * o],
 		t[3 * o + 1]
-	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? Ht : -.8, _ = 1 << i >> 1, v = $t((l + d) * .5 + g * m) + _ >> i, y = $t((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(R(Math.floor((p * p + m * m) / b)), 23), S = Math.min(R(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, Jt), T = Math.min(R(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(Wt + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, Yt);
+	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? Ht : -.8, _ = 1 << i >> 1, v = $t((l + d) * .5 + g * m) + _ >> i, y = $t((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(z(Math.floor((p * p + m * m) / b)), 23), S = Math.min(z(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, Jt), T = Math.min(z(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(Wt + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, Yt);
 	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + O << i, i === 0) return;
 	let k = en(t, a, i) + 4 * en(t, o, i);
 	if (e.flag(Gt + k, 913 + en(t, s, i), 917 + c, Qt)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
@@ -578,10 +578,10 @@ function nn(e, t, n, r, i) {
 function rn(e, t, n, { a: r, b: i, o: a }) {
 	let o = 0;
 	for (let e = 0; e < 3; e++) o += (t[3 * i + e] - t[3 * r + e]) ** 2;
-	let s = Math.min(R(o), 43), c = 0;
+	let s = Math.min(z(o), 43), c = 0;
 	for (let o = 0; o < 3; o++) {
 		let l = $t(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, Ut + o * 24 + c, 116 + o * Ut + s, Xt);
-		t[3 * n + o] = l + u, c = Math.min(R(Math.abs(u)), 23);
+		t[3 * n + o] = l + u, c = Math.min(z(Math.abs(u)), 23);
 	}
 }
 function an(e, t, n, r, i) {
@@ -628,7 +628,7 @@ function Sn(e, t, n, r, i) {
 		if (l >= t) throw M(i, "more places than announced");
 		return l++;
 	}, p = () => {
-		let t = e.raw(R(l - 1));
+		let t = e.raw(z(l - 1));
 		if (t >= l) throw M(i, "a place that is not there yet");
 		return t;
 	}, m = () => {
@@ -781,7 +781,7 @@ function Ln(e, t, n, r, i, a, o) {
 		}
 		if (c < 0) {
 			if (e.flag(jn + s, jn + s, jn + Tn, Pn)) return -1;
-			if (c = e.raw(R(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
+			if (c = e.raw(z(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
 		}
 		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? Dn : On);
 		return c;
@@ -791,7 +791,7 @@ function Ln(e, t, n, r, i, a, o) {
 		l.kinds[t] = 1;
 		let n = v;
 		if (v = t, n >= 0 && e.flag(H + 2, H + 2, H + 2, Fn)) {
-			let n = e.raw(R(t - 1));
+			let n = e.raw(z(t - 1));
 			if (n >= t || l.kinds[n] !== 1) throw M(o, "a map that is not there");
 			return l.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
 		}
@@ -868,7 +868,7 @@ function Zn(e, t, n, r) {
 			}
 		}
 		let y = 13, b = t > 0 ? u(t - 1) : 0, x = b;
-		g > 0 && (y = Math.min(R(v - _), 12), b = h / g, x = Math.min(Math.max($n(s), p), m));
+		g > 0 && (y = Math.min(z(v - _), 12), b = h / g, x = Math.min(Math.max($n(s), p), m));
 		let S = b, [C, w, T] = [
 			o[3 * t],
 			o[3 * t + 1],
@@ -887,7 +887,7 @@ function Zn(e, t, n, r) {
 			}
 		}
 		let E = Yn(x, b), [ee, D] = [Xn(S - E), Xn(b - E)], O = e.integer(Un + ee * Bn + D, Un + 169 + y * Hn + f, Un + 169 + 280 + ee * Vn + y, Kn), k = E + O;
-		i[3 * t + 2] = k, f = Math.min(R(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
+		i[3 * t + 2] = k, f = Math.min(z(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
 	}
 }
 function Qn(e, t, n) {
@@ -933,13 +933,13 @@ function er(e, t, n, r, i) {
 			if (!Number.isFinite(u) || !Number.isFinite(d)) continue;
 			p += u, m += d, h += 1;
 			let v = Math.abs(l[2 * r] - l[2 * s]) + Math.abs(l[2 * r + 1] - l[2 * s + 1]);
-			_ = Math.max(_, R(v));
+			_ = Math.max(_, z(v));
 		}
 		g < 0 && (g = d), d = t;
 		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = Wn + 144;
 		for (let n = 0; n < 2; n++) {
 			let r = e.integer(Wn + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], qn + n);
-			l[2 * t + n] = Yn(y[n], 0) + r, u[n] = Math.min(R(Math.abs(r)), 23);
+			l[2 * t + n] = Yn(y[n], 0) + r, u[n] = Math.min(z(Math.abs(r)), 23);
 		}
 	}
 	return l;
@@ -966,7 +966,7 @@ function cr(e, t) {
 	return lr(e, t, rr);
 }
 function lr(e, t, n) {
-	let r = z(e, nr, t, n), [i, a, o] = [
+	let r = B(e, nr, t, n), [i, a, o] = [
 		r.getUint8(1),
 		r.getUint8(2),
 		r.getUint8(3)
@@ -976,8 +976,8 @@ function lr(e, t, n) {
 		12
 	].map((e) => r.getUint32(e, !0)), u = Float64Array.from({ length: 16 }, (e, t) => r.getFloat64(16 + 8 * t, !0));
 	if (s > Ne || l > Ne || c > Pe) throw M(t, `${l} vertices and ${c} faces`);
-	if (ot(e, Math.max(s, c, l), Pe, t), i > 1 || o > or * i || a < 1 || a > ar || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
-	let d = new at(e.subarray(nr), Gn, 16), f = Sn(d, s, c, {
+	if (at(e, Math.max(s, c, l), Pe, t), i > 1 || o > or * i || a < 1 || a > ar || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
+	let d = new it(e.subarray(nr), Gn, 16), f = Sn(d, s, c, {
 		flat: i === 1,
 		fine: o
 	}, t);
@@ -1040,14 +1040,14 @@ var pr = 11, mr = 2 ** 20, hr = 8, [gr, _r] = [7, 8], vr = 12, [yr, br, xr, Sr] 
 	decoded = 0;
 	constructor(e, t, n) {
 		this.mesh = t, this.where = n;
-		let r = z(e, pr, n), i = t.places.length / 3, a = r.getUint32(5, !0);
+		let r = B(e, pr, n), i = t.places.length / 3, a = r.getUint32(5, !0);
 		this.frames = r.getUint16(9, !0);
 		let o = pr + this.frames;
 		if (r.getUint32(1, !0) !== i || a > i) throw M(n, `${a} vertices that move, of another mesh`);
 		if (this.frames < 1 || this.frames > 1024 || this.frames * a > Le) throw M(n, `${a} vertices that move in ${this.frames} frames`);
-		if (z(e, o, n), this.flags = e.slice(pr, o), this.flags.some((e) => e > gr + _r)) throw M(n, "frames that cannot be");
-		if (ot(e, this.flags.reduce((e, t) => e + (t & 1) + (t >> 1 & 1) + (t >> 2 & 1), 0) * a, 3 * Le, n), this.moving = new Int32Array(a), this.steps = new Int32Array(a && 3 * a * (2 + this.frames)), this.off = new Int32Array(3 * a), this.around = Nr(t.places, t.indices), !a) return;
-		this.decoder = new at(e.subarray(o), Er, Or);
+		if (B(e, o, n), this.flags = e.slice(pr, o), this.flags.some((e) => e > gr + _r)) throw M(n, "frames that cannot be");
+		if (at(e, this.flags.reduce((e, t) => e + (t & 1) + (t >> 1 & 1) + (t >> 2 & 1), 0) * a, 3 * Le, n), this.moving = new Int32Array(a), this.steps = new Int32Array(a && 3 * a * (2 + this.frames)), this.off = new Int32Array(3 * a), this.around = Nr(t.places, t.indices), !a) return;
+		this.decoder = new it(e.subarray(o), Er, Or);
 		let s = Mr(this.decoder, i, this.around);
 		if (s.reduce((e, t) => e + t, 0) !== a) throw M(n, "other vertices that move");
 		this.around = this.start(s);
@@ -1121,7 +1121,7 @@ function Ar(e, t, n) {
 	];
 }
 function jr(e) {
-	return Math.min(R(e), 11);
+	return Math.min(z(e), 11);
 }
 function Mr(e, t, { near: n, starts: r }) {
 	let i = new Uint8Array(t), a = 0;
@@ -1363,9 +1363,9 @@ async function Xr(e, t, n) {
 // eigenfield-three/src/triangle-decoder.ts
 var Zr = 5;
 function Qr(e, t) {
-	let n = z(e, Zr, t).getUint32(1, !0);
-	ot(e, 3 * n, 6 * ke, t);
-	let r = yt(e.subarray(Zr)), i = Ct(r, n, 3, !0);
+	let n = B(e, Zr, t).getUint32(1, !0);
+	at(e, 3 * n, 6 * ke, t);
+	let r = vt(e.subarray(Zr)), i = St(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
 	if (!a.every((e) => e >= 0 && e < 1e5)) throw M(t, "triangles of cameras that there cannot be");
@@ -1374,12 +1374,12 @@ function Qr(e, t) {
 // eigenfield-three/src/weight-decoder.ts
 var $r = 14, ei = 2 ** 20;
 function ti(e, t) {
-	let n = z(e, $r, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
+	let n = B(e, $r, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
 	if (n.getUint8(1) > 1 || i === 0) throw M(t, "weights of no camera, or of an unknown kind");
-	ot(e, o * s * Math.max(a, 1), We, t), z(e, $r + 4 * a, t);
+	at(e, o * s * Math.max(a, 1), We, t), B(e, $r + 4 * a, t);
 	let c = o * s;
 	if (c < i) throw M(t, "a grid with too few cells");
-	let l = yt(e.subarray($r + 4 * a)), u = r ? wt(l, c, i, t) : null, d = u !== null && i === c, f = [
+	let l = vt(e.subarray($r + 4 * a)), u = r ? Ct(l, c, i, t) : null, d = u !== null && i === c, f = [
 		0,
 		1,
 		2
@@ -1387,7 +1387,7 @@ function ti(e, t) {
 	for (let e = 0; e < a; e++) {
 		let r = n.getFloat32($r + 4 * e, !0);
 		if (!(r > 0 && r < Infinity)) throw M(t, "a step that is not positive");
-		let i = bt(l), h = St(l, s, f[i], i);
+		let i = yt(l), h = xt(l, s, f[i], i);
 		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw M(t, `numbers of component ${e} that cannot be`);
 		f[i] = h;
 		let g = i === 2 ? ni(h, o, s) : h;
@@ -1683,7 +1683,7 @@ function wi(e, t, n, r, i) {
 	let a = e.key("planes").items(16);
 	if (!a.length) throw e.key("planes").wrong("no plane");
 	let o = a.map((e, a) => {
-		let o = e.key("channels").integer(1, 64), s = Pi(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => Li(e, o, t, r, i);
+		let o = e.key("channels").integer(1, 64), s = Fi(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => Ri(e, o, t, r, i);
 		return {
 			channels: o,
 			...s,
@@ -1737,7 +1737,7 @@ function Ti(e, t) {
 }
 function Ei(e, t, n, r, i, a = !1) {
 	let o = Di(e), s = t === 3 && o.bits === K ? 1 : t;
-	r && Ri(e, s * n, r);
+	r && zi(e, s * n, r);
 	let [c, l] = [e.key("scale"), e.key("zero")], u = {
 		view: i(e.key("bufferView")),
 		codec: o,
@@ -1748,11 +1748,11 @@ function Ei(e, t, n, r, i, a = !1) {
 	};
 	return a && o.bits === K && !c.exists && !l.exists ? {
 		...u,
-		...ki(t)
+		...Ai(t)
 	} : {
 		...u,
-		scale: Ni(c, t, n),
-		zero: Ni(l, t, n)
+		scale: Pi(c, t, n),
+		zero: Pi(l, t, n)
 	};
 }
 function Di(e) {
@@ -1790,28 +1790,33 @@ function Oi(e, t, n) {
 		...o
 	};
 }
-function ki(e) {
+function ki(e, t, n) {
+	let r = Oi(e, t, n);
+	if (r.textures !== 1) throw e.key("at").wrong(`${t} places are needed`);
+	return r;
+}
+function Ai(e) {
 	return {
 		scale: Array(e).fill(1 / 255),
 		zero: Array(e).fill(0)
 	};
 }
-function Ai(e) {
+function ji(e) {
 	return e.some(({ codec: e }) => e.bits > K);
 }
-function ji({ codec: e }) {
+function Mi({ codec: e }) {
 	return (2 ** e.bits - 1) / 255;
 }
-function Mi(e, t) {
-	return t ? 1 : 1 / (255 * ji(e));
+function Ni(e, t) {
+	return t ? 1 : 1 / (255 * Mi(e));
 }
-function Ni(e, t, n) {
+function Pi(e, t, n) {
 	let r = e.items(t * n).map((e) => e.number());
 	if (r.length === t * n) return r;
 	if (r.length !== t) throw e.wrong(`${t} or ${t * n} numbers are needed`);
 	return Array(n).fill(r).flat();
 }
-function Pi(e, t, n, r) {
+function Fi(e, t, n, r) {
 	let i = e.key("mean");
 	if (!i.exists) {
 		if (n === null || t !== 1 && t !== 3) throw i.wrong("no mean");
@@ -1823,48 +1828,49 @@ function Pi(e, t, n, r) {
 				pieces: 1,
 				where: "/images/0",
 				part: null,
-				...ki(t)
+				...Ai(t)
 			},
 			meanSize: null,
 			precision: null
 		};
 	}
 	let a = Ci(i.key("size"));
-	if (i.key("film").exists) {
-		let e = Oi(i, t, a);
-		if (e.textures !== 1) throw i.key("at").wrong(`${t} places are needed`);
-		return {
-			mean: e,
-			meanSize: a,
-			precision: null
-		};
-	}
+	if (i.key("film").exists) return {
+		mean: ki(i, t, a),
+		meanSize: a,
+		precision: null
+	};
 	let o = Ei(i, t, 1, a, r, !0);
 	return {
 		mean: o,
 		meanSize: a,
-		precision: Ii(i.key("precision"), o, r)
+		precision: Li(i.key("precision"), o, r)
 	};
 }
-function Fi(e, t) {
-	let n = Ci(e.key("size")), r = Di(e);
-	return Ri(e, 1, n), {
-		channels: 1,
-		mean: {
+function Ii(e, t) {
+	let n = Ci(e.key("size")), r = e.key("film").exists ? ki(e, 1, n) : (() => {
+		let r = Di(e);
+		return zi(e, 1, n), {
 			view: t(e.key("bufferView")),
 			codec: r,
 			textures: 1,
 			pieces: 1,
 			where: e.where,
-			part: null,
-			scale: [1 / (2 ** r.bits - 1)],
+			part: null
+		};
+	})();
+	return {
+		channels: 1,
+		mean: {
+			...r,
+			scale: [1 / (2 ** r.codec.bits - 1)],
 			zero: [0]
 		},
 		meanSize: n,
 		precision: null
 	};
 }
-function Ii(e, t, n) {
+function Li(e, t, n) {
 	if (!e.exists) return null;
 	if (t.codec.bits === K) throw e.wrong(`of a mean of ${K} bits`);
 	let r = Ci(e.key("size"), Te), i = oi("picture", e.key("codec"), "png");
@@ -1878,7 +1884,7 @@ function Ii(e, t, n) {
 		where: e.where
 	};
 }
-function Li(e, t, n, r, i) {
+function Ri(e, t, n, r, i) {
 	let a = Ci(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Ci(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, we) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
@@ -1915,23 +1921,23 @@ function Li(e, t, n, r, i) {
 		where: d
 	};
 }
-function Ri(e, t, [n, r]) {
+function zi(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
 	if (n * i > Ee) throw e.wrong(`more than ${Ee} texels`);
 }
 // eigenfield-three/src/sheets.ts
-function zi(e, t) {
+function Bi(e, t) {
 	if (!e.exists) return null;
 	let n = e.key("faces").items(32).map((e) => e.integer(1, Pe));
 	if (!n.length) throw e.key("faces").wrong("no sheet");
 	return {
 		faces: n,
-		opacity: Fi(e.key("opacity"), t),
+		opacity: Ii(e.key("opacity"), t),
 		where: e.where
 	};
 }
-function Bi({ faces: e, where: t }, { index: n, attributes: r }) {
+function Vi({ faces: e, where: t }, { index: n, attributes: r }) {
 	let i = e.reduce((e, t) => e + t, 0), a = (n?.count ?? 0) / 3;
 	if (i !== a) throw M(`${t}/faces`, `the sheets have ${i} triangles, the mesh has ${a}`);
 	let o = new Uint8Array(r.position?.count ?? 0), s = 0;
@@ -1944,37 +1950,41 @@ function Bi({ faces: e, where: t }, { index: n, attributes: r }) {
 	});
 }
 // eigenfield-three/src/timeline.ts
-var Vi = 64, q = 16, Hi = /^[0-9a-f]{64}$/;
-function Ui(e, t) {
+var Hi = 64, q = 16, Ui = /^[0-9a-f]{64}$/;
+function Wi(e, t, n) {
+	let r = [...qi(t), ...n ? [n] : []];
 	if (!e.exists) {
-		let e = Ki(t)[0];
+		let e = r.find(({ part: e }) => e);
 		if (e) throw M(e.where, "a texture in a film, and no timeline");
 		return null;
 	}
-	let [n = 1, r = 1] = e.key("rate").numbers(2, 1, Ue), i = n / r;
-	if (!(Number.isInteger(n) && Number.isInteger(r)) || i > 1e3 || i < 1 / 1e3) throw e.key("rate").wrong("no rate");
-	let a = e.key("first"), o = e.key("films").items(4).map(Wi), s = e.key("frames").integer(1, Re);
-	return Ji(t, o), {
-		rate: i,
-		first: a.exists ? a.number() : 0,
-		frames: s,
-		films: o,
-		groups: Gi(e, s)
+	let [i = 1, a = 1] = e.key("rate").numbers(2, 1, Ue), o = i / a;
+	if (!(Number.isInteger(i) && Number.isInteger(a)) || o > 1e3 || o < 1 / 1e3) throw e.key("rate").wrong("no rate");
+	let s = e.key("first"), c = e.key("films").items(4).map(Gi), l = e.key("frames").integer(1, Re);
+	Ji(r, c);
+	for (let e of c) e.opacity = e === c[n?.part?.film ?? -1];
+	return {
+		rate: o,
+		first: s.exists ? s.number() : 0,
+		frames: l,
+		films: c,
+		groups: Ki(e, l)
 	};
 }
-function Wi(e) {
-	let t = oi("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, Vi, Fe);
-	if (n % Vi || r % Vi || n * r > Ie) throw e.key("size").wrong(`a film of ${n} x ${r}`);
+function Gi(e) {
+	let t = oi("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, Hi, Fe);
+	if (n % Hi || r % Hi || n * r > Ie) throw e.key("size").wrong(`a film of ${n} x ${r}`);
 	return {
 		codec: t,
 		size: [n, r],
+		opacity: !1,
 		where: e.where
 	};
 }
-function Gi(e, t) {
+function Ki(e, t) {
 	let [n, r] = [0, 0], i = e.key("groups").items(ze).map((e) => {
 		let t = e.key("frames").integer(1, Ve), i = e.key("length").integer(1, Be), a = e.key("offset").integer(r, 2 ** 53 - 1), o = e.key("sha256").text(64);
-		if (!Hi.test(o)) throw e.key("sha256").wrong("no SHA-256");
+		if (!Ui.test(o)) throw e.key("sha256").wrong("no SHA-256");
 		if (a % 4) throw e.key("offset").wrong("no multiple of 4");
 		return [n, r] = [n + t, a + i], {
 			first: n - t,
@@ -1988,15 +1998,12 @@ function Gi(e, t) {
 	if (n !== t) throw e.key("groups").wrong(`${n} frames in groups, and ${t} in all`);
 	return i;
 }
-function Ki(e) {
-	return qi(e).flatMap(({ part: e }) => e ? [e] : []);
-}
 function qi(e) {
 	return e.flatMap(({ mean: e, bases: t }) => [e, ...t.flatMap((e) => e.pictures)]);
 }
 function Ji(e, t) {
 	let n = t.map(({ size: e }) => new Uint8Array(e[0] * e[1] / q ** 2));
-	for (let { part: r, where: i } of qi(e)) {
+	for (let { part: r, where: i } of e) {
 		let e = r && t[r.film];
 		if (!r || !e) throw M(i, "it lies in no film");
 		let [a, o] = [e.size[0] / q, n[r.film]], [s, c] = r.size.map((e) => Math.ceil(e / q));
@@ -2051,7 +2058,7 @@ function aa(e) {
 	la(t);
 	let s = fa(t, o), c = n.key("cameras"), { count: l, names: u } = pa(c, o), d = ga(c, l), f = d.filter((e) => !e).length, p = wi(n, f, s, a, o), m = Ti(n, p), h = c.key("colour"), g = c.key("codedColour");
 	if ((h.exists || g.exists) && m.length < 3) throw h.wrong("needs three channels");
-	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), [x, S] = [n.key("mesh"), n.key("timeline")];
+	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), [x, S] = [n.key("mesh"), n.key("timeline")], C = Bi(n.key("sheets"), o);
 	return {
 		version: r,
 		generator: b.exists ? b.text(I) : "",
@@ -2069,10 +2076,10 @@ function aa(e) {
 		scores: ba(n.key("scores")),
 		views: i,
 		mesh: x.exists || S.exists ? _i("mesh", x, o) : null,
-		sheets: zi(n.key("sheets"), o),
+		sheets: C,
 		shown: x.exists && !t.key("meshes").exists ? null : oa(t, a),
 		preview: s,
-		timeline: Ui(S, p)
+		timeline: Wi(S, p, C && C.opacity.mean)
 	};
 }
 function oa(e, t) {
@@ -2720,10 +2727,16 @@ function go(e, t) {
 	};
 }
 function _o(e, t) {
-	let n = e.means.map(({ size: e, channels: n, tenBits: r }) => oo({
-		components: n,
-		halves: r
-	}) * uo(n) * lo(e, t)), r = mo(e).map((n) => {
+	let n = e.means.map(({ size: e, channels: n, tenBits: r, opacity: i }) => {
+		let a = i ? $a : 0;
+		return (oo({
+			components: n,
+			halves: r
+		}) * uo(n) + a) * lo(e, t);
+	}), r = mo({
+		...e,
+		means: e.means.filter(({ opacity: e }) => !e)
+	}).map((n) => {
 		let r = n.join() === e.atlas.join() ? Qa : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
 		return $a * lo(n, t) * (r + +!!i);
 	});
@@ -2921,23 +2934,22 @@ var Uo = {
 	places: 0,
 	maps: null
 }, Wo = class {
-	opacity;
-	down;
 	snaps;
 	surface;
 	plane;
 	grids;
 	composed = null;
+	opacity;
 	opacityDrawn = 0;
 	camera = new n();
 	constructor(e, t, n, r, i, a, o) {
-		this.opacity = n, this.down = r, this.snaps = i, this.surface = a, this.plane = o;
+		this.snaps = i, this.surface = a, this.plane = o;
 		let [s, ...c] = mo({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), l = (e, n) => {
-			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => Ko(t, i ? X(e, r) : null)), o = new k();
+			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => qo(t, i ? X(e, r) : null)), o = new k();
 			return a.forEach(({ quad: e }, t) => o.add(Object.assign(e, { renderOrder: t }))), {
 				target: Lo(X(e, r), n),
 				scene: o,
@@ -2955,38 +2967,28 @@ var Uo = {
 			], { coarse: { value: e.texture } });
 			u.scene.add(Object.assign(t, { renderOrder: u.scene.children.length }));
 		}
-		this.grids.push(u);
+		this.grids.push(u), this.opacity = n && Go(n, r);
 	}
 	get texture() {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && Yo(this.composed, n) || (this.composed = n, Ho(e, t, () => {
+		this.composed && Xo(this.composed, n) || (this.composed = n, Ho(e, t, () => {
 			n.opacity > this.opacityDrawn && this.drawOpacity(e, n.opacity);
 			for (let t of this.grids) {
 				(n.eye !== null && t.steps.some(({ part: e }) => e.basis) || this.snaps) && this.findPlaces(e, t, n.places);
-				for (let e of t.steps) qo(e, t.places?.target.texture ?? null, n);
+				for (let e of t.steps) Jo(e, t.places?.target.texture ?? null, n);
 				this.draw(e, t.scene, t.target, this.opacityDrawn > 0 && t === this.grids.at(-1));
 			}
 		}));
 	}
 	dispose() {
-		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), Go(n);
+		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), Ko(n);
+		this.opacity?.target.dispose(), this.opacity && [this.opacity.sum, this.opacity.finer].forEach(Ko);
 	}
 	drawOpacity(e, t) {
-		let n = this.grids.at(-1);
-		if (!this.opacity || !n) return;
-		let r = Lo(X(this.opacity.grid, this.down), !1), i = Ko(this.opacity, null);
-		for (let e of i) qo(e, null, Uo);
-		let [a, o] = [new k(), new k()];
-		a.add(...i.map(({ quad: e }) => e)), o.add(Io(Fo, [
-			0,
-			0,
-			1,
-			1
-		], { coarse: { value: r.texture } })), this.draw(e, a, r), this.draw(e, o, n.target);
-		for (let e of [a, o]) Go(e);
-		r.dispose(), this.opacityDrawn = t;
+		let [n, r] = [this.grids.at(-1), this.opacity];
+		r && n && (this.draw(e, r.sum, r.target), this.draw(e, r.finer, n.target), this.opacityDrawn = t);
 	}
 	findPlaces(e, t, n) {
 		if (t.places?.version === n) return;
@@ -3002,10 +3004,25 @@ var Uo = {
 		r && i.colorMask(!0, !0, !0, !1), e.clear(!0, !1, !1), r && i.colorMask(!0, !0, !0, !0), e.render(t, this.camera);
 	}
 };
-function Go(e) {
+function Go(e, t) {
+	let n = Lo(X(e.grid, t), !1), r = qo(e, null);
+	for (let e of r) Jo(e, null, Uo);
+	let [i, a] = [new k(), new k()];
+	return i.add(...r.map(({ quad: e }) => e)), a.add(Io(Fo, [
+		0,
+		0,
+		1,
+		1
+	], { coarse: { value: n.texture } })), {
+		target: n,
+		sum: i,
+		finer: a
+	};
+}
+function Ko(e) {
 	for (let { geometry: t, material: n } of e.children) t.dispose(), n.dispose();
 }
-function Ko(e, t) {
+function qo(e, t) {
 	let [n, r, i, a] = e.rectangle, o = t && new ie(1 / ((i - n) * t[0]), 1 / ((a - r) * t[1])), s = e.colours.length, [c, l] = [e.scale.length / (4 * s), Math.floor(64 / s)], u = [];
 	for (let t = 0; t < c; t += l) {
 		let n = Array.from({ length: 64 }, (t, n) => new A(...e.colours[n] ?? [
@@ -3037,26 +3054,26 @@ function Ko(e, t) {
 	}
 	return u;
 }
-function qo({ part: e, first: t, groups: n, quad: r }, i, a) {
+function Jo({ part: e, first: t, groups: n, quad: r }, i, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Jo(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Yo(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
 	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", i), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function Jo(e, t, n, r) {
+function Yo(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function Yo(e, t) {
+function Xo(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
 // eigenfield-three/src/maps.ts
-function Xo(e, t, n, i, a) {
+function Zo(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
@@ -3080,7 +3097,7 @@ function Xo(e, t, n, i, a) {
 	return p.format = D, p.type = g, p.minFilter = p.magFilter = y, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
 }
 // eigenfield-three/src/eigen-weights.ts
-var Zo = class {
+var Qo = class {
 	info;
 	counts;
 	omega;
@@ -3117,7 +3134,7 @@ var Zo = class {
 	maps(e, t) {
 		if (this.made?.mixing === e && this.made.usable === t) return this.made.texture;
 		this.dispose();
-		let n = Xo(this.views, e, this.omega, this.counts, t);
+		let n = Zo(this.views, e, this.omega, this.counts, t);
 		return this.made = {
 			texture: n,
 			mixing: e,
@@ -3127,20 +3144,20 @@ var Zo = class {
 	dispose() {
 		this.made?.texture.dispose();
 	}
-}, Qo = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", $o = {
+}, $o = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", es = {
 	bilinear: 0,
 	bicubic: 1
-}, es = {
+}, ts = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, ts = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", ns = ts.replace("void main", "invariant gl_Position;\nvoid main"), rs = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", is = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", as = `${rs}
-${Do}${Qo}
+}, ns = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", rs = ns.replace("void main", "invariant gl_Position;\nvoid main"), is = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", as = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", os = `${is}
+${Do}${$o}
 uniform float shownGain;       // of the eigen texture around mid grey
 in vec2 surfaceUv;
 vec3 eigenColour(vec3 value) { return clamp(0.5 + shownGain * value, 0.0, 1.0); }
-`, os = `${as}${is}
+`, ss = `${os}${as}
 in vec3 surfacePlace;
 out vec4 fragment;
 void main() {
@@ -3150,7 +3167,7 @@ void main() {
   if (shown == 3) colour = errorColour(colour, surfacePlace);
   fragment = vec4(colour, 1.0);
 }
-`, ss = `${as}
+`, cs = `${os}
 layout(location = 0) out vec4 fragment;
 layout(location = 1) out vec4 solid;
 vec3 threeBytes(float depth) {
@@ -3164,98 +3181,98 @@ void main() {
   float depth = (gl_FragCoord.z - gl_DepthRange.near) / gl_DepthRange.diff;
   solid = colour.a < 0.5 ? vec4(0.0) : vec4(threeBytes(depth), 1.0);
 }
-`, cs = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", ls = {
+`, ls = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", us = {
 	blending: a,
 	blendSrc: E,
 	blendDst: ee
-}, us = {
+}, ds = {
 	depthWrite: !1,
 	stencilWrite: !0,
 	stencilFunc: d,
 	stencilZPass: _
 };
-function ds(e, t) {
+function fs(e, t) {
 	let n = {
 		composed: { value: null },
 		finest: { value: 1 },
 		exposureScale: { value: new A(1, 1, 1) },
 		exposureBias: { value: new A() },
-		shown: { value: es.picture },
+		shown: { value: ts.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new x() }
 	}, r = new O({
 		glslVersion: h,
-		vertexShader: t ? ns : ts,
-		fragmentShader: t ? ss : os,
+		vertexShader: t ? rs : ns,
+		fragmentShader: t ? cs : ss,
 		uniforms: n,
-		defines: { BICUBIC: $o.bicubic },
+		defines: { BICUBIC: es.bicubic },
 		side: e ? u : m,
 		...t ? {
-			...ls,
-			...us
+			...us,
+			...ds
 		} : {}
 	});
 	return r.name = "eigen textures", r;
 }
-function fs(e) {
+function ps(e) {
 	let { side: t } = e;
 	return new O({
 		name: "depth of sheets",
 		glslVersion: h,
-		vertexShader: ns,
-		fragmentShader: cs,
+		vertexShader: rs,
+		fragmentShader: ls,
 		colorWrite: !1,
 		side: t,
 		stencilWrite: !0,
 		stencilZPass: se
 	});
 }
-function ps(e, t, n) {
-	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !ms(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
+function ms(e, t, n) {
+	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !hs(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
 	u && (d.elements[13] = 1), e.toPhotograph.value.multiplyMatrices(d, l.multiply(c)), e.photograph.value = n;
 }
-function ms(e) {
+function hs(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
 // eigenfield-three/src/film-codes.ts
-var hs = /* @__PURE__ */ new Set([
+var gs = /* @__PURE__ */ new Set([
 	"I420P10",
 	"I422P10",
 	"I444P10"
-]), gs = /* @__PURE__ */ new Set([
+]), _s = /* @__PURE__ */ new Set([
 	"I420",
 	"I420A",
 	"I422",
 	"I444",
 	"NV12"
-]), _s = /* @__PURE__ */ new Set([
+]), vs = /* @__PURE__ */ new Set([
 	"RGBA",
 	"RGBX",
 	"BGRA",
 	"BGRX"
-]), vs = 1, ys = Uint16Array.from({ length: 256 }, (e, t) => Math.round(t * 1023 / 255)), bs = Uint16Array.from({ length: 256 }, (e, t) => ys[16 + Math.round(t * 219 / 255)]);
-async function xs(e, t) {
-	let n = e.format ?? "", { width: r, height: i } = e.visibleRect ?? {
+]), ys = 1, bs = Uint16Array.from({ length: 256 }, (e, t) => Math.round(t * 1023 / 255)), xs = Uint16Array.from({ length: 256 }, (e, t) => bs[16 + Math.round(t * 219 / 255)]), Ss = xs.map((e, t) => t === 0 ? 0 : t === 255 ? 1023 : e);
+async function Cs(e, t, n = !1) {
+	let r = e.format ?? "", { width: i, height: a } = e.visibleRect ?? {
 		width: 0,
 		height: 0
 	};
-	if (!hs.has(n) && !gs.has(n) && !_s.has(n)) throw new j("unsupported", `This browser does not hand out its frames (${n || "no format"}).`, "");
-	let a = e.allocationSize(), o = t && t.length >= a ? t : new Uint8Array(a), [s] = await e.copyTo(o), { offset: c, stride: l } = s ?? {
+	if (!gs.has(r) && !_s.has(r) && !vs.has(r)) throw new j("unsupported", `This browser does not hand out its frames (${r || "no format"}).`, "");
+	let o = e.allocationSize(), s = t && t.length >= o ? t : new Uint8Array(o), [c] = await e.copyTo(s), { offset: l, stride: u } = c ?? {
 		offset: 0,
 		stride: 0
 	};
-	if (hs.has(n)) return {
-		data: o.subarray(c),
-		width: r,
-		height: i,
-		stride: l,
-		room: o
+	if (gs.has(r)) return {
+		data: s.subarray(l),
+		width: i,
+		height: a,
+		stride: u,
+		room: s
 	};
-	let u = _s.has(n), [d, f] = u ? [4, c + vs] : [1, c], p = u && e.colorSpace?.fullRange === !1 ? bs : ys;
-	return Ss(o.subarray(f), l, d, [r, i], p);
+	let d = vs.has(r), [f, p] = d ? [4, l + ys] : [1, l], m = d && e.colorSpace?.fullRange === !1 ? n ? Ss : xs : bs;
+	return ws(s.subarray(p), u, f, [i, a], m);
 }
-function Ss(e, t, n, [r, i], a = ys) {
+function ws(e, t, n, [r, i], a = bs) {
 	let o = new Uint16Array(r * i);
 	for (let s = 0; s < i; s++) for (let i = 0; i < r; i++) o[s * r + i] = a[e[s * t + n * i]];
 	return {
@@ -3265,7 +3282,7 @@ function Ss(e, t, n, [r, i], a = ys) {
 		stride: 2 * r
 	};
 }
-function Cs({ data: e, stride: t }, { size: [n, r], at: i }) {
+function Ts({ data: e, stride: t }, { size: [n, r], at: i }) {
 	return i.map(([i, a]) => ({
 		data: e.subarray(a * t + 2 * i),
 		width: n,
@@ -3274,21 +3291,21 @@ function Cs({ data: e, stride: t }, { size: [n, r], at: i }) {
 	}));
 }
 // eigenfield-three/src/pieces.ts
-function ws(e) {
+function Es(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
 // eigenfield-three/src/strength.ts
-var Ts = 128, Es = .98;
-async function Ds(e, t, n, r) {
+var Ds = 128, Os = .98;
+async function ks(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = ji(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Ts, Ts).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = Mi(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Ds, Ds).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	return u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, Ts, Ts);
-		let { data: u } = d.getImageData(0, 0, Ts, Ts);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, Ds, Ds);
+		let { data: u } = d.getImageData(0, 0, Ds, Ds);
 		(l ? [
 			0,
 			1,
@@ -3297,15 +3314,15 @@ async function Ds(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), ws(u), Os(f);
+	}), Es(u), As(f);
 }
-function Os(e) {
+function As(e) {
 	e.sort((e, t) => e - t);
-	let t = e[Math.floor(Es * e.length)] ?? 0;
+	let t = e[Math.floor(Os * e.length)] ?? 0;
 	return t > 0 ? .45 / t : 1;
 }
 // eigenfield-three/src/film-textures.ts
-var ks = class {
+var js = class {
 	scene;
 	films;
 	filling = null;
@@ -3331,7 +3348,7 @@ var ks = class {
 	}
 	put(e) {
 		e.together(() => {
-			this.scene.planes.forEach(({ mean: t }, n) => e.putMean(n, {
+			sa(this.scene).forEach(({ mean: t }, n) => e.putMean(n, {
 				pieces: this.piecesOf(t),
 				precision: null
 			})), J(this.scene).forEach(({ pictures: [t] }, n) => {
@@ -3341,7 +3358,7 @@ var ks = class {
 	}
 	piecesOf({ part: e }) {
 		let t = e && this.films[e.film];
-		return t ? Cs(t, e).map((e) => ({
+		return t ? Ts(t, e).map((e) => ({
 			picture: e,
 			row: 0,
 			rows: e.height
@@ -3349,44 +3366,44 @@ var ks = class {
 	}
 	gainOf({ part: e, pieces: t, scale: n, zero: r }, i, a) {
 		let o = e && this.films[e.film];
-		return o ? Os(Cs(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
+		return o ? As(Ts(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
 			let s = t * i + o, c = Math.max(...(a[o] ?? [0]).map(Math.abs)) * (n[s] ?? 0);
-			return js(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
+			return Ns(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
 		})) : 1;
 	}
-}, As = 8;
-function js({ data: e, width: t, height: n, stride: r }) {
+}, Ms = 8;
+function Ns({ data: e, width: t, height: n, stride: r }) {
 	let i = [];
-	for (let a = 0; a < n; a += As) for (let n = 0; n < t; n += As) {
+	for (let a = 0; a < n; a += Ms) for (let n = 0; n < t; n += Ms) {
 		let t = a * r + 2 * n;
 		i.push(e[t] + 256 * e[t + 1]);
 	}
 	return i;
 }
 // eigenfield-three/src/container.ts
-var Ms = 1179937895, Ns = 1313821514, Ps = 5130562, Fs = 1280591429;
-async function Is(e) {
+var Ps = 1179937895, Fs = 1313821514, Is = 5130562, Ls = 1280591429;
+async function Rs(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof j && t.code === "truncated" ? Vs(e.received === 0) : t;
+		throw t instanceof j && t.code === "truncated" ? Us(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== Ms) throw Vs(!1);
+	if (new DataView(t).getUint32(0, !0) !== Ps) throw Us(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
 	if (r !== 2) throw new j("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
 	if (i < 20) throw M("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== Ns) throw M("16", "it does not begin with JSON");
+	if (a.getUint32(4, !0) !== Fs) throw M("16", "it does not begin with JSON");
 	if (o > Se) throw M("12", `${o} bytes of JSON`);
 	if (20 + o > i) throw M("12", "a chunk longer than the file");
-	let s = Rs(await e.read(20, 20 + o)), c = (t, n) => () => Ls(e, 20 + o, i, t, n);
+	let s = Bs(await e.read(20, 20 + o)), c = (t, n) => () => zs(e, 20 + o, i, t, n);
 	return {
 		length: i,
 		text: s,
-		json: zs(s, "20"),
-		binary: c(Ps, "binary chunk"),
-		groups: c(Fs, "chunk of groups")
+		json: Vs(s, "20"),
+		binary: c(Is, "binary chunk"),
+		groups: c(Ls, "chunk of groups")
 	};
 }
-async function Ls(e, t, n, r, i) {
+async function zs(e, t, n, r, i) {
 	let a = t;
 	for (let t = 1; t < 64 && a + 8 <= n; t++) {
 		let t = new DataView(await e.read(a, a + 8)), i = t.getUint32(0, !0);
@@ -3396,22 +3413,22 @@ async function Ls(e, t, n, r, i) {
 	}
 	throw M(String(t), `no ${i}`);
 }
-function Rs(e) {
+function Bs(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
 		throw M("20", "its JSON is not UTF-8");
 	}
 }
-function zs(e, t) {
-	if (Bs(e) > 64) throw M(t, "its JSON is nested too deep");
+function Vs(e, t) {
+	if (Hs(e) > 64) throw M(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
 		throw M(t, "its JSON cannot be read");
 	}
 }
-function Bs(e) {
+function Hs(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3422,11 +3439,11 @@ function Bs(e) {
 	}
 	return n;
 }
-function Vs(e) {
+function Us(e) {
 	return new j("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/groups.ts
-var Hs = 3, Us = 4, Ws = class {
+var Ws = 3, Gs = 4, Ks = class {
 	scene;
 	timeline;
 	mesh;
@@ -3438,15 +3455,15 @@ var Hs = 3, Us = 4, Ws = class {
 	open(e) {
 		let t = this.kept.get(e) ?? this.opened(e);
 		this.kept.delete(e), this.kept.set(e, t);
-		for (let [e] of this.kept) this.kept.size > Hs && this.kept.delete(e);
+		for (let [e] of this.kept) this.kept.size > Ws && this.kept.delete(e);
 		return t;
 	}
 	async opened(e) {
 		let t = this.timeline.groups[e];
 		if (!t) throw RangeError(`no group ${e}`);
 		let n = new Uint8Array(await this.read(t.offset, t.length));
-		await Ks(n, t);
-		let { head: r, at: i } = await qs(n, t), a = Js(n, i, t), o = this.weightsOf(r, a), s = this.motionOf(r, a, t), { first: c, frames: l } = t, u = Ys(r, t, this.timeline.films.length, a);
+		await Js(n, t);
+		let { head: r, at: i } = await Ys(n, t), a = Xs(n, i, t), o = this.weightsOf(r, a), s = this.motionOf(r, a, t), { first: c, frames: l } = t, u = Zs(r, t, this.timeline.films.length, a);
 		return {
 			index: e,
 			first: c,
@@ -3465,9 +3482,9 @@ var Hs = 3, Us = 4, Ws = class {
 		return i;
 	}
 	weightsOf(e, t) {
-		let n = this.scene.heldOut.filter((e) => !e).length, r = Zs(e.key("weights"), this.scene.planes.length);
+		let n = this.scene.heldOut.filter((e) => !e).length, r = $s(e.key("weights"), this.scene.planes.length);
 		return ja(n, this.scene.planes.flatMap(({ bases: e }, i) => {
-			let a = r[i] && Zs(r[i], e.length);
+			let a = r[i] && $s(r[i], e.length);
 			return e.map(({ count: e }, r) => {
 				let i = a[r];
 				return Na(U["weights-1"].decode(t(i), i.where), n, e, i.where);
@@ -3477,34 +3494,34 @@ var Hs = 3, Us = 4, Ws = class {
 	scalesOf(e) {
 		let { planes: t } = this.scene;
 		return {
-			means: Zs(e.key("means"), t.length).map((e, n) => Xs(e, t[n].mean)),
-			bases: Zs(e.key("bases"), t.length).flatMap((e, n) => {
+			means: $s(e.key("means"), t.length).map((e, n) => Qs(e, t[n].mean)),
+			bases: $s(e.key("bases"), t.length).flatMap((e, n) => {
 				let { bases: r } = t[n];
-				return Zs(e, r.length).map((e, t) => Xs(e, r[t].pictures[0]));
+				return $s(e, r.length).map((e, t) => Qs(e, r[t].pictures[0]));
 			})
 		};
 	}
 };
-function Gs(e, { means: t, bases: n }) {
+function qs(e, { means: t, bases: n }) {
 	e.planes.forEach(({ mean: e }, n) => Object.assign(e, t[n])), J(e).forEach(({ pictures: [e] }, t) => e && Object.assign(e, n[t]));
 }
-async function Ks(e, { sha256: t, where: n }) {
+async function Js(e, { sha256: t, where: n }) {
 	let r = globalThis.crypto?.subtle;
 	if (!r) return;
 	let i = new Uint8Array(await r.digest("SHA-256", e));
 	if (Array.from(i, (e) => e.toString(16).padStart(2, "0")).join("") !== t) throw M(n, "other bytes than its SHA-256 says");
 }
-async function qs(e, { where: t }) {
-	if (e.length < Us) throw M(t, "no head");
-	let n = Us + new DataView(e.buffer).getUint32(0, !0);
+async function Ys(e, { where: t }) {
+	if (e.length < Gs) throw M(t, "no head");
+	let n = Gs + new DataView(e.buffer).getUint32(0, !0);
 	if (n > e.length) throw M(t, "a head longer than the group");
-	let r = await be(e.subarray(Us, n), "deflate-raw", He, t);
+	let r = await be(e.subarray(Gs, n), "deflate-raw", He, t);
 	return {
-		head: new W(zs(new TextDecoder("utf-8").decode(r), t), t),
+		head: new W(Vs(new TextDecoder("utf-8").decode(r), t), t),
 		at: n
 	};
 }
-function Js(e, t, n) {
+function Xs(e, t, n) {
 	let r = t;
 	return (t) => {
 		let i = r;
@@ -3512,22 +3529,22 @@ function Js(e, t, n) {
 		return e.subarray(i, r);
 	};
 }
-function Ys(e, t, n, r) {
-	return Zs(e.key("frames"), t.frames).map((e) => Zs(e, n).map((e) => r(e)));
+function Zs(e, t, n, r) {
+	return $s(e.key("frames"), t.frames).map((e) => $s(e, n).map((e) => r(e)));
 }
-function Xs(e, { pieces: t, textures: n }) {
+function Qs(e, { pieces: t, textures: n }) {
 	let r = e;
 	return {
-		scale: Ni(r.key("scale"), t, n),
-		zero: Ni(r.key("zero"), t, n)
+		scale: Pi(r.key("scale"), t, n),
+		zero: Pi(r.key("zero"), t, n)
 	};
 }
-function Zs(e, t) {
+function $s(e, t) {
 	let n = e.items(t);
 	if (n.length !== t) throw e.wrong(`${t} entries are needed`);
 	return n;
 }
-var Qs = 3, $s = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", ec = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform int first; // row of the picture with which the texture begins\nout vec4 stored;\nvoid main() {\n  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));\n}\n", tc = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", nc = `#version 300 es
+var ec = 3, tc = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", nc = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform int first; // row of the picture with which the texture begins\nout vec4 stored;\nvoid main() {\n  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));\n}\n", rc = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", ic = `#version 300 es
 precision highp float;
 precision highp int;
 uniform highp sampler2D picture; // values, and whether they are of a chart
@@ -3537,7 +3554,7 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec2 own = texelFetch(picture, at, 0).rg;
   vec2 sum = vec2(own.r * own.g, own.g);
-  for (int far = 1; far <= ${Qs} && sum.y == 0.0; far++) {
+  for (int far = 1; far <= ${ec} && sum.y == 0.0; far++) {
     for (int y = -far; y <= far; y++) {
       for (int x = -far; x <= far; x++) {
         vec2 near = texelFetch(picture, clamp(at + ivec2(x, y), ivec2(0), size - 1), 0).rg;
@@ -3547,9 +3564,9 @@ void main() {
   }
   stored = vec4(sum.y > 0.0 ? sum.x / sum.y : own.r);
 }
-`, rc = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
+`, ac = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
 // eigenfield-three/src/parts.ts
-function ic(e, t, n) {
+function oc(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -3559,7 +3576,7 @@ function ic(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = sc(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = lc(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -3587,7 +3604,7 @@ function ic(e, t, n) {
 						a + e[1] / i[1]
 					],
 					colours: f,
-					...cc(l, u, h, n.halves && Ai(l)),
+					...uc(l, u, h, n.halves && ji(l)),
 					basis: {
 						ready: m,
 						column: o,
@@ -3599,13 +3616,13 @@ function ic(e, t, n) {
 		}
 	}), r;
 }
-function ac(e, t, n, r) {
-	ic(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
+function sc(e, t, n, r) {
+	oc(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
 		scale: t,
 		bias: n
 	}));
 }
-function oc({ planes: e, sheets: t }, { means: n, needs: r }) {
+function cc({ planes: e, sheets: t }, { means: n, needs: r }) {
 	let i = n[e.length], a = r.means[e.length]?.size;
 	return !t || !i || !a ? null : {
 		stored: i,
@@ -3621,12 +3638,12 @@ function oc({ planes: e, sheets: t }, { means: n, needs: r }) {
 			0,
 			0
 		]],
-		...sc(t.opacity),
+		...lc(t.opacity),
 		basis: null
 	};
 }
-function sc({ mean: e, channels: t, precision: n }) {
-	let { scale: r, zero: i } = e, a = n ? 4 : 1 / Mi(e, Ai([e])), o = {
+function lc({ mean: e, channels: t, precision: n }) {
+	let { scale: r, zero: i } = e, a = n ? 4 : 1 / Ni(e, ji([e])), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
 	};
@@ -3636,8 +3653,8 @@ function sc({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function cc(e, t, n, r) {
-	let i = e.flatMap((e) => Array(e.textures).fill(Mi(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * po(n), c = {
+function uc(e, t, n, r) {
+	let i = e.flatMap((e) => Array(e.textures).fill(Ni(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * po(n), c = {
 		scale: new Float32Array(s),
 		bias: new Float32Array(s)
 	};
@@ -3648,7 +3665,7 @@ function cc(e, t, n, r) {
 	return c;
 }
 // eigenfield-three/src/player.ts
-var lc = .25, uc = class extends f {
+var dc = .25, fc = class extends f {
 	timeline;
 	user;
 	first;
@@ -3736,7 +3753,7 @@ var lc = .25, uc = class extends f {
 	}
 	update(e = performance.now()) {
 		if (this.disposed) return;
-		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, lc);
+		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, dc);
 		if (this.last = this.plays && this.goal === null ? e : null, this.goal === null && !this.plays) return;
 		this.goal === null && (this.clock = this.advanced(t));
 		let n = this.ring.take(this.goal ?? Math.floor(this.clock));
@@ -3786,19 +3803,19 @@ var lc = .25, uc = class extends f {
 		let n = this.goal !== null && Zi(this.timeline, this.goal % this.frames);
 		n === !1 || t !== null && n !== t || (this.goal = this.following = null, this.settle());
 	}
-}, dc = 256;
-function fc(e, t, n) {
+}, pc = 256;
+function mc(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / dc)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / pc)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => pc(t, i.getX(e), i.getY(e), i.getZ(e))), l = mc(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => hc(t, i.getX(e), i.getY(e), i.getZ(e))), l = gc(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = mc(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = gc(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -3808,7 +3825,7 @@ function fc(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function pc({ K: e, R: t, t: n }, r, i, a) {
+function hc({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -3816,12 +3833,12 @@ function pc({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function mc(e) {
+function gc(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/sheet-stack.ts
-var hc = "sheets", gc = 16, _c = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", vc = `${rs}${is}
+var _c = "sheets", vc = 16, yc = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", bc = `${is}${as}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -3846,7 +3863,7 @@ void main() {
   gl_FragDepth = depth;
   fragment = colour;
 }
-`, yc = new ae(), bc = class {
+`, xc = new ae(), Sc = class {
 	material;
 	scene = new k();
 	camera = new n();
@@ -3856,16 +3873,16 @@ void main() {
 	everywhere = new t();
 	target = null;
 	constructor(t) {
-		this.material = t, this.depth = fs(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
+		this.material = t, this.depth = ps(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
 			let { materialIndex: o = 0 } = a, s = this.sheets.material.length / 2, c = s - 1 - (o >> 1);
 			e.getContext().depthRange(c / s, (c + 1) / s);
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
 		let { shown: n, photograph: r, toPhotograph: i } = t.uniforms;
 		this.screen = new O({
-			name: hc,
+			name: _c,
 			glslVersion: h,
-			vertexShader: _c,
-			fragmentShader: vc,
+			vertexShader: yc,
+			fragmentShader: bc,
 			uniforms: {
 				shown: n,
 				photograph: r,
@@ -3879,7 +3896,7 @@ void main() {
 				toPlace: { value: new x() }
 			},
 			transparent: !0,
-			...ls
+			...us
 		});
 		let a = new Float32Array([
 			-1,
@@ -3895,7 +3912,7 @@ void main() {
 		this.everywhere.setAttribute("position", new e(a, 3));
 	}
 	get bytes() {
-		return this.target ? gc * this.target.width * this.target.height : 0;
+		return this.target ? vc * this.target.width * this.target.height : 0;
 	}
 	setGeometry(e, t) {
 		e.clearGroups();
@@ -3913,7 +3930,7 @@ void main() {
 	attach(e, t) {
 		for (let t of [e.material].flat()) t.visible = !1;
 		let n = new S(this.everywhere, this.screen);
-		n.name = hc, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
+		n.name = _c, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
 			t(n, i), this.draw(n, i, e);
 		}, e.add(n);
 	}
@@ -3924,9 +3941,9 @@ void main() {
 		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
 	}
 	draw(e, t, n) {
-		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(yc);
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(xc);
 		if (!a || !o) return;
-		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = xc(a, o));
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Cc(a, o));
 		let { target: s } = this;
 		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), Ho(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
@@ -3935,7 +3952,7 @@ void main() {
 		this.set("sheets", s.textures[0]), this.set("solid", s.textures[1]), this.set("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
 	}
 };
-function xc(e, t) {
+function Cc(e, t) {
 	let n = new l(e, t, re);
 	n.format = c;
 	let r = new oe(e, t, {
@@ -3949,7 +3966,7 @@ function xc(e, t) {
 	return i && (i.type = ne), r;
 }
 // eigenfield-three/src/surface.ts
-var Sc = class {
+var wc = class {
 	meshes;
 	faces;
 	reference;
@@ -3964,7 +3981,7 @@ var Sc = class {
 		if (!i) throw Error("a field needs a mesh");
 		this.mesh = i;
 		let a = [i.material].flat().some((e) => e.side !== m);
-		this.material = ds(a, t !== null), this.stack = t && new bc(this.material);
+		this.material = fs(a, t !== null), this.stack = t && new Sc(this.material);
 		for (let t of e) {
 			let e = (e, n) => r(e, n, t);
 			this.stack ? this.stack.attach(t, e) : (t.material = this.material, t.onBeforeRender = (t, n, r) => e(t, r));
@@ -3982,7 +3999,7 @@ var Sc = class {
 		if (n !== e) {
 			let { index: r, attributes: i } = e;
 			if (!r || !i.position || !i.uv) throw TypeError("A surface needs position, uv and an index.");
-			this.stack && t && Bi({
+			this.stack && t && Vi({
 				faces: t,
 				where: "the geometry"
 			}, e), n.dispose();
@@ -3991,52 +4008,52 @@ var Sc = class {
 		e.boundingBox = e.boundingSphere = null, this.faces = t, this.version += 1, this.show(t);
 	}
 	show(e) {
-		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? fc(this.geometry, this.reference, [1, 1]) : 0;
+		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? mc(this.geometry, this.reference, [1, 1]) : 0;
 	}
 	dispose() {
 		this.stack?.dispose(), this.material.dispose(), this.geometry.dispose();
 	}
 };
 // eigenfield-three/src/gpu.ts
-function Cc(e) {
+function Tc(e) {
 	let t = e.getContext();
 	if (!(t instanceof WebGL2RenderingContext)) throw new j("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
 	if ((t.getExtension("EXT_color_buffer_float") ?? t.getExtension("EXT_color_buffer_half_float")) || t.isContextLost()) return t;
 	throw new j("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
 }
-function wc(e, t) {
+function Ec(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function Tc(e, { components: t, halves: n }) {
+function Dc(e, { components: t, halves: n }) {
 	return t > 2 ? n ? e.RGBA16F : e.RGBA8 : t > 1 ? n ? e.RG16F : e.RG8 : n ? e.R16F : e.R8;
 }
-function Ec(e, [t, n], r, i, a) {
-	return kc(e, e.TEXTURE_2D_ARRAY, () => {
-		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, Tc(e, a), t, n, r);
+function Oc(e, [t, n], r, i, a) {
+	return jc(e, e.TEXTURE_2D_ARRAY, () => {
+		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, Dc(e, a), t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function Dc(e, t, n, r) {
+function kc(e, t, n, r) {
 	let { width: i, height: a } = n, o = r > 2 ? e.RGBA : r > 1 ? e.RG : e.RED;
-	Ac(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
+	Mc(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
 }
-function Oc(e, [t, n], r) {
-	return kc(e, e.TEXTURE_2D, () => {
-		e.texStorage2D(e.TEXTURE_2D, 1, Tc(e, r), t, n);
+function Ac(e, [t, n], r) {
+	return jc(e, e.TEXTURE_2D, () => {
+		e.texStorage2D(e.TEXTURE_2D, 1, Dc(e, r), t, n);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D, t, e.NEAREST);
 	});
 }
-function kc(e, t, n) {
+function jc(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return Ac(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return Mc(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function Ac(e, t, n, r) {
+function Mc(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -4050,7 +4067,7 @@ function Ac(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-function jc(e, t, n) {
+function Nc(e, t, n) {
 	let r = e.createProgram();
 	for (let [i, a] of [[e.VERTEX_SHADER, t], [e.FRAGMENT_SHADER, n]]) {
 		let t = e.createShader(i);
@@ -4058,7 +4075,7 @@ function jc(e, t, n) {
 	}
 	return e.linkProgram(r), r;
 }
-function Mc(e, t, n, r) {
+function Pc(e, t, n, r) {
 	if (!n) {
 		r();
 		return;
@@ -4066,9 +4083,9 @@ function Mc(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), Ac(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), Mc(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function Nc(e, t) {
+function Fc(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -4083,13 +4100,13 @@ function Nc(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r && e.isProgram(r) ? r : null), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/charts.ts
-function Pc(e, t) {
-	let n = jc(e, ...rc), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
+function Ic(e, t) {
+	let n = Nc(e, ...ac), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
 		let { index: o } = t, s = t.getAttribute("uv"), c = Float32Array.from({ length: 2 * (o?.count ?? 0) }, (e, t) => {
 			let n = o?.getX(t >> 1) ?? 0;
 			return t % 2 ? s.getY(n) : s.getX(n);
 		}), [l, u] = [e.createVertexArray(), e.createBuffer()], d = e.getParameter(e.ARRAY_BUFFER_BINDING);
-		Nc(e, () => {
+		Fc(e, () => {
 			e.useProgram(n), e.bindVertexArray(l), e.bindBuffer(e.ARRAY_BUFFER, u), e.bufferData(e.ARRAY_BUFFER, c, e.STREAM_DRAW);
 			let t = e.getAttribLocation(n, "uv");
 			e.enableVertexAttribArray(t), e.vertexAttribPointer(t, 2, e.FLOAT, !1, 0, 0), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, a, 0), e.viewport(0, 0, ...i), e.colorMask(!0, !0, !0, !0), e.drawArrays(e.TRIANGLES, 0, c.length / 2);
@@ -4100,7 +4117,7 @@ function Pc(e, t) {
 			let { geometry: r } = t;
 			if (i?.grid.join() !== n.join() || i.geometry !== r) {
 				e.deleteTexture(i?.texture ?? null);
-				let t = Oc(e, n, {
+				let t = Ac(e, n, {
 					components: 1,
 					halves: !1
 				});
@@ -4118,7 +4135,7 @@ function Pc(e, t) {
 	};
 }
 // eigenfield-three/src/packing.ts
-var Fc = [
+var Lc = [
 	"precisions",
 	"covered",
 	"factors",
@@ -4129,14 +4146,14 @@ var Fc = [
 	"nodes",
 	"zero"
 ];
-function Ic(e, t, n, r) {
+function Rc(e, t, n, r) {
 	let [i, a, o] = [
-		jc(e, $s, ec),
-		jc(e, $s, tc),
-		jc(e, $s, nc)
-	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && Pc(e, r), u = !1, d = (t) => Object.fromEntries(Fc.map((n) => [n, e.getUniformLocation(t, n)])), [f, p] = [d(i), d(a)], m = (t, n, r, i, a, o, s) => {
+		Nc(e, tc, nc),
+		Nc(e, tc, rc),
+		Nc(e, tc, ic)
+	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && Ic(e, r), u = !1, d = (t) => Object.fromEntries(Lc.map((n) => [n, e.getUniformLocation(t, n)])), [f, p] = [d(i), d(a)], m = (t, n, r, i, a, o, s) => {
 		let { picture: c, rows: l } = n, { size: u, corner: d, unit: f, codes: p } = i;
-		Lc(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
+		zc(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
 			0,
 			1,
 			2,
@@ -4148,31 +4165,31 @@ function Ic(e, t, n, r) {
 		h(t, n), e.colorMask(r === 0, r === 1, r === 2, r === 3);
 	}, _ = (r, s, d, _, v, y) => {
 		let { picture: b, row: x, rows: S } = r, [C, w] = v.size, T = C < b.width || w < S ? t.smaller : null, E = Math.max(1, Math.floor((T ? n - 2 : n) * w / S)), ee = u && s === t.codes;
-		Mc(e, 2, (T && l?.covered(v.grid)) ?? null, () => Mc(e, 0, ee ? null : s, () => {
+		Pc(e, 2, (T && l?.covered(v.grid)) ?? null, () => Pc(e, 0, ee ? null : s, () => {
 			for (let t = 0; t < w; t += E) {
 				let n = Math.min(E, w - t), o = Math.floor(t * S / w), s = Math.ceil((t + n) * S / w);
-				Lc(b) ? zc(e, b, x + o, s - o) : Rc(e, b, x + o, s - o);
+				zc(b) ? Vc(e, b, x + o, s - o) : Bc(e, b, x + o, s - o);
 				let l = () => {
 					let s = T || y ? p : f;
 					e.useProgram(T || y ? a : i), e.bindVertexArray(c), e.uniform1i(s.precisions, +!!y), e.uniform1i(s.covered, T ? 2 : 0), e.uniform2i(s.nodes, y?.precision.width ?? 0, y?.precision.height ?? 0), e.uniform1f(s.zero, y?.zero ?? 0), T ? (h(T, null), e.colorMask(!0, !0, !0, !0)) : g(d, _), m(s, r, _.channel, v, o, t, n);
 				};
-				ee ? l() : Nc(e, l);
+				ee ? l() : Fc(e, l);
 			}
-		})), T && Mc(e, 0, T, () => Nc(e, () => {
+		})), T && Pc(e, 0, T, () => Fc(e, () => {
 			e.useProgram(o), e.bindVertexArray(c), e.uniform2i(e.getUniformLocation(o, "size"), C, w), g(d, _), e.viewport(0, 0, C, w), e.drawArrays(e.TRIANGLES, 0, 3);
 		}));
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let s = Lc(n.picture) ? t.codes : t.picture;
+			let s = zc(n.picture) ? t.codes : t.picture;
 			if (!s) return;
 			let c = () => i.forEach((e) => _(n, s, r, e, a, o));
-			o ? Mc(e, 1, t.precision, () => {
-				Rc(e, o.precision, 0, o.precision.height), c();
+			o ? Pc(e, 1, t.precision, () => {
+				Bc(e, o.precision, 0, o.precision.height), c();
 			}) : c();
 		},
 		together(n) {
-			Mc(e, 0, t.codes, () => Nc(e, () => {
+			Pc(e, 0, t.codes, () => Fc(e, () => {
 				u = !0;
 				try {
 					n();
@@ -4192,17 +4209,17 @@ function Ic(e, t, n, r) {
 		}
 	};
 }
-function Lc(e) {
+function zc(e) {
 	return "data" in e;
 }
-function Rc(e, t, n, r) {
+function Bc(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function zc(e, { data: t, width: n, stride: r }, i, a) {
+function Vc(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
 // eigenfield-three/src/textures.ts
-var Bc = class {
+var Hc = class {
 	parts;
 	source;
 	surface;
@@ -4228,21 +4245,25 @@ var Bc = class {
 		let { scene: i, info: a, meanSizes: o } = e, s = i.planes.flatMap(({ channels: e, bases: t }) => t.map((t) => ({
 			...t,
 			channels: e,
-			tenBits: Ai(t.pictures)
+			tenBits: ji(t.pictures)
 		})));
 		this.layout = s;
-		let c = sa(i).map(({ channels: e, mean: t }, n) => ({
-			size: o[n] ?? [1, 1],
-			channels: e,
-			pieces: t.pieces,
-			tenBits: Ai([t])
-		}));
+		let c = sa(i).map(({ channels: e, mean: t }, n) => {
+			let r = n === i.planes.length;
+			return {
+				size: o[n] ?? [1, 1],
+				channels: e,
+				pieces: t.pieces,
+				tenBits: ji([t]),
+				opacity: r
+			};
+		});
 		this.needs = {
 			atlas: a.size,
 			means: c,
 			bases: s,
 			rays: a.facesPlane,
-			geometry: Vc(n.geometry)
+			geometry: Uc(n.geometry)
 		}, this.means = c.map(() => new p()), this.bases = s.map(() => new p()), this.ready = s.map(({ count: e }) => Array(e).fill(!1)), this.stillVersions = c.map(() => 0);
 	}
 	get hasMeans() {
@@ -4256,7 +4277,7 @@ var Bc = class {
 		return Math.min(t, ...e);
 	}
 	get bytes() {
-		return this.plan ? this.plan.bytes - this.needs.geometry + Vc(this.surface.geometry) : 0;
+		return this.plan ? this.plan.bytes - this.needs.geometry + Uc(this.surface.geometry) : 0;
 	}
 	get attached() {
 		return this.renderer !== null || this.disposed;
@@ -4286,7 +4307,7 @@ var Bc = class {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		let n = Cc(e);
+		let n = Tc(e);
 		if (n.isContextLost()) return;
 		let { packer: r, plan: i } = this.makeRoom(n);
 		this.plan = i, this.packer = r, this.onPlan(i), await this.source.fill(this.filling(n, i, t)), t.aborted || this.onComplete();
@@ -4319,12 +4340,12 @@ var Bc = class {
 			this.layout[t]
 		];
 		if (!(c instanceof WebGLTexture) || !l || !u) return;
-		let { size: d, grid: f, corner: p, channels: m, tenBits: h } = u, g = Mi(i, s && h), _ = {
+		let { size: d, grid: f, corner: p, channels: m, tenBits: h } = u, g = Ni(i, s && h), _ = {
 			size: X(d, o),
 			grid: f,
 			corner: p,
 			unit: g,
-			codes: 255 * ji(i)
+			codes: 255 * Mi(i)
 		};
 		for (let e = n; e < Math.min(n + i.textures, a); e++) {
 			let t = r.slice((e - n) * i.pieces, (e - n + 1) * i.pieces), a = m * Math.floor(e / 4);
@@ -4341,15 +4362,15 @@ var Bc = class {
 		this.stillVersions[n] = this.version += 1;
 		let { mean: l, channels: u } = o, d = X(s, t.meanDown), [f] = r;
 		if (f && r.length === 1 && "close" in f.picture && !c && d.join() === s.join()) {
-			Dc(e, a, f.picture, u);
+			kc(e, a, f.picture, u);
 			return;
 		}
 		let p = {
 			size: d,
 			grid: s,
 			corner: [0, 0],
-			unit: Mi(l, c === !0),
-			codes: 255 * ji(l)
+			unit: Ni(l, c === !0),
+			codes: 255 * Mi(l)
 		};
 		this.put(r, a, u, p, (e) => ({
 			layer: Math.floor(e / 4),
@@ -4375,15 +4396,15 @@ var Bc = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs;
-		this.needs.geometry = Vc(this.surface.geometry);
+		this.needs.geometry = Uc(this.surface.geometry);
 		let r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
 		for (let i = this.options.memory ?? so();; i /= 2) {
-			let a = go(this.needs, wc(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => Ec(e, X(t, o), uo(n), !1, {
+			let a = go(this.needs, Ec(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => Oc(e, X(t, o), uo(n), !1, {
 				components: n,
 				halves: r
 			})), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return Ec(e, a ? X(t, s) : [1, 1], a ? fo(a, n) : 1, u, {
+				return Oc(e, a ? X(t, s) : [1, 1], a ? fo(a, n) : 1, u, {
 					components: Math.max(1, a),
 					halves: l && i
 				});
@@ -4391,9 +4412,9 @@ var Bc = class {
 				f.picture,
 				f.codes,
 				f.smaller
-			].map((t) => t ? Oc(e, t.size, t.format) : null), g = Oc(e, bo(r), eo);
+			].map((t) => t ? Ac(e, t.size, t.format) : null), g = Ac(e, bo(r), eo);
 			if (p && g && (m || !f.codes) && (h || !f.smaller) && !d.includes(null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = d[t] ?? null), {
-				packer: Ic(e, {
+				packer: Rc(e, {
 					picture: p,
 					codes: m ?? null,
 					precision: g,
@@ -4412,11 +4433,11 @@ var Bc = class {
 		}
 	}
 };
-function Vc({ attributes: e, index: t }) {
+function Uc({ attributes: e, index: t }) {
 	return Object.values(e).reduce((e, t) => e + t.array.byteLength, 0) + (t?.array.byteLength ?? 0);
 }
 // eigenfield-three/src/field.ts
-var Hc = 1.5, Uc = .001, Wc = class extends f {
+var Wc = 1.5, Gc = .001, Kc = class extends f {
 	parts;
 	source;
 	mesh;
@@ -4452,7 +4473,7 @@ var Hc = 1.5, Uc = .001, Wc = class extends f {
 	constructor(e, t, n = {}) {
 		super(), this.parts = e, this.source = t;
 		let { scene: r, info: i } = e, a = r.sheets?.faces ?? null;
-		this.surface = new Sc(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = Pa(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip?.group.motion && this.move(e.clip.group, 0), this.textures = new Bc(e, t, this.surface, n), this.complete = new Promise((e, t) => {
+		this.surface = new wc(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = Pa(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip?.group.motion && this.move(e.clip.group, 0), this.textures = new Hc(e, t, this.surface, n), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0), this.listen(), n.renderer && this.textures.attach(n.renderer);
 	}
@@ -4496,20 +4517,20 @@ var Hc = 1.5, Uc = .001, Wc = class extends f {
 		this.textures.onPlan = (e) => {
 			let { scene: t } = this.parts;
 			this.freeComposers(), this.summed = {
-				parts: ic(t, this.textures, e),
-				opacity: oc(t, this.textures)
+				parts: oc(t, this.textures, e),
+				opacity: cc(t, this.textures)
 			}, e.limitation && queueMicrotask(() => this.dispatchEvent({ type: "limited" }));
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return Hc * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
+		return Wc * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
 	}
 	weightsOf(e) {
 		let { scene: t, info: n, weights: r } = this.parts;
-		return new Zo(n, J(t).map(({ count: e }) => e), e, r);
+		return new Qo(n, J(t).map(({ count: e }) => e), e, r);
 	}
 	makePlayer({ timeline: e, ring: t }) {
-		return new uc(e, t, {
+		return new fc(e, t, {
 			show: (e) => this.showFrame(e),
 			failed: (e) => this.dispatchEvent({
 				type: "error",
@@ -4518,7 +4539,7 @@ var Hc = 1.5, Uc = .001, Wc = class extends f {
 		});
 	}
 	showFrame({ number: e, group: t, films: n }) {
-		(t.motion ?? this.group?.motion) && this.move(t, e - t.first), t !== this.group && this.enter(t), this.source instanceof ks && this.source.show(n);
+		(t.motion ?? this.group?.motion) && this.move(t, e - t.first), t !== this.group && this.enter(t), this.source instanceof js && this.source.show(n);
 	}
 	move({ motion: e }, t) {
 		let { geometry: n } = this.surface;
@@ -4528,13 +4549,13 @@ var Hc = 1.5, Uc = .001, Wc = class extends f {
 	}
 	enter(e) {
 		let { scene: t } = this.parts, { plan: n } = this.textures;
-		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), Gs(t, e), n && ac(this.summed.parts, t, this.textures, n);
+		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), qs(t, e), n && sc(this.summed.parts, t, this.textures, n);
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = qc(t, n), [i, a] = Ba(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
+		let r = Yc(t, n), [i, a] = Ba(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
 		this.setView(), this.setExposure(o, [i, a]);
-		let u = $o[this.filter];
+		let u = es[this.filter];
 		l.defines.BICUBIC !== u && (l.defines.BICUBIC = u, l.needsUpdate = !0), l.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
@@ -4554,13 +4575,13 @@ var Hc = 1.5, Uc = .001, Wc = class extends f {
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.surface.material.uniforms.shown.value, r = n === es.eigen ? this.shownEigen : null;
+		let n = this.surface.material.uniforms.shown.value, r = n === ts.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			opacity: this.textures.opacityVersion,
 			only: r,
-			count: n === es.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === ts.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
 			eye: t && Ro(this.info.viewPlane, t),
 			places: t || this.coarser > 1 ? this.surface.version : 0,
@@ -4586,9 +4607,9 @@ var Hc = 1.5, Uc = .001, Wc = class extends f {
 	}
 	setView() {
 		let { uniforms: e } = this.surface.material, t = this.showsErrors, n = this.view === "error" && !t ? "picture" : this.view, r = this.shownEigen;
-		e.shown.value = es[n === "eigen" && r >= this.loaded ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
+		e.shown.value = ts[n === "eigen" && r >= this.loaded ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
 		let i = t && this.info.cameras[this.camera ?? 0];
-		i && this.photograph && ps(e, i, this.photograph);
+		i && this.photograph && ms(e, i, this.photograph);
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -4601,29 +4622,29 @@ var Hc = 1.5, Uc = .001, Wc = class extends f {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= Uc * Math.max(...r);
+		return Math.abs(i) <= Gc * Math.max(...r);
 	}
 	fail(e) {
-		if (Jc(e)) return;
+		if (Xc(e)) return;
 		let t = de(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
 		this.dispatchEvent({
 			type: "error",
 			error: new j(t.code, r, t.where)
 		});
 	}
-}, Gc = new x(), Kc = new A();
-function qc(e, t) {
-	return Kc.setFromMatrixPosition(e.matrixWorld).applyMatrix4(Gc.copy(t.matrixWorld).invert()), [
-		Kc.x,
-		Kc.y,
-		Kc.z
+}, qc = new x(), Jc = new A();
+function Yc(e, t) {
+	return Jc.setFromMatrixPosition(e.matrixWorld).applyMatrix4(qc.copy(t.matrixWorld).invert()), [
+		Jc.x,
+		Jc.y,
+		Jc.z
 	];
 }
-function Jc(e) {
+function Xc(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var Yc = class {
+var Zc = class {
 	received = 0;
 	chunks = [];
 	waiters = [];
@@ -4666,11 +4687,11 @@ var Yc = class {
 		}
 		return n.buffer;
 	}
-}, Xc = 8, Zc = /* @__PURE__ */ new Set([
+}, Qc = 8, $c = /* @__PURE__ */ new Set([
 	"damaged",
 	"truncated",
 	"network"
-]), Qc = class {
+]), el = class {
 	timeline;
 	groups;
 	user;
@@ -4703,7 +4724,7 @@ var Yc = class {
 		return this.decoders.reduce((e, t) => e + t.open, 0);
 	}
 	get reach() {
-		return Math.max(this.newest, this.from) + Xc / 2;
+		return Math.max(this.newest, this.from) + Qc / 2;
 	}
 	isOver(e) {
 		return this.newest >= e && ![...this.slots.keys()].some((t) => t <= e);
@@ -4751,7 +4772,7 @@ var Yc = class {
 		return e % this.timeline.frames;
 	}
 	get hasRoom() {
-		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = Math.max(this.from, this.wanted) + Xc;
+		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = Math.max(this.from, this.wanted) + Qc;
 		return this.next < Math.min(n, t) && this.decoders.every(({ ready: e }) => e);
 	}
 	async feedAll() {
@@ -4773,7 +4794,7 @@ var Yc = class {
 	async receive(e, t, n) {
 		let [{ turn: r }, i] = [this, this.slotOf(t)];
 		if (!i) return;
-		let a = await xs(n, this.rooms[e]?.pop() ?? null);
+		let a = await Cs(n, this.rooms[e]?.pop() ?? null, this.timeline.films[e]?.opacity);
 		if (r !== this.turn || this.slots.get(t) !== i) return this.reuseOne(e, a);
 		i.films[e] = a, i.films.includes(null) || this.user.ready();
 	}
@@ -4789,7 +4810,7 @@ var Yc = class {
 		return this.slots.set(e, n), n;
 	}
 	fail(e) {
-		if (!(e instanceof j) || !Zc.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(e, null);
+		if (!(e instanceof j) || !$c.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(e, null);
 		this.halt();
 		for (let [e, t] of this.slots) t.films.includes(null) && this.forget(e, t);
 		this.broken.add(this.fed), this.user.failed(e, this.fed), this.feed();
@@ -4818,61 +4839,61 @@ var Yc = class {
 	reuseOne(e, { room: t }) {
 		t && this.rooms[e]?.push(t);
 	}
-}, $c = {
+}, tl = {
 	mimeType: "video/AV1",
 	bits: 10
 };
-async function el(e, t, n, r) {
-	let i = new Ws(e, t, n, r), a = await i.open(0);
-	return a.motion?.read(0), Gs(e, a), {
+async function nl(e, t, n, r) {
+	let i = new Ks(e, t, n, r), a = await i.open(0);
+	return a.motion?.read(0), qs(e, a), {
 		timeline: t,
 		group: a,
-		films: await Promise.all(t.films.map((e, t) => tl(a.units[0][t], e))),
+		films: await Promise.all(t.films.map((e, t) => rl(a.units[0][t], e))),
 		mesh: n,
-		ring: (e) => new Qc(t, i, e)
+		ring: (e) => new el(t, i, e)
 	};
 }
-async function tl(e, { size: t, where: n }) {
+async function rl(e, { size: t, where: n }) {
 	let r = {
 		view: -1,
-		codec: $c,
+		codec: tl,
 		textures: 1,
 		pieces: 1,
 		where: n
 	}, i = await Yr(ve(e.slice().buffer, n), r, t), a = i[0].picture;
 	if ("data" in a) return a;
 	let o = new OffscreenCanvas(...t).getContext("2d");
-	return o.drawImage(a, 0, 0), ws(i), Ss(o.getImageData(0, 0, ...t).data, 4 * t[0], 4, t);
+	return o.drawImage(a, 0, 0), Es(i), ws(o.getImageData(0, 0, ...t).data, 4 * t[0], 4, t);
 }
 // eigenfield-three/src/means.ts
-async function nl(e, t) {
-	let { mean: n, meanSize: r } = e, i = e.precision && await rl(await t(e.precision.view), e.precision);
+async function il(e, t) {
+	let { mean: n, meanSize: r } = e, i = e.precision && await al(await t(e.precision.view), e.precision);
 	return {
 		pieces: await n.codec.decode(await t(n.view), n, r),
 		precision: i
 	};
 }
-async function rl(e, t) {
+async function al(e, t) {
 	let { type: n } = Ir(e) ?? {}, { mimeType: r } = t.codec;
 	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
 	if (!i) throw M(t.where, "no picture");
 	return i.picture;
 }
-function il({ pieces: e, precision: t }) {
-	ws(e), t?.close();
+function ol({ pieces: e, precision: t }) {
+	Es(e), t?.close();
 }
 // eigenfield-three/src/packed.ts
-var al = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", ol = 4;
-async function sl(e, t) {
+var sl = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", cl = 4;
+async function ll(e, t) {
 	let n = new W(e, ""), r = n.key("extensions").key(xe), i = r.key("packed");
 	if (!i.exists) return e;
 	ca(r);
 	let a = mi(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < ol) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, ol)).getUint32(0, !0);
-	if (ol + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new W(zs(await ll(await t(o.offset + ol, s), i.where), i.where), i.where).object(), u = cl(new W(c, `${i.where}/lengths`), o, ol + s), { packed: d, ...f } = r.object();
+	if (!o || o.length < cl) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, cl)).getUint32(0, !0);
+	if (cl + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new W(Vs(await dl(await t(o.offset + cl, s), i.where), i.where), i.where).object(), u = ul(new W(c, `${i.where}/lengths`), o, cl + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
 		bufferViews: [...n.key("bufferViews").items(Ce).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
@@ -4885,7 +4906,7 @@ async function sl(e, t) {
 		}
 	};
 }
-function cl(e, t, n) {
+function ul(e, t, n) {
 	let r = n, i = e.items(Ce).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
@@ -4897,8 +4918,8 @@ function cl(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function ll(e, t) {
-	let n = new TextEncoder().encode(al), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function dl(e, t) {
+	let n = new TextEncoder().encode(sl), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -4917,8 +4938,8 @@ async function ll(e, t) {
 	}
 }
 // eigenfield-three/src/proxy.ts
-var ul = 65535;
-function dl(e, t) {
+var fl = 65535;
+function pl(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
 	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
 	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
@@ -4928,26 +4949,26 @@ function dl(e, t) {
 	}
 	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
 }
-async function fl({ view: e, codec: t, where: n }, r) {
+async function ml({ view: e, codec: t, where: n }, r) {
 	let i = t.decode(new Uint8Array(await r(e)), n);
 	if (!i.indices.length) throw M(n, "a mesh without faces");
 	return i;
 }
-function pl({ positions: n, uv: r, indices: i }) {
+function hl({ positions: n, uv: r, indices: i }) {
 	let a = new t();
 	a.setAttribute("position", new e(n.slice(), 3)), a.setAttribute("uv", new e(r, 2));
-	let o = n.length / 3 <= ul;
+	let o = n.length / 3 <= fl;
 	return a.setIndex(new e(o ? Uint16Array.from(i) : i, 1)), a;
 }
-function ml(e) {
+function gl(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/still-textures.ts
-var hl = 3;
-function gl(e) {
+var _l = 3;
+function vl(e) {
 	return J(e).flatMap((e, t) => {
 		let n = 0;
 		return e.pictures.map((r) => {
@@ -4961,27 +4982,27 @@ function gl(e) {
 		});
 	}).sort((e, t) => e.first - t.first || e.number - t.number);
 }
-function _l(e, t, n) {
-	let r = gl(e), i = n, a = ({ basis: e, picture: n }) => {
+function yl(e, t, n) {
+	let r = vl(e), i = n, a = ({ basis: e, picture: n }) => {
 		let r = t(n.view).then((t) => n.codec.decode(t, n, e.size));
 		return r.catch(() => void 0), r;
 	};
 	return {
 		async fill(n) {
-			let { plan: o, signal: s } = n, c = i ?? await Promise.all(sa(e).map((e) => nl(e, t)));
+			let { plan: o, signal: s } = n, c = i ?? await Promise.all(sa(e).map((e) => il(e, t)));
 			i = null, c.forEach((e, t) => {
-				n.putMean(t, e), il(e);
+				n.putMean(t, e), ol(e);
 			});
 			let l = r.filter(({ first: e }) => e < o.usable), u = [], d = 0;
 			try {
 				for (let { number: e, first: t, picture: r } of l) {
 					if (s.aborted) return;
-					for (let e of l.slice(d, d + hl - u.length)) u.push(a(e)), d += 1;
+					for (let e of l.slice(d, d + _l - u.length)) u.push(a(e)), d += 1;
 					let i = await u[0] ?? [];
-					u.shift(), n.putTextures(e, t, i, r), ws(i), n.announce();
+					u.shift(), n.putTextures(e, t, i, r), Es(i), n.announce();
 				}
 			} finally {
-				for (let e of u) e.then(ws).catch(() => void 0);
+				for (let e of u) e.then(Es).catch(() => void 0);
 			}
 			n.end();
 		},
@@ -4989,41 +5010,41 @@ function _l(e, t, n) {
 			let r = 0;
 			for (let { channels: i, bases: a } of e.planes) {
 				let o = e.colours.slice(r, r += i), s = a.find(({ count: e }) => e > n);
-				if (s) return Ds(s, n, o, t);
+				if (s) return ks(s, n, o, t);
 			}
 			return Promise.resolve(1);
 		},
 		dispose() {
-			i?.forEach(il), i = null;
+			i?.forEach(ol), i = null;
 		}
 	};
 }
 // eigenfield-three/src/grid.ts
-function vl(e) {
+function bl(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = yl(e, n, r) ?? (n === r ? null : yl(e, r, n));
+		let r = t / n, i = xl(e, n, r) ?? (n === r ? null : xl(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function yl(e, t, n) {
-	let [r, i] = [xl(e, 0), xl(e, 1)];
-	if (t === 1 && Sl(i) > 0 || n === 1 && Sl(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => Cl(i, e) - Cl(i, t));
+function xl(e, t, n) {
+	let [r, i] = [Cl(e, 0), Cl(e, 1)];
+	if (t === 1 && wl(i) > 0 || n === 1 && wl(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => Tl(i, e) - Tl(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Cl(r, e) - Cl(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Tl(r, e) - Tl(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return bl(n, t, (e, t) => Cl(r, o(t, e))) && bl(t, n, (e, t) => Cl(i, o(e, t))) ? {
+	return Sl(n, t, (e, t) => Tl(r, o(t, e))) && Sl(t, n, (e, t) => Tl(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function bl(e, t, n) {
+function Sl(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -5033,33 +5054,33 @@ function bl(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function xl(e, t) {
+function Cl(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function Sl(e) {
+function wl(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var Cl = (e, t) => e[t] ?? 0, wl = 1e-6, Tl = 32, El = class {
+var Tl = (e, t) => e[t] ?? 0, El = 1e-6, Dl = 32, Ol = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = vl(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = bl(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(Dl(e), this.isLine ? 0 : Dl(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(kl(e), this.isLine ? 0 : kl(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => Ll(e, t, this.places) : e === "bilinear" && this.grid ? zl(this.places, this.grid) : Al(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => zl(e, t, this.places) : e === "bilinear" && this.grid ? Vl(this.places, this.grid) : Ml(this.places, this.triangles);
 	}
 };
-function Dl(e) {
+function kl(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Ol(e) {
+function Al(e) {
 	let t = {
 		camera: [
 			0,
@@ -5079,7 +5100,7 @@ function Ol(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function kl(e, t, n, r, i, a) {
+function jl(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -5087,49 +5108,49 @@ function kl(e, t, n, r, i, a) {
 		m
 	];
 }
-function Al(e, t) {
+function Ml(e, t) {
 	if (!t.length) {
-		let t = Il(e, Fl(e));
-		return (n, r) => Pl(n, r, e, t);
+		let t = Rl(e, Ll(e));
+		return (n, r) => Il(n, r, e, t);
 	}
-	let n = Ml(e, t, 3), r = Nl(t);
+	let n = Pl(e, t, 3), r = Fl(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * Tl + $(i)] ?? []) {
+		for (let r of n[$(a) * Dl + $(i)] ?? []) {
 			let [n, l, u] = [
-				jl(t, r, 0),
-				jl(t, r, 1),
-				jl(t, r, 2)
-			], d = kl(i, a, e, n, l, u), f = Math.min(...d);
+				Nl(t, r, 0),
+				Nl(t, r, 1),
+				Nl(t, r, 2)
+			], d = jl(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? Pl(i, a, e, r) : Ol(c.map((e, n) => [jl(t, o, n), e]));
+		return s < -1e-9 ? Il(i, a, e, r) : Al(c.map((e, n) => [Nl(t, o, n), e]));
 	};
 }
-var jl = (e, t, n) => e[3 * t + n] ?? 0;
+var Nl = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * Tl)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * Dl)));
 }
-function Ml(e, t, n) {
+function Pl(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * Tl + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * Dl + t]?.push(i);
 	}
 	return r;
 }
-function Nl(e) {
+function Fl(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [jl(e, n, r), jl(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [Nl(e, n, r), Nl(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -5138,7 +5159,7 @@ function Nl(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function Pl(e, t, n, r) {
+function Il(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -5153,12 +5174,12 @@ function Pl(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return Ol([[o, 1 - c], [s, c]]);
+	return Al([[o, 1 - c], [s, c]]);
 }
-function Fl(e) {
+function Ll(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function Il(e, t) {
+function Rl(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -5179,7 +5200,7 @@ function Il(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function Ll(e, t, n) {
+function zl(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -5193,12 +5214,12 @@ function Ll(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || Rl(n, r, i, a) <= wl) return Pl(e, t, n, Il(n, [
+	if (a < 0 || Bl(n, r, i, a) <= El) return Il(e, t, n, Rl(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = kl(e, t, n, r, i, a);
+	let [l, u, d] = jl(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -5214,15 +5235,15 @@ function Ll(e, t, n) {
 		]
 	};
 }
-function Rl(e, t, n, r) {
+function Bl(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function zl(e, t) {
+function Vl(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = Il(e, Fl(e));
-		return (n, r) => Pl(n, r, e, t);
+		let t = Rl(e, Ll(e));
+		return (n, r) => Il(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -5231,7 +5252,7 @@ function zl(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = Ml(e, o.flat(), 4), c = [];
+	let s = Pl(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -5239,12 +5260,12 @@ function zl(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * Tl + $(t)] ?? []) {
-			let s = o[a], c = s ? Bl(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * Dl + $(t)] ?? []) {
+			let s = o[a], c = s ? Hl(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return Pl(t, n, e, l);
-		let [a, c] = Vl(t, n, e, r);
+		if (!r || i < -1e-9) return Il(t, n, e, l);
+		let [a, c] = Ul(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -5256,7 +5277,7 @@ function zl(e, t) {
 		};
 	};
 }
-function Bl(e, t, n, r) {
+function Hl(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -5264,7 +5285,7 @@ function Bl(e, t, n, r) {
 	}
 	return i;
 }
-function Vl(e, t, n, r) {
+function Ul(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -5282,14 +5303,14 @@ function Vl(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Hl(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [Hl(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Wl(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [Wl(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function Hl(e) {
+function Wl(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var Ul = class {
+var Gl = class {
 	parser;
 	options;
 	name = xe;
@@ -5300,11 +5321,11 @@ var Ul = class {
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
-		this.options.renderer && Cc(this.options.renderer);
+		this.options.renderer && Tc(this.options.renderer);
 		let { json: e } = this.parser;
-		me(e), Object.assign(e, await sl(e, (e, t) => this.read(e, t)));
+		me(e), Object.assign(e, await ll(e, (e, t) => this.read(e, t)));
 		let t = aa(e);
-		(!t.timeline || this.options.stream?.readGroups) && (this.scene = t, this.scene.shown || Wl(e));
+		(!t.timeline || this.options.stream?.readGroups) && (this.scene = t, this.scene.shown || Kl(e));
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
@@ -5325,38 +5346,38 @@ var Ul = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = Gl(e, this.parser), [r] = n;
+		let n = ql(e, this.parser), [r] = n;
 		if (!r) throw M("/meshes/0", "no node shows it");
-		t.shown && dl(r.geometry, t.shown);
+		t.shown && pl(r.geometry, t.shown);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
 			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ue(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await fl(t.mesh, i), o = t.timeline && a && await this.openClip(t, t.timeline, a);
+		}, a = t.mesh && await ml(t.mesh, i), o = t.timeline && a && await this.openClip(t, t.timeline, a);
 		if (a) {
-			let e = pl(a);
+			let e = hl(a);
 			r.geometry.dispose();
 			for (let t of n) t.geometry = e;
 		}
-		t.sheets && Bi(t.sheets, r.geometry);
+		t.sheets && Vi(t.sheets, r.geometry);
 		let [s, c, l, u] = await Promise.all([
-			Promise.all(o ? [] : sa(t).map((e) => nl(e, i))),
+			Promise.all(o ? [] : sa(t).map((e) => il(e, i))),
 			Sa(t, i),
 			o ? o.group.omega : Aa(t, i),
 			Ia(t, i)
-		]), d = c.filter((e, n) => !t.heldOut[n]), f = new El(Float64Array.from(d.flatMap((e) => Ba(t, e.centre))), u, t.extent[1] === 0), p = o ? t.planes.map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
+		]), d = c.filter((e, n) => !t.heldOut[n]), f = new Ol(Float64Array.from(d.flatMap((e) => Ba(t, e.centre))), u, t.extent[1] === 0), p = o ? sa(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
 			scene: t,
-			info: Ra(t, c, p, f.grid, this.fileBytes(), ml(r.geometry)),
+			info: Ra(t, c, p, f.grid, this.fileBytes(), gl(r.geometry)),
 			meshes: n,
 			meanSizes: p,
 			omega: l,
 			weights: f,
 			clip: o
-		}, h = o ? new ks(t, o.films) : _l(t, i, s);
-		e.userData.eigenfield = new Wc(m, h, this.options);
+		}, h = o ? new js(t, o.films) : yl(t, i, s);
+		e.userData.eigenfield = new Kc(m, h, this.options);
 	}
 	openClip(e, t, n) {
-		return el(e, t, n, (...e) => this.options.stream.readGroups(...e));
+		return nl(e, t, n, (...e) => this.options.stream.readGroups(...e));
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -5364,50 +5385,50 @@ var Ul = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function Wl(e) {
+function Kl(e) {
 	let [t] = e.nodes;
 	t && (t.mesh = 0), e.meshes = [{ primitives: [{
 		attributes: {},
 		material: 0
 	}] }], e.materials = [{ doubleSided: !0 }];
 }
-function Gl(e, t) {
+function ql(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		Kl(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		Jl(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function Kl(e) {
+function Jl(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function ql(e, t = {}) {
+async function Yl(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new Yc(), i = new AbortController(), a = () => {
+	let r = new Zc(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = Xl(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = Ql(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
-		let e = await Is(r);
+		let e = await Rs(r);
 		if (!ia(e.json)) return {
-			gltf: await Yl(r, e, o),
+			gltf: await Zl(r, e, o),
 			field: null
 		};
-		let i = await Jl(r, e, t);
+		let i = await Xl(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
 			gltf: i,
-			field: a instanceof Wc ? a : null
+			field: a instanceof Kc ? a : null
 		};
 	} catch (e) {
 		throw i.abort(), n?.throwIfAborted(), de(e);
 	}
 }
-async function Jl(e, t, n) {
+async function Xl(e, t, n) {
 	let r = new ce(), i = (t) => async (n, r) => {
 		let i = await t + n;
 		return e.read(i, i + r);
@@ -5418,12 +5439,12 @@ async function Jl(e, t, n) {
 		read: i(a),
 		readGroups: (...e) => i(t.groups())(...e)
 	};
-	return r.register((e) => new Ul(e, {
+	return r.register((e) => new Gl(e, {
 		...n,
 		stream: o
 	})), r.parseAsync(t.text, "");
 }
-async function Yl(e, t, n) {
+async function Zl(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -5435,25 +5456,25 @@ async function Yl(e, t, n) {
 		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function Xl(e, t, n, r) {
+async function Ql(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? Zl(e) : await Ql(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? $l(e) : await eu(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : $l(t.received, e);
+			throw n.aborted ? e : tu(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function Zl(e) {
+function $l(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function Ql(e, t) {
+async function eu(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -5464,7 +5485,7 @@ async function Ql(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function $l(e, t) {
+function tu(e, t) {
 	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { Wc as EigenField, Ul as EigenfieldPlugin, uc as Player, hc as SHEETS, j as SceneError, so as defaultMemory, ql as loadEigenfield, Ua as novelCamera, qa as placeCamera, pe as refuseAddresses };
+export { Kc as EigenField, Gl as EigenfieldPlugin, fc as Player, _c as SHEETS, j as SceneError, so as defaultMemory, Yl as loadEigenfield, Ua as novelCamera, qa as placeCamera, pe as refuseAddresses };
