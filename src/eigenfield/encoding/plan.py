@@ -36,12 +36,14 @@ class PreparedProxy:
         proxy: With UVs and, if it is a relief, its lattice; for a fit its vertices are where the photographs agree.
         views: The cameras that it was prepared for.
         by_quality: Whether another quality needs it prepared anew, with other triangles and charts.
+        exact: Whether it is as it was given, but for the lattice; an opacity is not coded with it then.
     """
 
     given: str | os.PathLike[str] | Mesh | Proxy
     proxy: Proxy
     views: CaptureViews
     by_quality: bool
+    exact: bool = False
 
 
 @dataclass(frozen=True, eq=False)

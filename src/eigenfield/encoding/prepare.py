@@ -58,7 +58,7 @@ def plan_encoding(
         proxy: A mesh, its file, or a proxy with sheets.
         asked: The options; a target is planned for at its preset's quality.
         warn: Whether a mesh that does not lie where the photographs say is named in a warning.
-        exact: Whether vertices stay where they are given, as those of a mesh that moves do.
+        exact: Whether vertices stay where they are given, as those of a mesh that moves do, and an opacity as it is.
 
     Raises:
         CaptureError, ProxyError, OptionError, OutputError: As `encode`.
@@ -109,7 +109,7 @@ def _prepare(
     cameras, given, options = views.rig.cameras, proxy, _for_one_quality(asked)
     if isinstance(proxy, Proxy):
         if proxy.sheets is not None:
-            return _prepare_sheets(proxy, views, options, work, progress)
+            return _prepare_sheets(proxy, views, options, work, progress, exact)
         proxy = proxy.mesh
     simplified = _simplified_by_pictures(views, _for_surface(asked, views)) if _simplifies(options) else None
     mesh = prepare_proxy(
@@ -140,9 +140,9 @@ def _prepare(
 
 
 def _prepare_sheets(
-    proxy: Proxy, views: CaptureViews, options: EncodeOptions, work: Path | None, progress: Progress | None
+    proxy: Proxy, views: CaptureViews, options: EncodeOptions, work: Path | None, progress: Progress | None, exact: bool
 ) -> PreparedProxy:
-    """Sheets with opacity and surfaces fitted.
+    """Sheets with opacity and surfaces fitted, unless they are `exact`.
 
     Raises:
         OptionError: `sheets`: texture maps were asked for, which know one surface.
@@ -153,6 +153,8 @@ def _prepare_sheets(
     _warn_of_rounding(views.capture.cameras, views.rig.cameras, proxy.mesh)
     views = _at_usual_reference(views, options, proxy.mesh)
     given, cameras, observations = proxy, views.rig.encoded_cameras, views.observations
+    if exact:
+        return PreparedProxy(given, proxy, views, by_quality=False, exact=True)
     side = 0 if proxy.sheets is None else max(proxy.sheets.opacity.shape)
     proxy = fit_opacity(proxy, cameras, observations, work, progress)
     proxy = fit_surface(proxy, cameras, observations, side, work, progress)
@@ -188,7 +190,7 @@ def _at_its_quality(prepared: PreparedProxy, asked: EncodeOptions) -> EncodePlan
     atlas = _atlas_size(options, proxy.mesh, views.rig)
     if options.fit == "none":
         return EncodePlan(asked, options, prepared, views, Proxy(proxy.mesh), Payloads(), atlas)
-    made = _coded_proxy(proxy, views, options, atlas)
+    made = _coded_proxy(prepared, views, options, atlas)
     cameras = coded_cameras(views.rig.cameras, made.value.mesh, grid_of(views.coordinates))
     views = views.with_cameras(cameras.value)
     return EncodePlan(asked, options, prepared, views, made.value, made.payloads | cameras.payloads, atlas)
@@ -206,20 +208,22 @@ def _atlas_size(options: EncodeOptions, mesh: Mesh, rig: Rig) -> tuple[int, int]
     return side, side
 
 
-def _coded_proxy(proxy: Proxy, views: CaptureViews, options: EncodeOptions, atlas: tuple[int, int]) -> Coded[Proxy]:
+def _coded_proxy(
+    prepared: PreparedProxy, views: CaptureViews, options: EncodeOptions, atlas: tuple[int, int]
+) -> Coded[Proxy]:
     """The proxy as a fitted file keeps it.
 
-    A relief is simplified by rate and distortion, unless a number of triangles was asked for.
+    A relief is simplified by rate and distortion, unless it is exact or a number of triangles was asked for.
     """
-    rig, quality = views.rig, resolved_value(options.quality)
-    if not _simplifies(options):
+    proxy, rig, quality = prepared.proxy, views.rig, resolved_value(options.quality)
+    if prepared.exact or not _simplifies(options):
         made = coded_mesh(proxy, rig.cameras, rig.reference)
     else:
         texels = float(np.prod(atlas)) * texels_per_pixel(proxy.mesh, rig.cameras[rig.reference]) ** 2
         encoded, reference, lambda_ = rig.encoded_cameras, rig.encoded_reference, byte_lambda(quality)
         made = simplify_proxy_rd(proxy, encoded, reference, views.observations, lambda_, texels)
     sheets = made.value.sheets
-    if sheets is None:
+    if sheets is None or prepared.exact:
         return made
     opacity = coded_opacity(sheets.opacity, quality)
     coded = replace(made.value, sheets=replace(sheets, opacity=opacity.value))

@@ -60,6 +60,7 @@ from eigenfield.reconstruction.stage_files import (
 from eigenfield.reconstruction.unseen import held_out_names, rule_for, without
 from eigenfield.runtime.stages import Stages
 from eigenfield.runtime.tasks import Workers
+from eigenfield.stereo import ReferenceView
 
 log = logging.getLogger("eigenfield.reconstruction")
 
@@ -76,6 +77,7 @@ class Reconstruction:
         report: Quality measures of the proxy's mesh.
         hold_out: A rule of `hold_out` (see `encode`) for the photographs of `light_field`, which holds out those that
             `hold_out`, or else `blind`, named among all photographs; None: there are none.
+        reference: Of a relief: the view over whose pixels it stands, by its texture coordinates too; None for others.
     """
 
     light_field: LightField
@@ -84,6 +86,7 @@ class Reconstruction:
     seconds: dict[str, float]
     report: ProxyReport
     hold_out: str | None = None
+    reference: ReferenceView | None = None
 
     __repr__ = brief_repr
 
@@ -149,7 +152,11 @@ def reconstruct(
                 proxy, error = layers_of_capture(run, source, count), None
         report = measure_proxy(proxy.mesh, light_field.cameras, error)
         folder = calibration if work is not None else None
-        return Reconstruction(light_field, proxy, folder, run.seconds, report, rule_for(light_field, rule, held))
+        by_hand = [*settings.primitives, *settings.fit_spheres]
+        relief = array is not None and proxy.sheets is None and not by_hand
+        reference = array.depth().reference if array is not None and relief else None
+        rule = rule_for(light_field, rule, held)
+        return Reconstruction(light_field, proxy, folder, run.seconds, report, rule, reference)
 
 
 def check_settings(capture: Capture, settings: SurfaceOptions) -> None:

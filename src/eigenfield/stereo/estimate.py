@@ -72,7 +72,7 @@ def estimate_depth(
     step = label_step(matrices, shape, low, high)
     sharp = detail_pictures(packed[chosen], DEPTH_SWEEP_DETAIL_GAIN, blur_sigma=0)
     detail = detail_pictures(packed)
-    picture, known = _warp_reference_picture(packed, matrices, shape)
+    picture, known = warp_reference_picture(packed, matrices, shape)
 
     def extend(d: NDArray[np.float32]) -> NDArray[np.float32]:
         return extend_depth(d, known | _seen_by_enough(packed[chosen], matrices[chosen], d), low, high)
@@ -95,7 +95,7 @@ def estimate_depth(
     return d
 
 
-def _warp_reference_picture(
+def warp_reference_picture(
     packed: NDArray[np.uint32], matrices: NDArray[np.float64], shape: tuple[int, int]
 ) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
     """The reference camera's own picture, warped to the reference view, if it is among the views.
@@ -154,7 +154,7 @@ def spread_views(moves: NDArray[np.float64], max_views: int) -> NDArray[np.int64
     return np.sort(farthest_points(lambda index: np.hypot(*(moves - moves[index]).T), first, max_views))
 
 
-def _min_views(views: int) -> int:
+def least_views(views: int) -> int:
     """Number of views that must see a label for its cost to count: a few alone agree by chance."""
     return max(2, round(DEPTH_MIN_VIEW_FRACTION / 2 * views))
 
@@ -174,8 +174,8 @@ def sweep_and_match(
         pictures: (V, H, W) packed; at edges of the reference camera's own one, depth may jump.
         options: Of `plane_sweep`.
     """
-    compared, known = _warp_reference_picture(detail, matrices, shape)
-    grey = _warp_reference_picture(pictures, matrices, shape)[0].mean(axis=-1).astype(np.float32)
+    compared, known = warp_reference_picture(detail, matrices, shape)
+    grey = warp_reference_picture(pictures, matrices, shape)[0].mean(axis=-1).astype(np.float32)
     cost = plane_sweep(detail, matrices, shape, labels, reference=compared, known=known, **options)
     return semi_global_matching(cost, grey, labels)[0], cost
 
@@ -195,7 +195,7 @@ def sweep_coarse(
     detail = detail_pictures(small, DEPTH_SWEEP_DETAIL_GAIN, blur_sigma=0, base_gain=base_gain)
     d, _ = sweep_and_match(
         detail, small, halved_matrices(matrices[chosen]), small_shape, spaced_labels(low, high, 2 * step),
-        unseen_cost=DEPTH_UNSEEN_COST_LEVELS, min_views=_min_views(len(chosen)),
+        unseen_cost=DEPTH_UNSEEN_COST_LEVELS, min_views=least_views(len(chosen)),
     )  # fmt: skip
     return d
 
@@ -217,7 +217,7 @@ def _sweep_fine(
     buffers = depth_buffers(chosen_matrices, before, packed.shape[1:])
     d, _ = sweep_and_match(
         sharp, packed[chosen], chosen_matrices, shape, labels, floor=floor, ceiling=ceiling, buffers=buffers,
-        unseen_cost=DEPTH_UNSEEN_COST_LEVELS, min_views=_min_views(len(chosen)),
+        unseen_cost=DEPTH_UNSEEN_COST_LEVELS, min_views=least_views(len(chosen)),
         bias=DEPTH_SWEEP_BIAS_LABELS, half_plane_fraction=1.0,
     )  # fmt: skip
     return d

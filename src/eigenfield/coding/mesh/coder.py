@@ -96,12 +96,16 @@ def encode_mesh(
     return _encode(mesh, lattice, uv_bits, fine, sheets)[:2]
 
 
-def vertex_origins(data: bytes, mesh: Mesh) -> NDArray[np.int64]:
-    """(v,) which vertex of a mesh of one sheet each vertex is that `decode_mesh` finds in the bytes of that mesh: the
-    first of those that are one there."""
+def vertex_origins(data: bytes, mesh: Mesh, sheets: Sequence[int] = ()) -> NDArray[np.int64]:
+    """(v,) which vertex of a mesh each vertex is that `decode_mesh` finds in the bytes of that mesh: the first of those
+    that are one there.
+
+    Args:
+        sheets: As of `encode_mesh`.
+    """
     _, flat, uv_bits, fine, _, _, _, *numbers = HEADER.unpack_from(data)
     lattice = Lattice(np.array(numbers).reshape(4, 4), bool(flat))
-    again, _, origins = _encode(mesh, lattice, uv_bits, fine, ())
+    again, _, origins = _encode(mesh, lattice, uv_bits, fine, sheets)
     assert again == data
     return origins
 

@@ -62,12 +62,13 @@ def texture_counts(clip: ClipPlan, opened: OpenGroup) -> tuple[int, ...]:
 
 
 def code_group(
-    group: GroupFrames, opened: OpenGroup, layout: FilmLayout, closed: bool = True
+    group: GroupFrames, opened: OpenGroup, layout: FilmLayout, opacity: CodedFilm | None, closed: bool = True
 ) -> tuple[CodedGroup, list[float]]:
     """A fitted group coded, and the PSNR in dB of each frame's luma before its mean is coded.
 
     Args:
         layout: Says how many textures are kept of each plane: the first ones.
+        opacity: The film of what sheets let through, which the group was fitted to; None: there are none.
         closed: Whether weights and means make up for what was lost before them; else they are coded as they are, and
             no PSNR is known.
     """
@@ -76,11 +77,12 @@ def code_group(
     weights = _code_weights(group, opened, kept, textures) if closed else _weights_as_they_are(group, opened, kept)
     final = _close(group, opened, weights, textures) if closed else opened.frames
     means = _code_means(group, final, layout)
+    films = [means, textures] if opacity is None else [means, textures, opacity]
     coded = CodedGroup(
         weights=tuple((one.payload,) for one in weights),
         means=tuple(means.scale.affine(number, plane.channels) for number, plane in enumerate(parts)),
         bases=tuple((textures.scale.affine(number, len(plane.bases[0].at)),) for number, plane in enumerate(parts)),
-        units=tuple(zip(means.units, textures.units, strict=True)),
+        units=tuple(zip(*(film.units for film in films), strict=True)),
         motion=None if group.clip.moving is None else group.clip.moving.payload(group.numbers),
     )
     return coded, [float(one) for one in final.each("psnr0")] if closed else []

@@ -16,12 +16,13 @@ from typing import TYPE_CHECKING, Any, cast
 from eigenfield.capture.readers.audio import read_opus
 from eigenfield.core.arguments import kind_in_words
 from eigenfield.core.clip import Audio, Clip
-from eigenfield.core.errors import OptionError, one_line
+from eigenfield.core.errors import OptionError, ProxyError, one_line
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import CalibratedObservations
 from eigenfield.core.progress import Progress, begin_step
-from eigenfield.core.proxy import Proxy
+from eigenfield.core.proxy import MovingProxy, Proxy
 from eigenfield.core.version import __version__
+from eigenfield.encoding.clip.backmost import settle_backmost
 from eigenfield.encoding.clip.digest import footage_digest
 from eigenfield.encoding.clip.groups import Groups, MadeGroup, Run
 from eigenfield.encoding.clip.motion import moving_mesh
@@ -48,7 +49,7 @@ if TYPE_CHECKING:
 
 log = logging.getLogger("eigenfield.encode")
 
-GivenProxy = str | os.PathLike[str] | Mesh | Proxy | Sequence[str | os.PathLike[str] | Mesh]
+GivenProxy = str | os.PathLike[str] | Mesh | Proxy | MovingProxy | Sequence[str | os.PathLike[str] | Mesh]
 DEFAULT_GROUP = "1s"
 GROUP_PATTERN = re.compile(r"(\d{1,9})|(\d{1,9}(?:\.\d*)?|\.\d+)s")  # frames, or seconds
 GROUP_LIMITS = 1, 1024  # frames
@@ -69,12 +70,13 @@ def encode_clip(
     given: SurfaceOptions | None = None,
     sound: str | os.PathLike[str] | None = None,
 ) -> Clip:
-    """A clip on a proxy that stands still, or on a mesh for each frame.
+    """A clip on a proxy that stands still, or on a mesh for each frame, or on sheets that change with time.
 
     Its frames share the weights of their group (equation 6, summed over its frames).
 
     Args:
-        proxy: Opaque; or a mesh for each frame (`read_sequences`). None: the surface that `still_capture` shows.
+        proxy: Opaque; or a mesh for each frame (`read_sequences`), or a `MovingProxy`, maybe of sheets, the backmost of
+            which is opaque. None: the surface that `still_capture` shows.
         asked: Options; those that clips have no use for are refused.
         work: Folder that keeps finished stages; None: nothing is kept.
         workers: That make all groups but the first, which says how many textures there are; they see `work` and the
@@ -87,6 +89,8 @@ def encode_clip(
         CaptureError, ProxyError, OutputError: As `encode`.
     """
     refuse_still_options(asked)
+    if isinstance(proxy, MovingProxy) and proxy.proxy.sheets is None:
+        proxy = [replace(proxy.proxy.mesh, vertices=own) for own in proxy.positions]
     surface = surface_of_clip(asked, given or SurfaceOptions(), has_proxy=proxy is not None)
     _refuse_proxy(footage, proxy, asked)
     audio = None if sound is None else Audio(read_opus(sound))
@@ -123,6 +127,7 @@ def encode_clip(
         scores={},
         generator=f"eigenfield {__version__}",
         payloads=plan.payloads,
+        sheets=None if plan.proxy.sheets is None else plan.proxy.sheets.faces,
     )
     return replace(clip, audio=audio)
 
@@ -162,16 +167,22 @@ def _runs(
     work: Path | None,
     progress: Progress | None,
 ) -> list[Run]:
-    """All frames on a mesh that stands still, which is planned by the middle instant. Or frames in a row whose meshes
-    have the same triangles, each planned by its first instant on its own mesh as it is given.
+    """All frames on a mesh that stands still or on sheets, which is planned by the middle instant. Or frames in a row
+    whose meshes have the same triangles, each planned by its first instant on its own mesh as it is given.
 
     Args:
         length: Of a group, in frames, at most.
     """
     if not is_sequence(proxy):
         middle = cast("CalibratedObservations", footage.instant(len(footage) // 2))
-        plan = plan_encoding(middle, cast("Mesh", proxy), asked, work, progress)
-        return [Run(_spans(0, len(footage), length), plan)]
+        spans = _spans(0, len(footage), length)
+        if not isinstance(proxy, MovingProxy):
+            return [Run(spans, plan_encoding(middle, cast("Mesh", proxy), asked, work, progress))]
+        settled = settle_backmost(middle, len(footage) // 2, proxy, asked, work, progress)
+        plan = plan_encoding(middle, settled.proxy, asked, work, progress, exact=True)
+        moving = moving_mesh(plan, settled.positions, opacity=settled.opacity)
+        moving.check_groups(spans)
+        return [Run(spans, plan, moving)]
     origin = cast("CalibratedObservations", footage.instant(0)).origin
     sequences = read_sequences(cast("str", proxy), len(footage), origin)
     runs: list[Run] = []
@@ -184,7 +195,8 @@ def _runs(
         plan = plan_encoding(first, sequence.mesh, whole, work, progress, exact=True)
         if runs:
             plan = replace(plan, views=plan.views.with_cameras(rig.cameras))
-        moving, end = moving_mesh(plan, sequence), sequence.first + len(sequence.positions)
+        origins, end = sequence.vertices_of(plan.prepared.proxy.mesh), sequence.first + len(sequence.positions)
+        moving = moving_mesh(plan, sequence.positions, origins, first=sequence.first)
         runs.append(Run(_spans(sequence.first, end, length), plan, moving))
         moving.check_groups(runs[-1].spans)
     if len(runs) > 1:
@@ -227,10 +239,11 @@ def _refuse_proxy(footage: Footage, proxy: GivenProxy | None, asked: EncodeOptio
         raise OptionError("clip-cameras", "the cameras of this footage are not known", remedy=remedy)
     several: list[Any] = [] if isinstance(proxy, str) or not isinstance(proxy, Sequence) else list(proxy)
     for one in several or ([] if proxy is None else [proxy]):
-        if not isinstance(one, str | os.PathLike | Mesh) and (several or not isinstance(one, Proxy | Sequence)):
+        single = isinstance(one, Proxy | MovingProxy | Sequence) and not several
+        if not isinstance(one, str | os.PathLike | Mesh) and not single:
             remedy = "give a mesh, its file, or one of them for each frame"
             raise OptionError("proxy", f"{kind_in_words(one)} is no proxy", remedy=remedy)
-    if is_sequence(proxy):
+    if is_sequence(proxy) or isinstance(proxy, MovingProxy):
         given = [name for name, is_given in (("triangles", asked.triangles is not None), ("fit", asked.fit == "none"))
                  if is_given]  # fmt: skip
         if given:
@@ -240,6 +253,9 @@ def _refuse_proxy(footage: Footage, proxy: GivenProxy | None, asked: EncodeOptio
         refuse_no_mesh(Path(proxy))
     elif isinstance(proxy, Proxy) and proxy.sheets is not None:
         refuse_sheets()
+    if isinstance(proxy, MovingProxy) and len(proxy.positions) != len(footage):
+        message = f"a surface in {len(proxy.positions)} frames, the clip has {len(footage)}"
+        raise ProxyError("proxy-count", message, remedy="make it for this footage")
 
 
 def _plan_digest(plan: EncodePlan) -> list[Any]:

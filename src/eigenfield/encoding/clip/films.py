@@ -39,16 +39,18 @@ class FilmScale:
     Attributes:
         units: What a code stands for, of each plane.
         zeros: The code of 0, of each plane.
+        limits: The least and the greatest code.
     """
 
     crf: int
     units: tuple[float, ...]
     zeros: tuple[int, ...]
+    limits: tuple[int, int] = LEAST_CODE, MOST_CODE
 
     def codes(self, values: NDArray[np.float32], plane: int) -> NDArray[np.uint16]:
         """Of numbers of a plane."""
         codes = np.rint(values / np.float32(self.units[plane]) + self.zeros[plane])
-        return np.asarray(codes.clip(LEAST_CODE, MOST_CODE), np.uint16)
+        return np.asarray(codes.clip(*self.limits), np.uint16)
 
     def values(self, codes: NDArray[np.uint16], plane: int) -> NDArray[np.float32]:
         """As decoders compute them."""

@@ -17,6 +17,7 @@ from eigenfield.core.observations import Observations
 from eigenfield.core.progress import Progress, track
 from eigenfield.encoding.clip.plan import ClipPlan, KeptPhotographs, OpenActive
 from eigenfield.encoding.clip.rest import MIN_FRAMES, AtRest, camera_at_rest
+from eigenfield.encoding.fitted.observations import DecodedObservations
 from eigenfield.runtime.files import read_arrays
 from eigenfield.runtime.parallel import tracked_map
 from eigenfield.runtime.stages import SCENE_ROOMS, Stages, stage_key
@@ -87,7 +88,7 @@ class GroupFrames:
 
     @contextlib.contextmanager
     def opened(self) -> Iterator[GroupFrames]:
-        """The same with room for its photographs; what stands still is averaged over the group in them."""
+        """The same with room for its photographs, in which what stands still is averaged over the group."""
         with self.clip.open_photographs(len(self)) as kept:
             if len(self) < MIN_FRAMES:
                 yield replace(self, kept=kept)
@@ -105,8 +106,21 @@ class GroupFrames:
             key = stage_key([self.identity, "rest"], SCENE_ROOMS)
             folder = self.stages.run(f"rest-{self.numbers.start:05d}", key, build)
             self.made.append(folder)
-            with self.clip.open_active(folder, self.numbers) as active:
-                yield replace(self, rest=folder, active=active, kept=kept)
+            yield replace(self, rest=folder, kept=kept)
+
+    @contextlib.contextmanager
+    def changing(self) -> Iterator[GroupFrames]:
+        """The same with what changes, which is what frames after the first are fitted to."""
+        if self.rest is None:
+            yield self
+            return
+        with self.clip.open_active(self.rest, self.numbers) as active:
+            yield replace(self, active=active)
+
+    def photographs(self, number: int) -> DecodedObservations:
+        """Those of a frame, decoded; of an `opened` group."""
+        assert self.kept is not None
+        return self.kept.frame(number - self.numbers.start, lambda: self.observations(number))
 
     def observations(self, number: int) -> Observations:
         """The photographs of a frame, as they are or with what stands still averaged."""
@@ -134,9 +148,8 @@ class GroupFrames:
 
         def of_frame(number: int, first: Path | None, *one: Any) -> Arrays:
             more = (None if first is None else load_arrays(first),) if with_first else ()
-            assert self.kept is not None
-            photographs = self.kept.frame(number - self.numbers.start, lambda: self.observations(number))
-            with self.clip.open_frame(number, photographs, None if first is None else self.active) as pixels:
+            active = None if first is None else self.active
+            with self.clip.open_frame(number, self.photographs(number), active) as pixels:
                 return make(pixels, *one, *more)
 
         return self.run_frames(name, of_frame, given, after)

@@ -13,9 +13,11 @@ import numpy as np
 from eigenfield.core.films import CodedGroup, FilmLayout
 from eigenfield.core.progress import Progress, track
 from eigenfield.encoding.clip.closed_loop import code_group, texture_counts
+from eigenfield.encoding.clip.films import CodedFilm
 from eigenfield.encoding.clip.frames import GroupFrames, load_arrays, save_arrays
 from eigenfield.encoding.clip.motion import MovingMesh
-from eigenfield.encoding.clip.open_loop import fit_group
+from eigenfield.encoding.clip.opacity import open_coded_opacity
+from eigenfield.encoding.clip.open_loop import OpenGroup, fit_group
 from eigenfield.encoding.clip.plan import ClipPlan, open_clip_plan
 from eigenfield.encoding.clip.projected import project_group
 from eigenfield.encoding.options import PRESETS, resolved_value
@@ -168,17 +170,27 @@ def _fitted(frames: GroupFrames, counts: tuple[int, ...] | None) -> tuple[CodedG
         counts: As in `Groups.make`.
     """
     clip = frames.clip
-    with frames.opened() as group:
-        opened = fit_group(group, PRESETS[resolved_value(clip.plan.options.preset)].rounds)
+    with open_fitted(frames) as (group, opened, opacity):
         kept = texture_counts(clip, opened) if counts is None else counts
-        return *code_group(group, opened, clip.layout(kept)), kept
+        return *code_group(group, opened, clip.layout(kept), opacity), kept
+
+
+@contextlib.contextmanager
+def open_fitted(frames: GroupFrames) -> Iterator[tuple[GroupFrames, OpenGroup, CodedFilm | None]]:
+    """A group that is fitted and waits to be coded, and the film of its opacity, which is; None: it has no sheets."""
+    with (
+        frames.opened() as seen,
+        open_coded_opacity(seen) as (sheets, opacity),
+        sheets.changing() as group,
+    ):
+        yield group, fit_group(group, PRESETS[resolved_value(frames.clip.plan.options.preset)].rounds), opacity
 
 
 def _projected(frames: GroupFrames) -> tuple[CodedGroup, list[float], tuple[int, ...]]:
     """A group the paper's way; see `_fitted`."""
     opened = project_group(frames)
     kept = tuple(one.weights.shape[1] for one in opened.weights)
-    return *code_group(frames, opened, frames.clip.layout(kept), closed=False), kept
+    return *code_group(frames, opened, frames.clip.layout(kept), None, closed=False), kept
 
 
 def make_group(folder: Path, shared: Shared[Groups], number: int, counts: tuple[int, ...]) -> None:

@@ -14,6 +14,7 @@ from eigenfield.coding.video.film_layout import PlaneSizes, film_layout
 from eigenfield.core.camera import Camera
 from eigenfield.core.films import FilmLayout
 from eigenfield.core.observations import CalibratedObservations, Observations, select_cameras
+from eigenfield.core.proxy import Proxy
 from eigenfield.encoding.clip.active import ActivePlane, Texels, active_texels, open_active_plane
 from eigenfield.encoding.clip.motion import MovingMesh
 from eigenfield.encoding.clip.rest import CameraAtRest
@@ -143,6 +144,8 @@ class ClipPlan:
         thinned: The footprints of every THINNED_STEP-th pixel.
         work: Folder for scratch files.
         moving: The mesh at each frame; None: it stands still.
+        opacity: From the number of a frame to that of its sheets, as a file has it; None: there are none, or it is not
+            coded yet.
     """
 
     plan: EncodePlan
@@ -152,6 +155,7 @@ class ClipPlan:
     thinned: Footprints
     work: Path | None
     moving: MovingMesh | None = None
+    opacity: Callable[[int], NDArray[np.float32]] | None = None
 
     @property
     def cameras(self) -> Sequence[Camera]:
@@ -174,9 +178,11 @@ class ClipPlan:
         return replace(self, planes=tuple(planes))
 
     def layout(self, counts: Sequence[int]) -> FilmLayout:
-        """Where so many eigen textures of each plane, and its mean, lie in films. OptionError `film-size`."""
+        """Where so many eigen textures of each plane, its mean and the opacity of sheets lie in films. OptionError
+        `film-size`."""
         pairs = zip((one.settings for one in self.planes), counts, strict=True)
-        return film_layout([PlaneSizes(len(one.matrix), one.mean, ((one.grid, count),)) for one, count in pairs])
+        planes = [PlaneSizes(len(one.matrix), one.mean, ((one.grid, count),)) for one, count in pairs]
+        return film_layout(planes, None if self.moving is None else self.moving.opacity_size)
 
     @contextlib.contextmanager
     def open_footprints(self, number: int) -> Iterator[tuple[Footprints, Footprints]]:
@@ -184,12 +190,17 @@ class ClipPlan:
         if self.moving is None:
             yield self.footprints, self.thinned
             return
-        surface = make_surface(self.moving.at(number), *self.footprints.surface.size)
+        proxy = self.moving.proxy(number, None if self.opacity is None else self.opacity(number))
         with (
-            open_footprints(surface, self.cameras, self.footprints.detail, work=self.work) as every,
+            self.open_on_proxy(proxy, self.footprints.surface.size) as every,
             subsampled_footprints(every, THINNED_STEP, self.work) as thinned,
         ):
             yield every, thinned
+
+    def open_on_proxy(self, proxy: Proxy, size: tuple[int, int]) -> contextlib.AbstractContextManager[Footprints]:
+        """The footprints on another proxy under an atlas of (rows, columns)."""
+        surface = make_surface(proxy.mesh, *size)
+        return open_footprints(surface, self.cameras, self.footprints.detail, proxy.sheets, self.work)
 
     @contextlib.contextmanager
     def open_active(self, rest: Path, numbers: range) -> Iterator[OpenActive]:

@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 from eigenfield.core.errors import OptionError
 from eigenfield.core.observations import Photograph
 from eigenfield.core.progress import Progress, begin_step
-from eigenfield.core.proxy import Proxy
+from eigenfield.core.proxy import MovingProxy, Proxy
 from eigenfield.encoding.clip.digest import footage_digest
+from eigenfield.encoding.clip.moving import moving_proxy
 from eigenfield.encoding.clip.rest import (
     MARGIN_PIXELS,
     MIN_FRAMES,
@@ -66,12 +67,18 @@ def refuse_sheets() -> NoReturn:
 
 
 def estimate_still_surface(
-    footage: Footage, asked: EncodeOptions, surface: SurfaceOptions, work: Path | None, progress: Progress | None
-) -> tuple[Footage, Proxy, EncodeOptions]:
+    footage: Footage,
+    asked: EncodeOptions,
+    surface: SurfaceOptions,
+    work: Path | None,
+    progress: Progress | None,
+    sheet: bool = False,
+) -> tuple[Footage, Proxy | MovingProxy, EncodeOptions]:
     """The surface of footage whose cameras are known, as finished stages.
 
     Args:
         surface: Of `surface_of_clip`.
+        sheet: Whether what moves has a sheet of its own, where that pays.
 
     Returns:
         The footage with the cameras for which the surface was made, the surface, and the options of what follows.
@@ -82,10 +89,12 @@ def estimate_still_surface(
     with Stages(work) as stages:
         still = still_capture(footage, stages, progress)
         made = estimate(still, asked, surface, stages.folder, None, progress)
-    views = made.light_field.views
-    shown = footage.subset(footage.names.index(view.name) for view in views)
-    shown = shown.with_cameras(made.light_field.cameras, [view.lens for view in views])
-    return shown, made.proxy, replace(asked, triangles=None, hold_out=made.hold_out)
+        views = made.light_field.views
+        shown = footage.subset(footage.names.index(view.name) for view in views)
+        shown = shown.with_cameras(made.light_field.cameras, [view.lens for view in views])
+        sheet &= asked.resolved().fit != "none"  # texture maps know one opaque surface
+        moving = moving_proxy(shown, made, stages, progress) if sheet else None
+    return shown, moving or made.proxy, replace(asked, triangles=None, hold_out=made.hold_out)
 
 
 def frames_of_still(footage: Footage) -> list[int]:

@@ -12,11 +12,11 @@ from eigenfield.core.clip import Clip, Timeline
 from eigenfield.core.progress import Progress
 from eigenfield.core.spread import spread_indices
 from eigenfield.encoding.clip.closed_loop import code_group, texture_counts
+from eigenfield.encoding.clip.films import CodedFilm
 from eigenfield.encoding.clip.frames import GroupFrames
-from eigenfield.encoding.clip.groups import Groups
-from eigenfield.encoding.clip.open_loop import OpenGroup, fit_group
+from eigenfield.encoding.clip.groups import Groups, open_fitted
+from eigenfield.encoding.clip.open_loop import OpenGroup
 from eigenfield.encoding.fitted.colour import to_rgb
-from eigenfield.encoding.options import PRESETS, resolved_value
 from eigenfield.encoding.target import Attempt, Target, search_quality
 from eigenfield.gltf import coded_clip
 from eigenfield.gltf.group import group_bytes
@@ -39,6 +39,7 @@ class _Sample:
 
     frames: GroupFrames
     opened: OpenGroup
+    opacity: CodedFilm | None
 
 
 def reach_quality(groups: Groups, target: Target, stages: Stages, first: int, progress: Progress | None) -> int:
@@ -60,9 +61,7 @@ def reach_quality(groups: Groups, target: Target, stages: Stages, first: int, pr
             title = f"trial of group {number + 1} of {len(groups.spans)}"
             key, span = stage_key(["trial", groups.key(number, None)], SCENE_ROOMS), range(*groups.spans[number])
             frames = GroupFrames(clip, groups.footage.instant, span, stages, key, title, progress)
-            opened = kept.enter_context(frames.opened())
-            rounds = PRESETS[resolved_value(clip.plan.options.preset)].rounds
-            samples.append(_Sample(opened, fit_group(opened, rounds)))
+            samples.append(_Sample(*kept.enter_context(open_fitted(frames))))
         found = search_quality(target, lambda quality: _attempt(groups, samples, target, quality), first)
         for sample in samples:
             sample.frames.clear()
@@ -79,7 +78,7 @@ def _attempt(groups: Groups, samples: list[_Sample], target: Target, quality: in
         group = replace(sample.frames, clip=clip, identity=stage_key([sample.frames.identity, quality], SCENE_ROOMS))
         counts = texture_counts(clip, sample.opened) if counts is None else counts
         layout = clip.layout(counts)
-        coded, _ = code_group(group, sample.opened, layout)
+        coded, _ = code_group(group, sample.opened, layout, sample.opacity)
         data = group_bytes(coded)
         taken, frames = taken + len(data), frames + len(group)
         if target.size is None:
@@ -87,6 +86,7 @@ def _attempt(groups: Groups, samples: list[_Sample], target: Target, quality: in
             alone = coded_clip(
                 plan.views.rig, plan.mesh, Timeline(rate, len(group)), layout, [data], [len(group)],
                 to_rgb=to_rgb(), settings={}, scores={}, generator="", payloads=plan.payloads,
+                sheets=None if plan.proxy.sheets is None else plan.proxy.sheets.faces,
             )  # fmt: skip
             measured += [_measured(target, alone, group, number)
                          for number in spread_indices(len(group), MEASURED_FRAMES)]  # fmt: skip

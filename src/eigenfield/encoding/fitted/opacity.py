@@ -9,8 +9,8 @@ the mean of luma for the opacity, then a damped Gauss-Newton step of the opacity
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
-from contextlib import nullcontext
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from pathlib import Path
 
@@ -68,21 +68,41 @@ def fit_opacity(
     chosen = spread_cameras(cameras, OPACITY_MAX_CAMERAS)
     some, used = select_cameras(observations, chosen), [cameras[index] for index in chosen]
     assert proxy.sheets is not None
-    given, opacity = proxy.sheets.opacity, proxy.sheets.opacity
-    size = given.shape[0], given.shape[1]
-    model = PlaneModel.grey(split_matrix()[0], size)
+    size = proxy.sheets.opacity.shape[0], proxy.sheets.opacity.shape[1]
     with open_fit_data(used, some, proxy, size, work) as every:
-        for number in range(OPACITY_ROUNDS):
-            if progress is not None:
-                progress("fit opacity", number, OPACITY_ROUNDS)
-            with open_on_proxy(every, used, proxy, work) if number else nullcontext(every) as data:
-                iterations = OPACITY_ITERATIONS if number else OPACITY_FIRST_ITERATIONS
-                mean_alone = fit_mean(data, model, measure_scales(data, model), iterations)
-                log.info("opacity, before round %d: %.2f dB by the mean alone", number, mean_alone.psnr)
-                opacity = _stepped(opacity, given, *_sums(data, model))
-            proxy = replace(proxy, sheets=replace(proxy.sheets, opacity=opacity))
+        return opacity_in_rounds(
+            proxy,
+            lambda now: nullcontext(every) if now is proxy else open_on_proxy(every, used, now, work),
+            OPACITY_ROUNDS,
+            progress,
+        )
+
+
+def opacity_in_rounds(
+    proxy: Proxy,
+    open_data: Callable[[Proxy], AbstractContextManager[FitData]],
+    rounds: int,
+    progress: Progress | None = None,
+) -> Proxy:
+    """The proxy with the opacity of its sheets fitted in so many rounds.
+
+    Args:
+        open_data: From a proxy, given or of a round, to what its opacity is fitted to, under an atlas of its size.
+    """
+    assert proxy.sheets is not None
+    given, opacity = proxy.sheets.opacity, proxy.sheets.opacity
+    model = PlaneModel.grey(split_matrix()[0], (given.shape[0], given.shape[1]))
+    for number in range(rounds):
+        if progress is not None:
+            progress("fit opacity", number, rounds)
+        with open_data(proxy) as data:
+            iterations = OPACITY_ITERATIONS if number else OPACITY_FIRST_ITERATIONS
+            mean_alone = fit_mean(data, model, measure_scales(data, model), iterations)
+            log.info("opacity, before round %d: %.2f dB by the mean alone", number, mean_alone.psnr)
+            opacity = _stepped(opacity, given, *_sums(data, model))
+        proxy = replace(proxy, sheets=replace(proxy.sheets, opacity=opacity))
     if progress is not None:
-        progress("fit opacity", OPACITY_ROUNDS, OPACITY_ROUNDS)
+        progress("fit opacity", rounds, rounds)
     return proxy
 
 

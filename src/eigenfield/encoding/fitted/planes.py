@@ -201,9 +201,19 @@ def coded_opacity(opacity: NDArray[np.float32], quality: int) -> Coded[NDArray[n
         opacity: (H, W) in 0..1, about a texel for a photograph's pixel.
         quality: 0 to 100.
     """
-    rows, columns = (max(MIN_SIDE_TEXELS, side + side % 2) for side in opacity.shape)
-    even = opacity if opacity.shape == (rows, columns) else np.asarray(cv2.resize(opacity, (columns, rows)), np.float32)
-    return code_opacity(even, OPACITY_STEP * step_of(quality), SVT_CODER)
+    return code_opacity(even_opacity(opacity), OPACITY_STEP * step_of(quality), SVT_CODER)
+
+
+def opacity_size(shape: Sequence[int]) -> tuple[int, int]:
+    """(rows, columns) that the encoder takes for an opacity of such a shape."""
+    rows, columns = (max(MIN_SIDE_TEXELS, side + side % 2) for side in shape)
+    return rows, columns
+
+
+def even_opacity(opacity: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The opacity (H, W) with the sides of `opacity_size`."""
+    rows, columns = opacity_size(opacity.shape)
+    return opacity if opacity.shape == (rows, columns) else np.asarray(cv2.resize(opacity, (columns, rows)), np.float32)
 
 
 def plane_size(size: tuple[int, int], share: float) -> tuple[int, int]:

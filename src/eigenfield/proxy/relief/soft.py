@@ -101,7 +101,7 @@ def soft_relief(
     layer = np.full((round(side), round(side), 4), np.nan, np.float32)
     counts = [0] * len(kept)
     for (part, owner, place), of_part in zip(packed, np.split(depth, ends), strict=True):
-        _draw_chart(sheets.layers[kept[owner]], part, of_part, place, layer)
+        draw_chart(sheets.layers[kept[owner]], part, of_part, place, layer)
         counts[owner] += len(part.faces)
     uv = np.concatenate([(np.stack([part.x, part.y], axis=1) + place) / side for part, _, place in packed])
     mesh = replace(mesh, uv=np.clip(uv, 0, 1).astype(np.float32))
@@ -135,7 +135,7 @@ def _dilated(mask: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
     return np.asarray(cv2.dilate(mask.astype(np.uint8), disc), np.bool_)
 
 
-def _draw_chart(
+def draw_chart(
     layer: NDArray[np.float32],
     part: HeightFieldMesh,
     depth: NDArray[np.float64],
@@ -148,10 +148,10 @@ def _draw_chart(
     and depths z of the corners, the reference view sees it at sum(l z x) / sum(l z), not at sum(l x).
 
     Args:
-        layer: (h, w, 4) of the sheet.
+        layer: (h, w, 4) of the sheet, or (h, w) one of its channels.
         depth: (n,) of its vertices in the reference view.
         place: (2,) of the part in the atlas.
-        atlas: (S, S, 4), drawn into.
+        atlas: (S, S, 4) or (S, S), drawn into.
     """
     chart = chart_pixels(part)
     row, column = np.nonzero(chart.owner >= 0)

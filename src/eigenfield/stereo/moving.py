@@ -1,0 +1,335 @@
+"""Depth of what moves before, or elsewhere than, a surface that stands still: from the photographs of one frame.
+
+A label of the reference view is as good as the photographs agree on it (`plane_sweep`), and as it lies in all cameras
+on pixels that have changed: what moves changes every camera that sees it. The label of the still surface needs no
+change, and is preferred. So where light or a shadow changes, the surface stays; where something stands elsewhere in
+depth, or is seen for the first time behind what has left, another label explains the photographs better.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt, label, mean, sum_labels
+
+from eigenfield.stereo.detail import detail_pictures
+from eigenfield.stereo.estimate import (
+    DEPTH_SWEEP_BIAS_LABELS,
+    DEPTH_SWEEP_DETAIL_GAIN,
+    DEPTH_UNSEEN_COST_LEVELS,
+    label_step,
+    least_views,
+    spaced_labels,
+    warp_reference_picture,
+)
+from eigenfield.stereo.semiglobal import semi_global_matching
+from eigenfield.stereo.smooth import smooth_depth
+from eigenfield.stereo.sweep import plane_sweep
+from eigenfield.stereo.sweep_kernels import SWEEP_COST_UNITS_PER_LEVEL, SWEEP_EXCLUDED_COST
+from eigenfield.stereo.taps import EMPTY_DEPTH_LABEL
+from eigenfield.stereo.views import halve_pictures, halved_matrices, label_parallax, pack_pictures
+from eigenfield.stereo.visibility import depth_buffers, mean_texture
+
+MOVING_FAR_FRACTION, MOVING_NEAR_FRACTION = 0.1, 0.6  # of the still surface's range of labels, by which it is widened
+MOVING_NEAR_WIDTHS = 0.1  # of the picture, that what moves may stand apart from the still surface in the outermost view
+MOVING_RANGE_PERCENTILES = (0.5, 99.5)  # of its labels, which are its range
+MOVING_UNCHANGED_LEVELS = 12.0  # cost of a label that no camera sees changed
+MOVING_MIN_CHANGED_SHARE = 0.6  # of the cameras that see a point, where something may move
+MOVING_SHARE_STEPS = 2  # of labels, from one to the next at which changed pixels are counted
+MOVING_ROOM_PIXELS = 8  # of half the resolution, around the part that is looked at
+MOVING_ROOM_STEPS = 3  # of labels, that are tried beyond those at which enough cameras see a change
+MOVING_STILL_LEVELS = 1.5  # by which another label must be better than the still surface
+MOVING_NEAR_STILL_LABELS = 1.5  # steps of labels from the still surface that count as on it
+MOVING_KEPT_SHARE = 0.7  # of a label of the frame before, where the views show the same as then
+MOVING_SAME_LEVELS = 8.0  # difference from the frame before at which that is halved
+MOVING_MIN_GAIN_LEVELS = 1.0  # by which a region's labels must be better than the still surface, on average
+MOVING_MIN_REGION_FRACTION = 0.0002  # of the reference view; smaller regions are errors
+MOVING_HOLE_REGIONS = 4  # of such regions, up to which a hole is closed
+MOVING_ROUNDS = 2  # in the second, what moves hides what is behind it
+MOVING_EDGE_RADIUS_PIXELS, MOVING_EDGE_LEVELS = 2, 6.0  # of the guided filter that finds outlines
+
+
+@dataclass(frozen=True, eq=False)
+class StillDepth:
+    """The surface that stands still, and the cameras that see it.
+
+    Attributes:
+        matrices: (V, 3, 4) of the views.
+        d: (h, w) its labels.
+        labels: (L,) that are tried for what moves, evenly spaced.
+    """
+
+    matrices: NDArray[np.float64]
+    d: NDArray[np.float32]
+    labels: NDArray[np.float32]
+
+    @staticmethod
+    def of(matrices: NDArray[np.float64], d: NDArray[np.float32]) -> StillDepth:
+        """With the labels of its range, and of what may move before and behind it."""
+        low, high = (float(one) for one in np.percentile(d, MOVING_RANGE_PERCENTILES))
+        fastest = float(np.hypot(*label_parallax(matrices, d.shape, high).T).max(initial=1e-9))
+        first = low - MOVING_FAR_FRACTION * (high - low)
+        last = high + max(MOVING_NEAR_FRACTION * (high - low), MOVING_NEAR_WIDTHS * d.shape[1] / fastest)
+        return StillDepth(matrices, d, spaced_labels(first, last, label_step(matrices, d.shape, first, last)))
+
+    @property
+    def step(self) -> float:
+        """Between two labels."""
+        return float(self.labels[1] - self.labels[0])
+
+
+@dataclass(frozen=True, eq=False)
+class MovingDepth:
+    """What moves in a frame.
+
+    Attributes:
+        d: (h, w) float32 its labels, continued smoothly where nothing moves; those of the still surface if nothing
+            moves at all.
+        opacity: (h, w) float32, 1 where it is seen, 0 elsewhere, soft at outlines.
+        texture: (h, w, 3) float32 what the views show there, in grey levels.
+    """
+
+    d: NDArray[np.float32]
+    opacity: NDArray[np.float32]
+    texture: NDArray[np.float32]
+
+
+def find_moving(
+    pictures: NDArray[np.uint8],
+    changed: NDArray[np.bool_],
+    still: StillDepth,
+    before: MovingDepth | None = None,
+    shown: NDArray[np.bool_] | None = None,
+) -> MovingDepth:
+    """What moves in a frame.
+
+    Args:
+        pictures: (V, H, W, 3) photographs of the frame.
+        changed: (V, H, W) of `changed_pixels`; also where a photograph of what stands still is not known.
+        before: Of the frame before.
+        shown: (V, H, W) pixels that count. Default: all.
+    """
+    if shown is not None:
+        some = shown.any(axis=(1, 2))
+        pictures, changed, shown = pictures[some], changed[some], shown[some]
+        still = replace(still, matrices=still.matrices[some])
+    matrices, d = still.matrices, still.d
+    packed = pack_pictures(pictures)
+    hidden = None if shown is None else np.where(shown, EMPTY_DEPTH_LABEL, -EMPTY_DEPTH_LABEL)
+    flags = _as_pictures(changed)
+    at_rest = mean_texture(flags, matrices, d, hidden)[0][..., 0] < 1
+    buffers = depth_buffers(matrices, d, packed.shape[1:], at_rest)
+    buffers = buffers if hidden is None else np.maximum(buffers, hidden)
+    share = _changed_share(flags, still, buffers)
+    opacity, texture = np.zeros(d.shape, np.float32), mean_texture(packed, matrices, d, hidden)[0]
+    window = _Window.around(share, still)
+    if window is None:
+        return MovingDepth(d, opacity, texture)
+    part = window.part
+    cut = None if before is None else MovingDepth(before.d[part], before.opacity[part], before.texture[part])
+    found = _match(packed, window, buffers, hidden, cut)
+    if found is None:
+        return MovingDepth(d, opacity, texture)
+    opacity[part], texture[part] = found.opacity, found.texture
+    around = [(one.start, size - one.stop) for one, size in zip(part, d.shape, strict=True)]
+    return MovingDepth(np.pad(found.d, around, mode="edge"), opacity, texture)
+
+
+@dataclass(frozen=True, eq=False)
+class _Window:
+    """The part of the reference view in which something may move.
+
+    Attributes:
+        part: Its rows and columns, which begin with even ones.
+        still: Of the part alone, with the labels that are tried there.
+        share: (h / 2, w / 2, L) of `_changed_share`, with those labels.
+        may_move: (h, w).
+        floor: (h, w) lowest label that is tried.
+        ceiling: (h, w) highest label that is tried.
+    """
+
+    part: tuple[slice, slice]
+    still: StillDepth
+    share: NDArray[np.uint8]
+    may_move: NDArray[np.bool_]
+    floor: NDArray[np.float32]
+    ceiling: NDArray[np.float32]
+
+    @staticmethod
+    def around(share: NDArray[np.uint8], still: StillDepth) -> _Window | None:
+        """The window for a whole `_changed_share`; None: nothing may move."""
+        changed = share >= MOVING_MIN_CHANGED_SHARE * 255
+        some = np.asarray(changed.any(axis=2))
+        if not some.any():
+            return None
+        (top, bottom), (left, right) = ((at.min(), at.max() + 1) for at in np.nonzero(some))
+        room = MOVING_ROOM_PIXELS
+        half = slice(max(0, top - room), bottom + room), slice(max(0, left - room), right + room)
+        height, width = still.d.shape
+        part = (
+            slice(2 * half[0].start, min(2 * half[0].stop, height)),
+            slice(2 * half[1].start, min(2 * half[1].stop, width)),
+        )
+        share, changed, d = share[half], changed[half], still.d[part]
+        steps = still.labels[::MOVING_SHARE_STEPS]
+        first, last = changed.argmax(axis=2), len(steps) - 1 - changed[..., ::-1].argmax(axis=2)
+
+        def whole(values: NDArray[Any]) -> NDArray[Any]:
+            return values.repeat(2, axis=0).repeat(2, axis=1)[: d.shape[0], : d.shape[1]]
+
+        may_move, more = whole(some[half]), MOVING_ROOM_STEPS * np.float32(still.step)
+        low, high = (np.where(may_move, whole(steps[k]), d) for k in (first, last))
+        around = np.ones((5, 5), np.uint8)
+        floor = np.asarray(cv2.erode(np.minimum(low, d) - more, around), np.float32)
+        ceiling = np.asarray(cv2.dilate(np.maximum(high, d) + more, around), np.float32)
+        may_move = cv2.dilate(may_move.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0
+        ends = np.searchsorted(still.labels, (floor[may_move].min(), ceiling[may_move].max()))
+        begin = int(ends[0]) // MOVING_SHARE_STEPS * MOVING_SHARE_STEPS
+        labels = still.labels[begin : max(int(ends[1]), begin + 3)]
+        shift = np.eye(4)
+        shift[0, 3], shift[1, 3] = part[1].start, part[0].start
+        return _Window(
+            part, StillDepth(still.matrices @ shift, d, labels), share[..., begin // MOVING_SHARE_STEPS :], may_move,
+            floor, ceiling,
+        )  # fmt: skip
+
+
+def _match(
+    packed: NDArray[np.uint32], window: _Window, buffers: NDArray[np.float32], hidden: NDArray[np.float32] | None,
+    before: MovingDepth | None,
+) -> MovingDepth | None:  # fmt: skip
+    """What moves in a window; None: nothing.
+
+    Args:
+        buffers: (V, H, W) of what stands still.
+        hidden: (V, H, W) that hide pixels that do not count; None: all count.
+        before: Of the frame before, in the window.
+    """
+    still, may_move = window.still, window.may_move
+    matrices, d = still.matrices, still.d
+    detail = detail_pictures(packed, DEPTH_SWEEP_DETAIL_GAIN, blur_sigma=0)
+    compared, known = warp_reference_picture(detail, matrices, d.shape)
+    guide, _ = warp_reference_picture(packed, matrices, d.shape)
+    if hidden is not None:
+        known &= warp_reference_picture(_as_pictures(hidden < 0), matrices, d.shape)[0][..., 0] > 254
+    beside = mean_texture(packed, matrices, d, hidden)[0]
+    found, moves, confidence = d, may_move, np.zeros(d.shape, np.float32)
+    for _ in range(MOVING_ROUNDS):
+        cost = plane_sweep(
+            detail, matrices, d.shape, still.labels, reference=compared, known=known, mask=may_move,
+            floor=window.floor, ceiling=window.ceiling, buffers=buffers, bias=DEPTH_SWEEP_BIAS_LABELS,
+            half_plane_fraction=1.0, min_views=least_views(len(packed)),
+            unseen_cost=DEPTH_UNSEEN_COST_LEVELS,
+        )  # fmt: skip
+        guide = np.where(known[..., None], guide, beside).astype(np.float32)
+        cost, gain = _priced(cost, window)
+        found, confidence = semi_global_matching(cost, guide.mean(axis=2), still.labels)
+        moves = _moving_regions(found, gain, still, may_move)
+        if not moves.any():
+            return None
+        buffers = np.maximum(buffers, depth_buffers(matrices, found, packed.shape[1:], moves))
+        beside = mean_texture(packed, matrices, np.where(moves, found, d), buffers, DEPTH_SWEEP_BIAS_LABELS)[0]
+    nearest = distance_transform_edt(~moves, return_distances=False, return_indices=True)
+    smooth = smooth_depth(found[tuple(nearest)], np.where(moves, confidence, 0), guide)
+    if before is not None:
+        smooth = smooth + _kept_share(packed, still, before, hidden) * (before.d - smooth)
+    smooth = np.clip(smooth, still.labels[0], still.labels[-1])
+    texture, count = mean_texture(packed, matrices, np.where(moves, smooth, d), hidden)
+    return MovingDepth(smooth, _soft_outlines(moves, guide), np.where(count[..., None] > 0, texture, guide))
+
+
+def _as_pictures(masks: NDArray[np.bool_]) -> NDArray[np.uint32]:
+    """Packed pictures of masks, white where they are True."""
+    return np.where(masks, np.uint32(0xFFFFFF), np.uint32(0))
+
+
+def _changed_share(flags: NDArray[np.uint32], still: StillDepth, buffers: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """(h / 2, w / 2, labels) uint8 how many of the views that see a point see a changed pixel there, 255: all.
+
+    At half the resolution every second label is as fine.
+    """
+    height, width = still.d.shape
+    small, matrices = halve_pictures(flags), halved_matrices(still.matrices)
+    pair = np.ones((2, 2), np.uint8)
+    near = np.array([cv2.erode(one, pair, anchor=(0, 0))[::2, ::2] for one in buffers], np.float32)
+    labels = still.labels[::MOVING_SHARE_STEPS]
+    share = np.empty(((height + 1) // 2, (width + 1) // 2, len(labels)), np.uint8)
+    for k, value in enumerate(labels):
+        plane = np.full(share.shape[:2], value, np.float32)
+        share[..., k] = mean_texture(small, matrices, plane, near, DEPTH_SWEEP_BIAS_LABELS)[0][..., 0]
+    return share
+
+
+def _kept_share(
+    packed: NDArray[np.uint32], still: StillDepth, before: MovingDepth, hidden: NDArray[np.float32] | None
+) -> NDArray[np.float32]:
+    """(h, w) how much of the labels of the frame before stays: much where the views show the same as then."""
+    d = np.where(before.opacity >= 0.5, before.d, still.d)
+    now = mean_texture(packed, still.matrices, d, hidden)[0]
+    apart = np.abs(now - before.texture).max(axis=2) / np.float32(MOVING_SAME_LEVELS)
+    share = MOVING_KEPT_SHARE / (1 + apart**2) * (before.opacity >= 0.5)
+    return np.asarray(share, np.float32)
+
+
+def _priced(cost: NDArray[np.uint8], window: _Window) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+    """(h, w, L) costs of labels with all that speaks for or against them, and (h, w) by how many grey levels the
+    photographs agree better on the best label than on the still surface."""
+    still, units, top = window.still, float(SWEEP_COST_UNITS_PER_LEVEL), SWEEP_EXCLUDED_COST - 1
+    index = np.arange(len(still.labels), dtype=np.float32)
+    base = np.clip((still.d - still.labels[0]) / still.step, 0, index[-1])
+    result = np.empty_like(cost)
+    gain = np.zeros(cost.shape[:2], np.float32)
+    for row in range(len(cost)):  # one row at a time: the volume is large
+        agree = cost[row].astype(np.float32)
+        on_still = np.abs(index - base[row][:, None]) <= MOVING_NEAR_STILL_LABELS
+        share = window.share[row // 2].repeat(2, axis=0).repeat(MOVING_SHARE_STEPS, axis=1)[: len(agree), : len(index)]
+        moving = agree + units * MOVING_UNCHANGED_LEVELS / 255 * (255 - share.astype(np.float32))
+        stays = np.where(on_still, agree, np.inf).min(axis=1, initial=top)
+        gain[row] = (stays - np.where(on_still, top, moving).min(axis=1)) / units
+        own = np.where(on_still, np.maximum(stays - units * MOVING_STILL_LEVELS, 0)[:, None], moving)
+        at_rest = ~window.may_move[row]
+        own[at_rest] = np.where(on_still[at_rest], 0, top)
+        result[row] = np.minimum(np.rint(own), top)
+    return result, gain
+
+
+def _moving_regions(
+    found: NDArray[np.float32], gain: NDArray[np.float32], still: StillDepth, may_move: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """(h, w) pixels whose label is not the still surface's, in regions that are large and pay; holes are closed."""
+    apart = (MOVING_NEAR_STILL_LABELS + 0.5) * still.step  # a label may lie half a step beside the one that was tried
+    moves = may_move & (np.abs(found - still.d) > apart)
+    least = max(4, round(MOVING_MIN_REGION_FRACTION * moves.size))
+    regions, count = label(moves)
+    numbers = np.arange(1, count + 1)
+    kept = np.zeros(count + 1, np.bool_)
+    if count:
+        kept[1:] = np.asarray(sum_labels(moves, regions, numbers)) >= least
+        kept[1:] &= np.asarray(mean(gain, regions, numbers)) >= MOVING_MIN_GAIN_LEVELS
+    moves = kept[regions]
+    holes, count = label(~moves)
+    small = np.bincount(holes.ravel(), minlength=count + 1) < MOVING_HOLE_REGIONS * least
+    small[0] = False
+    return moves | small[holes]
+
+
+def _soft_outlines(moves: NDArray[np.bool_], guide: NDArray[np.float32]) -> NDArray[np.float32]:
+    """(h, w) opacity: a guided filter of the mask, whose outlines follow those of the photographs.
+
+    He, Sun and Tang, Guided Image Filtering, PAMI 2013, with the mean of three grey guides.
+    """
+    side = 2 * MOVING_EDGE_RADIUS_PIXELS + 1
+
+    def blur(values: NDArray[np.float32]) -> NDArray[np.float32]:
+        return np.asarray(cv2.blur(values, (side, side)), np.float32)
+
+    mask = moves.astype(np.float32)[..., None].repeat(3, axis=2)
+    centre, share = blur(guide), blur(mask)
+    spread = blur(guide * guide) - centre * centre + np.float32(MOVING_EDGE_LEVELS**2)
+    slope = np.asarray((blur(guide * mask) - centre * share) / spread, np.float32)
+    drawn = blur(slope) * guide + blur(share - slope * centre)
+    return np.clip(1.5 * (drawn.mean(axis=2) - 0.5) + 0.5, 0, 1).astype(np.float32)
