@@ -1,7 +1,7 @@
-import { BufferAttribute as e, BufferGeometry as t, Camera as n, ClampToEdgeWrapping as r, Color as i, CustomBlending as a, DataArrayTexture as o, DataUtils as s, DepthStencilFormat as c, DepthTexture as l, DoubleSide as u, EqualStencilFunc as d, EventDispatcher as f, ExternalTexture as p, FrontSide as m, GLSL3 as h, HalfFloatType as g, IncrementStencilOp as _, InstancedBufferGeometry as v, LinearFilter as y, LinearMipmapLinearFilter as b, Matrix4 as x, Mesh as S, MeshBasicMaterial as C, NearestFilter as w, NoBlending as T, OneFactor as E, OneMinusSrcAlphaFactor as ee, RGBAFormat as D, RawShaderMaterial as O, Scene as k, Sphere as te, UnsignedByteType as ne, UnsignedInt248Type as re, Vector2 as ie, Vector3 as A, Vector4 as ae, WebGLRenderTarget as oe, ZeroStencilOp as se } from "three";
-import { GLTFLoader as ce } from "three/addons/loaders/GLTFLoader.js";
+import { BufferAttribute as e, BufferGeometry as t, Camera as n, ClampToEdgeWrapping as r, Color as i, CustomBlending as a, DataArrayTexture as o, DataUtils as s, DepthStencilFormat as c, DepthTexture as l, DoubleSide as u, EqualStencilFunc as d, EventDispatcher as f, ExternalTexture as p, FrontSide as m, GLSL3 as h, HalfFloatType as g, IncrementStencilOp as _, InstancedBufferGeometry as v, LinearFilter as y, LinearMipmapLinearFilter as b, Matrix4 as x, Mesh as S, MeshBasicMaterial as C, NearestFilter as w, NoBlending as T, OneFactor as E, OneMinusSrcAlphaFactor as D, RGBAFormat as O, RawShaderMaterial as k, Scene as A, Sphere as ee, UnsignedByteType as te, UnsignedInt248Type as ne, Vector2 as re, Vector3 as j, Vector4 as ie, WebGLRenderTarget as ae, ZeroStencilOp as oe } from "three";
+import { GLTFLoader as se } from "three/addons/loaders/GLTFLoader.js";
 // eigenfield-three/src/errors.ts
-var j = class extends Error {
+var M = class extends Error {
 	code;
 	where;
 	name = "SceneError";
@@ -9,65 +9,65 @@ var j = class extends Error {
 		super(t, r), this.code = e, this.where = n;
 	}
 };
-function M(e, t) {
-	return new j("damaged", `The file is damaged (${e}: ${t}); make or download it again.`, e);
+function N(e, t) {
+	return new M("damaged", `The file is damaged (${e}: ${t}); make or download it again.`, e);
 }
-function le(e, t) {
-	return new j("truncated", `The file is cut off after ${e} of ${t} bytes; download or copy it again.`, String(e));
+function ce(e, t) {
+	return new M("truncated", `The file is cut off after ${e} of ${t} bytes; download or copy it again.`, String(e));
 }
-function ue(e) {
-	return new j("truncated", `The file is cut off (${e}); download or copy it again.`, e);
+function le(e) {
+	return new M("truncated", `The file is cut off (${e}); download or copy it again.`, e);
 }
-function de(e, t = "") {
-	return e instanceof j ? e : new j("damaged", `The file cannot be read (${(e instanceof Error ? e.message : String(e)).replace(/^THREE\.GLTFLoader: /, "")}); make or download it again.`, t, { cause: e });
+function ue(e, t = "") {
+	return e instanceof M ? e : new M("damaged", `The file cannot be read (${(e instanceof Error ? e.message : String(e)).replace(/^THREE\.GLTFLoader: /, "")}); make or download it again.`, t, { cause: e });
 }
 // eigenfield-three/src/addresses.ts
-var fe = 60;
-function pe(e) {
+var de = 60;
+function fe(e) {
 	return {
 		name: "EIGENFIELD_addresses",
-		beforeRoot: async () => me(e.json)
+		beforeRoot: async () => pe(e.json)
 	};
 }
-function me(e) {
+function pe(e) {
 	let t = [["", e]];
 	for (let e = t.pop(); e; e = t.pop()) {
 		let [n, r] = e;
 		if (typeof r == "object" && r) for (let [e, i] of Object.entries(r)) {
 			if (e === "extras" && !Array.isArray(r)) continue;
 			let a = `${n}/${e}`;
-			if (e === "uri" && !(typeof i == "string" && /^data:/i.test(i))) throw he(a, JSON.stringify(i));
+			if (e === "uri" && !(typeof i == "string" && /^data:/i.test(i))) throw me(a, JSON.stringify(i));
 			t.push([a, i]);
 		}
 	}
 }
-function he(e, t) {
-	return new j("address", `The file names another one (${e}: ${t.length > fe ? `${t.slice(0, fe)}…` : t}), which is not fetched; export all of it as one .glb.`, e);
+function me(e, t) {
+	return new M("address", `The file names another one (${e}: ${t.length > de ? `${t.slice(0, de)}…` : t}), which is not fetched; export all of it as one .glb.`, e);
 }
 // eigenfield-three/src/av1-picture.ts
-var ge = 1, _e = 7;
-function ve(e, t) {
-	let { level: n, tier: r, width: i, height: a } = ye(new Uint8Array(e), t), o = r << 7 | 76, s = N("ipco", [
-		...N("ispe", [
-			...P(0),
-			...P(i),
-			...P(a)
+var he = 1, ge = 7;
+function _e(e, t) {
+	let { level: n, tier: r, width: i, height: a } = ve(new Uint8Array(e), t), o = r << 7 | 76, s = P("ipco", [
+		...P("ispe", [
+			...F(0),
+			...F(i),
+			...F(a)
 		]),
-		...N("pixi", [
-			...P(0),
+		...P("pixi", [
+			...F(0),
 			3,
 			10,
 			10,
 			10
 		]),
-		...N("av1C", [
+		...P("av1C", [
 			129,
 			n,
 			o,
 			0
 		]),
-		...N("colr", [
-			...F("nclx"),
+		...P("colr", [
+			...I("nclx"),
 			0,
 			2,
 			0,
@@ -76,25 +76,25 @@ function ve(e, t) {
 			2,
 			128
 		])
-	]), c = N("ftyp", [
-		...F("avif"),
-		...P(0),
-		...F("avifmif1miafMA1B")
-	]), l = (t) => N("meta", [
-		...P(0),
-		...N("hdlr", [
-			...P(0),
-			...P(0),
-			...F("pict"),
+	]), c = P("ftyp", [
+		...I("avif"),
+		...F(0),
+		...I("avifmif1miafMA1B")
+	]), l = (t) => P("meta", [
+		...F(0),
+		...P("hdlr", [
+			...F(0),
+			...F(0),
+			...I("pict"),
 			...Array(13).fill(0)
 		]),
-		...N("pitm", [
-			...P(0),
+		...P("pitm", [
+			...F(0),
 			0,
 			1
 		]),
-		...N("iloc", [
-			...P(0),
+		...P("iloc", [
+			...F(0),
 			68,
 			0,
 			0,
@@ -105,14 +105,14 @@ function ve(e, t) {
 			0,
 			0,
 			1,
-			...P(t),
-			...P(e.byteLength)
+			...F(t),
+			...F(e.byteLength)
 		]),
-		...N("iinf", [
-			...P(0),
+		...P("iinf", [
+			...F(0),
 			0,
 			1,
-			...N("infe", [
+			...P("infe", [
 				2,
 				0,
 				0,
@@ -121,13 +121,13 @@ function ve(e, t) {
 				1,
 				0,
 				0,
-				...F("av01"),
+				...I("av01"),
 				0
 			])
 		]),
-		...N("iprp", [...s, ...N("ipma", [
-			...P(0),
-			...P(1),
+		...P("iprp", [...s, ...P("ipma", [
+			...F(0),
+			...F(1),
 			0,
 			1,
 			4,
@@ -139,12 +139,12 @@ function ve(e, t) {
 	]), u = c.length + l(0).length + 8, d = [
 		...c,
 		...l(u),
-		...P(8 + e.byteLength),
-		...F("mdat")
+		...F(8 + e.byteLength),
+		...I("mdat")
 	], f = new Uint8Array(u + e.byteLength);
 	return f.set(d), f.set(new Uint8Array(e), u), f.buffer;
 }
-function ye(e, t) {
+function ve(e, t) {
 	let n = e[0] ?? 0, r = 8 * (1 + (n >> 2 & 1) + (n >> 1 & 1)), i = (t) => {
 		let n = 0;
 		for (let i = r + t; r < i; r++) n = 2 * n + ((e[r >> 3] ?? 0) >> 7 - (r & 7) & 1);
@@ -153,8 +153,8 @@ function ye(e, t) {
 	i(4);
 	let a = i(1) === 1, o = !a && i(7) !== 0;
 	a || i(12);
-	let s = i(5), c = !a && s > _e ? i(1) : 0, [l, u] = [i(4) + 1, i(4) + 1], [d, f] = [i(l) + 1, i(u) + 1];
-	if (n >> 3 !== ge || o || r > 8 * e.length) throw M(t, "no AV1 sequence header");
+	let s = i(5), c = !a && s > ge ? i(1) : 0, [l, u] = [i(4) + 1, i(4) + 1], [d, f] = [i(l) + 1, i(u) + 1];
+	if (n >> 3 !== he || o || r > 8 * e.length) throw N(t, "no AV1 sequence header");
 	return {
 		level: s,
 		tier: c,
@@ -162,14 +162,14 @@ function ye(e, t) {
 		height: f
 	};
 }
-function N(e, t) {
+function P(e, t) {
 	return [
-		...P(8 + t.length),
-		...F(e),
+		...F(8 + t.length),
+		...I(e),
 		...t
 	];
 }
-function P(e) {
+function F(e) {
 	return [
 		24,
 		16,
@@ -177,28 +177,28 @@ function P(e) {
 		0
 	].map((t) => e >>> t & 255);
 }
-function F(e) {
+function I(e) {
 	return Array.from(e, (e) => e.charCodeAt(0));
 }
 // eigenfield-three/src/inflate.ts
-async function be(e, t, n, r) {
+async function ye(e, t, n, r) {
 	let i = [], a = 0, o = new Blob([e]).stream().pipeThrough(new DecompressionStream(t)).getReader();
 	try {
 		for (let e = await o.read(); !e.done && a <= n; e = await o.read()) i.push(e.value), a += e.value.length;
 	} catch {
-		throw M(r, "it does not inflate");
+		throw N(r, "it does not inflate");
 	}
-	if (a > n) throw await o.cancel(), M(r, `more than ${n} bytes`);
+	if (a > n) throw await o.cancel(), N(r, `more than ${n} bytes`);
 	let s = new Uint8Array(a), c = 0;
 	for (let e of i) s.set(e, c), c += e.length;
 	return s;
 }
 // eigenfield-three/src/limits.ts
-var xe = "EIGENFIELD_eigen_textures", Se = 64 * 2 ** 20, Ce = 16384, we = 16384, Te = 1024, Ee = 2 ** 27, De = 4096, Oe = 8 * 2 ** 30, ke = 1e5, Ae = 65535, je = 2 ** 29, I = 1024, Me = 2 ** 25, Ne = 2 ** 26, Pe = 2 ** 27, Fe = 8192, Ie = 2 ** 24, Le = 2 ** 25, Re = 2 ** 20, ze = 2 ** 16, Be = 2 ** 30, Ve = 1024, He = 2 ** 22, Ue = 2 ** 31 - 1, We = 2 ** 28, Ge = 1e30, L = 65536, Ke = 126, R = 64, qe = 0, Je = 1, Ye = 2, Xe = 24, Ze = 44, Qe = 21, $e = 26214, et = 4, tt = Float64Array.from({ length: 4095 }, (e, t) => Math.round(L / (1 + Math.exp((2047 - t) / 256)))), nt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), rt = Float64Array.from({ length: 127 }, (e, t) => Math.round(L / (t + 1.5)));
+var be = "EIGENFIELD_eigen_textures", xe = 64 * 2 ** 20, Se = 16384, Ce = 16384, we = 1024, Te = 2 ** 27, Ee = 4096, De = 8 * 2 ** 30, Oe = 1e5, ke = 65535, Ae = 2 ** 29, L = 1024, je = 2 ** 25, Me = 2 ** 26, Ne = 2 ** 27, Pe = 8192, Fe = 2 ** 24, Ie = 2 ** 25, Le = 2 ** 20, Re = 2 ** 16, ze = 2 ** 30, Be = 1024, Ve = 2 ** 22, He = 2 ** 28, Ue = 2 ** 31 - 1, We = 2 ** 28, Ge = 1e30, R = 65536, Ke = 126, qe = 64, Je = 0, Ye = 1, Xe = 2, Ze = 24, Qe = 44, $e = 21, et = 26214, tt = 4, nt = Float64Array.from({ length: 4095 }, (e, t) => Math.round(R / (1 + Math.exp((2047 - t) / 256)))), rt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), it = Float64Array.from({ length: 127 }, (e, t) => Math.round(R / (t + 1.5)));
 function z(e) {
 	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + z(Math.floor(e / 4294967296));
 }
-var it = class {
+var at = class {
 	bytes;
 	low = 0;
 	high = 4294967295;
@@ -208,49 +208,49 @@ var it = class {
 	seen;
 	weights;
 	constructor(e, t, n) {
-		this.bytes = e, this.probability = new Uint16Array(t * R).fill(L / 2), this.seen = new Uint8Array(t * R), this.weights = new Float64Array(n * R * 3).fill($e);
-		for (let e = 0; e < et; e++) this.code = this.code * 256 + this.next();
+		this.bytes = e, this.probability = new Uint16Array(t * qe).fill(R / 2), this.seen = new Uint8Array(t * qe), this.weights = new Float64Array(n * qe * 3).fill(et);
+		for (let e = 0; e < tt; e++) this.code = this.code * 256 + this.next();
 	}
 	checkEnd(e) {
-		if (this.at > this.bytes.length + et) throw ue(e);
+		if (this.at > this.bytes.length + tt) throw le(e);
 	}
 	flag(e, t, n, r) {
 		return this.node(e, t, n, r, 0) === 1;
 	}
 	raw(e) {
 		let t = 0;
-		for (let n = 0; n < e; n++) t = t * 2 + this.split(L / 2);
+		for (let n = 0; n < e; n++) t = t * 2 + this.split(R / 2);
 		return t;
 	}
 	integer(e, t, n, r) {
 		let i = this.magnitude(e, t, n, r);
-		return i === 0 ? 0 : this.node(e, t, n, r, Je) ? -i : i;
+		return i === 0 ? 0 : this.node(e, t, n, r, Ye) ? -i : i;
 	}
 	magnitude(e, t, n, r) {
-		if (!this.node(e, t, n, r, qe)) return 0;
+		if (!this.node(e, t, n, r, Je)) return 0;
 		let i = 0;
-		for (; i < Qe && this.node(e, t, n, r, Ye + i);) i += 1;
+		for (; i < $e && this.node(e, t, n, r, Xe + i);) i += 1;
 		if (i < 2) return i + 1;
 		let a = 1;
 		for (let o = i - 2; o >= 0; o--) {
 			let s;
-			s = o === i - 2 ? this.node(e, t, n, r, Xe + i) : o === i - 3 ? this.node(e, t, n, r, Ze + 2 * Math.min(i, 9) + (a & 1)) : this.split(L / 2), a = a * 2 + s;
+			s = o === i - 2 ? this.node(e, t, n, r, Ze + i) : o === i - 3 ? this.node(e, t, n, r, Qe + 2 * Math.min(i, 9) + (a & 1)) : this.split(R / 2), a = a * 2 + s;
 		}
 		return a + 1;
 	}
 	node(e, t, n, r, i) {
-		return this.bit(e * R + i, t * R + i, n * R + i, (r * R + i) * 3);
+		return this.bit(e * qe + i, t * qe + i, n * qe + i, (r * qe + i) * 3);
 	}
 	bit(e, t, n, r) {
-		let { probability: i, weights: a } = this, o = nt[i[e] >> 4], s = nt[i[t] >> 4], c = nt[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / L), u = tt[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? L - u : -u;
+		let { probability: i, weights: a } = this, o = rt[i[e] >> 4], s = rt[i[t] >> 4], c = rt[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / R), u = nt[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? R - u : -u;
 		return a[r] += o * f >> 14, a[r + 1] += s * f >> 14, a[r + 2] += c * f >> 14, this.learn(e, d), this.learn(t, d), this.learn(n, d), d;
 	}
 	learn(e, t) {
 		let [n, r] = [this.probability[e], this.seen[e]];
-		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * rt[r] / L), r < Ke && (this.seen[e] = r + 1);
+		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * it[r] / R), r < Ke && (this.seen[e] = r + 1);
 	}
 	split(e) {
-		let t = this.low + Math.floor((this.high - this.low) * e / L), n = +(this.code <= t);
+		let t = this.low + Math.floor((this.high - this.low) * e / R), n = +(this.code <= t);
 		for (n ? this.high = t : this.low = t + 1; !((this.low ^ this.high) >>> 24);) this.low = this.low << 8 >>> 0, this.high = (this.high << 8 | 255) >>> 0, this.code = (this.code << 8 | this.next()) >>> 0;
 		return n;
 	}
@@ -259,25 +259,25 @@ var it = class {
 	}
 };
 function B(e, t, n, r = 1) {
-	if (e.length < t) throw ue(n);
-	if (e[0] !== r) throw M(n, `coded numbers of version ${e[0]}`);
+	if (e.length < t) throw le(n);
+	if (e[0] !== r) throw N(n, `coded numbers of version ${e[0]}`);
 	return new DataView(e.buffer, e.byteOffset, e.byteLength);
 }
-function at(e, t, n, r) {
-	if (t > n || t > 16 * e.length + 1024) throw M(r, `${t} numbers announced`);
+function ot(e, t, n, r) {
+	if (t > n || t > 16 * e.length + 1024) throw N(r, `${t} numbers announced`);
 }
 // eigenfield-three/src/table-decoder.ts
-var ot = 12, st = 1, ct = 3, lt = 312, ut = ct * lt, dt = 938, ft = 24, pt = 16, mt = 1722, ht = 1726, gt = 4, _t = 5;
-function vt(e) {
-	return new it(e, ht, 21);
-}
+var st = 12, ct = 1, lt = 3, ut = 312, dt = lt * ut, ft = 938, pt = 24, mt = 16, ht = 1722, gt = 1726, _t = 4, vt = 5;
 function yt(e) {
-	return e.flag(ut, ut, ut, ct) ? 2 : e.flag(937, 937, 937, ct) ? st : 0;
+	return new at(e, gt, 21);
 }
 function bt(e) {
+	return e.flag(dt, dt, dt, lt) ? 2 : e.flag(937, 937, 937, lt) ? ct : 0;
+}
+function xt(e) {
 	return Math.min(z(e), 11);
 }
-function xt(e, t, n, r) {
+function St(e, t, n, r) {
 	let i = new Float64Array(n.length), a = n.length / t, o = (e, n, r) => n < 0 || r < 0 || r >= t ? 0 : e[n * t + r], s = 0;
 	for (let c = 0; c < a; c++) for (let a = 0; a < t; a++) {
 		let [l, u] = [o(i, c, a - 1), o(i, c - 1, a)], [d, f] = [o(i, c - 1, a - 1), o(i, c - 1, a + 1)], [p, m, h] = [
@@ -285,53 +285,53 @@ function xt(e, t, n, r) {
 			0,
 			s
 		];
-		r === st ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
-		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * lt, y = e.integer(v + bt(m) * ot + bt(g), v + 144 + bt(m + h), v + 144 + 24 + _ * ot + bt(g + Math.abs(l)), r);
+		r === ct ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
+		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * ut, y = e.integer(v + xt(m) * st + xt(g), v + 144 + xt(m + h), v + 144 + 24 + _ * st + xt(g + Math.abs(l)), r);
 		i[c * t + a] = p + y, s = Math.abs(y);
 	}
 	return i;
 }
-function St(e, t, n, r) {
+function Ct(e, t, n, r) {
 	let i = new Float64Array(t * n), a = new Float64Array(n);
 	for (let o = 0; o < t; o++) {
 		let t = 0;
 		for (let s = 0; s < n; s++) {
-			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(z(a[s]), 23), d = Math.min(z(t), 23), f = e.integer(dt + l * ft + u, dt + (pt + l) * ft + d, 1706 + l, _t + l);
+			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(z(a[s]), 23), d = Math.min(z(t), 23), f = e.integer(ft + l * pt + u, ft + (mt + l) * pt + d, 1706 + l, vt + l);
 			i[o * n + s] = c + f, t = Math.abs(f), a[s] = Math.floor((a[s] + t + 1) / 2);
 		}
 	}
 	return i;
 }
-function Ct(e, t, n, r) {
+function wt(e, t, n, r) {
 	let i = new Float64Array(t).fill(-1), a = new Uint8Array(n), [o, s, c] = [
 		0,
 		1,
 		0
 	];
 	for (let l = 0; l < t; l++) {
-		if (s = +!!e.flag(mt + s, mt + s, 1724, gt), !s) continue;
-		let t = o + e.integer(1725, 1725, 1725, gt);
-		if (!(t >= 0 && t < n) || a[t]) throw M(r, "a grid with a camera out of place");
+		if (s = +!!e.flag(ht + s, ht + s, 1724, _t), !s) continue;
+		let t = o + e.integer(1725, 1725, 1725, _t);
+		if (!(t >= 0 && t < n) || a[t]) throw N(r, "a grid with a camera out of place");
 		a[t] = 1, i[l] = t, o = t + 1, c += 1;
 	}
-	if (c !== n) throw M(r, "a grid without all cameras");
+	if (c !== n) throw N(r, "a grid without all cameras");
 	return i;
 }
 // eigenfield-three/src/camera-decoder.ts
-var wt = 130, Tt = 11, Et = 1, Dt = 2, Ot = 2, kt = 44 * ke + 1024;
+var Tt = 130, V = 11, Et = 1, Dt = 2, Ot = 2, kt = 44 * Oe + 1024;
 async function At(e, t) {
-	if (e[0] !== Ot) throw M(t, `version ${e[0]}`);
-	let n = await be(Uint8Array.from(e.subarray(1)), "deflate-raw", kt, t);
+	if (e[0] !== Ot) throw N(t, `version ${e[0]}`);
+	let n = await ye(Uint8Array.from(e.subarray(1)), "deflate-raw", kt, t);
 	return jt(Uint8Array.from([1, ...n]), t);
 }
 function jt(e, t) {
-	let n = B(e, wt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Et) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
-	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw M(t, "cameras that cannot be");
-	if (i > 1e5 || a && o * s < i) throw M(t, `${i} cameras`);
-	at(e, Math.max(Tt * i, o * s), Tt * ke, t);
-	let l = wt + (a ? 132 : 0);
+	let n = B(e, Tt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Et) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
+	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw N(t, "cameras that cannot be");
+	if (i > 1e5 || a && o * s < i) throw N(t, `${i} cameras`);
+	ot(e, Math.max(V * i, o * s), V * Oe, t);
+	let l = Tt + (a ? 132 : 0);
 	B(e, l, t);
-	let u = (e, t) => a ? n.getFloat32(wt + 4 * (e * Tt + t), !0) : 0, d = vt(e.subarray(l)), f = a ? Ct(d, o * s, i, t) : null, p = St(d, i, Tt, (r & Dt) !== 0);
+	let u = (e, t) => a ? n.getFloat32(Tt + 4 * (e * V + t), !0) : 0, d = yt(e.subarray(l)), f = a ? wt(d, o * s, i, t) : null, p = Ct(d, i, V, (r & Dt) !== 0);
 	d.checkEnd(t);
 	let m = {
 		intrinsics: new Float32Array(5 * i),
@@ -342,18 +342,18 @@ function jt(e, t) {
 		0,
 		0,
 		...c.subarray(12)
-	], g = Nt(c[3], c[4], c[5], c[6]), _ = new Float64Array(Tt), v = 0;
+	], g = Nt(c[3], c[4], c[5], c[6]), _ = new Float64Array(V), v = 0;
 	for (let e = 0; e < (f ? f.length : i); e++) {
 		let t = f ? f[e] : e;
 		if (t < 0) continue;
 		let [n, r] = f ? [Math.floor(e / s), e % s] : [0, 0];
-		for (let e = 0; e < Tt; e++) {
+		for (let e = 0; e < V; e++) {
 			let t = c[e < 5 ? 0 : e < 8 ? 1 : 2], i = u(0, e) + u(1, e) * n + u(2, e) * r;
-			_[e] = p[v * Tt + e] * t + h[e] + i;
+			_[e] = p[v * V + e] * t + h[e] + i;
 		}
 		Mt(_, g, m, t), v += 1;
 	}
-	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw M(t, "cameras that are not finite");
+	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw N(t, "cameras that are not finite");
 	return m;
 }
 function Mt(e, t, n, r) {
@@ -412,8 +412,8 @@ var Pt = 4, Ft = ["prefer-software", "no-preference"], It = class {
 		return this.onTheWay < Pt;
 	}
 	async start(e) {
-		let { level: t, tier: n, width: r, height: i } = ye(e, this.where);
-		if (r !== this.size[0] || i !== this.size[1]) throw M(this.where, `frames of ${r} x ${i}`);
+		let { level: t, tier: n, width: r, height: i } = ve(e, this.where);
+		if (r !== this.size[0] || i !== this.size[1]) throw N(this.where, `frames of ${r} x ${i}`);
 		let a = `av01.0.${String(t).padStart(2, "0")}${n ? "H" : "M"}.10`, { turn: o } = this, s = this.config?.codec === a, c = s ? this.config : await Lt(a, this.size, this.where);
 		o === this.turn && c && (s && this.decoder?.state === "configured" || (this.config = c, this.decoder && this.decoder.state !== "closed" || (this.decoder = this.made()), this.decoder.configure(c)));
 	}
@@ -438,7 +438,7 @@ var Pt = 4, Ft = ["prefer-software", "no-preference"], It = class {
 		let e = new VideoDecoder({
 			output: (e) => void this.receive(e),
 			error: (t) => {
-				this.decoder === e && (t.name === "QuotaExceededError" ? this.user.lost() : this.fail(this.turn, M(this.where, t.message)));
+				this.decoder === e && (t.name === "QuotaExceededError" ? this.user.lost() : this.fail(this.turn, N(this.where, t.message)));
 			}
 		});
 		return e;
@@ -469,7 +469,7 @@ async function Lt(e, [t, n], r) {
 		}, { supported: a } = await VideoDecoder.isConfigSupported(i);
 		if (a) return i;
 	}
-	throw new j("codec", `This browser ${globalThis.isSecureContext ? "decodes no AV1 of 10 bits" : "plays clips from https and localhost only"}; ${globalThis.isSecureContext ? "use a newer browser" : "open the page from there"}. The first frame is shown.`, r);
+	throw new M("codec", `This browser ${globalThis.isSecureContext ? "decodes no AV1 of 10 bits" : "plays clips from https and localhost only"}; ${globalThis.isSecureContext ? "use a newer browser" : "open the page from there"}. The first frame is shown.`, r);
 }
 // eigenfield-three/src/mesh-front.ts
 var Rt = 0, zt = 2 ** 24, Bt = class {
@@ -570,10 +570,10 @@ function nn(e, t, n, r, i) {
 		t[3 * a + 1],
 		t[3 * o],
 		t[3 * o + 1]
-	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? Ht : -.8, _ = 1 << i >> 1, v = $t((l + d) * .5 + g * m) + _ >> i, y = $t((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(z(Math.floor((p * p + m * m) / b)), 23), S = Math.min(z(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, Jt), T = Math.min(z(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(Wt + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, Yt);
-	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + O << i, i === 0) return;
-	let k = en(t, a, i) + 4 * en(t, o, i);
-	if (e.flag(Gt + k, 913 + en(t, s, i), 917 + c, Qt)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
+	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? Ht : -.8, _ = 1 << i >> 1, v = $t((l + d) * .5 + g * m) + _ >> i, y = $t((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(z(Math.floor((p * p + m * m) / b)), 23), S = Math.min(z(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, Jt), T = Math.min(z(Math.abs(w)), 7), [E, D] = [577, 705], O = T * 2 + +(w > 0), k = e.integer(Wt + x * 8 + C, E + O * 8 + C, D + S * 8 + T, Yt);
+	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + k << i, i === 0) return;
+	let A = en(t, a, i) + 4 * en(t, o, i);
+	if (e.flag(Gt + A, 913 + en(t, s, i), 917 + c, Qt)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
 }
 function rn(e, t, n, { a: r, b: i, o: a }) {
 	let o = 0;
@@ -591,7 +591,7 @@ function an(e, t, n, r, i) {
 	}
 }
 // eigenfield-three/src/mesh-faces.ts
-var on = 13, sn = 11, cn = 12, V = 169, ln = 8, un = qt, dn = un + V + 104 + 26, fn = dn + V + 104 + on, pn = fn + 64 + 64 + V, mn = pn + V + 4 + 1, hn = mn + 6, [gn, _n, vn, yn, bn] = [
+var on = 13, sn = 11, cn = 12, H = 169, ln = 8, un = qt, dn = un + H + 104 + 26, fn = dn + H + 104 + on, pn = fn + 64 + 64 + H, mn = pn + H + 4 + 1, hn = mn + 6, [gn, _n, vn, yn, bn] = [
 	4,
 	5,
 	6,
@@ -625,11 +625,11 @@ function Sn(e, t, n, r, i) {
 			n
 		]) s[r] += 1;
 	}, f = () => {
-		if (l >= t) throw M(i, "more places than announced");
+		if (l >= t) throw N(i, "more places than announced");
 		return l++;
 	}, p = () => {
 		let t = e.raw(z(l - 1));
-		if (t >= l) throw M(i, "a place that is not there yet");
+		if (t >= l) throw N(i, "a place that is not there yet");
 		return t;
 	}, m = () => {
 		let t = [
@@ -643,7 +643,7 @@ function Sn(e, t, n, r, i) {
 			an(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
 		}
 		let [n, o, s] = t;
-		if (n === o || o === s || s === n) throw M(i, "a face of two corners");
+		if (n === o || o === s || s === n) throw N(i, "a face of two corners");
 		d(n, o, s), c.seed(t);
 	}, h = (e, t, n, i) => c.status[t] === 2 ? cn : c.status[t] !== 1 || n === i || t === e ? sn : Cn(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
 	for (; u < n;) {
@@ -652,38 +652,38 @@ function Sn(e, t, n, r, i) {
 			m();
 			continue;
 		}
-		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * on + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = un + V + 104 + 2 * y + +(_ === v);
-		if (y < sn && e.flag(un + x, un + V + y * ln + S, w, gn)) {
+		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * on + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = un + H + 104 + 2 * y + +(_ === v);
+		if (y < sn && e.flag(un + x, un + H + y * ln + S, w, gn)) {
 			d(l, n, _), c.closeLeft(t);
 			continue;
 		}
-		if (b < sn && (v !== _ || y >= sn) && e.flag(dn + x, dn + V + b * ln + C, dn + V + 104 + b, _n)) {
+		if (b < sn && (v !== _ || y >= sn) && e.flag(dn + x, dn + H + b * ln + C, dn + H + 104 + b, _n)) {
 			d(l, n, v), c.closeRight(t);
 			continue;
 		}
-		let T = +(y === cn) + (b === cn ? 2 : 0), E = en(a, n, r.fine) + 4 * en(a, l, r.fine), ee = fn + 64 + S * ln + C;
-		if (e.flag(fn + T * 16 + E, ee, fn + 64 + 64 + x, vn)) {
+		let T = +(y === cn) + (b === cn ? 2 : 0), E = en(a, n, r.fine) + 4 * en(a, l, r.fine), D = fn + 64 + S * ln + C;
+		if (e.flag(fn + T * 16 + E, D, fn + 64 + 64 + x, vn)) {
 			c.status[t] = 2;
 			continue;
 		}
-		let D;
-		if (e.flag(pn + x, pn + V + T, pn + V + 4, yn)) {
-			D = f();
+		let O;
+		if (e.flag(pn + x, pn + H + T, pn + H + 4, yn)) {
+			O = f();
 			let i = c.opposite[t];
 			o.parents.set([
 				n,
 				l,
 				i
-			], 3 * D), tn(e, a, D, {
+			], 3 * O), tn(e, a, O, {
 				a: n,
 				b: l,
 				o: i,
 				pair: x
 			}, r);
-		} else if (D = p(), D === n || D === l) throw M(i, "a face of two corners");
-		d(l, n, D), c.openOut(t, D);
+		} else if (O = p(), O === n || O === l) throw N(i, "a face of two corners");
+		d(l, n, O), c.openOut(t, O);
 	}
-	if (l !== t) throw M(i, "fewer places than announced");
+	if (l !== t) throw N(i, "fewer places than announced");
 	return o;
 }
 function Cn(e, t, n, r, i, a) {
@@ -718,7 +718,7 @@ var wn = 32, Tn = 4, [En, Dn, On, kn] = [
 	1,
 	2,
 	3
-], An = hn, jn = An + 64 + 12 + 16, H = jn + Tn + 1, Mn = H + 4, [Nn, Pn, Fn] = [
+], An = hn, jn = An + 64 + 12 + 16, U = jn + Tn + 1, Mn = U + 4, [Nn, Pn, Fn] = [
 	9,
 	10,
 	11
@@ -781,21 +781,21 @@ function Ln(e, t, n, r, i, a, o) {
 		}
 		if (c < 0) {
 			if (e.flag(jn + s, jn + s, jn + Tn, Pn)) return -1;
-			if (c = e.raw(z(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
+			if (c = e.raw(z(g - 1)), c >= g || l.place[c] !== i) throw N(o, "a corner that is elsewhere");
 		}
 		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? Dn : On);
 		return c;
 	}, C = () => {
 		let t = _++;
-		if (!e.flag(H, H, H, Fn)) return l.kinds[t] = e.flag(H + 1, H + 1, H + 1, Fn) ? 2 : 0, t;
+		if (!e.flag(U, U, U, Fn)) return l.kinds[t] = e.flag(U + 1, U + 1, U + 1, Fn) ? 2 : 0, t;
 		l.kinds[t] = 1;
 		let n = v;
-		if (v = t, n >= 0 && e.flag(H + 2, H + 2, H + 2, Fn)) {
+		if (v = t, n >= 0 && e.flag(U + 2, U + 2, U + 2, Fn)) {
 			let n = e.raw(z(t - 1));
-			if (n >= t || l.kinds[n] !== 1) throw M(o, "a map that is not there");
+			if (n >= t || l.kinds[n] !== 1) throw N(o, "a map that is not there");
 			return l.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
 		}
-		let r = n >= 0 && e.flag(H + 3, H + 3, H + 3, Fn);
+		let r = n >= 0 && e.flag(U + 3, U + 3, U + 3, Fn);
 		for (let i = 0; i < 4; i++) l.maps[6 * t + i] = r ? l.maps[6 * n + i] : e.raw(32);
 		for (let n = 4; n < 6; n++) l.maps[6 * t + n] = e.raw(a);
 		return t;
@@ -807,7 +807,7 @@ function Ln(e, t, n, r, i, a, o) {
 			let s = S(e, a);
 			if (s >= 0) r = l.chart[s];
 			else {
-				if (g >= n) throw M(o, "more vertices than announced");
+				if (g >= n) throw N(o, "more vertices than announced");
 				s = g++;
 				let r = t.faces[3 * e + a];
 				l.place[s] = r, d[s] = u[r], u[r] = s, i.push(s);
@@ -817,7 +817,7 @@ function Ln(e, t, n, r, i, a, o) {
 		r < 0 && (r = C());
 		for (let e of i) l.chart[e] = r;
 	}
-	if (g !== n) throw M(o, "fewer vertices than announced");
+	if (g !== n) throw N(o, "fewer vertices than announced");
 	return l;
 }
 // eigenfield-three/src/mesh-values.ts
@@ -886,8 +886,8 @@ function Zn(e, t, n, r) {
 				S = Math.min(Math.max(u(C) + t * (u(w) - u(C)) + c * (u(T) - u(C)), p), m);
 			}
 		}
-		let E = Yn(x, b), [ee, D] = [Xn(S - E), Xn(b - E)], O = e.integer(Un + ee * Bn + D, Un + 169 + y * Hn + f, Un + 169 + 280 + ee * Vn + y, Kn), k = E + O;
-		i[3 * t + 2] = k, f = Math.min(z(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
+		let E = Yn(x, b), [D, O] = [Xn(S - E), Xn(b - E)], k = e.integer(Un + D * Bn + O, Un + 169 + y * Hn + f, Un + 169 + 280 + D * Vn + y, Kn), A = E + k;
+		i[3 * t + 2] = A, f = Math.min(z(Math.abs(k)), 19), p = t === 0 ? A : Math.min(p, A), m = t === 0 ? A : Math.max(m, A);
 	}
 }
 function Qn(e, t, n) {
@@ -975,9 +975,9 @@ function lr(e, t, n) {
 		8,
 		12
 	].map((e) => r.getUint32(e, !0)), u = Float64Array.from({ length: 16 }, (e, t) => r.getFloat64(16 + 8 * t, !0));
-	if (s > Ne || l > Ne || c > Pe) throw M(t, `${l} vertices and ${c} faces`);
-	if (at(e, Math.max(s, c, l), Pe, t), i > 1 || o > or * i || a < 1 || a > ar || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
-	let d = new it(e.subarray(nr), Gn, 16), f = Sn(d, s, c, {
+	if (s > Me || l > Me || c > Ne) throw N(t, `${l} vertices and ${c} faces`);
+	if (ot(e, Math.max(s, c, l), Ne, t), i > 1 || o > or * i || a < 1 || a > ar || !u.every(Number.isFinite)) throw N(t, "a lattice that cannot be");
+	let d = new at(e.subarray(nr), Gn, 16), f = Sn(d, s, c, {
 		flat: i === 1,
 		fine: o
 	}, t);
@@ -1018,7 +1018,7 @@ function dr(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) 
 }
 function fr(e, t) {
 	let n = (e) => Math.abs(e) <= Ge;
-	if (!e.positions.every(n) || !e.uv.every(n)) throw M(t, "positions or texture coordinates that are not finite");
+	if (!e.positions.every(n) || !e.uv.every(n)) throw N(t, "positions or texture coordinates that are not finite");
 	return e;
 }
 // eigenfield-three/src/mesh-motion.ts
@@ -1043,13 +1043,13 @@ var pr = 11, mr = 2 ** 20, hr = 8, [gr, _r] = [7, 8], vr = 12, [yr, br, xr, Sr] 
 		let r = B(e, pr, n), i = t.places.length / 3, a = r.getUint32(5, !0);
 		this.frames = r.getUint16(9, !0);
 		let o = pr + this.frames;
-		if (r.getUint32(1, !0) !== i || a > i) throw M(n, `${a} vertices that move, of another mesh`);
-		if (this.frames < 1 || this.frames > 1024 || this.frames * a > Le) throw M(n, `${a} vertices that move in ${this.frames} frames`);
-		if (B(e, o, n), this.flags = e.slice(pr, o), this.flags.some((e) => e > gr + _r)) throw M(n, "frames that cannot be");
-		if (at(e, this.flags.reduce((e, t) => e + (t & 1) + (t >> 1 & 1) + (t >> 2 & 1), 0) * a, 3 * Le, n), this.moving = new Int32Array(a), this.steps = new Int32Array(a && 3 * a * (2 + this.frames)), this.off = new Int32Array(3 * a), this.around = Nr(t.places, t.indices), !a) return;
-		this.decoder = new it(e.subarray(o), Er, Or);
+		if (r.getUint32(1, !0) !== i || a > i) throw N(n, `${a} vertices that move, of another mesh`);
+		if (this.frames < 1 || this.frames > 1024 || this.frames * a > Ie) throw N(n, `${a} vertices that move in ${this.frames} frames`);
+		if (B(e, o, n), this.flags = e.slice(pr, o), this.flags.some((e) => e > gr + _r)) throw N(n, "frames that cannot be");
+		if (ot(e, this.flags.reduce((e, t) => e + (t & 1) + (t >> 1 & 1) + (t >> 2 & 1), 0) * a, 3 * Ie, n), this.moving = new Int32Array(a), this.steps = new Int32Array(a && 3 * a * (2 + this.frames)), this.off = new Int32Array(3 * a), this.around = Nr(t.places, t.indices), !a) return;
+		this.decoder = new at(e.subarray(o), Er, Or);
 		let s = Mr(this.decoder, i, this.around);
-		if (s.reduce((e, t) => e + t, 0) !== a) throw M(n, "other vertices that move");
+		if (s.reduce((e, t) => e + t, 0) !== a) throw N(n, "other vertices that move");
 		this.around = this.start(s);
 	}
 	read(e) {
@@ -1105,7 +1105,7 @@ var pr = 11, mr = 2 ** 20, hr = 8, [gr, _r] = [7, 8], vr = 12, [yr, br, xr, Sr] 
 		this.off = m, e.checkEnd(this.where), this.check(u, c);
 	}
 	check(e, t) {
-		for (let n = e; n < e + t; n += 3) if (!Ar(this.steps, n, this.mesh.matrix).every((e) => Math.abs(e) <= 1e30)) throw M(this.where, "positions that are not finite");
+		for (let n = e; n < e + t; n += 3) if (!Ar(this.steps, n, this.mesh.matrix).every((e) => Math.abs(e) <= 1e30)) throw N(this.where, "positions that are not finite");
 	}
 };
 function Ar(e, t, n) {
@@ -1156,10 +1156,10 @@ function Nr(e, t) {
 	};
 }
 // eigenfield-three/src/name-decoder.ts
-var Pr = 4 * I;
+var Pr = 4 * L;
 async function Fr(e, t, n) {
-	let r = Math.min(Me, Pr * t), i = await be(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
-	if (a === 0 || !Number.isInteger(a)) throw M(n, `${i.length} bytes of ${t} names`);
+	let r = Math.min(je, Pr * t), i = await ye(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
+	if (a === 0 || !Number.isInteger(a)) throw N(n, `${i.length} bytes of ${t} names`);
 	let o = new TextDecoder("utf-8", {
 		fatal: !0,
 		ignoreBOM: !0
@@ -1171,7 +1171,7 @@ async function Fr(e, t, n) {
 		try {
 			c.push(o.decode(s.subarray(0, r)));
 		} catch {
-			throw M(n, "names that are not UTF-8");
+			throw N(n, "names that are not UTF-8");
 		}
 	}
 	return c;
@@ -1286,12 +1286,12 @@ var Hr = {
 };
 function Wr(e, t, n) {
 	let r = Ir(e);
-	if (!r) throw M(t.where, "no picture");
+	if (!r) throw N(t.where, "no picture");
 	let { width: i, height: a, bits: o } = r;
-	if (n && (i !== n[0] || a !== n[1])) throw M(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
-	if (t.codec.bits !== 8 && t.codec.bits !== o) throw M(t.where, `no picture of ${t.codec.bits} bits`);
+	if (n && (i !== n[0] || a !== n[1])) throw N(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
+	if (t.codec.bits !== 8 && t.codec.bits !== o) throw N(t.where, `no picture of ${t.codec.bits} bits`);
 	let s = i * a;
-	if (!s || i > 16384 || a > 32768 || s > Ee) throw M(t.where, `a picture of ${i} x ${a}`);
+	if (!s || i > 16384 || a > 32768 || s > Te) throw N(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
 var Gr = async (e, t, n) => {
@@ -1299,9 +1299,9 @@ var Gr = async (e, t, n) => {
 	try {
 		s = await createImageBitmap(new Blob([e], { type: o }), Hr);
 	} catch (e) {
-		throw await Kr(o) ? M(t.where, "it cannot be decoded") : qr(o, t, e);
+		throw await Kr(o) ? N(t.where, "it cannot be decoded") : qr(o, t, e);
 	}
-	if (s.width !== i || s.height !== a) throw s.close(), M(t.where, `decoded to ${s.width} x ${s.height}, not to ${i} x ${a}`);
+	if (s.width !== i || s.height !== a) throw s.close(), N(t.where, `decoded to ${s.width} x ${s.height}, not to ${i} x ${a}`);
 	let c = a / r;
 	return Array.from({ length: r }, (e, t) => ({
 		picture: s,
@@ -1320,7 +1320,7 @@ async function Kr(e) {
 	}
 }
 function qr(e, t, n) {
-	return new j("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
+	return new M("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
 }
 // eigenfield-three/src/pictures-10bit.ts
 var Jr = /* @__PURE__ */ new Set([
@@ -1364,31 +1364,31 @@ async function Xr(e, t, n) {
 var Zr = 5;
 function Qr(e, t) {
 	let n = B(e, Zr, t).getUint32(1, !0);
-	at(e, 3 * n, 6 * ke, t);
-	let r = vt(e.subarray(Zr)), i = St(r, n, 3, !0);
+	ot(e, 3 * n, 6 * Oe, t);
+	let r = yt(e.subarray(Zr)), i = Ct(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
-	if (!a.every((e) => e >= 0 && e < 1e5)) throw M(t, "triangles of cameras that there cannot be");
+	if (!a.every((e) => e >= 0 && e < 1e5)) throw N(t, "triangles of cameras that there cannot be");
 	return { corners: Uint32Array.from(a) };
 }
 // eigenfield-three/src/weight-decoder.ts
 var $r = 14, ei = 2 ** 20;
 function ti(e, t) {
 	let n = B(e, $r, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
-	if (n.getUint8(1) > 1 || i === 0) throw M(t, "weights of no camera, or of an unknown kind");
-	at(e, o * s * Math.max(a, 1), We, t), B(e, $r + 4 * a, t);
+	if (n.getUint8(1) > 1 || i === 0) throw N(t, "weights of no camera, or of an unknown kind");
+	ot(e, o * s * Math.max(a, 1), We, t), B(e, $r + 4 * a, t);
 	let c = o * s;
-	if (c < i) throw M(t, "a grid with too few cells");
-	let l = vt(e.subarray($r + 4 * a)), u = r ? Ct(l, c, i, t) : null, d = u !== null && i === c, f = [
+	if (c < i) throw N(t, "a grid with too few cells");
+	let l = yt(e.subarray($r + 4 * a)), u = r ? wt(l, c, i, t) : null, d = u !== null && i === c, f = [
 		0,
 		1,
 		2
 	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * ei * Math.max(o, s);
 	for (let e = 0; e < a; e++) {
 		let r = n.getFloat32($r + 4 * e, !0);
-		if (!(r > 0 && r < Infinity)) throw M(t, "a step that is not positive");
-		let i = yt(l), h = xt(l, s, f[i], i);
-		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw M(t, `numbers of component ${e} that cannot be`);
+		if (!(r > 0 && r < Infinity)) throw N(t, "a step that is not positive");
+		let i = bt(l), h = St(l, s, f[i], i);
+		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw N(t, `numbers of component ${e} that cannot be`);
 		f[i] = h;
 		let g = i === 2 ? ni(h, o, s) : h;
 		for (let t = 0; t < c; t++) {
@@ -1397,7 +1397,7 @@ function ti(e, t) {
 		}
 		l.checkEnd(t);
 	}
-	if (!p.every(Number.isFinite)) throw M(t, "weights that are not finite");
+	if (!p.every(Number.isFinite)) throw N(t, "weights that are not finite");
 	return {
 		cameras: i,
 		components: a,
@@ -1440,7 +1440,7 @@ function ii(e) {
 		bits: 8
 	};
 }
-var U = {
+var W = {
 	"mesh-1": {
 		kind: "mesh",
 		decode: sr,
@@ -1508,8 +1508,8 @@ var U = {
 	"av1-10bit-2": {
 		...ii("video/AV1"),
 		bits: 10,
-		decode: (e, t, n) => Yr(ve(e, t.where), t, n),
-		bitmaps: (e, t, n) => Gr(ve(e, t.where), t, n),
+		decode: (e, t, n) => Yr(_e(e, t.where), t, n),
+		bitmaps: (e, t, n) => Gr(_e(e, t.where), t, n),
 		needs: "av1-10bit-2"
 	}
 }, ai = {
@@ -1520,18 +1520,18 @@ var U = {
 	weights: "weights-1"
 };
 function oi(e, t, n) {
-	let r = t.exists ? t.text(I) : n, i = Object.hasOwn(U, r) ? U[r] : null;
+	let r = t.exists ? t.text(L) : n, i = Object.hasOwn(W, r) ? W[r] : null;
 	if (i?.kind === e) return i;
-	throw new j("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
+	throw new M("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
 }
 function si(e, t) {
-	return Object.keys(U).find((n) => {
-		let r = U[n];
+	return Object.keys(W).find((n) => {
+		let r = W[n];
 		return r.kind === "picture" && r.mimeType === e && (t ?? r.bits) === r.bits;
 	});
 }
 // eigenfield-three/src/json.ts
-var W = class e {
+var G = class e {
 	raw;
 	where;
 	constructor(e, t) {
@@ -1586,13 +1586,13 @@ var W = class e {
 		];
 	}
 	wrong(e) {
-		return M(this.where || "/", this.exists ? e : "missing");
+		return N(this.where || "/", this.exists ? e : "missing");
 	}
-}, ci = 5121, li = 5123, ui = 5125, G = 5126, di = {
+}, ci = 5121, li = 5123, ui = 5125, K = 5126, di = {
 	[ci]: 1,
 	[li]: 2,
 	[ui]: 4,
-	[G]: 4
+	[K]: 4
 }, fi = /* @__PURE__ */ new Set([
 	"cameras",
 	"triangles",
@@ -1606,7 +1606,7 @@ function mi(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
-	return e.key("bufferViews").items(Ce).map((e) => {
+	return e.key("bufferViews").items(Se).map((e) => {
 		let t = e.key("byteOffset"), r = e.key("byteStride");
 		e.key("buffer").integer(0, 0);
 		let i = {
@@ -1622,7 +1622,7 @@ function hi(e) {
 	return (t) => t.integer(0, e.length - 1);
 }
 function gi(e, t) {
-	let n = e.key("accessors"), r = n.exists ? n.items(Ce) : [];
+	let n = e.key("accessors"), r = n.exists ? n.items(Se) : [];
 	return (e, n, i, a) => {
 		let o = r[e.integer(0, r.length - 1)];
 		if (!o) throw e.wrong("no such accessor");
@@ -1651,7 +1651,7 @@ function gi(e, t) {
 	};
 }
 function _i(e, t, n) {
-	let r = typeof t.raw == "number" && fi.has(e), i = oi(e, r ? new W(void 0, t.where) : t.key("codec"), ai[e]);
+	let r = typeof t.raw == "number" && fi.has(e), i = oi(e, r ? new G(void 0, t.where) : t.key("codec"), ai[e]);
 	return {
 		view: n(r ? t : t.key("bufferView")),
 		codec: i,
@@ -1660,30 +1660,30 @@ function _i(e, t, n) {
 }
 async function vi(e, t, n) {
 	let r = await n(e.view), i = t[e.view]?.length ?? Infinity;
-	if (r.byteLength < i) throw ue(e.where);
+	if (r.byteLength < i) throw le(e.where);
 	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + di[c] * o * s);
 	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : yi(new Float32Array(l), e.where);
 }
 function yi(e, t) {
-	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw M(t, `${n} among its numbers`);
+	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw N(t, `${n} among its numbers`);
 	return e;
 }
 // eigenfield-three/src/planes.ts
-var K = 8, bi = 16, xi = "av1-10bit-2";
-function Si(e, t) {
-	return new j("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
+var bi = 8, xi = 16, Si = "av1-10bit-2";
+function Ci(e, t) {
+	return new M("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function Ci(e, t = we) {
+function wi(e, t = Ce) {
 	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
 	if (!n || !r) throw e.wrong("two numbers are needed");
-	if (n * r > Ee) throw e.wrong(`more than ${Ee} texels`);
+	if (n * r > Te) throw e.wrong(`more than ${Te} texels`);
 	return [n, r];
 }
-function wi(e, t, n, r, i) {
+function Ti(e, t, n, r, i) {
 	let a = e.key("planes").items(16);
 	if (!a.length) throw e.key("planes").wrong("no plane");
 	let o = a.map((e, a) => {
-		let o = e.key("channels").integer(1, 64), s = Fi(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => Ri(e, o, t, r, i);
+		let o = e.key("channels").integer(1, 64), s = Ii(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => zi(e, o, t, r, i);
 		return {
 			channels: o,
 			...s,
@@ -1693,15 +1693,15 @@ function wi(e, t, n, r, i) {
 	for (let { channels: e, meanSize: t, bases: n } of o) {
 		s += 4 * e * (t ? t[0] * t[1] : 0);
 		for (let { size: t, count: r, pictures: i } of n) {
-			let n = i.reduce((e, { textures: t, codec: n }) => e + t * (n.bits === K ? 1 : 2), 0);
+			let n = i.reduce((e, { textures: t, codec: n }) => e + t * (n.bits === bi ? 1 : 2), 0);
 			s += t[0] * t[1] * e * n, c += r;
 		}
 	}
-	if (c > 4096) throw e.key("planes").wrong(`more than ${De} textures`);
-	if (s > Oe) throw e.key("planes").wrong("too large when it is decoded");
+	if (c > 4096) throw e.key("planes").wrong(`more than ${Ee} textures`);
+	if (s > De) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
-function Ti(e, t) {
+function Ei(e, t) {
 	let n = t.reduce((e, { channels: t }) => e + t, 0), r = e.key("toRGB");
 	if (r.exists) {
 		let e = r.numbers(3 * n), t = (t, r) => e[t * n + r] ?? 0;
@@ -1733,11 +1733,11 @@ function Ti(e, t) {
 			1
 		]
 	];
-	throw Si(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
+	throw Ci(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
 }
-function Ei(e, t, n, r, i, a = !1) {
-	let o = Di(e), s = t === 3 && o.bits === K ? 1 : t;
-	r && zi(e, s * n, r);
+function Di(e, t, n, r, i, a = !1) {
+	let o = Oi(e), s = t === 3 && o.bits === bi ? 1 : t;
+	r && Bi(e, s * n, r);
 	let [c, l] = [e.key("scale"), e.key("zero")], u = {
 		view: i(e.key("bufferView")),
 		codec: o,
@@ -1746,27 +1746,27 @@ function Ei(e, t, n, r, i, a = !1) {
 		where: e.where,
 		part: null
 	};
-	return a && o.bits === K && !c.exists && !l.exists ? {
+	return a && o.bits === bi && !c.exists && !l.exists ? {
 		...u,
-		...Ai(t)
+		...ji(t)
 	} : {
 		...u,
-		scale: Pi(c, t, n),
-		zero: Pi(l, t, n)
+		scale: Fi(c, t, n),
+		zero: Fi(l, t, n)
 	};
 }
-function Di(e) {
-	let t = e.key("mimeType").text(I);
+function Oi(e) {
+	let t = e.key("mimeType").text(L);
 	if (!si(t)) throw e.key("mimeType").wrong("an unknown type");
-	let n = e.key("bits"), r = n.exists ? n.integer(1, bi) : K, i = si(t, r);
+	let n = e.key("bits"), r = n.exists ? n.integer(1, xi) : bi, i = si(t, r);
 	if (!i) throw n.wrong(`${r} bits of ${t}`);
 	let a = e.key("codec"), o = oi("picture", a, i);
 	if (o.mimeType !== t || o.bits !== r) throw a.wrong(`${r} bits of ${t}`);
 	return o;
 }
-function Oi(e, t, n) {
-	let r = e.key("at").items(De * t).map((e) => {
-		let [t = 0, n = 0] = e.numbers(2, 0, Fe);
+function ki(e, t, n) {
+	let r = e.key("at").items(Ee * t).map((e) => {
+		let [t = 0, n = 0] = e.numbers(2, 0, Pe);
 		if (!Number.isInteger(t) || !Number.isInteger(n)) throw e.wrong("no whole numbers");
 		return [t, n];
 	});
@@ -1782,7 +1782,7 @@ function Oi(e, t, n) {
 	};
 	return {
 		view: -1,
-		codec: U[xi],
+		codec: W[Si],
 		textures: r.length / t,
 		pieces: t,
 		where: i,
@@ -1790,67 +1790,67 @@ function Oi(e, t, n) {
 		...o
 	};
 }
-function ki(e, t, n) {
-	let r = Oi(e, t, n);
+function Ai(e, t, n) {
+	let r = ki(e, t, n);
 	if (r.textures !== 1) throw e.key("at").wrong(`${t} places are needed`);
 	return r;
 }
-function Ai(e) {
+function ji(e) {
 	return {
 		scale: Array(e).fill(1 / 255),
 		zero: Array(e).fill(0)
 	};
 }
-function ji(e) {
-	return e.some(({ codec: e }) => e.bits > K);
+function Mi(e) {
+	return e.some(({ codec: e }) => e.bits > bi);
 }
-function Mi({ codec: e }) {
+function Ni({ codec: e }) {
 	return (2 ** e.bits - 1) / 255;
 }
-function Ni(e, t) {
-	return t ? 1 : 1 / (255 * Mi(e));
+function Pi(e, t) {
+	return t ? 1 : 1 / (255 * Ni(e));
 }
-function Pi(e, t, n) {
+function Fi(e, t, n) {
 	let r = e.items(t * n).map((e) => e.number());
 	if (r.length === t * n) return r;
 	if (r.length !== t) throw e.wrong(`${t} or ${t * n} numbers are needed`);
 	return Array(n).fill(r).flat();
 }
-function Fi(e, t, n, r) {
+function Ii(e, t, n, r) {
 	let i = e.key("mean");
 	if (!i.exists) {
 		if (n === null || t !== 1 && t !== 3) throw i.wrong("no mean");
 		return {
 			mean: {
 				view: n,
-				codec: U.png,
+				codec: W.png,
 				textures: 1,
 				pieces: 1,
 				where: "/images/0",
 				part: null,
-				...Ai(t)
+				...ji(t)
 			},
 			meanSize: null,
 			precision: null
 		};
 	}
-	let a = Ci(i.key("size"));
+	let a = wi(i.key("size"));
 	if (i.key("film").exists) return {
-		mean: ki(i, t, a),
+		mean: Ai(i, t, a),
 		meanSize: a,
 		precision: null
 	};
-	let o = Ei(i, t, 1, a, r, !0);
+	let o = Di(i, t, 1, a, r, !0);
 	return {
 		mean: o,
 		meanSize: a,
-		precision: Li(i.key("precision"), o, r)
+		precision: Ri(i.key("precision"), o, r)
 	};
 }
-function Ii(e, t) {
-	let n = Ci(e.key("size")), r = e.key("film").exists ? ki(e, 1, n) : (() => {
-		let r = Di(e);
-		return zi(e, 1, n), {
+function Li(e, t) {
+	let n = wi(e.key("size")), r = e.key("film").exists ? Ai(e, 1, n) : (() => {
+		let r = Oi(e);
+		return Bi(e, 1, n), {
 			view: t(e.key("bufferView")),
 			codec: r,
 			textures: 1,
@@ -1870,11 +1870,11 @@ function Ii(e, t) {
 		precision: null
 	};
 }
-function Li(e, t, n) {
+function Ri(e, t, n) {
 	if (!e.exists) return null;
-	if (t.codec.bits === K) throw e.wrong(`of a mean of ${K} bits`);
-	let r = Ci(e.key("size"), Te), i = oi("picture", e.key("codec"), "png");
-	if (i !== U.png) throw e.key("codec").wrong("no PNG");
+	if (t.codec.bits === bi) throw e.wrong(`of a mean of ${bi} bits`);
+	let r = wi(e.key("size"), we), i = oi("picture", e.key("codec"), "png");
+	if (i !== W.png) throw e.key("codec").wrong("no PNG");
 	return {
 		view: n(e.key("bufferView")),
 		codec: i,
@@ -1884,14 +1884,14 @@ function Li(e, t, n) {
 		where: e.where
 	};
 }
-function Ri(e, t, n, r, i) {
-	let a = Ci(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Ci(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, we) : [];
+function zi(e, t, n, r, i) {
+	let a = wi(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? wi(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, Ce) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
 	let d = e.where;
 	if (e.key("film").exists) {
-		let n = Oi(e, t, a), { textures: r } = n;
-		if (r > 4096) throw e.wrong(`more than ${De} textures`);
+		let n = ki(e, t, a), { textures: r } = n;
+		if (r > 4096) throw e.wrong(`more than ${Ee} textures`);
 		return {
 			size: a,
 			grid: c,
@@ -1902,15 +1902,15 @@ function Ri(e, t, n, r, i) {
 			where: d
 		};
 	}
-	let f = 0, p = e.key("picture"), m = p.exists ? p.object() : {}, h = e.key("textures").items(De).map((e) => {
-		let n = new W({
+	let f = 0, p = e.key("picture"), m = p.exists ? p.object() : {}, h = e.key("textures").items(Ee).map((e) => {
+		let n = new G({
 			...m,
 			...e.object()
-		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, De) : 1;
-		return f += o, Ei(n, t, o, a, i);
+		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, Ee) : 1;
+		return f += o, Di(n, t, o, a, i);
 	});
-	if (f > 4096) throw e.wrong(`more than ${De} textures`);
-	let g = e.key("codedWeights"), _ = f ? g.exists ? _i("weights", g, i) : r(e.key("weights"), "SCALAR", [G], n * f) : null;
+	if (f > 4096) throw e.wrong(`more than ${Ee} textures`);
+	let g = e.key("codedWeights"), _ = f ? g.exists ? _i("weights", g, i) : r(e.key("weights"), "SCALAR", [K], n * f) : null;
 	return {
 		size: a,
 		grid: c,
@@ -1921,59 +1921,75 @@ function Ri(e, t, n, r, i) {
 		where: d
 	};
 }
-function zi(e, t, [n, r]) {
+function Bi(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
-	if (n * i > Ee) throw e.wrong(`more than ${Ee} texels`);
+	if (n * i > Te) throw e.wrong(`more than ${Te} texels`);
 }
 // eigenfield-three/src/sheets.ts
-function Bi(e, t) {
+function Vi(e, t) {
 	if (!e.exists) return null;
-	let n = e.key("faces").items(32).map((e) => e.integer(1, Pe));
+	let n = e.key("faces").items(32).map((e) => e.integer(1, Ne));
 	if (!n.length) throw e.key("faces").wrong("no sheet");
 	return {
 		faces: n,
-		opacity: Ii(e.key("opacity"), t),
+		opacity: Li(e.key("opacity"), t),
 		where: e.where
 	};
 }
-function Vi({ faces: e, where: t }, { index: n, attributes: r }) {
+function Hi({ faces: e, where: t }, { index: n, attributes: r }) {
 	let i = e.reduce((e, t) => e + t, 0), a = (n?.count ?? 0) / 3;
-	if (i !== a) throw M(`${t}/faces`, `the sheets have ${i} triangles, the mesh has ${a}`);
+	if (i !== a) throw N(`${t}/faces`, `the sheets have ${i} triangles, the mesh has ${a}`);
 	let o = new Uint8Array(r.position?.count ?? 0), s = 0;
 	e.forEach((e, r) => {
 		for (let i = s + 3 * e; s < i; s++) {
 			let e = n?.getX(s) ?? 0, i = o[e] || r + 1, a = `sheets ${i - 1} and ${r} share vertex ${e}`;
-			if (i !== r + 1) throw M(`${t}/faces`, a);
+			if (i !== r + 1) throw N(`${t}/faces`, a);
 			o[e] = i;
 		}
 	});
 }
 // eigenfield-three/src/timeline.ts
-var Hi = 64, q = 16, Ui = /^[0-9a-f]{64}$/;
-function Wi(e, t, n) {
-	let r = [...qi(t), ...n ? [n] : []];
+var Ui = 64, q = 16, Wi = "audio/ogg", Gi = /^[0-9a-f]{64}$/;
+function Ki(e, t, n) {
+	let r = [...Xi(t), ...n ? [n] : []];
 	if (!e.exists) {
 		let e = r.find(({ part: e }) => e);
-		if (e) throw M(e.where, "a texture in a film, and no timeline");
+		if (e) throw N(e.where, "a texture in a film, and no timeline");
 		return null;
 	}
 	let [i = 1, a = 1] = e.key("rate").numbers(2, 1, Ue), o = i / a;
 	if (!(Number.isInteger(i) && Number.isInteger(a)) || o > 1e3 || o < 1 / 1e3) throw e.key("rate").wrong("no rate");
-	let s = e.key("first"), c = e.key("films").items(4).map(Gi), l = e.key("frames").integer(1, Re);
-	Ji(r, c);
+	let s = e.key("first"), c = e.key("films").items(4).map(Ji), l = e.key("frames").integer(1, Le);
+	Zi(r, c);
 	for (let e of c) e.opacity = e === c[n?.part?.film ?? -1];
+	let u = Yi(e, l);
 	return {
 		rate: o,
 		first: s.exists ? s.number() : 0,
 		frames: l,
 		films: c,
-		groups: Ki(e, l)
+		groups: u,
+		sound: qi(e, u)
 	};
 }
-function Gi(e) {
-	let t = oi("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, Hi, Fe);
-	if (n % Hi || r % Hi || n * r > Ie) throw e.key("size").wrong(`a film of ${n} x ${r}`);
+function qi(e, t) {
+	let n = e.key("audio");
+	if (!n.exists) return null;
+	if (n.key("mimeType").text(64) !== Wi) throw n.key("mimeType").wrong(`no ${Wi}`);
+	let r = t.at(-1), i = n.key("offset").integer(r.offset + r.length, 2 ** 53 - 1);
+	if (i % 4) throw n.key("offset").wrong("no multiple of 4");
+	let a = n.key("first"), o = n.key("length").integer(1, He);
+	return {
+		mimeType: Wi,
+		first: a.exists ? a.number() : 0,
+		offset: i,
+		length: o
+	};
+}
+function Ji(e) {
+	let t = oi("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, Ui, Pe);
+	if (n % Ui || r % Ui || n * r > Fe) throw e.key("size").wrong(`a film of ${n} x ${r}`);
 	return {
 		codec: t,
 		size: [n, r],
@@ -1981,10 +1997,10 @@ function Gi(e) {
 		where: e.where
 	};
 }
-function Ki(e, t) {
-	let [n, r] = [0, 0], i = e.key("groups").items(ze).map((e) => {
-		let t = e.key("frames").integer(1, Ve), i = e.key("length").integer(1, Be), a = e.key("offset").integer(r, 2 ** 53 - 1), o = e.key("sha256").text(64);
-		if (!Ui.test(o)) throw e.key("sha256").wrong("no SHA-256");
+function Yi(e, t) {
+	let [n, r] = [0, 0], i = e.key("groups").items(Re).map((e) => {
+		let t = e.key("frames").integer(1, Be), i = e.key("length").integer(1, ze), a = e.key("offset").integer(r, 2 ** 53 - 1), o = e.key("sha256").text(64);
+		if (!Gi.test(o)) throw e.key("sha256").wrong("no SHA-256");
 		if (a % 4) throw e.key("offset").wrong("no multiple of 4");
 		return [n, r] = [n + t, a + i], {
 			first: n - t,
@@ -1998,33 +2014,33 @@ function Ki(e, t) {
 	if (n !== t) throw e.key("groups").wrong(`${n} frames in groups, and ${t} in all`);
 	return i;
 }
-function qi(e) {
+function Xi(e) {
 	return e.flatMap(({ mean: e, bases: t }) => [e, ...t.flatMap((e) => e.pictures)]);
 }
-function Ji(e, t) {
+function Zi(e, t) {
 	let n = t.map(({ size: e }) => new Uint8Array(e[0] * e[1] / q ** 2));
 	for (let { part: r, where: i } of e) {
 		let e = r && t[r.film];
-		if (!r || !e) throw M(i, "it lies in no film");
+		if (!r || !e) throw N(i, "it lies in no film");
 		let [a, o] = [e.size[0] / q, n[r.film]], [s, c] = r.size.map((e) => Math.ceil(e / q));
 		for (let [t, n] of r.at) {
 			let l = t + r.size[0] <= e.size[0] && n + r.size[1] <= e.size[1];
-			if (t % q || n % q || !l) throw M(i, `a texture at ${t}, ${n} of its film`);
+			if (t % q || n % q || !l) throw N(i, `a texture at ${t}, ${n} of its film`);
 			for (let e = n / q; e < n / q + c; e++) {
 				let r = o.subarray(e * a + t / q, e * a + t / q + s);
-				if (r.includes(1)) throw M(i, `two textures at ${t}, ${n} of a film`);
+				if (r.includes(1)) throw N(i, `two textures at ${t}, ${n} of a film`);
 				r.fill(1);
 			}
 		}
 	}
 }
-function Yi({ rate: e, first: t, frames: n }, r) {
+function Qi({ rate: e, first: t, frames: n }, r) {
 	return Math.min(Math.max(Math.floor((r - t) * e + .5), 0), n - 1);
 }
-function Xi({ rate: e, first: t }, n) {
+function $i({ rate: e, first: t }, n) {
 	return t + n / e;
 }
-function Zi({ groups: e }, t) {
+function ea({ groups: e }, t) {
 	let [n, r] = [0, e.length - 1];
 	for (; n < r;) {
 		let i = n + r + 1 >> 1;
@@ -2033,7 +2049,7 @@ function Zi({ groups: e }, t) {
 	return n;
 }
 // eigenfield-three/src/document.ts
-var Qi = [
+var ta = [
 	"namePattern",
 	"noFallback",
 	"packed",
@@ -2044,73 +2060,73 @@ var Qi = [
 	"stacks",
 	"timeline",
 	"toRGB"
-], $i = Object.values(U).flatMap(({ needs: e }) => e ?? []), ea = /* @__PURE__ */ new Set([...Qi, ...$i]), ta = 64, na = 9, ra = 10 ** na;
-function ia(e) {
-	let t = new W(e, "");
+], na = Object.values(W).flatMap(({ needs: e }) => e ?? []), ra = /* @__PURE__ */ new Set([...ta, ...na]), ia = 64, aa = 9, oa = 10 ** aa;
+function sa(e) {
+	let t = new G(e, "");
 	try {
-		return t.key("extensions").key(xe).exists;
+		return t.key("extensions").key(be).exists;
 	} catch {
 		return !1;
 	}
 }
-function aa(e) {
-	let t = new W(e, ""), n = t.key("extensions").key(xe), r = ca(n), i = mi(t), a = gi(t, i), o = hi(i);
-	la(t);
-	let s = fa(t, o), c = n.key("cameras"), { count: l, names: u } = pa(c, o), d = ga(c, l), f = d.filter((e) => !e).length, p = wi(n, f, s, a, o), m = Ti(n, p), h = c.key("colour"), g = c.key("codedColour");
+function ca(e) {
+	let t = new G(e, ""), n = t.key("extensions").key(be), r = da(n), i = mi(t), a = gi(t, i), o = hi(i);
+	fa(t);
+	let s = ha(t, o), c = n.key("cameras"), { count: l, names: u } = ga(c, o), d = ya(c, l), f = d.filter((e) => !e).length, p = Ti(n, f, s, a, o), m = Ei(n, p), h = c.key("colour"), g = c.key("codedColour");
 	if ((h.exists || g.exists) && m.length < 3) throw h.wrong("needs three channels");
-	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), [x, S] = [n.key("mesh"), n.key("timeline")], C = Bi(n.key("sheets"), o);
+	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), [x, S] = [n.key("mesh"), n.key("timeline")], C = Vi(n.key("sheets"), o);
 	return {
 		version: r,
-		generator: b.exists ? b.text(I) : "",
+		generator: b.exists ? b.text(L) : "",
 		planes: p,
 		colours: m,
 		names: u,
 		heldOut: d,
 		reference: n.key("reference").integer(0, l - 1),
-		calibration: _a(c, l, a, o),
-		sizes: va(c, l, a),
-		colour: g.exists ? _i("weights", g, o) : h.exists ? a(h, "SCALAR", [G], 6 * l) : null,
-		...ya(_),
-		triangles: y.exists ? _i("triangles", y, o) : v.exists ? da(a(v, "SCALAR", [li, ui], null), 2 * ke) : null,
-		settings: ba(n.key("settings")),
-		scores: ba(n.key("scores")),
+		calibration: ba(c, l, a, o),
+		sizes: xa(c, l, a),
+		colour: g.exists ? _i("weights", g, o) : h.exists ? a(h, "SCALAR", [K], 6 * l) : null,
+		...Sa(_),
+		triangles: y.exists ? _i("triangles", y, o) : v.exists ? ma(a(v, "SCALAR", [li, ui], null), 2 * Oe) : null,
+		settings: Ca(n.key("settings")),
+		scores: Ca(n.key("scores")),
 		views: i,
 		mesh: x.exists || S.exists ? _i("mesh", x, o) : null,
 		sheets: C,
-		shown: x.exists && !t.key("meshes").exists ? null : oa(t, a),
+		shown: x.exists && !t.key("meshes").exists ? null : la(t, a),
 		preview: s,
-		timeline: Wi(S, p, C && C.opacity.mean)
+		timeline: Ki(S, p, C && C.opacity.mean)
 	};
 }
-function oa(e, t) {
+function la(e, t) {
 	let n = e.key("meshes").at(0).key("primitives").at(0), r = n.key("mode");
 	if (r.exists && r.integer(0, 6) !== 4) throw r.wrong("no triangles");
 	let [i, a] = [n.key("attributes"), n.key("indices")];
 	return {
-		position: ua(t(i.key("POSITION"), "VEC3", [G], null), Ne),
-		uv: ua(t(i.key("TEXCOORD_0"), "VEC2", [G], null), Ne),
-		indices: da(t(a, "SCALAR", [
+		position: pa(t(i.key("POSITION"), "VEC3", [K], null), Me),
+		uv: pa(t(i.key("TEXCOORD_0"), "VEC2", [K], null), Me),
+		indices: ma(t(a, "SCALAR", [
 			ci,
 			li,
 			ui
-		], null), Pe)
+		], null), Ne)
 	};
 }
-function sa({ planes: e, sheets: t }) {
+function ua({ planes: e, sheets: t }) {
 	return t ? [...e, t.opacity] : e;
 }
-function ca(e) {
-	let t = e.key("version").text(I);
-	if (!/^1\.\d+$/.test(t)) throw new j("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
+function da(e) {
+	let t = e.key("version").text(L);
+	if (!/^1\.\d+$/.test(t)) throw new M("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
-	for (let e of n.exists ? n.items(Ce) : []) {
-		let t = e.text(I);
-		if (!ea.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
+	for (let e of n.exists ? n.items(Se) : []) {
+		let t = e.text(L);
+		if (!ra.has(t)) throw new M("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
-function la(e) {
-	let t = e.key("nodes").items(Ce), n = Array(t.length).fill(!1);
+function fa(e) {
+	let t = e.key("nodes").items(Se), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
 		for (let e of r.exists ? r.items(t.length) : []) {
@@ -2119,64 +2135,64 @@ function la(e) {
 			n[r] = !0;
 		}
 	}
-	for (let r of e.key("scenes").items(Ce)) {
+	for (let r of e.key("scenes").items(Se)) {
 		let e = r.key("nodes");
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
-function ua(e, t) {
-	if (e.count > t) throw M(e.where, `more than ${t}`);
+function pa(e, t) {
+	if (e.count > t) throw N(e.where, `more than ${t}`);
 	return e;
 }
-function da(e, t) {
-	if (e.count % 3) throw M(e.where, "torn triangles");
-	return ua(e, 3 * t);
+function ma(e, t) {
+	if (e.count % 3) throw N(e.where, "torn triangles");
+	return pa(e, 3 * t);
 }
-function fa(e, t) {
+function ha(e, t) {
 	let n = e.key("images");
 	if (!n.exists) return null;
 	let r = n.at(0).key("bufferView");
 	return r.exists ? t(r) : null;
 }
-function pa(e, t) {
+function ga(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
-		count: n.key("count").integer(1, ke),
+		count: n.key("count").integer(1, Oe),
 		names: _i("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? ha(r) : i.items(ke).map((e) => e.text(I));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? va(r) : i.items(Oe).map((e) => e.text(L));
 	if (!a.length) throw i.wrong("no cameras");
-	let o = ma(a);
+	let o = _a(a);
 	if (o) throw i.wrong(o);
 	return {
 		count: a.length,
 		names: a
 	};
 }
-function ma(e) {
+function _a(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
-function ha(e) {
-	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, ke));
+function va(e) {
+	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, Oe));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
-	let r = e.key("parts").items(ta).map((e) => {
-		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(I))];
+	let r = e.key("parts").items(ia).map((e) => {
+		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(L))];
 		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
 		if (a.exists) {
-			let e = a.items(i).map((e) => e.text(I));
+			let e = a.items(i).map((e) => e.text(L));
 			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
 			return [r, e];
 		}
-		let [o, s] = [e.key("first").integer(0, ra), e.key("step").integer(0, ra)], c = e.key("digits").integer(1, na);
+		let [o, s] = [e.key("first").integer(0, oa), e.key("step").integer(0, oa)], c = e.key("digits").integer(1, aa);
 		return [r, Array.from({ length: i }, (e, t) => String(o + s * t).padStart(c, "0"))];
 	});
 	return Array.from({ length: t * n }, (t, i) => {
 		let a = [Math.floor(i / n), i % n], o = r.map(([e, t]) => t[a[e] ?? 0]).join("");
-		if (o.length > 1024) throw e.wrong(`names of more than ${I} characters`);
+		if (o.length > 1024) throw e.wrong(`names of more than ${L} characters`);
 		return o;
 	});
 }
-function ga(e, t) {
+function ya(e, t) {
 	let n = Array(t).fill(!1), r = e.key("heldOut");
 	if (!r.exists) return n;
 	for (let e of r.items(t)) {
@@ -2187,21 +2203,21 @@ function ga(e, t) {
 	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
 	return n;
 }
-function _a(e, t, n, r) {
+function ba(e, t, n, r) {
 	let i = e.key("coded");
 	return i.exists ? _i("cameras", i, r) : {
-		intrinsics: n(e.key("intrinsics"), "SCALAR", [G], 5 * t),
-		poses: n(e.key("poses"), "SCALAR", [G], 12 * t)
+		intrinsics: n(e.key("intrinsics"), "SCALAR", [K], 5 * t),
+		poses: n(e.key("poses"), "SCALAR", [K], 12 * t)
 	};
 }
-function va(e, t, n) {
+function xa(e, t, n) {
 	let r = e.key("size");
 	if (!r.exists) return n(e.key("sizes"), "SCALAR", [ui], 2 * t);
-	let [i = 0, a = 0] = r.numbers(2, 1, Ae);
+	let [i = 0, a = 0] = r.numbers(2, 1, ke);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
-function ya(e) {
+function Sa(e) {
 	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
 	for (let i of [
 		r(t, t) - 1,
@@ -2216,23 +2232,23 @@ function ya(e) {
 		extent: [i, a]
 	};
 }
-function ba(e) {
+function Ca(e) {
 	return e.exists ? e.object() : {};
 }
 // eigenfield-three/src/info.ts
-var xa = 1e-6;
-async function Sa(e, t) {
+var wa = 1e-6;
+async function Ta(e, t) {
 	let [n, { lenses: r, poses: i }, a, o] = await Promise.all([
-		wa(e, t),
-		Ea(e, t),
 		Da(e, t),
-		Ca(e, t)
+		ka(e, t),
+		Aa(e, t),
+		Ea(e, t)
 	]);
 	return n.map((t, n) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
-		if (!(s > xa && c > xa)) throw M(r.where, `focal lengths of "${t}"`);
-		let { R: f, t: p } = Oa([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
-		if (!m || !h || Math.max(m, h) > 65535 || m * h > je) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
+		if (!(s > wa && c > wa)) throw N(r.where, `focal lengths of "${t}"`);
+		let { R: f, t: p } = ja([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
+		if (!m || !h || Math.max(m, h) > 65535 || m * h > Ae) throw N(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
 				s,
@@ -2249,13 +2265,13 @@ async function Sa(e, t) {
 				0,
 				1
 			]
-		], [_, v] = o ? ka([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
+		], [_, v] = o ? Ma([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
 		return {
 			name: t,
 			K: g,
 			R: f,
 			t: p,
-			centre: Va(f, p),
+			centre: Wa(f, p),
 			width: m,
 			height: h,
 			gain: _,
@@ -2263,10 +2279,10 @@ async function Sa(e, t) {
 		};
 	});
 }
-async function Ca({ colour: e, heldOut: t, views: n }, r) {
+async function Ea({ colour: e, heldOut: t, views: n }, r) {
 	if (!e || "type" in e) return e && vi(e, n, r);
 	let { cameras: i, components: a, values: o } = await e.codec.decode(new Uint8Array(await r(e.view)), e.where);
-	if (a !== 6 || i !== t.filter((e) => !e).length) throw M(e.where, `${i} x ${a} colours`);
+	if (a !== 6 || i !== t.filter((e) => !e).length) throw N(e.where, `${i} x ${a} colours`);
 	let s = 0;
 	return Float32Array.from(t.flatMap((e) => e ? [
 		1,
@@ -2277,29 +2293,29 @@ async function Ca({ colour: e, heldOut: t, views: n }, r) {
 		0
 	] : [...o.subarray(6 * s, 6 * ++s)]));
 }
-async function wa({ names: e, heldOut: t }, n) {
+async function Da({ names: e, heldOut: t }, n) {
 	if (Array.isArray(e)) return e;
-	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : ma(r);
-	if (i) throw M(e.where, i);
+	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : _a(r);
+	if (i) throw N(e.where, i);
 	return r;
 }
-async function Ta(e, t, n) {
+async function Oa(e, t, n) {
 	return {
 		numbers: await vi(e, t.views, n),
 		where: e.where
 	};
 }
-async function Ea(e, t) {
+async function ka(e, t) {
 	let { calibration: n, heldOut: r } = e;
 	if ("intrinsics" in n) {
 		let { intrinsics: r, poses: i } = n;
 		return {
-			lenses: await Ta(r, e, t),
-			poses: await Ta(i, e, t)
+			lenses: await Oa(r, e, t),
+			poses: await Oa(i, e, t)
 		};
 	}
 	let { view: i, codec: a, where: o } = n, s = await a.decode(new Uint8Array(await t(i)), o), c = s.poses.length / 12;
-	if (c !== r.length) throw M(o, `${c} cameras in it, and ${r.length} names`);
+	if (c !== r.length) throw N(o, `${c} cameras in it, and ${r.length} names`);
 	let l = (e) => ({
 		numbers: yi(e, o),
 		where: o
@@ -2309,15 +2325,15 @@ async function Ea(e, t) {
 		poses: l(s.poses)
 	};
 }
-async function Da(e, t) {
-	if (!Array.isArray(e.sizes)) return Ta(e.sizes, e, t);
+async function Aa(e, t) {
+	if (!Array.isArray(e.sizes)) return Oa(e.sizes, e, t);
 	let [n, r] = e.sizes;
 	return {
 		numbers: Uint32Array.from({ length: 2 * e.heldOut.length }, (e, t) => t % 2 ? r : n),
 		where: "its cameras' size"
 	};
 }
-function Oa(e, t, n) {
+function ja(e, t, n) {
 	let r = (t) => [
 		e[4 * t] ?? NaN,
 		e[4 * t + 1] ?? NaN,
@@ -2333,24 +2349,24 @@ function Oa(e, t, n) {
 	];
 	for (let e = 0; e < 3; e++) for (let r = e; r < 3; r++) {
 		let a = Y(i[e], i[r]) - +(e === r);
-		if (!(Math.abs(a) <= 2e-4)) throw M(t, `the pose of "${n}" is no rotation`);
+		if (!(Math.abs(a) <= 2e-4)) throw N(t, `the pose of "${n}" is no rotation`);
 	}
-	if (!(Y(Ha(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
+	if (!(Y(Ga(i[0], i[1]), i[2]) > 0)) throw N(t, `the pose of "${n}" is mirrored`);
 	return {
 		R: i,
 		t: a
 	};
 }
-function ka(e, t, n) {
+function Ma(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
-	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw M(t.colour?.where ?? "", `gain or offset of "${n}"`);
+	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw N(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
-async function Aa(e, t) {
+async function Na(e, t) {
 	let n = e.heldOut.filter((e) => !e).length;
-	return ja(n, await Promise.all(J(e).map((r) => Ma(r, n, e, t))));
+	return Pa(n, await Promise.all(J(e).map((r) => Fa(r, n, e, t))));
 }
-function ja(e, t) {
+function Pa(e, t) {
 	let n = t.reduce((e, { length: t }) => e + t, 0) / e, r = new Float32Array(e * n), i = 0;
 	for (let a of t) {
 		let t = a.length / e;
@@ -2359,41 +2375,41 @@ function ja(e, t) {
 	}
 	return r;
 }
-async function Ma({ weights: e, count: t }, n, r, i) {
+async function Fa({ weights: e, count: t }, n, r, i) {
 	if (!e) return /* @__PURE__ */ new Float32Array();
 	if ("type" in e) return vi(e, r.views, i);
 	let { view: a, codec: o, where: s } = e;
-	return Na(o.decode(new Uint8Array(await i(a)), s), n, t, s);
+	return Ia(o.decode(new Uint8Array(await i(a)), s), n, t, s);
 }
-function Na({ cameras: e, components: t, values: n }, r, i, a) {
+function Ia({ cameras: e, components: t, values: n }, r, i, a) {
 	if (e === r && t === i) return yi(n, a);
-	throw M(a, `${e} x ${t} weights, and ${r} encoded cameras x ${i} textures`);
+	throw N(a, `${e} x ${t} weights, and ${r} encoded cameras x ${i} textures`);
 }
 function J(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
 }
-function Pa(e) {
+function La(e) {
 	return Math.max(0, ...J(e).map(({ count: e }) => e));
 }
-function Fa(e, t) {
+function Ra(e, t) {
 	let n = [...t.slice(0, e.planes.length), ...J(e).map(({ grid: e }) => e)];
 	return [Math.max(...n.map(([e]) => e)), Math.max(...n.map(([, e]) => e))];
 }
-async function Ia(e, t) {
+async function za(e, t) {
 	if (!e.triangles) return /* @__PURE__ */ new Uint32Array();
-	let { where: n } = e.triangles, r = await La(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
+	let { where: n } = e.triangles, r = await Ba(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
-		if (Math.max(t, a, o) >= i) throw M(n, `no encoded camera ${Math.max(t, a, o)}`);
-		if (t === a || a === o || o === t) throw M(n, "a triangle with one camera twice");
+		if (Math.max(t, a, o) >= i) throw N(n, `no encoded camera ${Math.max(t, a, o)}`);
+		if (t === a || a === o || o === t) throw N(n, "a triangle with one camera twice");
 	}
 	return r;
 }
-async function La(e, t, n) {
+async function Ba(e, t, n) {
 	return "type" in e ? Uint32Array.from(await vi(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
 }
-function Ra(e, t, n, r, i, a) {
-	let { right: o, up: s } = e, c = Ha(o, s), l = [
+function Va(e, t, n, r, i, a) {
+	let { right: o, up: s } = e, c = Ga(o, s), l = [
 		0,
 		0,
 		0
@@ -2421,8 +2437,8 @@ function Ra(e, t, n, r, i, a) {
 		settings: e.settings,
 		scores: e.scores,
 		metresPerUnit: typeof u == "number" && u > 0 && u <= 1e30 ? u : null,
-		bytes: za(e, i),
-		size: Fa(e, n),
+		bytes: Ha(e, i),
+		size: Ra(e, n),
 		planes: e.planes.map(({ channels: e, bases: t }, r) => ({
 			channels: e,
 			mean: n[r] ?? [1, 1],
@@ -2438,8 +2454,8 @@ function Ra(e, t, n, r, i, a) {
 		facesPlane: Math.abs(Y(l, c)) > .7
 	};
 }
-function za(e, t) {
-	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(Pa(e)).fill(0);
+function Ha(e, t) {
+	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(La(e)).fill(0);
 	for (let { pictures: t } of J(e)) {
 		let e = 0;
 		for (let { view: n, textures: i } of t) {
@@ -2462,7 +2478,7 @@ function za(e, t) {
 		textures: s
 	};
 }
-function Ba(e, t) {
+function Ua(e, t) {
 	let { origin: n, extent: r } = e, i = [
 		t[0] - n[0],
 		t[1] - n[1],
@@ -2470,7 +2486,7 @@ function Ba(e, t) {
 	];
 	return [r[0] > 0 ? Y(i, e.right) / r[0] : 0, r[1] > 0 ? Y(i, e.up) / r[1] : 0];
 }
-function Va(e, t) {
+function Wa(e, t) {
 	let n = (n) => -(e[0][n] * t[0] + e[1][n] * t[1] + e[2][n] * t[2]);
 	return [
 		n(0),
@@ -2481,7 +2497,7 @@ function Va(e, t) {
 function Y(e, t) {
 	return e[0] * t[0] + e[1] * t[1] + e[2] * t[2];
 }
-function Ha(e, t) {
+function Ga(e, t) {
 	return [
 		e[1] * t[2] - e[2] * t[1],
 		e[2] * t[0] - e[0] * t[2],
@@ -2489,7 +2505,7 @@ function Ha(e, t) {
 	];
 }
 // eigenfield-three/src/cameras.ts
-function Ua(e, t, n) {
+function Ka(e, t, n) {
 	let { info: r } = e, i = r.cameras.filter((e, t) => !r.heldOut[t]), a = r.cameras[r.reference];
 	if (!a) throw RangeError(`no camera ${r.reference}`);
 	let { width: o, height: s } = a, c = [
@@ -2528,7 +2544,7 @@ function Ua(e, t, n) {
 	e.viewWeights(t, n, "delaunay").forEach((e, t) => {
 		let n = i[t];
 		if (!e || !n) return;
-		let r = Wa(n, o, s);
+		let r = qa(n, o, s);
 		for (let t of [
 			0,
 			1,
@@ -2539,7 +2555,7 @@ function Ua(e, t, n) {
 			2
 		]) t < 2 && (c[t][i] += e * r[t][i]), l[t][i] += e * n.R[t][i];
 	});
-	let u = Ka(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Ga(t) * m[0], Ga(n) * m[1]], _ = [
+	let u = Ya(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Ja(t) * m[0], Ja(n) * m[1]], _ = [
 		0,
 		1,
 		2
@@ -2556,7 +2572,7 @@ function Ua(e, t, n) {
 		offset: null
 	};
 }
-function Wa({ K: e, width: t, height: n }, r, i) {
+function qa({ K: e, width: t, height: n }, r, i) {
 	let a = Math.max(r / t, i / n), [o, s] = [(r - a * t) / 2, (i - a * n) / 2];
 	return [
 		[
@@ -2576,16 +2592,16 @@ function Wa({ K: e, width: t, height: n }, r, i) {
 		]
 	];
 }
-function Ga(e) {
+function Ja(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Ka(e) {
+function Ya(e) {
 	let t = e;
 	for (let e = 0; e < 50; e++) {
 		let e = [
-			Ha(t[1], t[2]),
-			Ha(t[2], t[0]),
-			Ha(t[0], t[1])
+			Ga(t[1], t[2]),
+			Ga(t[2], t[0]),
+			Ga(t[0], t[1])
 		], n = Y(t[0], e[0]);
 		if (!(n > 1e-12)) break;
 		let r = t.map((t, r) => t.map((t, i) => (t + e[r][i] / n) / 2)), i = Math.max(...r.flatMap((e, n) => e.map((e, r) => Math.abs(e - t[n][r]))));
@@ -2593,34 +2609,34 @@ function Ka(e) {
 	}
 	return t;
 }
-function qa(e, t, n, r, i = 1) {
+function Xa(e, t, n, r, i = 1) {
 	let a = n.width / n.height, o = i * Math.min(1, a / r), s = i * Math.min(1, r / a), c = {
 		left: (1 - o) / 2,
 		top: (1 - s) / 2,
 		width: o,
 		height: s
 	};
-	return Ja(e, t, n), Ya(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
+	return Za(e, t, n), Qa(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
 }
-function Ja(e, t, n) {
+function Za(e, t, n) {
 	let { R: r, centre: i } = n, a = new x().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
-	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new A()), t.updateMatrixWorld(!0);
+	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new j()), t.updateMatrixWorld(!0);
 }
-function Ya(e, t, n, r) {
-	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Xa(e, n);
+function Qa(e, t, n, r) {
+	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = $a(e, n);
 	t.near = d, t.far = f, t.projectionMatrix.set(l * i, -l * a, -(2 * r.left - 1 + l * o), 0, 0, u * s, -(1 - 2 * r.top - u * c), 0, 0, 0, -(f + d) / (f - d), -2 * f * d / (f - d), 0, 0, -1, 0), t.projectionMatrixInverse.copy(t.projectionMatrix).invert();
 }
-function Xa(e, t) {
+function $a(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
-		center: new A(),
+		center: new j(),
 		radius: 1
-	}, o = r.getMaxScaleOnAxis(), s = i.distanceTo(new A(...t.centre)) * o, c = 1.01 * (s + a * o);
+	}, o = r.getMaxScaleOnAxis(), s = i.distanceTo(new j(...t.centre)) * o, c = 1.01 * (s + a * o);
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
 // eigenfield-three/src/exposure.ts
-function Za(e) {
+function eo(e) {
 	let [t, n] = [[
 		1,
 		1,
@@ -2640,46 +2656,46 @@ function Za(e) {
 	};
 }
 // eigenfield-three/src/memory.ts
-var Qa = 4 / 3, $a = oo({
+var to = 4 / 3, no = lo({
 	components: 4,
 	halves: !0
-}), eo = {
+}), ro = {
 	components: 4,
 	halves: !1
-}, to = {
+}, io = {
 	components: 2,
 	halves: !1
-}, no = {
+}, ao = {
 	components: 2,
 	halves: !0
-}, ro = 2 ** 20, io = 1 / 64, ao = 34;
-function oo({ components: e, halves: t }) {
+}, oo = 2 ** 20, so = 1 / 64, co = 34;
+function lo({ components: e, halves: t }) {
 	return (e > 2 ? 4 : e) * (t ? 2 : 1);
 }
-function so() {
+function uo() {
 	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
-	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && co(e) ? Math.min(t ?? 4, 6) * 128 * ro : Math.min(t ?? 8, 8) * 256 * ro;
+	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && fo(e) ? Math.min(t ?? 4, 6) * 128 * oo : Math.min(t ?? 8, 8) * 256 * oo;
 }
-function co(e) {
+function fo(e) {
 	return (e?.maxTouchPoints ?? 0) > 1;
 }
 function X([e, t], n) {
 	return [Math.ceil(e / n), Math.ceil(t / n)];
 }
-function lo(e, t) {
+function po(e, t) {
 	let [n, r] = X(e, t);
 	return n * r;
 }
-function uo(e) {
+function mo(e) {
 	return Math.ceil(e / 4);
 }
-function fo(e, t) {
-	return t * po(e);
+function ho(e, t) {
+	return t * go(e);
 }
-function po(e) {
+function go(e) {
 	return Math.max(1, Math.ceil(e / 4));
 }
-function mo(e) {
+function _o(e) {
 	let { atlas: t, means: n, bases: r } = e, i = [
 		t,
 		...n.map(({ size: e }) => e),
@@ -2687,7 +2703,7 @@ function mo(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-var ho = [{
+var vo = [{
 	meanDown: 1,
 	scaleDown: 1,
 	halves: !0
@@ -2710,14 +2726,14 @@ var ho = [{
 	scaleDown: t * e,
 	halves: !1
 })))];
-function go(e, t) {
-	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => _o(e, t.meanDown) + e.geometry + vo(e, t, n), o = (n, r) => a(n, r) + xo(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = ho.filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
+function yo(e, t) {
+	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => bo(e, t.meanDown) + e.geometry + xo(e, t, n), o = (n, r) => a(n, r) + wo(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = vo.filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
 	for (; !u && l > 0; l--) u = c.find((e) => o(e, l - 1));
-	u ??= ho.at(-1);
-	let d = So({
+	u ??= vo.at(-1);
+	let d = To({
 		...u,
 		usable: l
-	}, e), f = Co(d, e, t);
+	}, e), f = Eo(d, e, t);
 	return {
 		...u,
 		usable: l,
@@ -2726,58 +2742,58 @@ function go(e, t) {
 		limitation: f
 	};
 }
-function _o(e, t) {
+function bo(e, t) {
 	let n = e.means.map(({ size: e, channels: n, tenBits: r, opacity: i }) => {
-		let a = i ? $a : 0;
-		return (oo({
+		let a = i ? no : 0;
+		return (lo({
 			components: n,
 			halves: r
-		}) * uo(n) + a) * lo(e, t);
-	}), r = mo({
+		}) * mo(n) + a) * po(e, t);
+	}), r = _o({
 		...e,
 		means: e.means.filter(({ opacity: e }) => !e)
 	}).map((n) => {
-		let r = n.join() === e.atlas.join() ? Qa : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
-		return $a * lo(n, t) * (r + +!!i);
+		let r = n.join() === e.atlas.join() ? to : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
+		return no * po(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function vo({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
+function xo({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
 	return e.reduce((e, a) => {
 		let o = Math.min(i, a.count);
 		if (!o) return e;
-		let s = t ? po(o) * 129 * 129 * $a : 0;
-		return e + oo({
+		let s = t ? go(o) * 129 * 129 * no : 0;
+		return e + lo({
 			components: o,
 			halves: r && a.tenBits
-		}) * fo(o, a.channels) * lo(a.size, n) + s;
+		}) * ho(o, a.channels) * po(a.size, n) + s;
 	}, 0);
 }
-function yo({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
-	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = bo([...a, ...o].map(({ size: e }) => e)), l = Math.floor(io * i / (oo(eo) * s)), u = [s, Math.min(c, Math.max(ao, l))], d = [...n > 1 ? a.map((e) => X(e.size, n)) : [], ...r > 1 ? o.map((e) => X(e.size, r)) : []];
+function So({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
+	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = Co([...a, ...o].map(({ size: e }) => e)), l = Math.floor(so * i / (lo(ro) * s)), u = [s, Math.min(c, Math.max(co, l))], d = [...n > 1 ? a.map((e) => X(e.size, n)) : [], ...r > 1 ? o.map((e) => X(e.size, r)) : []];
 	return {
 		picture: {
 			size: u,
-			format: eo
+			format: ro
 		},
 		codes: [...a, ...o].some(({ tenBits: e }) => e) ? {
 			size: u,
-			format: to
+			format: io
 		} : null,
 		smaller: d.length ? {
-			size: bo(d),
-			format: no
+			size: Co(d),
+			format: ao
 		} : null
 	};
 }
-function bo(e) {
+function Co(e) {
 	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
 }
-function xo(e, t, n) {
-	let r = Object.values(yo(e, t, n)).map((e) => e ? oo(e.format) * lo(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(...mo(e).map((e) => lo(e, 1))) : 0;
+function wo(e, t, n) {
+	let r = Object.values(So(e, t, n)).map((e) => e ? lo(e.format) * po(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(..._o(e).map((e) => po(e, 1))) : 0;
 	return [...r, i].reduce((e, t) => e + t, 0);
 }
-function So({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
+function To({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 	let a = Math.max(0, ...i.bases.map(({ count: e }) => e)), o = [];
 	return e < a && o.push({
 		kind: "count",
@@ -2791,28 +2807,28 @@ function So({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 		percent: Math.round(100 / t)
 	}), o;
 }
-function Co(e, t, n) {
+function Eo(e, t, n) {
 	if (!e.length) return null;
 	let r = e.map((e) => e.kind === "count" ? `${e.part} of ${e.whole} eigen textures are drawn` : e.kind === "bits" ? "eigen textures have 8 bits" : `${e.kind === "mean" ? "the mean texture has" : "eigen textures have"} ${e.percent} % of ${e.kind === "mean" ? "its" : "their"} width and height`), i = {
 		meanDown: 1,
 		scaleDown: 1,
 		halves: !0
-	}, a = _o(t, 1) + vo(t, i, Infinity) + xo(t, i, n.memory) + t.geometry, o = a > n.memory ? `the scene needs ${wo(a)} MB of graphics memory and ${wo(n.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${To(r.join(", "))}: ${o}.`;
+	}, a = bo(t, 1) + xo(t, i, Infinity) + wo(t, i, n.memory) + t.geometry, o = a > n.memory ? `the scene needs ${Do(a)} MB of graphics memory and ${Do(n.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${Oo(r.join(", "))}: ${o}.`;
 }
-function wo(e) {
+function Do(e) {
 	return (e / 1e6).toFixed(+(e < 1e7));
 }
-function To(e) {
+function Oo(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var Eo = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\n#define REACH 2\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec2 beside;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nfloat codeOf(vec2 shift) { return shift.x + float(REACH) + float(2 * REACH + 1) * (shift.y + float(REACH)); }\nvec2 shiftOf(vec4 place) {\n  int code = int(place.w + 0.5) - 1;\n  return code < 0 ? vec2(0.0) : vec2(code % (2 * REACH + 1) - REACH, code / (2 * REACH + 1) - REACH);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec4 place = rayWeights || beside.x > 0.0 ? texelFetch(places, ivec2(gl_FragCoord.xy), 0) : vec4(0.0);\n  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);\n  own -= beside * shiftOf(place);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Do = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", Oo = 2, ko = `
+var ko = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\n#define REACH 2\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec2 beside;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nfloat codeOf(vec2 shift) { return shift.x + float(REACH) + float(2 * REACH + 1) * (shift.y + float(REACH)); }\nvec2 shiftOf(vec4 place) {\n  int code = int(place.w + 0.5) - 1;\n  return code < 0 ? vec2(0.0) : vec2(code % (2 * REACH + 1) - REACH, code / (2 * REACH + 1) - REACH);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec4 place = rayWeights || beside.x > 0.0 ? texelFetch(places, ivec2(gl_FragCoord.xy), 0) : vec4(0.0);\n  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);\n  own -= beside * shiftOf(place);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Ao = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", jo = 2, Mo = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${Do}${Eo}`, Ao = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", jo = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nflat out vec2 shift;\nvoid main() {\n  point = onPlane;\n  shift = shifts[gl_InstanceID];\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shift, 0.0, 1.0);\n}\n", Mo = `${ko}
+${Ao}${ko}`, No = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", Po = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nflat out vec2 shift;\nvoid main() {\n  point = onPlane;\n  shift = shifts[gl_InstanceID];\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shift, 0.0, 1.0);\n}\n", Fo = `${Mo}
 in vec3 point;
 flat in vec2 shift;
 out vec4 place;
@@ -2820,14 +2836,14 @@ void main() {
   place = placeOf(point);
   place.w += codeOf(shift);
 }
-`, No = "sumTextures", Po = "finerValue", Fo = "finerOpacity";
-function Io(n, r, i) {
-	let o = new O({
+`, Io = "sumTextures", Lo = "finerValue", Ro = "finerOpacity";
+function zo(n, r, i) {
+	let o = new k({
 		glslVersion: h,
-		vertexShader: Ao,
-		fragmentShader: `${ko}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
+		vertexShader: No,
+		fragmentShader: `${Mo}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
 		uniforms: {
-			rectangle: { value: new ae(...r) },
+			rectangle: { value: new ie(...r) },
 			...i
 		},
 		side: u,
@@ -2857,12 +2873,12 @@ function Io(n, r, i) {
 		2,
 		1,
 		3
-	]), s.boundingSphere = new te();
+	]), s.boundingSphere = new ee();
 	let c = new S(s, o);
 	return c.frustumCulled = !1, c;
 }
-function Lo([e, t], n) {
-	return new oe(e, t, {
+function Bo([e, t], n) {
+	return new ae(e, t, {
 		type: g,
 		depthBuffer: !1,
 		generateMipmaps: n,
@@ -2870,31 +2886,31 @@ function Lo([e, t], n) {
 		magFilter: n ? y : w
 	});
 }
-function Ro(e, t) {
-	let n = Ha(e.right, e.up), r = [
+function Vo(e, t) {
+	let n = Ga(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
 		t[2] - e.origin[2]
 	];
-	return [...Ba(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
+	return [...Ua(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
 }
-function zo(t, n, r) {
+function Ho(t, n, r) {
 	let { index: i } = t, a = t.getAttribute("position"), o = t.getAttribute("uv"), s = new Float32Array(3 * a.count), c = new Float32Array(2 * a.count);
-	for (let e = 0; e < a.count; e++) s.set(Ro(n, [
+	for (let e = 0; e < a.count; e++) s.set(Vo(n, [
 		a.getX(e),
 		a.getY(e),
 		a.getZ(e)
 	]), 3 * e), c.set([o.getX(e), o.getY(e)], 2 * e);
-	let l = Array.from({ length: 5 }, (e, t) => t - Oo), d = l.flatMap((e) => l.map((t) => new ie(t, e)));
+	let l = Array.from({ length: 5 }, (e, t) => t - jo), d = l.flatMap((e) => l.map((t) => new re(t, e)));
 	d.sort((e, t) => t.lengthSq() - e.lengthSq());
 	let f = new v();
-	f.setAttribute("position", new e(c, 2)), f.setAttribute("onPlane", new e(s, 3)), f.setIndex(i && new e(i.array, 1)), f.instanceCount = d.length, f.boundingSphere = new te();
-	let p = new O({
+	f.setAttribute("position", new e(c, 2)), f.setAttribute("onPlane", new e(s, 3)), f.setIndex(i && new e(i.array, 1)), f.instanceCount = d.length, f.boundingSphere = new ee();
+	let p = new k({
 		glslVersion: h,
-		vertexShader: jo.replace("SHIFTS", String(d.length)),
-		fragmentShader: Mo,
+		vertexShader: Po.replace("SHIFTS", String(d.length)),
+		fragmentShader: Fo,
 		uniforms: {
-			texel: { value: new ie(2 / r.width, 2 / r.height) },
+			texel: { value: new re(2 / r.width, 2 / r.height) },
 			shifts: { value: d }
 		},
 		side: u,
@@ -2903,7 +2919,7 @@ function zo(t, n, r) {
 		depthWrite: !1
 	}), m = new S(f, p);
 	m.frustumCulled = !1;
-	let g = new k();
+	let g = new A();
 	return g.add(m), {
 		scene: g,
 		free: () => {
@@ -2911,19 +2927,19 @@ function zo(t, n, r) {
 		}
 	};
 }
-var Bo = new i(0), Vo = new i();
-function Ho(e, t, n) {
+var Uo = new i(0), Wo = new i();
+function Go(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(Vo), e.setClearColor(Bo, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(Vo, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(Wo), e.setClearColor(Uo, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(Wo, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/composer.ts
-var Uo = {
+var Ko = {
 	version: 0,
 	mean: !0,
 	opacity: 0,
@@ -2933,7 +2949,7 @@ var Uo = {
 	eye: null,
 	places: 0,
 	maps: null
-}, Wo = class {
+}, qo = class {
 	snaps;
 	surface;
 	plane;
@@ -2944,14 +2960,14 @@ var Uo = {
 	camera = new n();
 	constructor(e, t, n, r, i, a, o) {
 		this.snaps = i, this.surface = a, this.plane = o;
-		let [s, ...c] = mo({
+		let [s, ...c] = _o({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), l = (e, n) => {
-			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => qo(t, i ? X(e, r) : null)), o = new k();
+			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => Xo(t, i ? X(e, r) : null)), o = new A();
 			return a.forEach(({ quad: e }, t) => o.add(Object.assign(e, { renderOrder: t }))), {
-				target: Lo(X(e, r), n),
+				target: Bo(X(e, r), n),
 				scene: o,
 				steps: a,
 				places: null
@@ -2959,7 +2975,7 @@ var Uo = {
 		}, u = l(s ?? e, !0);
 		this.grids = c.map((e) => l(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = Io(Po, [
+			let t = zo(Lo, [
 				0,
 				0,
 				1,
@@ -2967,24 +2983,24 @@ var Uo = {
 			], { coarse: { value: e.texture } });
 			u.scene.add(Object.assign(t, { renderOrder: u.scene.children.length }));
 		}
-		this.grids.push(u), this.opacity = n && Go(n, r);
+		this.grids.push(u), this.opacity = n && Jo(n, r);
 	}
 	get texture() {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && Xo(this.composed, n) || (this.composed = n, Ho(e, t, () => {
+		this.composed && $o(this.composed, n) || (this.composed = n, Go(e, t, () => {
 			n.opacity > this.opacityDrawn && this.drawOpacity(e, n.opacity);
 			for (let t of this.grids) {
 				(n.eye !== null && t.steps.some(({ part: e }) => e.basis) || this.snaps) && this.findPlaces(e, t, n.places);
-				for (let e of t.steps) Jo(e, t.places?.target.texture ?? null, n);
+				for (let e of t.steps) Zo(e, t.places?.target.texture ?? null, n);
 				this.draw(e, t.scene, t.target, this.opacityDrawn > 0 && t === this.grids.at(-1));
 			}
 		}));
 	}
 	dispose() {
-		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), Ko(n);
-		this.opacity?.target.dispose(), this.opacity && [this.opacity.sum, this.opacity.finer].forEach(Ko);
+		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), Yo(n);
+		this.opacity?.target.dispose(), this.opacity && [this.opacity.sum, this.opacity.finer].forEach(Yo);
 	}
 	drawOpacity(e, t) {
 		let [n, r] = [this.grids.at(-1), this.opacity];
@@ -2992,7 +3008,7 @@ var Uo = {
 	}
 	findPlaces(e, t, n) {
 		if (t.places?.version === n) return;
-		let r = t.places?.target ?? Lo([t.target.width, t.target.height], !1), { scene: i, free: a } = zo(this.surface.geometry, this.plane, r);
+		let r = t.places?.target ?? Bo([t.target.width, t.target.height], !1), { scene: i, free: a } = Ho(this.surface.geometry, this.plane, r);
 		this.draw(e, i, r), a(), t.places = {
 			target: r,
 			version: n
@@ -3004,11 +3020,11 @@ var Uo = {
 		r && i.colorMask(!0, !0, !0, !1), e.clear(!0, !1, !1), r && i.colorMask(!0, !0, !0, !0), e.render(t, this.camera);
 	}
 };
-function Go(e, t) {
-	let n = Lo(X(e.grid, t), !1), r = qo(e, null);
-	for (let e of r) Jo(e, null, Uo);
-	let [i, a] = [new k(), new k()];
-	return i.add(...r.map(({ quad: e }) => e)), a.add(Io(Fo, [
+function Jo(e, t) {
+	let n = Bo(X(e.grid, t), !1), r = Xo(e, null);
+	for (let e of r) Zo(e, null, Ko);
+	let [i, a] = [new A(), new A()];
+	return i.add(...r.map(({ quad: e }) => e)), a.add(zo(Ro, [
 		0,
 		0,
 		1,
@@ -3019,17 +3035,17 @@ function Go(e, t) {
 		finer: a
 	};
 }
-function Ko(e) {
+function Yo(e) {
 	for (let { geometry: t, material: n } of e.children) t.dispose(), n.dispose();
 }
-function qo(e, t) {
-	let [n, r, i, a] = e.rectangle, o = t && new ie(1 / ((i - n) * t[0]), 1 / ((a - r) * t[1])), s = e.colours.length, [c, l] = [e.scale.length / (4 * s), Math.floor(64 / s)], u = [];
+function Xo(e, t) {
+	let [n, r, i, a] = e.rectangle, o = t && new re(1 / ((i - n) * t[0]), 1 / ((a - r) * t[1])), s = e.colours.length, [c, l] = [e.scale.length / (4 * s), Math.floor(64 / s)], u = [];
 	for (let t = 0; t < c; t += l) {
-		let n = Array.from({ length: 64 }, (t, n) => new A(...e.colours[n] ?? [
+		let n = Array.from({ length: 64 }, (t, n) => new j(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), r = e.basis ? 1 : 4, i = Io(No, e.rectangle, {
+		])), r = e.basis ? 1 : 4, i = zo(Io, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(t * s / r) },
 			sharing: { value: r },
@@ -3042,8 +3058,8 @@ function qo(e, t) {
 			weightMaps: { value: null },
 			firstGroup: { value: (e.basis?.group ?? 0) + t },
 			places: { value: null },
-			beside: { value: o ?? new ie() },
-			eye: { value: new A() }
+			beside: { value: o ?? new re() },
+			eye: { value: new j() }
 		});
 		u.push({
 			part: e,
@@ -3054,31 +3070,31 @@ function qo(e, t) {
 	}
 	return u;
 }
-function Jo({ part: e, first: t, groups: n, quad: r }, i, a) {
+function Zo({ part: e, first: t, groups: n, quad: r }, i, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Yo(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Qo(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
 	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", i), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function Yo(e, t, n, r) {
+function Qo(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function Xo(e, t) {
+function $o(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
 // eigenfield-three/src/maps.ts
-function Zo(e, t, n, i, a) {
+function es(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? po(t) : 0;
+		u += e, d += t ? go(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -3094,10 +3110,10 @@ function Zo(e, t, n, i, a) {
 		}
 	}
 	let p = new o(f, 129, 129, Math.max(1, d));
-	return p.format = D, p.type = g, p.minFilter = p.magFilter = y, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
+	return p.format = O, p.type = g, p.minFilter = p.magFilter = y, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
 }
 // eigenfield-three/src/eigen-weights.ts
-var Qo = class {
+var ts = class {
 	info;
 	counts;
 	omega;
@@ -3129,12 +3145,12 @@ var Qo = class {
 		if (n >= 0) return Float64Array.from(this.omega.subarray(n * this.total, (n + 1) * this.total));
 		let r = this.info.cameras[e];
 		if (!r) throw RangeError(`no camera ${e}`);
-		return this.at(...Ba(this.info.viewPlane, r.centre), t);
+		return this.at(...Ua(this.info.viewPlane, r.centre), t);
 	}
 	maps(e, t) {
 		if (this.made?.mixing === e && this.made.usable === t) return this.made.texture;
 		this.dispose();
-		let n = Zo(this.views, e, this.omega, this.counts, t);
+		let n = es(this.views, e, this.omega, this.counts, t);
 		return this.made = {
 			texture: n,
 			mixing: e,
@@ -3144,20 +3160,20 @@ var Qo = class {
 	dispose() {
 		this.made?.texture.dispose();
 	}
-}, $o = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", es = {
+}, ns = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", rs = {
 	bilinear: 0,
 	bicubic: 1
-}, ts = {
+}, is = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, ns = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", rs = ns.replace("void main", "invariant gl_Position;\nvoid main"), is = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", as = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", os = `${is}
-${Do}${$o}
+}, as = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", os = as.replace("void main", "invariant gl_Position;\nvoid main"), ss = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", cs = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", ls = `${ss}
+${Ao}${ns}
 uniform float shownGain;       // of the eigen texture around mid grey
 in vec2 surfaceUv;
 vec3 eigenColour(vec3 value) { return clamp(0.5 + shownGain * value, 0.0, 1.0); }
-`, ss = `${os}${as}
+`, us = `${ls}${cs}
 in vec3 surfacePlace;
 out vec4 fragment;
 void main() {
@@ -3167,7 +3183,7 @@ void main() {
   if (shown == 3) colour = errorColour(colour, surfacePlace);
   fragment = vec4(colour, 1.0);
 }
-`, cs = `${os}
+`, ds = `${ls}
 layout(location = 0) out vec4 fragment;
 layout(location = 1) out vec4 solid;
 vec3 threeBytes(float depth) {
@@ -3181,98 +3197,98 @@ void main() {
   float depth = (gl_FragCoord.z - gl_DepthRange.near) / gl_DepthRange.diff;
   solid = colour.a < 0.5 ? vec4(0.0) : vec4(threeBytes(depth), 1.0);
 }
-`, ls = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", us = {
+`, fs = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", ps = {
 	blending: a,
 	blendSrc: E,
-	blendDst: ee
-}, ds = {
+	blendDst: D
+}, ms = {
 	depthWrite: !1,
 	stencilWrite: !0,
 	stencilFunc: d,
 	stencilZPass: _
 };
-function fs(e, t) {
+function hs(e, t) {
 	let n = {
 		composed: { value: null },
 		finest: { value: 1 },
-		exposureScale: { value: new A(1, 1, 1) },
-		exposureBias: { value: new A() },
-		shown: { value: ts.picture },
+		exposureScale: { value: new j(1, 1, 1) },
+		exposureBias: { value: new j() },
+		shown: { value: is.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new x() }
-	}, r = new O({
+	}, r = new k({
 		glslVersion: h,
-		vertexShader: t ? rs : ns,
-		fragmentShader: t ? cs : ss,
+		vertexShader: t ? os : as,
+		fragmentShader: t ? ds : us,
 		uniforms: n,
-		defines: { BICUBIC: es.bicubic },
+		defines: { BICUBIC: rs.bicubic },
 		side: e ? u : m,
 		...t ? {
-			...us,
-			...ds
+			...ps,
+			...ms
 		} : {}
 	});
 	return r.name = "eigen textures", r;
 }
-function ps(e) {
+function gs(e) {
 	let { side: t } = e;
-	return new O({
+	return new k({
 		name: "depth of sheets",
 		glslVersion: h,
-		vertexShader: rs,
-		fragmentShader: ls,
+		vertexShader: os,
+		fragmentShader: fs,
 		colorWrite: !1,
 		side: t,
 		stencilWrite: !0,
-		stencilZPass: se
+		stencilZPass: oe
 	});
 }
-function ms(e, t, n) {
-	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !hs(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
+function _s(e, t, n) {
+	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !vs(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
 	u && (d.elements[13] = 1), e.toPhotograph.value.multiplyMatrices(d, l.multiply(c)), e.photograph.value = n;
 }
-function hs(e) {
+function vs(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
 // eigenfield-three/src/film-codes.ts
-var gs = /* @__PURE__ */ new Set([
+var ys = /* @__PURE__ */ new Set([
 	"I420P10",
 	"I422P10",
 	"I444P10"
-]), _s = /* @__PURE__ */ new Set([
+]), bs = /* @__PURE__ */ new Set([
 	"I420",
 	"I420A",
 	"I422",
 	"I444",
 	"NV12"
-]), vs = /* @__PURE__ */ new Set([
+]), xs = /* @__PURE__ */ new Set([
 	"RGBA",
 	"RGBX",
 	"BGRA",
 	"BGRX"
-]), ys = 1, bs = Uint16Array.from({ length: 256 }, (e, t) => Math.round(t * 1023 / 255)), xs = Uint16Array.from({ length: 256 }, (e, t) => bs[16 + Math.round(t * 219 / 255)]), Ss = xs.map((e, t) => t === 0 ? 0 : t === 255 ? 1023 : e);
-async function Cs(e, t, n = !1) {
+]), Ss = 1, Cs = Uint16Array.from({ length: 256 }, (e, t) => Math.round(t * 1023 / 255)), ws = Uint16Array.from({ length: 256 }, (e, t) => Cs[16 + Math.round(t * 219 / 255)]), Ts = ws.map((e, t) => t === 0 ? 0 : t === 255 ? 1023 : e);
+async function Es(e, t, n = !1) {
 	let r = e.format ?? "", { width: i, height: a } = e.visibleRect ?? {
 		width: 0,
 		height: 0
 	};
-	if (!gs.has(r) && !_s.has(r) && !vs.has(r)) throw new j("unsupported", `This browser does not hand out its frames (${r || "no format"}).`, "");
+	if (!ys.has(r) && !bs.has(r) && !xs.has(r)) throw new M("unsupported", `This browser does not hand out its frames (${r || "no format"}).`, "");
 	let o = e.allocationSize(), s = t && t.length >= o ? t : new Uint8Array(o), [c] = await e.copyTo(s), { offset: l, stride: u } = c ?? {
 		offset: 0,
 		stride: 0
 	};
-	if (gs.has(r)) return {
+	if (ys.has(r)) return {
 		data: s.subarray(l),
 		width: i,
 		height: a,
 		stride: u,
 		room: s
 	};
-	let d = vs.has(r), [f, p] = d ? [4, l + ys] : [1, l], m = d && e.colorSpace?.fullRange === !1 ? n ? Ss : xs : bs;
-	return ws(s.subarray(p), u, f, [i, a], m);
+	let d = xs.has(r), [f, p] = d ? [4, l + Ss] : [1, l], m = d && e.colorSpace?.fullRange === !1 ? n ? Ts : ws : Cs;
+	return Ds(s.subarray(p), u, f, [i, a], m);
 }
-function ws(e, t, n, [r, i], a = bs) {
+function Ds(e, t, n, [r, i], a = Cs) {
 	let o = new Uint16Array(r * i);
 	for (let s = 0; s < i; s++) for (let i = 0; i < r; i++) o[s * r + i] = a[e[s * t + n * i]];
 	return {
@@ -3282,7 +3298,7 @@ function ws(e, t, n, [r, i], a = bs) {
 		stride: 2 * r
 	};
 }
-function Ts({ data: e, stride: t }, { size: [n, r], at: i }) {
+function Os({ data: e, stride: t }, { size: [n, r], at: i }) {
 	return i.map(([i, a]) => ({
 		data: e.subarray(a * t + 2 * i),
 		width: n,
@@ -3291,21 +3307,21 @@ function Ts({ data: e, stride: t }, { size: [n, r], at: i }) {
 	}));
 }
 // eigenfield-three/src/pieces.ts
-function Es(e) {
+function ks(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
 // eigenfield-three/src/strength.ts
-var Ds = 128, Os = .98;
-async function ks(e, t, n, r) {
+var As = 128, js = .98;
+async function Ms(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = Mi(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Ds, Ds).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = Ni(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(As, As).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	return u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, Ds, Ds);
-		let { data: u } = d.getImageData(0, 0, Ds, Ds);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, As, As);
+		let { data: u } = d.getImageData(0, 0, As, As);
 		(l ? [
 			0,
 			1,
@@ -3314,15 +3330,15 @@ async function ks(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), Es(u), As(f);
+	}), ks(u), Ns(f);
 }
-function As(e) {
+function Ns(e) {
 	e.sort((e, t) => e - t);
-	let t = e[Math.floor(Os * e.length)] ?? 0;
+	let t = e[Math.floor(js * e.length)] ?? 0;
 	return t > 0 ? .45 / t : 1;
 }
 // eigenfield-three/src/film-textures.ts
-var js = class {
+var Ps = class {
 	scene;
 	films;
 	filling = null;
@@ -3348,7 +3364,7 @@ var js = class {
 	}
 	put(e) {
 		e.together(() => {
-			sa(this.scene).forEach(({ mean: t }, n) => e.putMean(n, {
+			ua(this.scene).forEach(({ mean: t }, n) => e.putMean(n, {
 				pieces: this.piecesOf(t),
 				precision: null
 			})), J(this.scene).forEach(({ pictures: [t] }, n) => {
@@ -3358,7 +3374,7 @@ var js = class {
 	}
 	piecesOf({ part: e }) {
 		let t = e && this.films[e.film];
-		return t ? Ts(t, e).map((e) => ({
+		return t ? Os(t, e).map((e) => ({
 			picture: e,
 			row: 0,
 			rows: e.height
@@ -3366,69 +3382,69 @@ var js = class {
 	}
 	gainOf({ part: e, pieces: t, scale: n, zero: r }, i, a) {
 		let o = e && this.films[e.film];
-		return o ? As(Ts(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
+		return o ? Ns(Os(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
 			let s = t * i + o, c = Math.max(...(a[o] ?? [0]).map(Math.abs)) * (n[s] ?? 0);
-			return Ns(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
+			return Is(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
 		})) : 1;
 	}
-}, Ms = 8;
-function Ns({ data: e, width: t, height: n, stride: r }) {
+}, Fs = 8;
+function Is({ data: e, width: t, height: n, stride: r }) {
 	let i = [];
-	for (let a = 0; a < n; a += Ms) for (let n = 0; n < t; n += Ms) {
+	for (let a = 0; a < n; a += Fs) for (let n = 0; n < t; n += Fs) {
 		let t = a * r + 2 * n;
 		i.push(e[t] + 256 * e[t + 1]);
 	}
 	return i;
 }
 // eigenfield-three/src/container.ts
-var Ps = 1179937895, Fs = 1313821514, Is = 5130562, Ls = 1280591429;
-async function Rs(e) {
+var Ls = 1179937895, Rs = 1313821514, zs = 5130562, Bs = 1280591429;
+async function Vs(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof j && t.code === "truncated" ? Us(e.received === 0) : t;
+		throw t instanceof M && t.code === "truncated" ? Ks(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== Ps) throw Us(!1);
+	if (new DataView(t).getUint32(0, !0) !== Ls) throw Ks(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
-	if (r !== 2) throw new j("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
-	if (i < 20) throw M("8", "a length of no file");
+	if (r !== 2) throw new M("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
+	if (i < 20) throw N("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== Fs) throw M("16", "it does not begin with JSON");
-	if (o > Se) throw M("12", `${o} bytes of JSON`);
-	if (20 + o > i) throw M("12", "a chunk longer than the file");
-	let s = Bs(await e.read(20, 20 + o)), c = (t, n) => () => zs(e, 20 + o, i, t, n);
+	if (a.getUint32(4, !0) !== Rs) throw N("16", "it does not begin with JSON");
+	if (o > xe) throw N("12", `${o} bytes of JSON`);
+	if (20 + o > i) throw N("12", "a chunk longer than the file");
+	let s = Us(await e.read(20, 20 + o)), c = (t, n) => () => Hs(e, 20 + o, i, t, n);
 	return {
 		length: i,
 		text: s,
-		json: Vs(s, "20"),
-		binary: c(Is, "binary chunk"),
-		groups: c(Ls, "chunk of groups")
+		json: Ws(s, "20"),
+		binary: c(zs, "binary chunk"),
+		groups: c(Bs, "chunk of groups")
 	};
 }
-async function zs(e, t, n, r, i) {
+async function Hs(e, t, n, r, i) {
 	let a = t;
 	for (let t = 1; t < 64 && a + 8 <= n; t++) {
 		let t = new DataView(await e.read(a, a + 8)), i = t.getUint32(0, !0);
-		if (a + 8 + i > n) throw M(String(a), "a chunk longer than the file");
+		if (a + 8 + i > n) throw N(String(a), "a chunk longer than the file");
 		if (t.getUint32(4, !0) === r) return a + 8;
 		a += 8 + i;
 	}
-	throw M(String(t), `no ${i}`);
+	throw N(String(t), `no ${i}`);
 }
-function Bs(e) {
+function Us(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
-		throw M("20", "its JSON is not UTF-8");
+		throw N("20", "its JSON is not UTF-8");
 	}
 }
-function Vs(e, t) {
-	if (Hs(e) > 64) throw M(t, "its JSON is nested too deep");
+function Ws(e, t) {
+	if (Gs(e) > 64) throw N(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
-		throw M(t, "its JSON cannot be read");
+		throw N(t, "its JSON cannot be read");
 	}
 }
-function Hs(e) {
+function Gs(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3439,11 +3455,11 @@ function Hs(e) {
 	}
 	return n;
 }
-function Us(e) {
-	return new j("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
+function Ks(e) {
+	return new M("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/groups.ts
-var Ws = 3, Gs = 4, Ks = class {
+var qs = 3, Js = 4, Ys = class {
 	scene;
 	timeline;
 	mesh;
@@ -3454,74 +3470,98 @@ var Ws = 3, Gs = 4, Ks = class {
 	}
 	open(e) {
 		let t = this.kept.get(e) ?? this.opened(e);
-		this.kept.delete(e), this.kept.set(e, t);
-		for (let [e] of this.kept) this.kept.size > Ws && this.kept.delete(e);
+		t.catch(() => this.kept.get(e) === t && this.kept.delete(e)), this.kept.delete(e), this.kept.set(e, t);
+		for (let [e] of this.kept) this.kept.size > qs && this.kept.delete(e);
+		return t;
+	}
+	async begin() {
+		let e = this.placeOf(0), t = async (t) => new Uint8Array(await this.read(e.offset, Math.min(t, e.length))), { head: n, at: r } = await ec(await t(Js + Qs(await t(Js), e)), e), i = [
+			n.key("weights"),
+			n.key("mesh"),
+			n.key("motion"),
+			n.key("frames").at(0)
+		].reduce((e, { raw: t }) => e + $s(t), r);
+		return this.build(0, await t(i), n, r, 1);
+	}
+	placeOf(e) {
+		let t = this.timeline.groups[e];
+		if (!t) throw RangeError(`no group ${e}`);
 		return t;
 	}
 	async opened(e) {
-		let t = this.timeline.groups[e];
-		if (!t) throw RangeError(`no group ${e}`);
-		let n = new Uint8Array(await this.read(t.offset, t.length));
-		await Js(n, t);
-		let { head: r, at: i } = await Ys(n, t), a = Xs(n, i, t), o = this.weightsOf(r, a), s = this.motionOf(r, a, t), { first: c, frames: l } = t, u = Zs(r, t, this.timeline.films.length, a);
+		let t = this.placeOf(e), n = new Uint8Array(await this.read(t.offset, t.length));
+		await Zs(n, t);
+		let { head: r, at: i } = await ec(n, t);
+		return this.build(e, n, r, i, t.frames);
+	}
+	build(e, t, n, r, i) {
+		let a = this.placeOf(e), o = tc(t, r, a), s = this.weightsOf(n, o), c = this.meshOf(n, o), l = nc(n, o, c, a), { first: u, frames: d } = a, f = rc(n, a, this.timeline.films.length, o, i);
 		return {
 			index: e,
-			first: c,
-			frames: l,
-			omega: o,
-			...this.scalesOf(r),
-			units: u,
-			motion: s
+			first: u,
+			frames: d,
+			omega: s,
+			...this.scalesOf(n),
+			units: f,
+			mesh: c,
+			motion: l
 		};
 	}
-	motionOf(e, t, { frames: n }) {
-		let r = e.key("motion");
-		if (!r.exists) return null;
-		let i = U["motion-1"].decode(t(r), this.mesh, r.where);
-		if (i.frames !== n) throw r.wrong(`${i.frames} frames of ${n}`);
-		return i;
+	meshOf(e, t) {
+		let n = e.key("mesh");
+		if (!n.exists) return this.mesh;
+		if (this.scene.sheets) throw n.wrong("a mesh of its own, in a clip with sheets");
+		let r = W["mesh-2"].decode(t(n), n.where);
+		if (!r.indices.length) throw N(n.where, "a mesh without faces");
+		return r;
 	}
 	weightsOf(e, t) {
-		let n = this.scene.heldOut.filter((e) => !e).length, r = $s(e.key("weights"), this.scene.planes.length);
-		return ja(n, this.scene.planes.flatMap(({ bases: e }, i) => {
-			let a = r[i] && $s(r[i], e.length);
+		let n = this.scene.heldOut.filter((e) => !e).length, r = ac(e.key("weights"), this.scene.planes.length);
+		return Pa(n, this.scene.planes.flatMap(({ bases: e }, i) => {
+			let a = r[i] && ac(r[i], e.length);
 			return e.map(({ count: e }, r) => {
 				let i = a[r];
-				return Na(U["weights-1"].decode(t(i), i.where), n, e, i.where);
+				return Ia(W["weights-1"].decode(t(i), i.where), n, e, i.where);
 			});
 		}));
 	}
 	scalesOf(e) {
 		let { planes: t } = this.scene;
 		return {
-			means: $s(e.key("means"), t.length).map((e, n) => Qs(e, t[n].mean)),
-			bases: $s(e.key("bases"), t.length).flatMap((e, n) => {
+			means: ac(e.key("means"), t.length).map((e, n) => ic(e, t[n].mean)),
+			bases: ac(e.key("bases"), t.length).flatMap((e, n) => {
 				let { bases: r } = t[n];
-				return $s(e, r.length).map((e, t) => Qs(e, r[t].pictures[0]));
+				return ac(e, r.length).map((e, t) => ic(e, r[t].pictures[0]));
 			})
 		};
 	}
 };
-function qs(e, { means: t, bases: n }) {
+function Xs(e, { means: t, bases: n }) {
 	e.planes.forEach(({ mean: e }, n) => Object.assign(e, t[n])), J(e).forEach(({ pictures: [e] }, t) => e && Object.assign(e, n[t]));
 }
-async function Js(e, { sha256: t, where: n }) {
+async function Zs(e, { sha256: t, where: n }) {
 	let r = globalThis.crypto?.subtle;
 	if (!r) return;
 	let i = new Uint8Array(await r.digest("SHA-256", e));
-	if (Array.from(i, (e) => e.toString(16).padStart(2, "0")).join("") !== t) throw M(n, "other bytes than its SHA-256 says");
+	if (Array.from(i, (e) => e.toString(16).padStart(2, "0")).join("") !== t) throw N(n, "other bytes than its SHA-256 says");
 }
-async function Ys(e, { where: t }) {
-	if (e.length < Gs) throw M(t, "no head");
-	let n = Gs + new DataView(e.buffer).getUint32(0, !0);
-	if (n > e.length) throw M(t, "a head longer than the group");
-	let r = await be(e.subarray(Gs, n), "deflate-raw", He, t);
+function Qs(e, { where: t }) {
+	if (e.length < Js) throw N(t, "no head");
+	return new DataView(e.buffer).getUint32(0, !0);
+}
+function $s(e) {
+	return typeof e == "number" ? e : Array.isArray(e) ? e.reduce((e, t) => e + $s(t), 0) : 0;
+}
+async function ec(e, { where: t }) {
+	let n = Js + Qs(e, { where: t });
+	if (n > e.length) throw N(t, "a head longer than the group");
+	let r = await ye(e.subarray(Js, n), "deflate-raw", Ve, t);
 	return {
-		head: new W(Vs(new TextDecoder("utf-8").decode(r), t), t),
+		head: new G(Ws(new TextDecoder("utf-8").decode(r), t), t),
 		at: n
 	};
 }
-function Xs(e, t, n) {
+function tc(e, t, n) {
 	let r = t;
 	return (t) => {
 		let i = r;
@@ -3529,22 +3569,29 @@ function Xs(e, t, n) {
 		return e.subarray(i, r);
 	};
 }
-function Zs(e, t, n, r) {
-	return $s(e.key("frames"), t.frames).map((e) => $s(e, n).map((e) => r(e)));
+function nc(e, t, n, { frames: r }) {
+	let i = e.key("motion");
+	if (!i.exists) return null;
+	let a = W["motion-1"].decode(t(i), n, i.where);
+	if (a.frames !== r) throw i.wrong(`${a.frames} frames of ${r}`);
+	return a;
 }
-function Qs(e, { pieces: t, textures: n }) {
+function rc(e, t, n, r, i) {
+	return ac(e.key("frames"), t.frames).slice(0, i).map((e) => ac(e, n).map((e) => r(e)));
+}
+function ic(e, { pieces: t, textures: n }) {
 	let r = e;
 	return {
-		scale: Pi(r.key("scale"), t, n),
-		zero: Pi(r.key("zero"), t, n)
+		scale: Fi(r.key("scale"), t, n),
+		zero: Fi(r.key("zero"), t, n)
 	};
 }
-function $s(e, t) {
+function ac(e, t) {
 	let n = e.items(t);
 	if (n.length !== t) throw e.wrong(`${t} entries are needed`);
 	return n;
 }
-var ec = 3, tc = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", nc = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform int first; // row of the picture with which the texture begins\nout vec4 stored;\nvoid main() {\n  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));\n}\n", rc = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", ic = `#version 300 es
+var oc = 3, sc = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", cc = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform int first; // row of the picture with which the texture begins\nout vec4 stored;\nvoid main() {\n  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));\n}\n", lc = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", uc = `#version 300 es
 precision highp float;
 precision highp int;
 uniform highp sampler2D picture; // values, and whether they are of a chart
@@ -3554,7 +3601,7 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec2 own = texelFetch(picture, at, 0).rg;
   vec2 sum = vec2(own.r * own.g, own.g);
-  for (int far = 1; far <= ${ec} && sum.y == 0.0; far++) {
+  for (int far = 1; far <= ${oc} && sum.y == 0.0; far++) {
     for (int y = -far; y <= far; y++) {
       for (int x = -far; x <= far; x++) {
         vec2 near = texelFetch(picture, clamp(at + ivec2(x, y), ivec2(0), size - 1), 0).rg;
@@ -3564,9 +3611,9 @@ void main() {
   }
   stored = vec4(sum.y > 0.0 ? sum.x / sum.y : own.r);
 }
-`, ac = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
+`, dc = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
 // eigenfield-three/src/parts.ts
-function oc(e, t, n) {
+function fc(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -3576,7 +3623,7 @@ function oc(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = lc(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = hc(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -3604,7 +3651,7 @@ function oc(e, t, n) {
 						a + e[1] / i[1]
 					],
 					colours: f,
-					...uc(l, u, h, n.halves && ji(l)),
+					...gc(l, u, h, n.halves && Mi(l)),
 					basis: {
 						ready: m,
 						column: o,
@@ -3612,17 +3659,17 @@ function oc(e, t, n) {
 					}
 				});
 			}
-			o += p, s += h ? po(h) : 0;
+			o += p, s += h ? go(h) : 0;
 		}
 	}), r;
 }
-function sc(e, t, n, r) {
-	oc(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
+function pc(e, t, n, r) {
+	fc(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
 		scale: t,
 		bias: n
 	}));
 }
-function cc({ planes: e, sheets: t }, { means: n, needs: r }) {
+function mc({ planes: e, sheets: t }, { means: n, needs: r }) {
 	let i = n[e.length], a = r.means[e.length]?.size;
 	return !t || !i || !a ? null : {
 		stored: i,
@@ -3638,12 +3685,12 @@ function cc({ planes: e, sheets: t }, { means: n, needs: r }) {
 			0,
 			0
 		]],
-		...lc(t.opacity),
+		...hc(t.opacity),
 		basis: null
 	};
 }
-function lc({ mean: e, channels: t, precision: n }) {
-	let { scale: r, zero: i } = e, a = n ? 4 : 1 / Ni(e, ji([e])), o = {
+function hc({ mean: e, channels: t, precision: n }) {
+	let { scale: r, zero: i } = e, a = n ? 4 : 1 / Pi(e, Mi([e])), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
 	};
@@ -3653,8 +3700,8 @@ function lc({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function uc(e, t, n, r) {
-	let i = e.flatMap((e) => Array(e.textures).fill(Ni(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * po(n), c = {
+function gc(e, t, n, r) {
+	let i = e.flatMap((e) => Array(e.textures).fill(Pi(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * go(n), c = {
 		scale: new Float32Array(s),
 		bias: new Float32Array(s)
 	};
@@ -3665,13 +3712,14 @@ function uc(e, t, n, r) {
 	return c;
 }
 // eigenfield-three/src/player.ts
-var dc = .25, fc = class extends f {
+var _c = .25, vc = class extends f {
 	timeline;
 	user;
 	first;
 	duration;
 	frames;
 	rate;
+	sound;
 	ring;
 	shown;
 	clock;
@@ -3683,14 +3731,14 @@ var dc = .25, fc = class extends f {
 	waiters = [];
 	asked = null;
 	disposed = !1;
-	constructor(e, t, n) {
+	constructor(e, t, n, r = null) {
 		super(), this.timeline = e, this.user = n, this.rate = e.rate, this.frames = e.frames, this.first = e.first, this.duration = e.frames / e.rate, this.shown = {
 			position: 0,
 			number: 0
 		}, this.clock = 0, this.ring = t({
 			ready: () => this.wake(),
 			failed: (e, t) => this.fail(e, t)
-		});
+		}), this.sound = r && r(() => void this.dispatchEvent({ type: "change" }));
 	}
 	get playing() {
 		return this.plays;
@@ -3699,7 +3747,7 @@ var dc = .25, fc = class extends f {
 		return this.shown.number;
 	}
 	get time() {
-		return Xi(this.timeline, this.shown.number);
+		return $i(this.timeline, this.shown.number);
 	}
 	get sought() {
 		return (this.following ?? this.goal ?? this.shown.position) % this.frames;
@@ -3708,7 +3756,7 @@ var dc = .25, fc = class extends f {
 		return this.goal !== null;
 	}
 	get group() {
-		let { groups: e } = this.timeline, t = Zi(this.timeline, this.shown.number);
+		let { groups: e } = this.timeline, t = ea(this.timeline, this.shown.number);
 		return {
 			index: t,
 			count: e.length,
@@ -3738,10 +3786,10 @@ var dc = .25, fc = class extends f {
 		this.plays || this.disposed || (this.plays = !0, this.last = null, this.ring.retry(), !this.loop && (this.following ?? this.goal ?? this.shown.position) >= this.end && this.toFrame(0), this.dispatchEvent({ type: "change" }), this.wake());
 	}
 	pause() {
-		this.plays && (this.plays = !1, this.clock = this.shown.position, this.dispatchEvent({ type: "change" }));
+		this.plays && (this.plays = !1, this.clock = this.shown.position, this.sound?.rest(), this.dispatchEvent({ type: "change" }));
 	}
 	seek(e) {
-		return this.toFrame(Yi(this.timeline, e));
+		return this.toFrame(Qi(this.timeline, e));
 	}
 	toFrame(e) {
 		return this.toPosition(this.lap + Math.min(Math.max(Math.round(e), 0), this.frames - 1));
@@ -3753,14 +3801,14 @@ var dc = .25, fc = class extends f {
 	}
 	update(e = performance.now()) {
 		if (this.disposed) return;
-		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, dc);
+		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, _c);
 		if (this.last = this.plays && this.goal === null ? e : null, this.goal === null && !this.plays) return;
-		this.goal === null && (this.clock = this.advanced(t));
+		this.goal === null ? (this.clock = this.advanced(t), this.sound?.follow(this.first + this.clock % this.frames / this.rate, this.pace)) : this.sound?.rest();
 		let n = this.ring.take(this.goal ?? Math.floor(this.clock));
 		n && this.show(n), this.goal === null && !this.loop && this.clock >= this.end && this.ring.isOver(this.end) && this.pause();
 	}
 	dispose() {
-		this.disposed = !0, this.plays = !1, this.ring.dispose(), this.settle();
+		this.disposed = !0, this.plays = !1, this.ring.dispose(), this.sound?.dispose(), this.settle();
 	}
 	get lap() {
 		return this.shown.position - this.shown.number;
@@ -3800,22 +3848,51 @@ var dc = .25, fc = class extends f {
 	fail(e, t) {
 		if (this.disposed) return;
 		this.user.failed(e), t === null && this.pause();
-		let n = this.goal !== null && Zi(this.timeline, this.goal % this.frames);
+		let n = this.goal !== null && ea(this.timeline, this.goal % this.frames);
 		n === !1 || t !== null && n !== t || (this.goal = this.following = null, this.settle());
 	}
-}, pc = 256;
-function mc(e, t, n) {
+}, yc = 65535;
+function bc(e, t) {
+	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
+	if (!i) throw new M("damaged", "The proxy mesh has no triangles; make or download the file again.");
+	if (r.count !== n.count) throw N(t.uv.where, `${r.count} for ${n.count} vertices`);
+	for (let e = 0; e < n.count; e++) {
+		if (!(Math.max(Math.abs(n.getX(e)), Math.abs(n.getY(e)), Math.abs(n.getZ(e))) <= 1e30)) throw N(t.position.where, `vertex ${e} is not finite`);
+		if (!(Math.max(Math.abs(r.getX(e)), Math.abs(r.getY(e))) <= 1e30)) throw N(t.uv.where, `texture coordinates of vertex ${e} are not finite`);
+	}
+	for (let e of i.array) if (e >= n.count) throw N(t.indices.where, `no vertex ${e}`);
+}
+async function xc({ view: e, codec: t, where: n }, r) {
+	let i = t.decode(new Uint8Array(await r(e)), n);
+	if (!i.indices.length) throw N(n, "a mesh without faces");
+	return i;
+}
+function Sc({ positions: n, uv: r, indices: i }) {
+	let a = new t();
+	a.setAttribute("position", new e(n.slice(), 3)), a.setAttribute("uv", new e(r, 2));
+	let o = n.length / 3 <= yc;
+	return a.setIndex(new e(o ? Uint16Array.from(i) : i, 1)), a;
+}
+function Cc(e) {
+	return {
+		vertices: e.getAttribute("position").count,
+		triangles: (e.index?.count ?? 0) / 3
+	};
+}
+// eigenfield-three/src/footprint.ts
+var wc = 256;
+function Tc(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / pc)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / wc)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => hc(t, i.getX(e), i.getY(e), i.getZ(e))), l = gc(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Ec(t, i.getX(e), i.getY(e), i.getZ(e))), l = Dc(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = gc(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = Dc(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -3825,7 +3902,7 @@ function mc(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function hc({ K: e, R: t, t: n }, r, i, a) {
+function Ec({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -3833,12 +3910,12 @@ function hc({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function gc(e) {
+function Dc(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/sheet-stack.ts
-var _c = "sheets", vc = 16, yc = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", bc = `${is}${as}
+var Oc = "sheets", kc = 16, Ac = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", jc = `${ss}${cs}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -3863,9 +3940,9 @@ void main() {
   gl_FragDepth = depth;
   fragment = colour;
 }
-`, xc = new ae(), Sc = class {
+`, Mc = new ie(), Nc = class {
 	material;
-	scene = new k();
+	scene = new A();
 	camera = new n();
 	sheets = new S();
 	depth;
@@ -3873,16 +3950,16 @@ void main() {
 	everywhere = new t();
 	target = null;
 	constructor(t) {
-		this.material = t, this.depth = ps(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
+		this.material = t, this.depth = gs(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
 			let { materialIndex: o = 0 } = a, s = this.sheets.material.length / 2, c = s - 1 - (o >> 1);
 			e.getContext().depthRange(c / s, (c + 1) / s);
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
 		let { shown: n, photograph: r, toPhotograph: i } = t.uniforms;
-		this.screen = new O({
-			name: _c,
+		this.screen = new k({
+			name: Oc,
 			glslVersion: h,
-			vertexShader: yc,
-			fragmentShader: bc,
+			vertexShader: Ac,
+			fragmentShader: jc,
 			uniforms: {
 				shown: n,
 				photograph: r,
@@ -3891,12 +3968,12 @@ void main() {
 				solid: { value: null },
 				nearest: { value: null },
 				slices: { value: 1 },
-				corner: { value: new ie() },
-				size: { value: new ie() },
+				corner: { value: new re() },
+				size: { value: new re() },
 				toPlace: { value: new x() }
 			},
 			transparent: !0,
-			...us
+			...ps
 		});
 		let a = new Float32Array([
 			-1,
@@ -3912,7 +3989,7 @@ void main() {
 		this.everywhere.setAttribute("position", new e(a, 3));
 	}
 	get bytes() {
-		return this.target ? vc * this.target.width * this.target.height : 0;
+		return this.target ? kc * this.target.width * this.target.height : 0;
 	}
 	setGeometry(e, t) {
 		e.clearGroups();
@@ -3930,7 +4007,7 @@ void main() {
 	attach(e, t) {
 		for (let t of [e.material].flat()) t.visible = !1;
 		let n = new S(this.everywhere, this.screen);
-		n.name = _c, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
+		n.name = Oc, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
 			t(n, i), this.draw(n, i, e);
 		}, e.add(n);
 	}
@@ -3941,21 +4018,21 @@ void main() {
 		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
 	}
 	draw(e, t, n) {
-		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(xc);
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Mc);
 		if (!a || !o) return;
-		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Cc(a, o));
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Pc(a, o));
 		let { target: s } = this;
-		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), Ho(e, t, () => {
+		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), Go(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
 		}), e.getContext().depthRange(0, 1);
 		let { uniforms: c } = this.screen;
 		this.set("sheets", s.textures[0]), this.set("solid", s.textures[1]), this.set("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
 	}
 };
-function Cc(e, t) {
-	let n = new l(e, t, re);
+function Pc(e, t) {
+	let n = new l(e, t, ne);
 	n.format = c;
-	let r = new oe(e, t, {
+	let r = new ae(e, t, {
 		count: 2,
 		type: g,
 		stencilBuffer: !0,
@@ -3963,10 +4040,10 @@ function Cc(e, t) {
 		minFilter: w,
 		magFilter: w
 	}), [, i] = r.textures;
-	return i && (i.type = ne), r;
+	return i && (i.type = te), r;
 }
 // eigenfield-three/src/surface.ts
-var wc = class {
+var Fc = class {
 	meshes;
 	faces;
 	reference;
@@ -3981,7 +4058,7 @@ var wc = class {
 		if (!i) throw Error("a field needs a mesh");
 		this.mesh = i;
 		let a = [i.material].flat().some((e) => e.side !== m);
-		this.material = fs(a, t !== null), this.stack = t && new Sc(this.material);
+		this.material = hs(a, t !== null), this.stack = t && new Nc(this.material);
 		for (let t of e) {
 			let e = (e, n) => r(e, n, t);
 			this.stack ? this.stack.attach(t, e) : (t.material = this.material, t.onBeforeRender = (t, n, r) => e(t, r));
@@ -3999,7 +4076,7 @@ var wc = class {
 		if (n !== e) {
 			let { index: r, attributes: i } = e;
 			if (!r || !i.position || !i.uv) throw TypeError("A surface needs position, uv and an index.");
-			this.stack && t && Vi({
+			this.stack && t && Hi({
 				faces: t,
 				where: "the geometry"
 			}, e), n.dispose();
@@ -4008,52 +4085,52 @@ var wc = class {
 		e.boundingBox = e.boundingSphere = null, this.faces = t, this.version += 1, this.show(t);
 	}
 	show(e) {
-		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? mc(this.geometry, this.reference, [1, 1]) : 0;
+		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? Tc(this.geometry, this.reference, [1, 1]) : 0;
 	}
 	dispose() {
 		this.stack?.dispose(), this.material.dispose(), this.geometry.dispose();
 	}
 };
 // eigenfield-three/src/gpu.ts
-function Tc(e) {
+function Ic(e) {
 	let t = e.getContext();
-	if (!(t instanceof WebGL2RenderingContext)) throw new j("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
+	if (!(t instanceof WebGL2RenderingContext)) throw new M("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
 	if ((t.getExtension("EXT_color_buffer_float") ?? t.getExtension("EXT_color_buffer_half_float")) || t.isContextLost()) return t;
-	throw new j("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
+	throw new M("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
 }
-function Ec(e, t) {
+function Lc(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function Dc(e, { components: t, halves: n }) {
+function Rc(e, { components: t, halves: n }) {
 	return t > 2 ? n ? e.RGBA16F : e.RGBA8 : t > 1 ? n ? e.RG16F : e.RG8 : n ? e.R16F : e.R8;
 }
-function Oc(e, [t, n], r, i, a) {
-	return jc(e, e.TEXTURE_2D_ARRAY, () => {
-		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, Dc(e, a), t, n, r);
+function zc(e, [t, n], r, i, a) {
+	return Hc(e, e.TEXTURE_2D_ARRAY, () => {
+		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, Rc(e, a), t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function kc(e, t, n, r) {
+function Bc(e, t, n, r) {
 	let { width: i, height: a } = n, o = r > 2 ? e.RGBA : r > 1 ? e.RG : e.RED;
-	Mc(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
+	Uc(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
 }
-function Ac(e, [t, n], r) {
-	return jc(e, e.TEXTURE_2D, () => {
-		e.texStorage2D(e.TEXTURE_2D, 1, Dc(e, r), t, n);
+function Vc(e, [t, n], r) {
+	return Hc(e, e.TEXTURE_2D, () => {
+		e.texStorage2D(e.TEXTURE_2D, 1, Rc(e, r), t, n);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D, t, e.NEAREST);
 	});
 }
-function jc(e, t, n) {
+function Hc(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return Mc(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return Uc(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function Mc(e, t, n, r) {
+function Uc(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -4067,7 +4144,7 @@ function Mc(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-function Nc(e, t, n) {
+function Wc(e, t, n) {
 	let r = e.createProgram();
 	for (let [i, a] of [[e.VERTEX_SHADER, t], [e.FRAGMENT_SHADER, n]]) {
 		let t = e.createShader(i);
@@ -4075,7 +4152,7 @@ function Nc(e, t, n) {
 	}
 	return e.linkProgram(r), r;
 }
-function Pc(e, t, n, r) {
+function Gc(e, t, n, r) {
 	if (!n) {
 		r();
 		return;
@@ -4083,9 +4160,9 @@ function Pc(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), Mc(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), Uc(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function Fc(e, t) {
+function Kc(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -4100,13 +4177,13 @@ function Fc(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r && e.isProgram(r) ? r : null), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/charts.ts
-function Ic(e, t) {
-	let n = Nc(e, ...ac), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
+function qc(e, t) {
+	let n = Wc(e, ...dc), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
 		let { index: o } = t, s = t.getAttribute("uv"), c = Float32Array.from({ length: 2 * (o?.count ?? 0) }, (e, t) => {
 			let n = o?.getX(t >> 1) ?? 0;
 			return t % 2 ? s.getY(n) : s.getX(n);
 		}), [l, u] = [e.createVertexArray(), e.createBuffer()], d = e.getParameter(e.ARRAY_BUFFER_BINDING);
-		Fc(e, () => {
+		Kc(e, () => {
 			e.useProgram(n), e.bindVertexArray(l), e.bindBuffer(e.ARRAY_BUFFER, u), e.bufferData(e.ARRAY_BUFFER, c, e.STREAM_DRAW);
 			let t = e.getAttribLocation(n, "uv");
 			e.enableVertexAttribArray(t), e.vertexAttribPointer(t, 2, e.FLOAT, !1, 0, 0), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, a, 0), e.viewport(0, 0, ...i), e.colorMask(!0, !0, !0, !0), e.drawArrays(e.TRIANGLES, 0, c.length / 2);
@@ -4117,7 +4194,7 @@ function Ic(e, t) {
 			let { geometry: r } = t;
 			if (i?.grid.join() !== n.join() || i.geometry !== r) {
 				e.deleteTexture(i?.texture ?? null);
-				let t = Ac(e, n, {
+				let t = Vc(e, n, {
 					components: 1,
 					halves: !1
 				});
@@ -4135,7 +4212,7 @@ function Ic(e, t) {
 	};
 }
 // eigenfield-three/src/packing.ts
-var Lc = [
+var Jc = [
 	"precisions",
 	"covered",
 	"factors",
@@ -4146,14 +4223,14 @@ var Lc = [
 	"nodes",
 	"zero"
 ];
-function Rc(e, t, n, r) {
+function Yc(e, t, n, r) {
 	let [i, a, o] = [
-		Nc(e, tc, nc),
-		Nc(e, tc, rc),
-		Nc(e, tc, ic)
-	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && Ic(e, r), u = !1, d = (t) => Object.fromEntries(Lc.map((n) => [n, e.getUniformLocation(t, n)])), [f, p] = [d(i), d(a)], m = (t, n, r, i, a, o, s) => {
+		Wc(e, sc, cc),
+		Wc(e, sc, lc),
+		Wc(e, sc, uc)
+	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && qc(e, r), u = !1, d = (t) => Object.fromEntries(Jc.map((n) => [n, e.getUniformLocation(t, n)])), [f, p] = [d(i), d(a)], m = (t, n, r, i, a, o, s) => {
 		let { picture: c, rows: l } = n, { size: u, corner: d, unit: f, codes: p } = i;
-		zc(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
+		Xc(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
 			0,
 			1,
 			2,
@@ -4164,32 +4241,32 @@ function Rc(e, t, n, r) {
 	}, g = (t, { layer: n, component: r }) => {
 		h(t, n), e.colorMask(r === 0, r === 1, r === 2, r === 3);
 	}, _ = (r, s, d, _, v, y) => {
-		let { picture: b, row: x, rows: S } = r, [C, w] = v.size, T = C < b.width || w < S ? t.smaller : null, E = Math.max(1, Math.floor((T ? n - 2 : n) * w / S)), ee = u && s === t.codes;
-		Pc(e, 2, (T && l?.covered(v.grid)) ?? null, () => Pc(e, 0, ee ? null : s, () => {
+		let { picture: b, row: x, rows: S } = r, [C, w] = v.size, T = C < b.width || w < S ? t.smaller : null, E = Math.max(1, Math.floor((T ? n - 2 : n) * w / S)), D = u && s === t.codes;
+		Gc(e, 2, (T && l?.covered(v.grid)) ?? null, () => Gc(e, 0, D ? null : s, () => {
 			for (let t = 0; t < w; t += E) {
 				let n = Math.min(E, w - t), o = Math.floor(t * S / w), s = Math.ceil((t + n) * S / w);
-				zc(b) ? Vc(e, b, x + o, s - o) : Bc(e, b, x + o, s - o);
+				Xc(b) ? Qc(e, b, x + o, s - o) : Zc(e, b, x + o, s - o);
 				let l = () => {
 					let s = T || y ? p : f;
 					e.useProgram(T || y ? a : i), e.bindVertexArray(c), e.uniform1i(s.precisions, +!!y), e.uniform1i(s.covered, T ? 2 : 0), e.uniform2i(s.nodes, y?.precision.width ?? 0, y?.precision.height ?? 0), e.uniform1f(s.zero, y?.zero ?? 0), T ? (h(T, null), e.colorMask(!0, !0, !0, !0)) : g(d, _), m(s, r, _.channel, v, o, t, n);
 				};
-				ee ? l() : Fc(e, l);
+				D ? l() : Kc(e, l);
 			}
-		})), T && Pc(e, 0, T, () => Fc(e, () => {
+		})), T && Gc(e, 0, T, () => Kc(e, () => {
 			e.useProgram(o), e.bindVertexArray(c), e.uniform2i(e.getUniformLocation(o, "size"), C, w), g(d, _), e.viewport(0, 0, C, w), e.drawArrays(e.TRIANGLES, 0, 3);
 		}));
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let s = zc(n.picture) ? t.codes : t.picture;
+			let s = Xc(n.picture) ? t.codes : t.picture;
 			if (!s) return;
 			let c = () => i.forEach((e) => _(n, s, r, e, a, o));
-			o ? Pc(e, 1, t.precision, () => {
-				Bc(e, o.precision, 0, o.precision.height), c();
+			o ? Gc(e, 1, t.precision, () => {
+				Zc(e, o.precision, 0, o.precision.height), c();
 			}) : c();
 		},
 		together(n) {
-			Pc(e, 0, t.codes, () => Fc(e, () => {
+			Gc(e, 0, t.codes, () => Kc(e, () => {
 				u = !0;
 				try {
 					n();
@@ -4209,17 +4286,17 @@ function Rc(e, t, n, r) {
 		}
 	};
 }
-function zc(e) {
+function Xc(e) {
 	return "data" in e;
 }
-function Bc(e, t, n, r) {
+function Zc(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function Vc(e, { data: t, width: n, stride: r }, i, a) {
+function Qc(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
 // eigenfield-three/src/textures.ts
-var Hc = class {
+var $c = class {
 	parts;
 	source;
 	surface;
@@ -4245,16 +4322,16 @@ var Hc = class {
 		let { scene: i, info: a, meanSizes: o } = e, s = i.planes.flatMap(({ channels: e, bases: t }) => t.map((t) => ({
 			...t,
 			channels: e,
-			tenBits: ji(t.pictures)
+			tenBits: Mi(t.pictures)
 		})));
 		this.layout = s;
-		let c = sa(i).map(({ channels: e, mean: t }, n) => {
+		let c = ua(i).map(({ channels: e, mean: t }, n) => {
 			let r = n === i.planes.length;
 			return {
 				size: o[n] ?? [1, 1],
 				channels: e,
 				pieces: t.pieces,
-				tenBits: ji([t]),
+				tenBits: Mi([t]),
 				opacity: r
 			};
 		});
@@ -4263,7 +4340,7 @@ var Hc = class {
 			means: c,
 			bases: s,
 			rays: a.facesPlane,
-			geometry: Uc(n.geometry)
+			geometry: el(n.geometry)
 		}, this.means = c.map(() => new p()), this.bases = s.map(() => new p()), this.ready = s.map(({ count: e }) => Array(e).fill(!1)), this.stillVersions = c.map(() => 0);
 	}
 	get hasMeans() {
@@ -4277,7 +4354,7 @@ var Hc = class {
 		return Math.min(t, ...e);
 	}
 	get bytes() {
-		return this.plan ? this.plan.bytes - this.needs.geometry + Uc(this.surface.geometry) : 0;
+		return this.plan ? this.plan.bytes - this.needs.geometry + el(this.surface.geometry) : 0;
 	}
 	get attached() {
 		return this.renderer !== null || this.disposed;
@@ -4307,7 +4384,7 @@ var Hc = class {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		let n = Tc(e);
+		let n = Ic(e);
 		if (n.isContextLost()) return;
 		let { packer: r, plan: i } = this.makeRoom(n);
 		this.plan = i, this.packer = r, this.onPlan(i), await this.source.fill(this.filling(n, i, t)), t.aborted || this.onComplete();
@@ -4340,12 +4417,12 @@ var Hc = class {
 			this.layout[t]
 		];
 		if (!(c instanceof WebGLTexture) || !l || !u) return;
-		let { size: d, grid: f, corner: p, channels: m, tenBits: h } = u, g = Ni(i, s && h), _ = {
+		let { size: d, grid: f, corner: p, channels: m, tenBits: h } = u, g = Pi(i, s && h), _ = {
 			size: X(d, o),
 			grid: f,
 			corner: p,
 			unit: g,
-			codes: 255 * Mi(i)
+			codes: 255 * Ni(i)
 		};
 		for (let e = n; e < Math.min(n + i.textures, a); e++) {
 			let t = r.slice((e - n) * i.pieces, (e - n + 1) * i.pieces), a = m * Math.floor(e / 4);
@@ -4357,20 +4434,20 @@ var Hc = class {
 		this.version += 1;
 	}
 	putMean(e, t, n, { pieces: r, precision: i }) {
-		let [a, o] = [this.means[n]?.sourceTexture, sa(this.parts.scene)[n]], { size: s, tenBits: c } = this.needs.means[n] ?? {};
+		let [a, o] = [this.means[n]?.sourceTexture, ua(this.parts.scene)[n]], { size: s, tenBits: c } = this.needs.means[n] ?? {};
 		if (!(a instanceof WebGLTexture) || !o || !s) return;
 		this.stillVersions[n] = this.version += 1;
 		let { mean: l, channels: u } = o, d = X(s, t.meanDown), [f] = r;
 		if (f && r.length === 1 && "close" in f.picture && !c && d.join() === s.join()) {
-			kc(e, a, f.picture, u);
+			Bc(e, a, f.picture, u);
 			return;
 		}
 		let p = {
 			size: d,
 			grid: s,
 			corner: [0, 0],
-			unit: Ni(l, c === !0),
-			codes: 255 * Mi(l)
+			unit: Pi(l, c === !0),
+			codes: 255 * Ni(l)
 		};
 		this.put(r, a, u, p, (e) => ({
 			layer: Math.floor(e / 4),
@@ -4396,25 +4473,25 @@ var Hc = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs;
-		this.needs.geometry = Uc(this.surface.geometry);
+		this.needs.geometry = el(this.surface.geometry);
 		let r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
-		for (let i = this.options.memory ?? so();; i /= 2) {
-			let a = go(this.needs, Ec(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => Oc(e, X(t, o), uo(n), !1, {
+		for (let i = this.options.memory ?? uo();; i /= 2) {
+			let a = yo(this.needs, Lc(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => zc(e, X(t, o), mo(n), !1, {
 				components: n,
 				halves: r
 			})), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return Oc(e, a ? X(t, s) : [1, 1], a ? fo(a, n) : 1, u, {
+				return zc(e, a ? X(t, s) : [1, 1], a ? ho(a, n) : 1, u, {
 					components: Math.max(1, a),
 					halves: l && i
 				});
-			})], f = yo(this.needs, a, i), [p, m, h] = [
+			})], f = So(this.needs, a, i), [p, m, h] = [
 				f.picture,
 				f.codes,
 				f.smaller
-			].map((t) => t ? Ac(e, t.size, t.format) : null), g = Ac(e, bo(r), eo);
+			].map((t) => t ? Vc(e, t.size, t.format) : null), g = Vc(e, Co(r), ro);
 			if (p && g && (m || !f.codes) && (h || !f.smaller) && !d.includes(null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = d[t] ?? null), {
-				packer: Rc(e, {
+				packer: Yc(e, {
 					picture: p,
 					codes: m ?? null,
 					precision: g,
@@ -4429,15 +4506,15 @@ var Hc = class {
 				h,
 				g
 			]) e.deleteTexture(t ?? null);
-			if (!c) throw new j("unsupported", "The graphics memory is full; close other pages and try again.");
+			if (!c) throw new M("unsupported", "The graphics memory is full; close other pages and try again.");
 		}
 	}
 };
-function Uc({ attributes: e, index: t }) {
+function el({ attributes: e, index: t }) {
 	return Object.values(e).reduce((e, t) => e + t.array.byteLength, 0) + (t?.array.byteLength ?? 0);
 }
 // eigenfield-three/src/field.ts
-var Wc = 1.5, Gc = .001, Kc = class extends f {
+var tl = 1.5, nl = .001, rl = class extends f {
 	parts;
 	source;
 	mesh;
@@ -4473,7 +4550,7 @@ var Wc = 1.5, Gc = .001, Kc = class extends f {
 	constructor(e, t, n = {}) {
 		super(), this.parts = e, this.source = t;
 		let { scene: r, info: i } = e, a = r.sheets?.faces ?? null;
-		this.surface = new wc(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = Pa(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip?.group.motion && this.move(e.clip.group, 0), this.textures = new Hc(e, t, this.surface, n), this.complete = new Promise((e, t) => {
+		this.surface = new Fc(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = La(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip && this.shape(e.clip.group, 0, e.clip.mesh, !1), this.textures = new $c(e, t, this.surface, n), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0), this.listen(), n.renderer && this.textures.attach(n.renderer);
 	}
@@ -4517,45 +4594,44 @@ var Wc = 1.5, Gc = .001, Kc = class extends f {
 		this.textures.onPlan = (e) => {
 			let { scene: t } = this.parts;
 			this.freeComposers(), this.summed = {
-				parts: oc(t, this.textures, e),
-				opacity: cc(t, this.textures)
+				parts: fc(t, this.textures, e),
+				opacity: mc(t, this.textures)
 			}, e.limitation && queueMicrotask(() => this.dispatchEvent({ type: "limited" }));
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return Wc * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
+		return tl * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
 	}
 	weightsOf(e) {
 		let { scene: t, info: n, weights: r } = this.parts;
-		return new Qo(n, J(t).map(({ count: e }) => e), e, r);
+		return new ts(n, J(t).map(({ count: e }) => e), e, r);
 	}
-	makePlayer({ timeline: e, ring: t }) {
-		return new fc(e, t, {
+	makePlayer({ timeline: e, ring: t, sound: n }) {
+		return new vc(e, t, {
 			show: (e) => this.showFrame(e),
 			failed: (e) => this.dispatchEvent({
 				type: "error",
-				error: de(e)
+				error: ue(e)
 			})
-		});
+		}, n);
 	}
 	showFrame({ number: e, group: t, films: n }) {
-		(t.motion ?? this.group?.motion) && this.move(t, e - t.first), t !== this.group && this.enter(t), this.source instanceof js && this.source.show(n);
+		this.group && this.shape(t, e - t.first, this.group.mesh, this.group.motion !== null), t !== this.group && this.enter(t), this.source instanceof Ps && this.source.show(n);
 	}
-	move({ motion: e }, t) {
-		let { geometry: n } = this.surface;
-		if (n !== this.moved) return;
-		let r = n.getAttribute("position");
-		e ? e.place(t, r.array) : r.copyArray(this.parts.clip.mesh.positions), r.needsUpdate = !0, this.surface.setGeometry(n);
+	shape({ mesh: e, motion: t }, n, r, i) {
+		if (this.surface.geometry !== this.moved || e === r && !t && !i) return;
+		let a = e === r ? this.moved : Sc(e), o = a.getAttribute("position");
+		t ? t.place(n, o.array) : o.copyArray(e.positions), o.needsUpdate = !0, this.moved = a, this.surface.setGeometry(a);
 	}
 	enter(e) {
 		let { scene: t } = this.parts, { plan: n } = this.textures;
-		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), qs(t, e), n && sc(this.summed.parts, t, this.textures, n);
+		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), Xs(t, e), n && pc(this.summed.parts, t, this.textures, n);
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = Yc(t, n), [i, a] = Ba(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
+		let r = ol(t, n), [i, a] = Ua(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
 		this.setView(), this.setExposure(o, [i, a]);
-		let u = es[this.filter];
+		let u = rs[this.filter];
 		l.defines.BICUBIC !== u && (l.defines.BICUBIC = u, l.needsUpdate = !0), l.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
@@ -4564,7 +4640,7 @@ var Wc = 1.5, Gc = .001, Kc = class extends f {
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
 		if (!s) {
 			let { parts: e, opacity: t } = this.summed;
-			s = new Wo(i, e, t, o, this.coarser > 1, this.surface, a), this.composers.set(o, s);
+			s = new qo(i, e, t, o, this.coarser > 1, this.surface, a), this.composers.set(o, s);
 		}
 		s.compose(e, t, n);
 		let { composed: c, finest: l } = this.surface.material.uniforms;
@@ -4575,15 +4651,15 @@ var Wc = 1.5, Gc = .001, Kc = class extends f {
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.surface.material.uniforms.shown.value, r = n === ts.eigen ? this.shownEigen : null;
+		let n = this.surface.material.uniforms.shown.value, r = n === is.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			opacity: this.textures.opacityVersion,
 			only: r,
-			count: n === ts.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === is.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && Ro(this.info.viewPlane, t),
+			eye: t && Vo(this.info.viewPlane, t),
 			places: t || this.coarser > 1 ? this.surface.version : 0,
 			maps: t && this.weights.maps(this.mixing, this.usable)
 		};
@@ -4591,7 +4667,7 @@ var Wc = 1.5, Gc = .001, Kc = class extends f {
 	setExposure(e, t) {
 		let { cameras: n, heldOut: r, mixedColours: i, viewPlane: a } = this.info, o = this.exposure ?? (i || this.showsErrors ? e : null), s = o === null ? void 0 : n[o], c = [[s, 1]];
 		if (i && (o === null || r[o])) {
-			let e = s ? Ba(a, s.centre) : t, { camera: n, weight: r } = this.parts.weights.at(...e, this.mixing);
+			let e = s ? Ua(a, s.centre) : t, { camera: n, weight: r } = this.parts.weights.at(...e, this.mixing);
 			c = [
 				0,
 				1,
@@ -4599,7 +4675,7 @@ var Wc = 1.5, Gc = .001, Kc = class extends f {
 				3
 			].map((e) => [this.encoded[n[e] ?? 0], r[e] ?? 0]);
 		}
-		let { scale: l, bias: u } = Za(c), { exposureScale: d, exposureBias: f } = this.surface.material.uniforms;
+		let { scale: l, bias: u } = eo(c), { exposureScale: d, exposureBias: f } = this.surface.material.uniforms;
 		d.value.fromArray(l), f.value.fromArray(u);
 	}
 	get showsErrors() {
@@ -4607,9 +4683,9 @@ var Wc = 1.5, Gc = .001, Kc = class extends f {
 	}
 	setView() {
 		let { uniforms: e } = this.surface.material, t = this.showsErrors, n = this.view === "error" && !t ? "picture" : this.view, r = this.shownEigen;
-		e.shown.value = ts[n === "eigen" && r >= this.loaded ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
+		e.shown.value = is[n === "eigen" && r >= this.loaded ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
 		let i = t && this.info.cameras[this.camera ?? 0];
-		i && this.photograph && ms(e, i, this.photograph);
+		i && this.photograph && _s(e, i, this.photograph);
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -4622,30 +4698,31 @@ var Wc = 1.5, Gc = .001, Kc = class extends f {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= Gc * Math.max(...r);
+		return Math.abs(i) <= nl * Math.max(...r);
 	}
 	fail(e) {
-		if (Xc(e)) return;
-		let t = de(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
+		if (sl(e)) return;
+		let t = ue(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
 		this.dispatchEvent({
 			type: "error",
-			error: new j(t.code, r, t.where)
+			error: new M(t.code, r, t.where)
 		});
 	}
-}, qc = new x(), Jc = new A();
-function Yc(e, t) {
-	return Jc.setFromMatrixPosition(e.matrixWorld).applyMatrix4(qc.copy(t.matrixWorld).invert()), [
-		Jc.x,
-		Jc.y,
-		Jc.z
+}, il = new x(), al = new j();
+function ol(e, t) {
+	return al.setFromMatrixPosition(e.matrixWorld).applyMatrix4(il.copy(t.matrixWorld).invert()), [
+		al.x,
+		al.y,
+		al.z
 	];
 }
-function Xc(e) {
+function sl(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var Zc = class {
+var cl = class {
 	received = 0;
+	onPush = () => void 0;
 	chunks = [];
 	waiters = [];
 	ended = !1;
@@ -4665,7 +4742,7 @@ var Zc = class {
 		e.length && (this.chunks.push({
 			start: this.received,
 			bytes: e
-		}), this.received += e.length, this.settle());
+		}), this.received += e.length, this.settle(), this.onPush());
 	}
 	end() {
 		this.ended = !0, this.settle();
@@ -4675,7 +4752,7 @@ var Zc = class {
 	}
 	settle() {
 		let e = [];
-		for (let t of this.waiters) t.to <= this.received ? t.resolve(this.copy(t.from, t.to)) : this.broken ? t.reject(this.broken.reason) : this.ended ? t.reject(le(this.received, t.to)) : e.push(t);
+		for (let t of this.waiters) t.to <= this.received ? t.resolve(this.copy(t.from, t.to)) : this.broken ? t.reject(this.broken.reason) : this.ended ? t.reject(ce(this.received, t.to)) : e.push(t);
 		this.waiters = e;
 	}
 	copy(e, t) {
@@ -4687,11 +4764,11 @@ var Zc = class {
 		}
 		return n.buffer;
 	}
-}, Qc = 8, $c = /* @__PURE__ */ new Set([
+}, ll = 8, ul = 2 / 3, dl = /* @__PURE__ */ new Set([
 	"damaged",
 	"truncated",
 	"network"
-]), el = class {
+]), fl = class {
 	timeline;
 	groups;
 	user;
@@ -4724,13 +4801,13 @@ var Zc = class {
 		return this.decoders.reduce((e, t) => e + t.open, 0);
 	}
 	get reach() {
-		return Math.max(this.newest, this.from) + Qc / 2;
+		return Math.max(this.newest, this.from) + ll / 2;
 	}
 	isOver(e) {
 		return this.newest >= e && ![...this.slots.keys()].some((t) => t <= e);
 	}
 	seek(e) {
-		let t = Zi(this.timeline, this.numberOf(e));
+		let t = ea(this.timeline, this.numberOf(e));
 		if (this.broken.has(t)) return !1;
 		let n = e - this.numberOf(e) + (this.timeline.groups[t]?.first ?? 0), r = this.slots.has(e) && ![...this.skipped].some((t) => t > e);
 		(this.given === null || this.next <= n || e < this.next && !r) && (this.stop(), this.next = n), this.wanted = this.from = e;
@@ -4772,7 +4849,7 @@ var Zc = class {
 		return e % this.timeline.frames;
 	}
 	get hasRoom() {
-		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = Math.max(this.from, this.wanted) + Qc;
+		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = Math.max(this.from, this.wanted) + ll;
 		return this.next < Math.min(n, t) && this.decoders.every(({ ready: e }) => e);
 	}
 	async feedAll() {
@@ -4781,20 +4858,23 @@ var Zc = class {
 				this,
 				this.next,
 				this.numberOf(this.next)
-			], r = Zi(this.timeline, n);
+			], r = ea(this.timeline, n);
 			if (this.broken.has(r)) {
 				this.pass(r, t);
 				continue;
 			}
 			this.fed = r;
 			let i = this.given?.index === r ? this.given : await this.groups.open(r), a = n - i.first, o = i.units[a] ?? [];
-			if (i.motion?.read(a), a === 0 && await Promise.all(this.decoders.map((e, t) => e.start(o[t]))), e !== this.turn || (this.given = i, this.next = t + 1, this.decoders.forEach((e, n) => e.decode(o[n], t, a === 0)), a === i.frames - 1 && await Promise.all(this.decoders.map((e) => e.flush())), e !== this.turn)) return;
+			if (a >= i.frames * ul && this.prepare((r + 1) % this.timeline.groups.length), i.motion?.read(a), a === 0 && await Promise.all(this.decoders.map((e, t) => e.start(o[t]))), e !== this.turn || (this.given = i, this.next = t + 1, this.decoders.forEach((e, n) => e.decode(o[n], t, a === 0)), a === i.frames - 1 && await Promise.all(this.decoders.map((e) => e.flush())), e !== this.turn)) return;
 		}
+	}
+	prepare(e) {
+		(e || this.loop) && !this.broken.has(e) && this.groups.open(e).catch(() => void 0);
 	}
 	async receive(e, t, n) {
 		let [{ turn: r }, i] = [this, this.slotOf(t)];
 		if (!i) return;
-		let a = await Cs(n, this.rooms[e]?.pop() ?? null, this.timeline.films[e]?.opacity);
+		let a = await Es(n, this.rooms[e]?.pop() ?? null, this.timeline.films[e]?.opacity);
 		if (r !== this.turn || this.slots.get(t) !== i) return this.reuseOne(e, a);
 		i.films[e] = a, i.films.includes(null) || this.user.ready();
 	}
@@ -4810,7 +4890,7 @@ var Zc = class {
 		return this.slots.set(e, n), n;
 	}
 	fail(e) {
-		if (!(e instanceof j) || !$c.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(e, null);
+		if (!(e instanceof M) || !dl.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(e, null);
 		this.halt();
 		for (let [e, t] of this.slots) t.films.includes(null) && this.forget(e, t);
 		this.broken.add(this.fed), this.user.failed(e, this.fed), this.feed();
@@ -4839,75 +4919,132 @@ var Zc = class {
 	reuseOne(e, { room: t }) {
 		t && this.rooms[e]?.push(t);
 	}
-}, tl = {
+}, pl = .3, ml = .2, hl = 2, gl = class {
+	place;
+	read;
+	changed;
+	audio = null;
+	loading = !1;
+	starting = !1;
+	silent = !1;
+	mute = !1;
+	disposed = !1;
+	constructor(e, t, n) {
+		this.place = e, this.read = t, this.changed = n;
+	}
+	get playable() {
+		return !this.silent;
+	}
+	get muted() {
+		return this.mute;
+	}
+	set muted(e) {
+		this.mute = e, this.audio && (this.audio.muted = e), this.changed();
+	}
+	get time() {
+		return this.audio && !this.audio.paused ? this.audio.currentTime + this.place.first : null;
+	}
+	follow(e, t) {
+		let { audio: n } = this;
+		if (!n) return this.load();
+		let r = e - this.place.first;
+		if (r < 0 || r >= n.duration) return n.pause();
+		let i = r - n.currentTime;
+		Math.abs(i) > pl * Math.max(t, 1) ? n.seeking || (n.currentTime = r) : n.playbackRate = t * (1 + Math.min(Math.max(hl * i, -.2), ml)), n.paused && !this.starting && this.start(n);
+	}
+	rest() {
+		this.audio?.pause();
+	}
+	dispose() {
+		this.disposed = !0, this.rest(), this.audio && URL.revokeObjectURL(this.audio.src);
+	}
+	load() {
+		this.loading || this.silent || (this.loading = !0, this.read().then((e) => {
+			if (this.disposed) return;
+			let t = new Audio(URL.createObjectURL(new Blob([e], { type: this.place.mimeType })));
+			t.muted = this.mute, t.addEventListener("loadedmetadata", () => this.audio = t), t.addEventListener("error", () => this.fail());
+		}).catch(() => this.fail()));
+	}
+	start(e) {
+		this.starting = !0, e.play().catch((e) => {
+			e instanceof DOMException && e.name === "NotAllowedError" && !this.mute && (this.muted = !0);
+		}).finally(() => this.starting = !1);
+	}
+	fail() {
+		this.silent = !0, this.audio = null, this.changed();
+	}
+}, _l = {
 	mimeType: "video/AV1",
 	bits: 10
 };
-async function nl(e, t, n, r) {
-	let i = new Ks(e, t, n, r), a = await i.open(0);
-	return a.motion?.read(0), qs(e, a), {
+async function vl(e, t, n, r) {
+	let i = new Ys(e, t, n, r), a = await i.begin();
+	a.motion?.read(0), Xs(e, a);
+	let o = await Promise.all(t.films.map((e, t) => yl(a.units[0][t], e))), { sound: s } = t;
+	return {
 		timeline: t,
 		group: a,
-		films: await Promise.all(t.films.map((e, t) => rl(a.units[0][t], e))),
+		films: o,
 		mesh: n,
-		ring: (e) => new el(t, i, e)
+		ring: (e) => new fl(t, i, e),
+		sound: s && ((e) => new gl(s, () => r(s.offset, s.length), e))
 	};
 }
-async function rl(e, { size: t, where: n }) {
+async function yl(e, { size: t, where: n }) {
 	let r = {
 		view: -1,
-		codec: tl,
+		codec: _l,
 		textures: 1,
 		pieces: 1,
 		where: n
-	}, i = await Yr(ve(e.slice().buffer, n), r, t), a = i[0].picture;
+	}, i = await Yr(_e(e.slice().buffer, n), r, t), a = i[0].picture;
 	if ("data" in a) return a;
 	let o = new OffscreenCanvas(...t).getContext("2d");
-	return o.drawImage(a, 0, 0), Es(i), ws(o.getImageData(0, 0, ...t).data, 4 * t[0], 4, t);
+	return o.drawImage(a, 0, 0), ks(i), Ds(o.getImageData(0, 0, ...t).data, 4 * t[0], 4, t);
 }
 // eigenfield-three/src/means.ts
-async function il(e, t) {
-	let { mean: n, meanSize: r } = e, i = e.precision && await al(await t(e.precision.view), e.precision);
+async function bl(e, t) {
+	let { mean: n, meanSize: r } = e, i = e.precision && await xl(await t(e.precision.view), e.precision);
 	return {
 		pieces: await n.codec.decode(await t(n.view), n, r),
 		precision: i
 	};
 }
-async function al(e, t) {
+async function xl(e, t) {
 	let { type: n } = Ir(e) ?? {}, { mimeType: r } = t.codec;
-	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
+	if (n && n !== r) throw N(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
-	if (!i) throw M(t.where, "no picture");
+	if (!i) throw N(t.where, "no picture");
 	return i.picture;
 }
-function ol({ pieces: e, precision: t }) {
-	Es(e), t?.close();
+function Sl({ pieces: e, precision: t }) {
+	ks(e), t?.close();
 }
 // eigenfield-three/src/packed.ts
-var sl = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", cl = 4;
-async function ll(e, t) {
-	let n = new W(e, ""), r = n.key("extensions").key(xe), i = r.key("packed");
+var Cl = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", wl = 4;
+async function Tl(e, t) {
+	let n = new G(e, ""), r = n.key("extensions").key(be), i = r.key("packed");
 	if (!i.exists) return e;
-	ca(r);
+	da(r);
 	let a = mi(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < cl) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, cl)).getUint32(0, !0);
-	if (cl + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new W(Vs(await dl(await t(o.offset + cl, s), i.where), i.where), i.where).object(), u = ul(new W(c, `${i.where}/lengths`), o, cl + s), { packed: d, ...f } = r.object();
+	if (!o || o.length < wl) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, wl)).getUint32(0, !0);
+	if (wl + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new G(Ws(await Dl(await t(o.offset + wl, s), i.where), i.where), i.where).object(), u = El(new G(c, `${i.where}/lengths`), o, wl + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
-		bufferViews: [...n.key("bufferViews").items(Ce).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
+		bufferViews: [...n.key("bufferViews").items(Se).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
 		extensions: {
 			...n.key("extensions").object(),
-			[xe]: {
+			[be]: {
 				...f,
 				...l
 			}
 		}
 	};
 }
-function ul(e, t, n) {
-	let r = n, i = e.items(Ce).map((e) => {
+function El(e, t, n) {
+	let r = n, i = e.items(Se).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
 			buffer: 0,
@@ -4918,8 +5055,8 @@ function ul(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function dl(e, t) {
-	let n = new TextEncoder().encode(sl), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function Dl(e, t) {
+	let n = new TextEncoder().encode(Cl), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -4927,48 +5064,19 @@ async function dl(e, t) {
 		~r,
 		~i
 	]), a.set(n, 5), a.set(new Uint8Array(e), 5 + n.length);
-	let o = await be(a, "deflate-raw", n.length + Se, t);
+	let o = await ye(a, "deflate-raw", n.length + xe, t);
 	try {
 		return new TextDecoder("utf-8", {
 			fatal: !0,
 			ignoreBOM: !0
 		}).decode(o.subarray(n.length));
 	} catch {
-		throw M(t, "its JSON is not UTF-8");
+		throw N(t, "its JSON is not UTF-8");
 	}
-}
-// eigenfield-three/src/proxy.ts
-var fl = 65535;
-function pl(e, t) {
-	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
-	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
-	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
-	for (let e = 0; e < n.count; e++) {
-		if (!(Math.max(Math.abs(n.getX(e)), Math.abs(n.getY(e)), Math.abs(n.getZ(e))) <= 1e30)) throw M(t.position.where, `vertex ${e} is not finite`);
-		if (!(Math.max(Math.abs(r.getX(e)), Math.abs(r.getY(e))) <= 1e30)) throw M(t.uv.where, `texture coordinates of vertex ${e} are not finite`);
-	}
-	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
-}
-async function ml({ view: e, codec: t, where: n }, r) {
-	let i = t.decode(new Uint8Array(await r(e)), n);
-	if (!i.indices.length) throw M(n, "a mesh without faces");
-	return i;
-}
-function hl({ positions: n, uv: r, indices: i }) {
-	let a = new t();
-	a.setAttribute("position", new e(n.slice(), 3)), a.setAttribute("uv", new e(r, 2));
-	let o = n.length / 3 <= fl;
-	return a.setIndex(new e(o ? Uint16Array.from(i) : i, 1)), a;
-}
-function gl(e) {
-	return {
-		vertices: e.getAttribute("position").count,
-		triangles: (e.index?.count ?? 0) / 3
-	};
 }
 // eigenfield-three/src/still-textures.ts
-var _l = 3;
-function vl(e) {
+var Ol = 3;
+function kl(e) {
 	return J(e).flatMap((e, t) => {
 		let n = 0;
 		return e.pictures.map((r) => {
@@ -4982,27 +5090,27 @@ function vl(e) {
 		});
 	}).sort((e, t) => e.first - t.first || e.number - t.number);
 }
-function yl(e, t, n) {
-	let r = vl(e), i = n, a = ({ basis: e, picture: n }) => {
+function Al(e, t, n) {
+	let r = kl(e), i = n, a = ({ basis: e, picture: n }) => {
 		let r = t(n.view).then((t) => n.codec.decode(t, n, e.size));
 		return r.catch(() => void 0), r;
 	};
 	return {
 		async fill(n) {
-			let { plan: o, signal: s } = n, c = i ?? await Promise.all(sa(e).map((e) => il(e, t)));
+			let { plan: o, signal: s } = n, c = i ?? await Promise.all(ua(e).map((e) => bl(e, t)));
 			i = null, c.forEach((e, t) => {
-				n.putMean(t, e), ol(e);
+				n.putMean(t, e), Sl(e);
 			});
 			let l = r.filter(({ first: e }) => e < o.usable), u = [], d = 0;
 			try {
 				for (let { number: e, first: t, picture: r } of l) {
 					if (s.aborted) return;
-					for (let e of l.slice(d, d + _l - u.length)) u.push(a(e)), d += 1;
+					for (let e of l.slice(d, d + Ol - u.length)) u.push(a(e)), d += 1;
 					let i = await u[0] ?? [];
-					u.shift(), n.putTextures(e, t, i, r), Es(i), n.announce();
+					u.shift(), n.putTextures(e, t, i, r), ks(i), n.announce();
 				}
 			} finally {
-				for (let e of u) e.then(Es).catch(() => void 0);
+				for (let e of u) e.then(ks).catch(() => void 0);
 			}
 			n.end();
 		},
@@ -5010,41 +5118,41 @@ function yl(e, t, n) {
 			let r = 0;
 			for (let { channels: i, bases: a } of e.planes) {
 				let o = e.colours.slice(r, r += i), s = a.find(({ count: e }) => e > n);
-				if (s) return ks(s, n, o, t);
+				if (s) return Ms(s, n, o, t);
 			}
 			return Promise.resolve(1);
 		},
 		dispose() {
-			i?.forEach(ol), i = null;
+			i?.forEach(Sl), i = null;
 		}
 	};
 }
 // eigenfield-three/src/grid.ts
-function bl(e) {
+function jl(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = xl(e, n, r) ?? (n === r ? null : xl(e, r, n));
+		let r = t / n, i = Ml(e, n, r) ?? (n === r ? null : Ml(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function xl(e, t, n) {
-	let [r, i] = [Cl(e, 0), Cl(e, 1)];
-	if (t === 1 && wl(i) > 0 || n === 1 && wl(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => Tl(i, e) - Tl(i, t));
+function Ml(e, t, n) {
+	let [r, i] = [Pl(e, 0), Pl(e, 1)];
+	if (t === 1 && Fl(i) > 0 || n === 1 && Fl(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => Il(i, e) - Il(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Tl(r, e) - Tl(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Il(r, e) - Il(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return Sl(n, t, (e, t) => Tl(r, o(t, e))) && Sl(t, n, (e, t) => Tl(i, o(e, t))) ? {
+	return Nl(n, t, (e, t) => Il(r, o(t, e))) && Nl(t, n, (e, t) => Il(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function Sl(e, t, n) {
+function Nl(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -5054,33 +5162,33 @@ function Sl(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function Cl(e, t) {
+function Pl(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function wl(e) {
+function Fl(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var Tl = (e, t) => e[t] ?? 0, El = 1e-6, Dl = 32, Ol = class {
+var Il = (e, t) => e[t] ?? 0, Ll = 1e-6, Rl = 32, zl = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = bl(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = jl(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(kl(e), this.isLine ? 0 : kl(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(Bl(e), this.isLine ? 0 : Bl(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => zl(e, t, this.places) : e === "bilinear" && this.grid ? Vl(this.places, this.grid) : Ml(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => Xl(e, t, this.places) : e === "bilinear" && this.grid ? Ql(this.places, this.grid) : Ul(this.places, this.triangles);
 	}
 };
-function kl(e) {
+function Bl(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Al(e) {
+function Vl(e) {
 	let t = {
 		camera: [
 			0,
@@ -5100,7 +5208,7 @@ function Al(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function jl(e, t, n, r, i, a) {
+function Hl(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -5108,49 +5216,49 @@ function jl(e, t, n, r, i, a) {
 		m
 	];
 }
-function Ml(e, t) {
+function Ul(e, t) {
 	if (!t.length) {
-		let t = Rl(e, Ll(e));
-		return (n, r) => Il(n, r, e, t);
+		let t = Yl(e, Jl(e));
+		return (n, r) => ql(n, r, e, t);
 	}
-	let n = Pl(e, t, 3), r = Fl(t);
+	let n = Gl(e, t, 3), r = Kl(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * Dl + $(i)] ?? []) {
+		for (let r of n[$(a) * Rl + $(i)] ?? []) {
 			let [n, l, u] = [
-				Nl(t, r, 0),
-				Nl(t, r, 1),
-				Nl(t, r, 2)
-			], d = jl(i, a, e, n, l, u), f = Math.min(...d);
+				Wl(t, r, 0),
+				Wl(t, r, 1),
+				Wl(t, r, 2)
+			], d = Hl(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? Il(i, a, e, r) : Al(c.map((e, n) => [Nl(t, o, n), e]));
+		return s < -1e-9 ? ql(i, a, e, r) : Vl(c.map((e, n) => [Wl(t, o, n), e]));
 	};
 }
-var Nl = (e, t, n) => e[3 * t + n] ?? 0;
+var Wl = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * Dl)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * Rl)));
 }
-function Pl(e, t, n) {
+function Gl(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * Dl + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * Rl + t]?.push(i);
 	}
 	return r;
 }
-function Fl(e) {
+function Kl(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [Nl(e, n, r), Nl(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [Wl(e, n, r), Wl(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -5159,7 +5267,7 @@ function Fl(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function Il(e, t, n, r) {
+function ql(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -5174,12 +5282,12 @@ function Il(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return Al([[o, 1 - c], [s, c]]);
+	return Vl([[o, 1 - c], [s, c]]);
 }
-function Ll(e) {
+function Jl(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function Rl(e, t) {
+function Yl(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -5200,7 +5308,7 @@ function Rl(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function zl(e, t, n) {
+function Xl(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -5214,12 +5322,12 @@ function zl(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || Bl(n, r, i, a) <= El) return Il(e, t, n, Rl(n, [
+	if (a < 0 || Zl(n, r, i, a) <= Ll) return ql(e, t, n, Yl(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = jl(e, t, n, r, i, a);
+	let [l, u, d] = Hl(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -5235,15 +5343,15 @@ function zl(e, t, n) {
 		]
 	};
 }
-function Bl(e, t, n, r) {
+function Zl(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function Vl(e, t) {
+function Ql(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = Rl(e, Ll(e));
-		return (n, r) => Il(n, r, e, t);
+		let t = Yl(e, Jl(e));
+		return (n, r) => ql(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -5252,7 +5360,7 @@ function Vl(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = Pl(e, o.flat(), 4), c = [];
+	let s = Gl(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -5260,12 +5368,12 @@ function Vl(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * Dl + $(t)] ?? []) {
-			let s = o[a], c = s ? Hl(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * Rl + $(t)] ?? []) {
+			let s = o[a], c = s ? $l(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return Il(t, n, e, l);
-		let [a, c] = Ul(t, n, e, r);
+		if (!r || i < -1e-9) return ql(t, n, e, l);
+		let [a, c] = eu(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -5277,7 +5385,7 @@ function Vl(e, t) {
 		};
 	};
 }
-function Hl(e, t, n, r) {
+function $l(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -5285,7 +5393,7 @@ function Hl(e, t, n, r) {
 	}
 	return i;
 }
-function Ul(e, t, n, r) {
+function eu(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -5303,34 +5411,34 @@ function Ul(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Wl(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [Wl(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = tu(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [tu(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function Wl(e) {
+function tu(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var Gl = class {
+var nu = class {
 	parser;
 	options;
-	name = xe;
+	name = be;
 	scene = null;
 	ours;
 	constructor(e, t = {}) {
-		this.parser = e, this.options = t, this.ours = ia(e.json);
+		this.parser = e, this.options = t, this.ours = sa(e.json);
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
-		this.options.renderer && Tc(this.options.renderer);
+		this.options.renderer && Ic(this.options.renderer);
 		let { json: e } = this.parser;
-		me(e), Object.assign(e, await ll(e, (e, t) => this.read(e, t)));
-		let t = aa(e);
-		(!t.timeline || this.options.stream?.readGroups) && (this.scene = t, this.scene.shown || Kl(e));
+		pe(e), Object.assign(e, await Tl(e, (e, t) => this.read(e, t)));
+		let t = ca(e);
+		(!t.timeline || this.options.stream?.readGroups) && (this.scene = t, this.scene.shown || ru(e));
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
 		let n = (await this.parser.getDependency("buffer", 0)).slice(e, e + t);
-		if (n.byteLength < t) throw ue("/buffers/0");
+		if (n.byteLength < t) throw le("/buffers/0");
 		return n;
 	}
 	loadMaterial(e) {
@@ -5346,38 +5454,38 @@ var Gl = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = ql(e, this.parser), [r] = n;
-		if (!r) throw M("/meshes/0", "no node shows it");
-		t.shown && pl(r.geometry, t.shown);
+		let n = iu(e, this.parser), [r] = n;
+		if (!r) throw N("/meshes/0", "no node shows it");
+		t.shown && bc(r.geometry, t.shown);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
-			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ue(`/bufferViews/${e}`);
+			if (n.byteLength < (t.views[e]?.length ?? 0)) throw le(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await ml(t.mesh, i), o = t.timeline && a && await this.openClip(t, t.timeline, a);
+		}, a = t.mesh && await xc(t.mesh, i), o = t.timeline && a && await this.openClip(t, t.timeline, a);
 		if (a) {
-			let e = hl(a);
+			let e = Sc(a);
 			r.geometry.dispose();
 			for (let t of n) t.geometry = e;
 		}
-		t.sheets && Vi(t.sheets, r.geometry);
+		t.sheets && Hi(t.sheets, r.geometry);
 		let [s, c, l, u] = await Promise.all([
-			Promise.all(o ? [] : sa(t).map((e) => il(e, i))),
-			Sa(t, i),
-			o ? o.group.omega : Aa(t, i),
-			Ia(t, i)
-		]), d = c.filter((e, n) => !t.heldOut[n]), f = new Ol(Float64Array.from(d.flatMap((e) => Ba(t, e.centre))), u, t.extent[1] === 0), p = o ? sa(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
+			Promise.all(o ? [] : ua(t).map((e) => bl(e, i))),
+			Ta(t, i),
+			o ? o.group.omega : Na(t, i),
+			za(t, i)
+		]), d = c.filter((e, n) => !t.heldOut[n]), f = new zl(Float64Array.from(d.flatMap((e) => Ua(t, e.centre))), u, t.extent[1] === 0), p = o ? ua(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
 			scene: t,
-			info: Ra(t, c, p, f.grid, this.fileBytes(), gl(r.geometry)),
+			info: Va(t, c, p, f.grid, this.fileBytes(), Cc(r.geometry)),
 			meshes: n,
 			meanSizes: p,
 			omega: l,
 			weights: f,
 			clip: o
-		}, h = o ? new js(t, o.films) : yl(t, i, s);
-		e.userData.eigenfield = new Kc(m, h, this.options);
+		}, h = o ? new Ps(t, o.films) : Al(t, i, s);
+		e.userData.eigenfield = new rl(m, h, this.options);
 	}
 	openClip(e, t, n) {
-		return nl(e, t, n, (...e) => this.options.stream.readGroups(...e));
+		return vl(e, t, n, (...e) => this.options.stream.readGroups(...e));
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -5385,107 +5493,182 @@ var Gl = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function Kl(e) {
+function ru(e) {
 	let [t] = e.nodes;
 	t && (t.mesh = 0), e.meshes = [{ primitives: [{
 		attributes: {},
 		material: 0
 	}] }], e.materials = [{ doubleSided: !0 }];
 }
-function ql(e, t) {
+function iu(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		Jl(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		au(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function Jl(e) {
+function au(e) {
 	return e.isMesh === !0;
 }
+// eigenfield-three/src/ranges.ts
+var ou = 2 ** 20, su = 2 ** 25, cu = 3, lu = 500, uu = class {
+	source;
+	arrival;
+	length;
+	part;
+	signal;
+	parted = !1;
+	begun = !1;
+	whole = null;
+	constructor(e, t, n, r, i) {
+		this.source = e, this.arrival = t, this.length = n, this.part = r, this.signal = i;
+	}
+	async read(e, t) {
+		let { arrival: n } = this;
+		if (t <= n.received || !this.begun || !this.parted && e <= n.received + ou) {
+			let r = await n.read(e, t).catch((e) => {
+				if (this.signal.aborted || !(this.parted || this.begun && du(e))) throw e;
+			});
+			if (this.begun || this.limit(), r) return r;
+		}
+		if (this.giveUp(), this.source instanceof Blob) return this.slice(this.source, e, t);
+		for (let n = 1;; n++) try {
+			return await (this.whole?.read(e, t) ?? this.fetch(this.source, e, t));
+		} catch (e) {
+			if (this.signal.throwIfAborted(), n === cu || this.whole || !du(e)) throw e;
+			await new Promise((e) => setTimeout(e, lu * 2 ** (n - 1))), this.signal.throwIfAborted();
+		}
+	}
+	limit() {
+		let { arrival: e } = this;
+		this.begun = !0, e.onPush = () => {
+			e.received >= su && e.received < this.length && this.giveUp();
+		}, e.onPush();
+	}
+	giveUp() {
+		this.parted || (this.parted = !0, this.part());
+	}
+	async slice(e, t, n) {
+		let r = await e.slice(t, n).arrayBuffer();
+		if (r.byteLength < n - t) throw ce(t + r.byteLength, n);
+		return r;
+	}
+	async fetch(e, t, n) {
+		let r = { Range: `bytes=${t}-${n - 1}` }, i = await fetch(e, {
+			headers: r,
+			signal: this.signal
+		}).catch((e) => {
+			throw this.signal.aborted ? e : this.broken(t, e);
+		});
+		if (i.status === 200 && i.body) return this.receive(i.body).read(t, n);
+		if (i.status !== 206) throw await i.body?.cancel(), this.broken(t, `The server answered ${i.status}`);
+		let a = await i.arrayBuffer().catch((e) => {
+			throw this.signal.aborted ? e : this.broken(t, e);
+		});
+		if (a.byteLength !== n - t) throw this.broken(t + a.byteLength, "a range that was cut short");
+		return a;
+	}
+	receive(e) {
+		let t = this.whole = new cl(), n = e.getReader();
+		return this.signal.addEventListener("abort", () => void n.cancel().catch(() => void 0)), (async () => {
+			for (;;) {
+				let { done: e, value: r } = await n.read();
+				if (e) return t.end();
+				t.push(r);
+			}
+		})().catch((e) => t.fail(this.signal.aborted ? e : this.broken(t.received, e))), t;
+	}
+	broken(e, t) {
+		return new M("network", `The connection broke at byte ${e} of ${this.length} of the clip; it is tried again when it plays on.`, String(e), { cause: t });
+	}
+};
+function du(e) {
+	return e instanceof M && e.code === "network";
+}
 // eigenfield-three/src/load.ts
-async function Yl(e, t = {}) {
+async function fu(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new Zc(), i = new AbortController(), a = () => {
+	let r = new cl(), [i, a] = [new AbortController(), new AbortController()], o = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
-	n?.addEventListener("abort", a);
-	let o = Ql(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	n?.addEventListener("abort", o), i.signal.addEventListener("abort", () => a.abort());
+	let s = hu(e, r, a.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", o));
 	try {
-		let e = await Rs(r);
-		if (!ia(e.json)) return {
-			gltf: await Zl(r, e, o),
+		let o = await Vs(r);
+		if (!sa(o.json)) return {
+			gltf: await mu(r, o, s),
 			field: null
 		};
-		let i = await Xl(r, e, t);
+		let c = await pu(r, o, e instanceof ArrayBuffer ? r : ((e) => new uu(e, r, o.length, () => a.abort(), i.signal))(e), t);
 		n?.throwIfAborted();
-		let a = i.userData.eigenfield;
+		let l = c.userData.eigenfield;
 		return {
-			gltf: i,
-			field: a instanceof Kc ? a : null
+			gltf: c,
+			field: l instanceof rl ? l : null
 		};
 	} catch (e) {
-		throw i.abort(), n?.throwIfAborted(), de(e);
+		throw i.abort(), n?.throwIfAborted(), ue(e);
 	}
 }
-async function Xl(e, t, n) {
-	let r = new ce(), i = (t) => async (n, r) => {
-		let i = await t + n;
-		return e.read(i, i + r);
-	}, a = t.binary();
-	a.catch(() => void 0);
-	let o = {
+async function pu(e, t, n, r) {
+	let i = new se(), a = (e, t = n) => async (n, r) => {
+		let i = await e + n;
+		return t.read(i, i + r);
+	}, o = t.binary();
+	o.catch(() => void 0);
+	let s = {
 		total: t.length,
-		read: i(a),
-		readGroups: (...e) => i(t.groups())(...e)
+		read: a(o, e),
+		readGroups: (...e) => a(t.groups())(...e)
 	};
-	return r.register((e) => new Gl(e, {
-		...n,
-		stream: o
-	})), r.parseAsync(t.text, "");
+	return i.register((e) => new nu(e, {
+		...r,
+		stream: s
+	})), i.parseAsync(t.text, "");
 }
-async function Zl(e, t, n) {
+async function mu(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
-		let e = new ce();
-		return e.register(pe), await e.parseAsync(r, "");
+		let e = new se();
+		return e.register(fe), await e.parseAsync(r, "");
 	} catch (e) {
-		if (e instanceof j) throw e;
-		let t = de(e).message;
-		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
+		if (e instanceof M) throw e;
+		let t = ue(e).message;
+		throw new M("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function Ql(e, t, n, r) {
+async function hu(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? $l(e) : await eu(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? gu(e) : await _u(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : tu(t.received, e);
+			throw n.aborted ? e : vu(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function $l(e) {
+function gu(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function eu(e, t) {
+async function _u(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
-		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
+		throw t.aborted ? n : new M("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
-	if (!n.ok || !n.body) throw await n.body?.cancel(), new j("network", `The server answered ${n.status} for the scene; check its address.`, e);
+	if (!n.ok || !n.body) throw await n.body?.cancel(), new M("network", `The server answered ${n.status} for the scene; check its address.`, e);
 	let r = n.headers.get("Content-Encoding") ? null : n.headers.get("Content-Length");
 	return {
 		body: n.body,
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function tu(e, t) {
-	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
+function vu(e, t) {
+	return new M("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { Kc as EigenField, Gl as EigenfieldPlugin, fc as Player, _c as SHEETS, j as SceneError, so as defaultMemory, Yl as loadEigenfield, Ua as novelCamera, qa as placeCamera, pe as refuseAddresses };
+export { rl as EigenField, nu as EigenfieldPlugin, vc as Player, Oc as SHEETS, M as SceneError, uo as defaultMemory, fu as loadEigenfield, Ka as novelCamera, Xa as placeCamera, fe as refuseAddresses };
