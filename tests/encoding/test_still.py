@@ -10,6 +10,7 @@ import pytest
 import eigenfield as ef
 from eigenfield.capture import open_footage
 from eigenfield.core.errors import CaptureError, OptionError
+from eigenfield.core.proxy import opaque_mesh
 from eigenfield.encoding import encode_footage
 from eigenfield.encoding.clip.still import MAX_FRAMES, frames_of_still, still_capture, still_photograph
 from eigenfield.gltf import load_clip
@@ -153,7 +154,7 @@ def test_one_command_makes_a_clip_and_proxy_makes_the_same_surface(passing, tmp_
     result = run("encode", *words, "--preset", "small", "--group", "7", "-o", tmp_path / "clip.glb")
     assert result.code == 0 and "7 frames" in result.out, result
     clip = load_clip(tmp_path / "clip.glb")
-    mesh = clip.scene(0.0).proxy.mesh
+    mesh = opaque_mesh(clip.scene(0.0).proxy)
     np.testing.assert_allclose(depths(mesh, clip.scene(0.0).rig.cameras[4]), WALL, rtol=0.05)
     result = run("proxy", *words, "-o", tmp_path / "mesh.ply")
     assert result.code == 0, result

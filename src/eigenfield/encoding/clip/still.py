@@ -67,18 +67,12 @@ def refuse_sheets() -> NoReturn:
 
 
 def estimate_still_surface(
-    footage: Footage,
-    asked: EncodeOptions,
-    surface: SurfaceOptions,
-    work: Path | None,
-    progress: Progress | None,
-    sheet: bool = False,
+    footage: Footage, asked: EncodeOptions, surface: SurfaceOptions, work: Path | None, progress: Progress | None
 ) -> tuple[Footage, Proxy | MovingProxy, EncodeOptions]:
-    """The surface of footage whose cameras are known, as finished stages.
+    """The surface of footage whose cameras are known, as finished stages, with a sheet for what moves where that pays.
 
     Args:
         surface: Of `surface_of_clip`.
-        sheet: Whether what moves has a sheet of its own, where that pays.
 
     Returns:
         The footage with the cameras for which the surface was made, the surface, and the options of what follows.
@@ -92,8 +86,8 @@ def estimate_still_surface(
         views = made.light_field.views
         shown = footage.subset(footage.names.index(view.name) for view in views)
         shown = shown.with_cameras(made.light_field.cameras, [view.lens for view in views])
-        sheet &= asked.resolved().fit != "none"  # texture maps know one opaque surface
-        moving = moving_proxy(shown, made, stages, progress) if sheet else None
+        texture_maps = asked.resolved().fit == "none"  # they know one opaque surface
+        moving = None if texture_maps else moving_proxy(shown, made, stages, progress)
     return shown, moving or made.proxy, replace(asked, triangles=None, hold_out=made.hold_out)
 
 
