@@ -74,11 +74,11 @@ after(() => lab?.close());
 
 /** Loads the clip as `window.field`; `window.read` draws and tells the number of the player, that of the mean, that of the
  * textures, the strength of theirs, and where there are sheets the number of the opacity; `window.played` collects that of each frame, `window.errors` what the field says. */
-async function openClip(name = "clip.glb", options = {}) {
+async function openClip(name = "clip.glb", { memory, ...options } = {}) {
   const opened = await lab.open(options);
   await opened.page.evaluate(
-    async ([url, bits, textures, front]) => {
-      const { gltf, field } = await window.lab.loadEigenfield(url);
+    async ([url, bits, textures, front, memory]) => {
+      const { gltf, field } = await window.lab.loadEigenfield(url, { memory });
       const { lab } = window;
       lab.show(gltf);
       field.camera = field.info.cameras.length - 1;
@@ -106,7 +106,7 @@ async function openClip(name = "clip.glb", options = {}) {
       window.played = [];
       field.player.addEventListener("frame", () => window.played.push(window.read()));
     },
-    [name, bits, textures, front],
+    [name, bits, textures, front, memory],
   );
   return opened;
 }
@@ -432,6 +432,18 @@ test("frames of a clip with sheets are drawn as the software renderer draws them
   }
   await close();
 });
+
+for (const name of ["clip.glb", "clip-sheets.glb"]) {
+  test(`${name} in little memory shows its numbers all the same`, async () => {
+    const { page, close } = await openClip(name, { memory: 600_000 });
+    assert.match(await page.evaluate(() => window.field.limitation), /Eigen textures have (67|50) % of their width/);
+    assertSame(await page.evaluate(() => window.read()));
+    const { played, errors } = await playThrough(page, 1, 16);
+    assert.deepEqual(errors, []);
+    played.forEach(assertSame);
+    await close();
+  });
+}
 
 test("the opacity of sheets after a lost context, and where frames have eight bits in the range of videos", async () => {
   const { page, close } = await openClip("clip-sheets.glb", { allowed: /Context (Lost|Restored)/, init: ofEightBits });

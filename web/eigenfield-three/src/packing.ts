@@ -98,33 +98,34 @@ export function makePacker(gl: GL, rooms: Rooms, fitting: number, surface: Surfa
     const smaller = width < picture.width || height < rows ? rooms.smaller : null;
     const step = Math.max(1, Math.floor(((smaller ? fitting - 2 : fitting) * height) / rows));
     const set = ours && room === rooms.codes;
-    onUnit(gl, 2, (smaller && charts?.covered(aim.grid)) ?? null, () =>
-      onUnit(gl, 0, set ? null : room, () => {
-        for (let top = 0; top < height; top += step) {
-          const count = Math.min(step, height - top);
-          const first = Math.floor((top * rows) / height);
-          const last = Math.ceil(((top + count) * rows) / height);
-          if (isCodes(picture)) putCodes(gl, picture, row + first, last - first);
-          else putRows(gl, picture, row + first, last - first);
-          const pack = (): void => {
-            const as = smaller || fine ? ofPacking : ofCopying;
-            gl.useProgram(smaller || fine ? packing : copying); // its sampler `picture` reads unit 0
-            gl.bindVertexArray(vertices);
-            gl.uniform1i(as.precisions, fine ? 1 : 0); // on unit 1 may be anything
-            gl.uniform1i(as.covered, smaller ? 2 : 0);
-            gl.uniform2i(as.nodes, fine?.precision.width ?? 0, fine?.precision.height ?? 0);
-            gl.uniform1f(as.zero, fine?.zero ?? 0);
-            if (smaller) {
-              into(smaller, null);
-              gl.colorMask(true, true, true, true);
-            } else toSlot(array, slot);
-            draw(as, piece, slot.channel, aim, first, top, count);
-          };
+    const covered = (smaller && charts?.covered(aim.grid)) ?? null;
+    onUnit(gl, 0, set ? null : room, () => {
+      for (let top = 0; top < height; top += step) {
+        const count = Math.min(step, height - top);
+        const first = Math.floor((top * rows) / height);
+        const last = Math.ceil(((top + count) * rows) / height);
+        if (isCodes(picture)) putCodes(gl, picture, row + first, last - first);
+        else putRows(gl, picture, row + first, last - first);
+        const pack = (): void => {
+          const as = smaller || fine ? ofPacking : ofCopying;
+          gl.useProgram(smaller || fine ? packing : copying); // its sampler `picture` reads unit 0
+          gl.bindVertexArray(vertices);
+          gl.uniform1i(as.precisions, fine ? 1 : 0); // on unit 1 may be anything
+          gl.uniform1i(as.covered, smaller ? 2 : 0);
+          gl.uniform2i(as.nodes, fine?.precision.width ?? 0, fine?.precision.height ?? 0);
+          gl.uniform1f(as.zero, fine?.zero ?? 0);
+          if (smaller) {
+            into(smaller, null);
+            gl.colorMask(true, true, true, true);
+          } else toSlot(array, slot);
+          draw(as, piece, slot.channel, aim, first, top, count);
+        };
+        onUnit(gl, 2, covered, () => {
           if (set) pack();
           else untouched(gl, pack);
-        }
-      }),
-    );
+        });
+      }
+    });
     if (!smaller) return;
     onUnit(gl, 0, smaller, () =>
       untouched(gl, () => {

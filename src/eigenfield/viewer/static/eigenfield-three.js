@@ -4241,8 +4241,8 @@ function Yc(e, t, n, r) {
 	}, g = (t, { layer: n, component: r }) => {
 		h(t, n), e.colorMask(r === 0, r === 1, r === 2, r === 3);
 	}, _ = (r, s, d, _, v, y) => {
-		let { picture: b, row: x, rows: S } = r, [C, w] = v.size, T = C < b.width || w < S ? t.smaller : null, E = Math.max(1, Math.floor((T ? n - 2 : n) * w / S)), D = u && s === t.codes;
-		Gc(e, 2, (T && l?.covered(v.grid)) ?? null, () => Gc(e, 0, D ? null : s, () => {
+		let { picture: b, row: x, rows: S } = r, [C, w] = v.size, T = C < b.width || w < S ? t.smaller : null, E = Math.max(1, Math.floor((T ? n - 2 : n) * w / S)), D = u && s === t.codes, O = (T && l?.covered(v.grid)) ?? null;
+		Gc(e, 0, D ? null : s, () => {
 			for (let t = 0; t < w; t += E) {
 				let n = Math.min(E, w - t), o = Math.floor(t * S / w), s = Math.ceil((t + n) * S / w);
 				Xc(b) ? Qc(e, b, x + o, s - o) : Zc(e, b, x + o, s - o);
@@ -4250,9 +4250,11 @@ function Yc(e, t, n, r) {
 					let s = T || y ? p : f;
 					e.useProgram(T || y ? a : i), e.bindVertexArray(c), e.uniform1i(s.precisions, +!!y), e.uniform1i(s.covered, T ? 2 : 0), e.uniform2i(s.nodes, y?.precision.width ?? 0, y?.precision.height ?? 0), e.uniform1f(s.zero, y?.zero ?? 0), T ? (h(T, null), e.colorMask(!0, !0, !0, !0)) : g(d, _), m(s, r, _.channel, v, o, t, n);
 				};
-				D ? l() : Kc(e, l);
+				Gc(e, 2, O, () => {
+					D ? l() : Kc(e, l);
+				});
 			}
-		})), T && Gc(e, 0, T, () => Kc(e, () => {
+		}), T && Gc(e, 0, T, () => Kc(e, () => {
 			e.useProgram(o), e.bindVertexArray(c), e.uniform2i(e.getUniformLocation(o, "size"), C, w), g(d, _), e.viewport(0, 0, C, w), e.drawArrays(e.TRIANGLES, 0, 3);
 		}));
 	};
