@@ -83,3 +83,24 @@ def test_beside_a_chart_what_counts_for_little_goes_on_as_the_chart_does(share, 
     assert np.allclose(model.mean[0, :, 48], 0.9 if kept else 0.4, atol=1e-3)
     assert np.allclose(block.textures[0, 0, :, 24], 0.9 if kept else 0.4, atol=1e-3)
     assert np.array_equal(np.delete(model.mean[0, :, :48], 10, axis=0), np.full((95, 48), np.float32(0.4)))
+
+
+def test_a_chart_goes_on_by_itself_and_not_by_what_shows_along_an_outline():
+    """The left chart is dark, its middle is not seen, and around that is the outline of a bright thing before it."""
+    y, x = np.mgrid[0:96, 0:96]
+    away = np.hypot(x - 20, y - 48)
+    hidden, outline, right = away < 12, (away >= 12) & (away < 14), x >= 56
+    value = np.where(right, 0.9, np.where(outline, 0.6, 0.1)).astype(np.float32)
+    share = np.where(hidden, 0, np.where(outline, 0.4, 8.0)) * ((x < 40) | right)
+    start = np.where(share > 0, value, 0.5).astype(np.float32)
+    corners = np.array([[0, 0], [40, 0], [40, 96], [0, 96], [56, 0], [96, 0], [96, 96], [56, 96]], np.float32) / 96
+    faces = np.array([[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]], np.int32)
+    surface = make_surface(Mesh(np.zeros((8, 3), np.float32), faces, corners), 96, 96)
+    block = Block((0, 96, 0, 96), start[None, None].copy(), np.ones((3, 1), np.float32))
+    model = PlaneModel(np.eye(1, 3, dtype=np.float32), start[None].copy(), (96, 96), [block])
+    fill_unseen(model, scales(share), surface)
+    for found in (model.mean[0], block.textures[0, 0]):
+        assert found[hidden].min() > 0.1 and found[hidden].max() < 0.2  # 0.6 by the outline alone
+        assert np.array_equal(found[share > 0], value[share > 0])
+        between = found[:, 40:56]
+        assert between.min() > 0.1 - 1e-5 and between.max() < 0.9 + 1e-5 and np.ptp(between[48]) > 0.3

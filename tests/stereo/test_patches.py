@@ -83,6 +83,17 @@ def test_other_maps_decide_where_the_photographs_do_not():
     assert np.abs(planes[4:-4, 4:-4, 0] - 10).max() < 0.3
 
 
+def test_where_other_maps_show_nothing_no_label_is_tried(slanted):
+    pictures, _ = slanted
+    half = SIDE // 2
+    depths = np.zeros((len(PLACES) - 1, half, half), np.float32)
+    found = [
+        match_patches(pictures, matrices(), (SIDE, SIDE), 16.0, others=OtherMaps(depths, 0.0, 0.1, 0.05, labels))
+        for labels in (np.full((2, half, half), np.nan, np.float32), np.zeros((0, half, half), np.float32))
+    ]
+    assert all(np.array_equal(some, none) for some, none in zip(*found, strict=True))
+
+
 def test_one_thread_and_three_give_the_same(slanted):
     try:
         set_threads(1)

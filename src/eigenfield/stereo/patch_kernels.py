@@ -186,7 +186,7 @@ def exchange_planes(first, last, colour, reference, views, taps, high, steepest,
         steepest: Largest slope, labels a pixel.
         reach: Largest change of d.
         margin: By which a plane must be better to replace the present one.
-        more: (N, h, w) further labels to try; NaN: none.
+        more: (N, h, w) further labels to try; those below 0 are not. Compiled arithmetic here knows no NaN.
         planes: (h, w, 3), changed.
         cost: (h, w), changed.
     """
@@ -216,11 +216,10 @@ def exchange_planes(first, last, colour, reference, views, taps, high, steepest,
             best = cost[y, x]
             d, sx, sy = planes[y, x, 0], planes[y, x, 1], planes[y, x, 2]
             for k in range(more.shape[0]):
-                if more[k, y, x] == more[k, y, x]:
-                    tried[count, 0] = more[k, y, x]
-                    tried[count, 1] = sx
-                    tried[count, 2] = sy
-                    count += 1
+                tried[count, 0] = more[k, y, x]
+                tried[count, 1] = sx
+                tried[count, 2] = sy
+                count += 1
             for k in range(count):
                 c, gx, gy = tried[k, 0], tried[k, 1], tried[k, 2]
                 if not (_ZERO <= c <= high):

@@ -94,7 +94,7 @@ def match_patches(
     bands = pieces(len(planes), PATCH_ROWS_PER_TASK)
     parallel_map(lambda band: plane_costs(*band, reference, views, PATCH_OFFSETS, planes, cost), bands)
     fraction = PATCH_REACH_FRACTION if others is None else PATCH_AGREED_REACH_FRACTION
-    labels = np.zeros((0, *cost.shape), np.float32) if others is None else others.labels
+    labels = np.zeros((0, *cost.shape), np.float32) if others is None else np.nan_to_num(others.labels, nan=-1)
     limits = [np.float32(limit) for limit in (high, PATCH_MAX_SLOPE_LABELS, fraction * high, PATCH_MARGIN)]
     for colour in (0, 1):  # a point reads those of the other colour only: the order of the bands has no effect
         fixed = colour, reference, views, PATCH_OFFSETS, *limits, np.ascontiguousarray(labels, np.float32), planes, cost

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from eigenfield.encoding.fitted.model import Block, PlaneModel
 from eigenfield.encoding.fitted.solve import Scales
 from eigenfield.encoding.spread import push_pull
 from eigenfield.imaging.raster import rasterise
+from eigenfield.proxy.topology import face_components
 from eigenfield.rendering.software.drawing import Surface
 from eigenfield.runtime.parallel import parallel_map
 
@@ -19,24 +23,51 @@ SHEET_CELL_TEXELS, SHEET_MIN_FACTOR = 32, 2**-5  # of sheets, which may show nex
 PRECISION_LEVELS_PER_OCTAVE = 4  # fewer numbers, fewer bytes
 PRECISION_MAX_MEAN_FACTOR = 0.97  # mean precision, above which the map saves fewer bytes than it takes
 OBSERVED_MIN_SHARE_RATIO = 0.3  # of the median share: less beside a chart counts as unseen
+# Beside what no photograph sees: the nearer a texel is, the less is filled from it, for it holds colours of what hides
+# the rest. Chosen on Temple
+OUTLINE_TEXELS = 16.0
+
+
+@dataclass(frozen=True, eq=False)
+class _Filling:
+    """Which texels of a picture are filled, and from which others.
+
+    Attributes:
+        observed: (h, w) 1 where the photographs determine a texel; 0 where it is filled.
+        charts: Of each chart that is seen in part: its window, and there (h', w') which of its texels are filled, and
+            (h', w') from which others, by weights up to 1.
+    """
+
+    observed: NDArray[np.float32]
+    charts: tuple[tuple[tuple[slice, ...], NDArray[np.bool_], NDArray[np.float32]], ...]
+
+    def fill(self, picture: NDArray[np.float32]) -> NDArray[np.float32]:
+        """(C, h, w) with what is not observed filled: a chart from itself, all else from around it."""
+        result, known = picture.copy(), self.observed.copy()
+        for window, unseen, source in self.charts:
+            part = (slice(None), *window)
+            result[part][:, unseen] = _continue(picture[part], source)[:, unseen]
+            known[window][unseen] = 1
+        return np.where(known > 0, result, _continue(result, known))
 
 
 def fill_unseen(model: PlaneModel, scales: Scales, surface: Surface) -> None:
     """Continue mean and textures smoothly where no photograph sees them, or next to none beside a chart.
 
-    A step there would cost bytes, and ring into the chart.
+    A step there would cost bytes, and ring into the chart. Views between the cameras see a part of what no photograph
+    sees, such as a background behind the scene: it continues its own chart, not what lies beside it in the atlas.
 
     Args:
         model: Is changed in place.
         scales: Of the data that it was fitted to.
     """
-    model.mean = _fill_smoothly(model.mean, _observed_mask(scales.mean, surface))
-    coarse = _observed_mask(scales.coarse, surface)
+    whole = slice(None), slice(None)
+    model.mean = _filling(scales.mean, surface, whole).fill(model.mean)
     for block in model.blocks:
-        observed = np.ascontiguousarray(coarse[block.window])
+        filling = _filling(scales.coarse, surface, block.window)
 
-        def fill(index: int, block: Block = block, observed: NDArray[np.float32] = observed) -> None:
-            block.textures[index] = _fill_smoothly(block.textures[index], observed)
+        def fill(index: int, block: Block = block, filling: _Filling = filling) -> None:
+            block.textures[index] = filling.fill(block.textures[index])
 
         parallel_map(fill, range(block.count))
 
@@ -64,18 +95,38 @@ def mean_precision(scales: Scales) -> NDArray[np.float32] | None:
     return np.asarray(precision, np.float32)
 
 
-def _observed_mask(share: NDArray[np.float32], surface: Surface) -> NDArray[np.float32]:
-    """(h, w) 1 where the photographs determine a texel: it is seen, and its middle is in a chart or its share is
-    OBSERVED_MIN_SHARE_RATIO of the median."""
+def _filling(share: NDArray[np.float32], surface: Surface, window: tuple[slice, slice]) -> _Filling:
+    """What of a window of a picture is filled.
+
+    A texel is observed if it is seen, and its middle is in a chart or its share is OBSERVED_MIN_SHARE_RATIO of the
+    median.
+
+    Args:
+        share: (h, w) of the whole picture, what each texel answers for.
+    """
     (height, width), (rows, columns) = surface.size, share.shape
     corners = np.ones((len(surface.texels), 3))
     corners[:, :2] = (surface.texels + 0.5) * (columns / width, rows / height)
-    inside = rasterise(corners, surface.faces, columns, rows).face >= 0
+    face = rasterise(corners, surface.faces, columns, rows).face[window]
+    chart = np.where(face >= 0, face_components(surface.faces, len(surface.texels))[face], -1)
     usual = float(np.median(share[share > 0])) if (share > 0).any() else 0.0
-    return ((share > 0) & (inside | (share > OBSERVED_MIN_SHARE_RATIO * usual))).astype(np.float32)
+    share = share[window]
+    seen, inside = share > 0, chart >= 0
+    observed = seen & (inside | (share > OBSERVED_MIN_SHARE_RATIO * usual))
+    charts = []
+    for number, place in enumerate(ndimage.find_objects(chart + 1)):
+        if place is None:
+            continue
+        own = chart[place] == number
+        unseen, known = own & ~seen[place], own & seen[place]
+        if unseen.any() and known.any():
+            near = np.minimum(ndimage.distance_transform_edt(~unseen) / OUTLINE_TEXELS, 1)
+            source = np.where(known, np.square(near), 0).astype(np.float32)
+            charts.append((place, unseen, source))
+    return _Filling(observed.astype(np.float32), tuple(charts))
 
 
-def _fill_smoothly(picture: NDArray[np.float32], observed: NDArray[np.float32]) -> NDArray[np.float32]:
-    """(C, rows, columns) as it is where `observed` is 1, filled where it is 0."""
-    known = np.ascontiguousarray((picture * observed).transpose(1, 2, 0))
-    return np.ascontiguousarray(push_pull(known, observed).transpose(2, 0, 1))
+def _continue(picture: NDArray[np.float32], known: NDArray[np.float32]) -> NDArray[np.float32]:
+    """(C, h, w) as it is where `known` is 1, smoothly continued where it is less."""
+    shown = np.ascontiguousarray((picture * known).transpose(1, 2, 0))
+    return np.ascontiguousarray(push_pull(shown, known).transpose(2, 0, 1))

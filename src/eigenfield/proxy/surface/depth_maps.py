@@ -26,7 +26,6 @@ DEPTH_AGREEMENT_PIXELS = 1.0  # of parallax, up to which two maps agree; at twic
 DEPTH_MAX_PROJECTED_COST = 0.5  # a point of a neighbour's map with more is not tried
 DEPTH_QUANTILES = (0.15, 0.5, 0.85)  # of the labels that the neighbours' maps put on a pixel: these are tried
 DEPTH_SMOOTHING_SCALE_LABELS = 0.3  # off a plane, at which the weight of a point falls to a quarter
-DEPTH_DOUBT = 2 / 3  # where no other map agrees; measured on thirteen photographs of a cube, to 2 % of the depth
 DEPTH_MAP_FILE = "depth.npz"
 # Measured: 1.5 GB for nine views of 600,000 pixels with 16 threads, 1.0 with two; and 3 MB for each picture kept
 DEPTH_MAP_MEMORY_BYTES = 1.7e9
@@ -124,15 +123,16 @@ def make_depth_maps(
         places = {index: folders[number] / DEPTH_MAP_FILE for index, number in numbers.items()}
         again = [(job, shared, places) for job in jobs]
         parted = parts.make("depth", build_depth_map, again, DEPTH_MAP_MEMORY_BYTES)
-        maps = (_load_second(folder / DEPTH_MAP_FILE) for folder in track(parted, stage, len(jobs), progress))
+        made = track(parted, stage, len(jobs), progress)
+        maps = (read_arrays(folder / DEPTH_MAP_FILE)["inverse_depth"] for folder in made)
         return _views(jobs, pictures, maps), [_load_first(places[job.index]).tolerance for job in jobs]
 
 
 def _views(
-    jobs: Sequence[DepthJob], pictures: Sequence[WorkingPicture], maps: Iterable[tuple[NDArray[np.float32], ...]]
+    jobs: Sequence[DepthJob], pictures: Sequence[WorkingPicture], maps: Iterable[NDArray[np.float32]]
 ) -> list[DepthView]:
     used = (pictures[job.index] for job in jobs)
-    return [DepthView(own.camera, w, own.mask, c) for own, (w, c) in zip(used, maps, strict=True)]
+    return [DepthView(own.camera, w, own.mask) for own, w in zip(used, maps, strict=True)]
 
 
 def build_first_map(folder: Path, job: DepthJob, pictures: Sequence[Shared[WorkingPicture]]) -> None:
@@ -146,8 +146,7 @@ def build_depth_map(
 ) -> None:
     """Write one depth map into a folder, on a worker; the first maps lie at `places`, by the index of the view."""
     first = {index: _load_first(places[index]) for index in (job.index, *job.others) if index in places}
-    inverse_depth, confidence = _second_map(job, _load_pictures(job, pictures), first)
-    np.savez(folder / DEPTH_MAP_FILE, inverse_depth=inverse_depth, confidence=confidence)
+    np.savez(folder / DEPTH_MAP_FILE, inverse_depth=_second_map(job, _load_pictures(job, pictures), first))
 
 
 def _load_pictures(job: DepthJob, pictures: Sequence[Shared[WorkingPicture]]) -> dict[int, WorkingPicture]:
@@ -157,11 +156,6 @@ def _load_pictures(job: DepthJob, pictures: Sequence[Shared[WorkingPicture]]) ->
 def _load_first(place: Path) -> _FirstMap:
     data = read_arrays(place)
     return _FirstMap(data["planes"], data["cost"], data["inverse_depth"], float(data["tolerance"]))
-
-
-def _load_second(place: Path) -> tuple[NDArray[np.float32], ...]:
-    data = read_arrays(place)
-    return data["inverse_depth"], data["confidence"]
 
 
 def _stack_pictures(job: DepthJob, pictures: Mapping[int, WorkingPicture] | Sequence[WorkingPicture]) -> _Stack:
@@ -200,11 +194,8 @@ def _inverse_depth(d: NDArray[np.float32], stack: _Stack, own: WorkingPicture, s
 
 def _second_map(
     job: DepthJob, pictures: Mapping[int, WorkingPicture] | Sequence[WorkingPicture], first: Mapping[int, _FirstMap]
-) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """The second map of a view, which begins with the first, and its confidence.
-
-    Each other first map that agrees halves the doubt: the confidence is 1 - DEPTH_DOUBT 2^-n.
-    """
+) -> NDArray[np.float32]:
+    """(H, W) inverse depths of the second map of a view, which begins with the first; 0 where there is none."""
     stack, picture, mine = _stack_pictures(job, pictures), pictures[job.index], first[job.index]
     reference = stack.reference.at_half_resolution()
     size = [(edge + 1) // 2 for edge in stack.pictures.shape[1:3]]
@@ -230,11 +221,7 @@ def _second_map(
     planes[..., 0] = smooth_depth(
         planes[..., 0], weight, guide, half_confidence=15.0, depth_scale=DEPTH_SMOOTHING_SCALE_LABELS
     )
-    agreeing = _count_agreeing(reference, planes[..., 0], cameras, depths, tolerance)
-    shape = stack.reference.shape
-    w = _inverse_depth(upsample_planes(planes, shape), stack, picture, 1)
-    wide = np.repeat(np.repeat(agreeing, 2, 0), 2, 1)[: shape[0], : shape[1]]
-    return w, np.where(w > 0, 1 - DEPTH_DOUBT * 0.5**wide, 0).astype(np.float32)
+    return _inverse_depth(upsample_planes(planes, stack.reference.shape), stack, picture, 1)
 
 
 def _projected_labels(reference: ReferenceView, camera: Camera, other: _FirstMap) -> NDArray[np.float32]:

@@ -43,14 +43,11 @@ class DepthView:
         inverse_depth: (H, W) float32, 1 / depth along z at pixel centres; 0, negative or not finite where there is
             none.
         mask: (H, W) bool, True where the photograph is valid; None: everywhere.
-        confidence: (H, W) float32, the probability that the depth is right to about two pixels of parallax; None: not
-            known.
     """
 
     camera: Camera
     inverse_depth: NDArray[np.float32]
     mask: NDArray[np.bool_] | None = None
-    confidence: NDArray[np.float32] | None = None
 
 
 @dataclass(frozen=True, eq=False)
