@@ -34,7 +34,7 @@ from eigenfield.stereo.taps import EMPTY_DEPTH_LABEL
 from eigenfield.stereo.views import halve_pictures, halved_matrices, label_parallax, pack_pictures
 from eigenfield.stereo.visibility import depth_buffers, mean_texture
 
-MOVING_FAR_FRACTION, MOVING_NEAR_FRACTION = 0.1, 0.6  # of the still surface's range of labels, by which it is widened
+MOVING_NEAR_FRACTION = 0.6  # of the still surface's range of labels, by which it is widened
 MOVING_NEAR_WIDTHS = 0.1  # of the picture, that what moves may stand apart from the still surface in the outermost view
 MOVING_RANGE_PERCENTILES = (0.5, 99.5)  # of its labels, which are its range
 MOVING_UNCHANGED_LEVELS = 12.0  # cost of a label that no camera sees changed
@@ -70,12 +70,11 @@ class StillDepth:
 
     @staticmethod
     def of(matrices: NDArray[np.float64], d: NDArray[np.float32]) -> StillDepth:
-        """With the labels of its range, and of what may move before and behind it."""
+        """With the labels of its range, and of what may move before it."""
         low, high = (float(one) for one in np.percentile(d, MOVING_RANGE_PERCENTILES))
         fastest = float(np.hypot(*label_parallax(matrices, d.shape, high).T).max(initial=1e-9))
-        first = low - MOVING_FAR_FRACTION * (high - low)
         last = high + max(MOVING_NEAR_FRACTION * (high - low), MOVING_NEAR_WIDTHS * d.shape[1] / fastest)
-        return StillDepth(matrices, d, spaced_labels(first, last, label_step(matrices, d.shape, first, last)))
+        return StillDepth(matrices, d, spaced_labels(low, last, label_step(matrices, d.shape, low, last)))
 
     @property
     def step(self) -> float:

@@ -169,7 +169,7 @@ def moving_proxy(
     sheet = MovingSheet.over(reference, made.proxy.mesh, grid)
 
     def build(folder: Path) -> None:
-        labels = _labels_over_time(folders, grid, HELD_STEPS * frames.still.step)
+        labels = _labels_over_time(folders, grid, frames.still)
         np.save(folder / LABELS_FILE, labels)
         shape = len(folders), sheet.side, sheet.side
         opacity = np.lib.format.open_memmap(folder / OPACITY_FILE, "w+", np.float32, shape)
@@ -186,19 +186,16 @@ def moving_proxy(
     return MovingProxy(proxy, np.stack([sheet.mesh(own).vertices for own in labels]), opacity)
 
 
-def _labels_over_time(folders: Sequence[Path], grid: SheetGrid, held: float) -> NDArray[np.float64]:
-    """(T, v) labels of the grid's vertices. Before anything is seen near a vertex, it is where it will be seen.
-
-    Args:
-        held: A vertex whose label changes less stays where it was.
-    """
+def _labels_over_time(folders: Sequence[Path], grid: SheetGrid, still: StillDepth) -> NDArray[np.float64]:
+    """(T, v) labels of the grid's vertices. Before anything is seen near a vertex, it is where it will be seen."""
+    low, high = still.labels[0], still.labels[-1]
     z = None
     for depth in moving_depths(folders[::-1]):
-        z = grid.fit(depth.d, depth.opacity, z)
+        z = np.clip(grid.fit(depth.d, depth.opacity, z), low, high)
     labels = []
     for depth in moving_depths(folders):
         assert z is not None
-        new = grid.fit(depth.d, depth.opacity, z)
-        z = np.where(np.abs(new - z) > held, new, z)
+        new = np.clip(grid.fit(depth.d, depth.opacity, z), low, high)
+        z = np.where(np.abs(new - z) > HELD_STEPS * still.step, new, z)
         labels.append(z)
     return np.stack(labels)
