@@ -34,11 +34,12 @@ from eigenfield.stereo.taps import EMPTY_DEPTH_LABEL
 from eigenfield.stereo.views import halve_pictures, halved_matrices, label_parallax, pack_pictures
 from eigenfield.stereo.visibility import depth_buffers, mean_texture
 
-MOVING_FAR_FRACTION, MOVING_NEAR_FRACTION = 0.1, 0.6  # of the still surface's range of labels, by which it is widened
+MOVING_NEAR_FRACTION = 0.6  # of the still surface's range of labels, by which it is widened
 MOVING_NEAR_WIDTHS = 0.1  # of the picture, that what moves may stand apart from the still surface in the outermost view
 MOVING_RANGE_PERCENTILES = (0.5, 99.5)  # of its labels, which are its range
 MOVING_UNCHANGED_LEVELS = 12.0  # cost of a label that no camera sees changed
 MOVING_MIN_CHANGED_SHARE = 0.6  # of the cameras that see a point, where something may move
+MOVING_MIN_VIEWS_SHARE = 0.4  # of all cameras, that must see such a point: few agree by chance
 MOVING_SHARE_STEPS = 2  # of labels, from one to the next at which changed pixels are counted
 MOVING_ROOM_PIXELS = 8  # of half the resolution, around the part that is looked at
 MOVING_ROOM_STEPS = 3  # of labels, that are tried beyond those at which enough cameras see a change
@@ -69,12 +70,11 @@ class StillDepth:
 
     @staticmethod
     def of(matrices: NDArray[np.float64], d: NDArray[np.float32]) -> StillDepth:
-        """With the labels of its range, and of what may move before and behind it."""
+        """With the labels of its range, and of what may move before it."""
         low, high = (float(one) for one in np.percentile(d, MOVING_RANGE_PERCENTILES))
         fastest = float(np.hypot(*label_parallax(matrices, d.shape, high).T).max(initial=1e-9))
-        first = low - MOVING_FAR_FRACTION * (high - low)
         last = high + max(MOVING_NEAR_FRACTION * (high - low), MOVING_NEAR_WIDTHS * d.shape[1] / fastest)
-        return StillDepth(matrices, d, spaced_labels(first, last, label_step(matrices, d.shape, first, last)))
+        return StillDepth(matrices, d, spaced_labels(low, last, label_step(matrices, d.shape, low, last)))
 
     @property
     def step(self) -> float:
@@ -248,7 +248,8 @@ def _as_pictures(masks: NDArray[np.bool_]) -> NDArray[np.uint32]:
 
 
 def _changed_share(flags: NDArray[np.uint32], still: StillDepth, buffers: NDArray[np.float32]) -> NDArray[np.uint8]:
-    """(h / 2, w / 2, labels) uint8 how many of the views that see a point see a changed pixel there, 255: all.
+    """(h / 2, w / 2, labels) uint8 how many of the views that see a point see a changed pixel there, 255: all; 0 where
+    few see it.
 
     At half the resolution every second label is as fine.
     """
@@ -260,7 +261,8 @@ def _changed_share(flags: NDArray[np.uint32], still: StillDepth, buffers: NDArra
     share = np.empty(((height + 1) // 2, (width + 1) // 2, len(labels)), np.uint8)
     for k, value in enumerate(labels):
         plane = np.full(share.shape[:2], value, np.float32)
-        share[..., k] = mean_texture(small, matrices, plane, near, DEPTH_SWEEP_BIAS_LABELS)[0][..., 0]
+        white, count = mean_texture(small, matrices, plane, near, DEPTH_SWEEP_BIAS_LABELS)
+        share[..., k] = np.where(count >= MOVING_MIN_VIEWS_SHARE * len(small), white[..., 0], 0)
     return share
 
 

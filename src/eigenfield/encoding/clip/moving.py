@@ -43,6 +43,7 @@ MAX_SETTLED_FRAMES = 16  # that are looked at for what stands still
 MOVING_MIN_FRACTION = 0.001  # of the reference view that must move in some frame
 MOVING_MIN_OPACITY = 0.05  # of a pixel that moves
 HELD_STEPS = 0.25  # of a label: a vertex that moves less stays where it was
+FRAME_STAGE = "moving-{:05d}"
 ARRAYS_FILE, OPACITY_FILE, LABELS_FILE = "arrays.npz", "opacity.npy", "labels.npy"
 
 
@@ -101,9 +102,16 @@ class _Frames:
         return cast("LightField", self.footage.instant(number))
 
     def depths(self, progress: Progress | None) -> list[Path]:
-        """The stages of what moves in each frame."""
-        unsettled = self.unsettled(progress)
+        """The stages of what moves in each frame. Those of an earlier run are taken up."""
         folders: list[Path] = []
+        while len(folders) < len(self.footage) and (
+            found := self.stages.find(FRAME_STAGE.format(len(folders)), self.key)
+        ):
+            folders.append(found)
+        rest = range(len(folders), len(self.footage))
+        if not rest:
+            return folders
+        unsettled = self.unsettled(progress)
 
         def build(folder: Path) -> None:
             instant = self.instant(len(folders))
@@ -114,8 +122,8 @@ class _Frames:
             opacity, texture = (to_codes(one) for one in (found.opacity, found.texture / 255))
             np.savez(folder / ARRAYS_FILE, d=found.d, opacity=opacity, texture=texture)
 
-        numbers = track(range(len(self.footage)), "depth of what moves", len(self.footage), progress)
-        folders.extend(self.stages.run(f"moving-{number:05d}", self.key, build) for number in numbers)
+        numbers = track(rest, "depth of what moves", len(rest), progress)
+        folders.extend(self.stages.run(FRAME_STAGE.format(number), self.key, build) for number in numbers)
         return folders
 
 
@@ -161,7 +169,7 @@ def moving_proxy(
     sheet = MovingSheet.over(reference, made.proxy.mesh, grid)
 
     def build(folder: Path) -> None:
-        labels = _labels_over_time(folders, grid, HELD_STEPS * frames.still.step)
+        labels = _labels_over_time(folders, grid, frames.still)
         np.save(folder / LABELS_FILE, labels)
         shape = len(folders), sheet.side, sheet.side
         opacity = np.lib.format.open_memmap(folder / OPACITY_FILE, "w+", np.float32, shape)
@@ -178,19 +186,16 @@ def moving_proxy(
     return MovingProxy(proxy, np.stack([sheet.mesh(own).vertices for own in labels]), opacity)
 
 
-def _labels_over_time(folders: Sequence[Path], grid: SheetGrid, held: float) -> NDArray[np.float64]:
-    """(T, v) labels of the grid's vertices. Before anything is seen near a vertex, it is where it will be seen.
-
-    Args:
-        held: A vertex whose label changes less stays where it was.
-    """
+def _labels_over_time(folders: Sequence[Path], grid: SheetGrid, still: StillDepth) -> NDArray[np.float64]:
+    """(T, v) labels of the grid's vertices. Before anything is seen near a vertex, it is where it will be seen."""
+    low, high = still.labels[0], still.labels[-1]
     z = None
     for depth in moving_depths(folders[::-1]):
-        z = grid.fit(depth.d, depth.opacity, z)
+        z = np.clip(grid.fit(depth.d, depth.opacity, z), low, high)
     labels = []
     for depth in moving_depths(folders):
         assert z is not None
-        new = grid.fit(depth.d, depth.opacity, z)
-        z = np.where(np.abs(new - z) > held, new, z)
+        new = np.clip(grid.fit(depth.d, depth.opacity, z), low, high)
+        z = np.where(np.abs(new - z) > HELD_STEPS * still.step, new, z)
         labels.append(z)
     return np.stack(labels)

@@ -88,6 +88,8 @@ def estimate_still_surface(
         shown = shown.with_cameras(made.light_field.cameras, [view.lens for view in views])
         texture_maps = asked.resolved().fit == "none"  # they know one opaque surface
         moving = None if texture_maps else moving_proxy(shown, made, stages, progress)
+        if moving is not None and work is None:  # the folder goes, and the file in it
+            moving = replace(moving, opacity=np.array(moving.opacity))
     return shown, moving or made.proxy, replace(asked, triangles=None, hold_out=made.hold_out)
 
 

@@ -32,7 +32,7 @@ SHEET_MIN_SPACING_PIXELS = 4  # of the grid
 SHEET_REACH_PIXELS = 4  # by which it reaches beyond what moves
 SHEET_SEEN_OPACITY = 0.05  # of a pixel that shows the sheet
 SHEET_BESIDE_WEIGHT, SHEET_BESIDE_PIXELS = 0.1, 6.0  # of a pixel beside these, and the distance at which it falls by e
-SHEET_SMOOTH_WEIGHT = 0.5  # of the difference of two neighbouring vertices, next to a pixel
+SHEET_SMOOTH_WEIGHT = 0.1  # of the difference of two neighbouring vertices, next to a pixel
 SHEET_STEADY_WEIGHT = 0.05  # of a vertex's label in the frame before, next to a pixel
 SHEET_DEPTH_ERROR_PIXELS = 0.04  # by which the lattice's depths move a point
 
