@@ -33,7 +33,7 @@ def settle_backmost(
 ) -> MovingProxy:
     """The same with the backmost sheet moved to where photographs agree, and simplified by rate and distortion.
 
-    A relief keeps its texture coordinates; what is none stays as it is.
+    A relief keeps its texture coordinates; what is none, or moves, stays as it is.
 
     Args:
         instant: Photographs of a frame, whose number this is. What other sheets show in them does not count.
@@ -42,7 +42,8 @@ def settle_backmost(
     assert sheets is not None and moving.opacity is not None and proxy.mesh.uv is not None
     count = sheets.faces[0]
     behind = proxy.mesh.part(slice(count))
-    if relief_lattice(behind, instant.cameras, DEPTH_ERROR_PX) is None:
+    of_behind = moving.positions[:, np.unique(proxy.mesh.faces[:count])]
+    if (of_behind != of_behind[0]).any() or relief_lattice(behind, instant.cameras, DEPTH_ERROR_PX) is None:
         return moving
     before = Mesh(moving.positions[number], proxy.mesh.faces[count:], proxy.mesh.uv)
     seen = cast("CalibratedObservations", _WithoutSheets(instant, before, moving.opacity[number]))
