@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from eigenfield.core.clip import Clip
     from eigenfield.core.mesh import Mesh
     from eigenfield.core.observations import CalibratedObservations
-    from eigenfield.core.proxy import Proxy
+    from eigenfield.core.proxy import MovingProxy, Proxy
     from eigenfield.core.scene import Scene
     from eigenfield.runtime.tasks import Workers
 
@@ -134,7 +134,7 @@ def encode(
 @takes_options(EncodeOptions)
 def encode_footage(
     footage: Footage,
-    proxy: str | os.PathLike[str] | Mesh | Sequence[str | os.PathLike[str] | Mesh] | None = None,
+    proxy: str | os.PathLike[str] | Mesh | MovingProxy | Sequence[str | os.PathLike[str] | Mesh] | None = None,
     options: EncodeOptions | None = None,
     *,
     surface_options: SurfaceOptions | None = None,
@@ -149,7 +149,8 @@ def encode_footage(
         footage: Of cameras that are known.
         proxy: A triangle mesh in the world of the cameras, or its file. A list of them, one for each frame, or a path
             with %04d in place of their number: a mesh that moves. All have the same triangles, and the texture
-            coordinates of the first, whose vertices then stay where they are. None: the surface of what stands still,
+            coordinates of the first, whose vertices then stay where they are. A `core.proxy.MovingProxy`: sheets whose
+            depth and opacity change, behind them an opaque one that stands still. None: the surface of what is still,
             made from photographs that are averaged over time, and of what never does in the middle frame.
         options: What is asked for; None for the defaults. Those that are for one instant are refused.
         surface_options: How a surface is made that is not given; None for the defaults. It is opaque.

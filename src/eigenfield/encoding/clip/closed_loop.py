@@ -28,6 +28,7 @@ from eigenfield.encoding.clip.films import (
     range_of,
 )
 from eigenfield.encoding.clip.frames import Arrays, FramePass, GroupFrames
+from eigenfield.encoding.clip.hidden import hidden_held
 from eigenfield.encoding.clip.open_loop import OpenGroup, equation_arrays, summed_equations
 from eigenfield.encoding.clip.plan import ClipPlan, FramePixels
 from eigenfield.encoding.fitted.fit import (
@@ -76,7 +77,7 @@ def code_group(
     textures = _code_textures(group, opened, kept, layout)
     weights = _code_weights(group, opened, kept, textures) if closed else _weights_as_they_are(group, opened, kept)
     final = _close(group, opened, weights, textures) if closed else opened.frames
-    means = _code_means(group, final, layout)
+    means = _code_means(group, opened, final, layout)
     films = [means, textures] if opacity is None else [means, textures, opacity]
     coded = CodedGroup(
         weights=tuple((one.payload,) for one in weights),
@@ -125,9 +126,9 @@ def _code_textures(group: GroupFrames, opened: OpenGroup, kept: Sequence[_Kept],
     scale = film_scale(steps, [one.range for one in kept], [True] * len(kept))
 
     def pictures() -> Iterator[Pictures]:
-        for arrays in opened.frames:
-            each = [arrays[f"textures{number}"][: len(one.signs)] * one.signs[:, None, None, None]
-                    for number, one in enumerate(kept)]  # fmt: skip
+        for found in hidden_held(group.clip, opened.frames, opened.frames, "textures"):
+            each = [textures[: len(one.signs)] * one.signs[:, None, None, None]
+                    for textures, one in zip(found, kept, strict=True)]  # fmt: skip
             yield [one.reshape(-1, *one.shape[2:]) for one in each]
 
     return code_film(layout, TEXTURES, scale, pictures(), group.keeper("film-of-textures", opened.frames))
@@ -219,7 +220,7 @@ def _models(
         yield model
 
 
-def _code_means(group: GroupFrames, closed: FramePass, layout: FilmLayout) -> CodedFilm:
+def _code_means(group: GroupFrames, opened: OpenGroup, closed: FramePass, layout: FilmLayout) -> CodedFilm:
     """The film of means."""
     planes = group.clip.planes
     ranges = [range_of(closed.each(f"mean{number}")) for number in range(len(planes))]
@@ -227,5 +228,5 @@ def _code_means(group: GroupFrames, closed: FramePass, layout: FilmLayout) -> Co
     steps = [film_step(plane.rate.mean_step, ratio, len(group))
              for ratio, plane in zip(MEAN_STEP_RATIOS, planes, strict=True)]  # fmt: skip
     scale = film_scale(steps, ranges, signed)
-    pictures = ([arrays[f"mean{number}"] for number in range(len(planes))] for arrays in closed)
+    pictures = hidden_held(group.clip, closed, opened.frames, "mean")
     return code_film(layout, MEANS, scale, pictures, group.keeper("film-of-means", closed))

@@ -137,8 +137,8 @@ def _fit_textures(
                 found |= equation_arrays(weight_equations(some, model, shared.variance), number)
             found[f"energy{number}"] = texture_gram(model.blocks[0], scales)
         fill_unseen(model, scales, clip.footprints.surface)
-        if clip.moving is not None and first is not None:
-            _hold_hidden(model, scales, first, number)
+        if last and clip.moving is not None:
+            found[f"mean{number}-share"], found[f"textures{number}-share"] = scales.mean, scales.coarse
         found[f"mean{number}"], found[f"textures{number}"] = model.mean, model.blocks[0].textures
     return found
 
@@ -166,19 +166,6 @@ def _fit(
         active.put_rest(model, first[f"mean{number}"], first.get(f"textures{number}"))
     equations = residual(data, model, (True, bool(model.blocks), False), variance=variance)
     fit_textures(data, model, scales, iterations, mean_only=not model.blocks, equations=equations)
-
-
-def _hold_hidden(model: PlaneModel, scales: Scales, first: Arrays, number: int) -> None:
-    """Let texels that are hidden in this frame be as in the group's first: films then code no change.
-
-    Args:
-        model: Is changed in place.
-        scales: Of this frame.
-        first: What was found of the first frame, of plane `number`.
-    """
-    model.mean = np.where(scales.mean > 0, model.mean, first[f"mean{number}"])
-    for block in model.blocks:
-        block.textures = np.where(scales.coarse > 0, block.textures, first[f"textures{number}"])
 
 
 def _projection(
