@@ -4,9 +4,10 @@
         [--group 1s] [--qualities 60,75,88,94] [--peers keys-6,one-key-6,keys-2,joint-6] [--stills N] [--store]
 
 CLIP: `light`, the demo's scene with still geometry and moving light, and `demo`, in motion, both drawn on the first run
-and kept; `cloth` and `panoptic`, of EIGENFIELD_DATA; `tarot`, 20 of its photographs at half size again and again with
-fresh noise. --size and --grid are of `light` and `demo`, --frames of these and `tarot`. Every fifth camera is held out,
-and takes no part in clips, streams and stills; of `panoptic`, which is no array, none is.
+and kept; `demo-bare`, the same without its meshes; `cloth` and `panoptic`, of EIGENFIELD_DATA; `tarot`, 20 of its
+photographs at half size again and again with fresh noise. --size and --grid are of those that are drawn, --frames of
+these and `tarot`. Every fifth camera is held out, and takes no part in surfaces, clips, streams and stills; of
+`panoptic`, which is no array, none is.
 
 Ours is one file a quality: encoded, saved, read and drawn again. A peer is a way of `evidence.simulcast` with a preset
 of SVT-AV1 behind it: one stream a camera with a key picture where our groups begin (`keys`), one stream a camera with
@@ -20,22 +21,29 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 import eigenfield as ef
 import measure
 from eigenfield.capture import Footage, open_capture, open_footage
+from eigenfield.capture.holdout import held_out_cameras
 from eigenfield.core.clip import Clip
+from eigenfield.core.proxy import MovingProxy, Proxy
 from eigenfield.core.spread import spread_indices
 from eigenfield.demo import CLIP_MESHES, draw_demo_clip
 from eigenfield.encoding import EncodeOptions, encode_footage
+from eigenfield.encoding.clip.encode import GivenProxy
+from eigenfield.encoding.clip.still import estimate_still_surface
 from eigenfield.evaluation.clip import evaluate_clip
 from eigenfield.evaluation.strip import write_strip
 from eigenfield.gltf import load_clip, parts
 from eigenfield.proxy.meshes.sequence import is_sequence, mesh_files
+from eigenfield.reconstruction import SurfaceOptions
 from evidence import captures, moving_light, rates, simulcast
 from evidence.repeated import repeat
 from evidence.runner import kept
@@ -52,7 +60,8 @@ class Source:
     """Where a clip comes from.
 
     Attributes:
-        proxy: A mesh file; None: it is made from the photographs of the first frame.
+        proxy: A mesh file, or the pattern of one for each frame; None: it is made from the photographs of the encoded
+            cameras, of what stands still and, where cameras look one way, of what moves.
         hold_out: Rule of `encode --hold-out`; None: all cameras are encoded.
     """
 
@@ -95,10 +104,11 @@ def source_of(name: str, out: Path, size: int, grid: int, frames: int) -> Source
         whole = f"light-{grid}x{grid}-{size}-{frames}"
         folder = moving_light.draw_clip(out / "clips" / whole, grid, grid, size, frames)
         return Source(whole, folder, folder / moving_light.PROXY)
-    if name == "demo":
-        whole = f"demo-{grid}x{grid}-{size}-{frames}"
-        draw_demo_clip(out / "clips" / whole, rows=grid, columns=grid, size=size, frames=frames)
-        return Source(whole, out / "clips" / whole, out / "clips" / whole / CLIP_MESHES)
+    if name in ("demo", "demo-bare"):
+        whole = f"{grid}x{grid}-{size}-{frames}"
+        folder = out / "clips" / f"demo-{whole}"
+        draw_demo_clip(folder, rows=grid, columns=grid, size=size, frames=frames)
+        return Source(f"{name}-{whole}", folder, folder / CLIP_MESHES if name == "demo" else None)
     if name in ("cloth", "panoptic"):
         folder = measure.data() / {"cloth": "clip_cloth_5x4", "panoptic": "panoptic_arc_10"}[name]
         return Source(name, folder, hold_out=None if name == "panoptic" else "every:5")
@@ -107,7 +117,7 @@ def source_of(name: str, out: Path, size: int, grid: int, frames: int) -> Source
         whole = f"tarot-{frames}"
         capture = open_capture(known.folder, calibration=known.calibration).reduced(2)
         return Source(whole, repeat(capture, out / "clips" / whole, frames), known.proxy)
-    raise SystemExit(f"no clip is called {name}: name light, demo, tarot, cloth or panoptic")
+    raise SystemExit(f"no clip is called {name}: name light, demo, demo-bare, tarot, cloth or panoptic")
 
 
 def of_clip(
@@ -116,7 +126,7 @@ def of_clip(
     """All curves of one clip, each part kept when it is done."""
     work.mkdir(parents=True, exist_ok=True)
     footage = open_footage(source.folder)
-    proxy = source.proxy or proxy_of(footage, work)
+    proxy = source.proxy or proxy_of(source, footage, work)
 
     def part(name: str, make: Callable[[], dict[str, Any]], more: str = "") -> dict[str, Any]:
         return kept(work / "parts" / f"{name}.json", Path(__file__), make, f"{group} {more}")
@@ -138,17 +148,17 @@ def of_clip(
     }  # fmt: skip
 
 
-def proxy_of(footage: Footage, work: Path) -> Path:
-    """The surface of the first frame, kept."""
-    path = work / "proxy.glb"
-    if not path.exists():
-        from eigenfield.proxy import write_mesh
-
-        write_mesh(ef.reconstruct(footage.instant(0), layers=1, progress=None).proxy.mesh, path)
-    return path
+def proxy_of(source: Source, footage: Footage, work: Path) -> Proxy | MovingProxy:
+    """The surface that the encoded cameras show; its stages are kept."""
+    held = held_out_cameras(source.hold_out, footage.names, np.zeros((len(footage.names), 2)))
+    encoded = footage.subset(np.flatnonzero(~held).tolist())
+    _, proxy, _ = estimate_still_surface(encoded, EncodeOptions(), SurfaceOptions(layers=1), work / "surface", None)
+    return proxy
 
 
-def our_point(source: Source, footage: Footage, proxy: Path, work: Path, group: str, quality: int) -> dict[str, Any]:
+def our_point(
+    source: Source, footage: Footage, proxy: GivenProxy, work: Path, group: str, quality: int
+) -> dict[str, Any]:
     """A file of a quality, read and measured again."""
     path = work / f"clip-{quality}.glb"
     began = time.perf_counter()
@@ -166,13 +176,19 @@ def our_point(source: Source, footage: Footage, proxy: Path, work: Path, group: 
     return point
 
 
-def mesh_at(proxy: Path, frame: int) -> Path:
-    """The mesh of a frame: one of a sequence, or the one that stands still."""
+def proxy_at(proxy: GivenProxy, frame: int) -> Path | Proxy:
+    """The surface of a frame: of a sequence or of sheets its own, or the one that stands still."""
+    if isinstance(proxy, MovingProxy):
+        mesh = replace(proxy.proxy.mesh, vertices=proxy.positions[frame])
+        sheets = proxy.proxy.sheets
+        if sheets is not None and proxy.opacity is not None:
+            sheets = replace(sheets, opacity=np.array(proxy.opacity[frame]))
+        return replace(proxy.proxy, mesh=mesh, sheets=sheets)
     return mesh_files(proxy)[frame] if is_sequence(proxy) else proxy
 
 
 def our_stills(
-    source: Source, footage: Footage, proxy: Path, work: Path, clip: Clip, quality: int, frames: Sequence[int]
+    source: Source, footage: Footage, proxy: GivenProxy, work: Path, clip: Clip, quality: int, frames: Sequence[int]
 ) -> dict[str, Any]:
     """Some frames encoded by themselves; bytes are scaled up to all frames."""
     sizes, figures, seconds = [], [], 0.0
@@ -180,8 +196,8 @@ def our_stills(
         path = work / f"still-{quality}-{frame}.glb"
         capture = footage.instant(footage.timeline.frame_at(float(clip.timeline.times[frame])))
         began = time.perf_counter()
-        mesh = mesh_at(proxy, frame)
-        ef.encode(capture, mesh, quality=quality, hold_out=source.hold_out, progress=None).save(path, overwrite=True)
+        surface = proxy_at(proxy, frame)
+        ef.encode(capture, surface, quality=quality, hold_out=source.hold_out, progress=None).save(path, overwrite=True)
         seconds += time.perf_counter() - began
         sizes.append(path.stat().st_size)
         figures.append(ef.evaluate(path, capture, png_maps="none", progress=None)["image"]["encoded"])

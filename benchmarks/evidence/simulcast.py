@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from eigenfield.capture import match_photographs, with_scene_cameras
 from eigenfield.coding.video.av1 import decode_video, encode_video
 from eigenfield.core.clip import Clip, Timeline
+from eigenfield.core.proxy import opaque_mesh
 from eigenfield.core.scene import Scene
 from eigenfield.evaluation.clip import Instants, Row, figures_of
 from eigenfield.evaluation.flicker import Flicker, StillPixels
@@ -89,7 +90,7 @@ def take(footage: Instants, clip: Clip) -> Taken:
     """
     scene, timeline = clip.scene(float(clip.timeline.times[0])), clip.timeline
     names = scene.rig.names
-    covered = {name: rasterise_view(scene.proxy.mesh, camera).face >= 0
+    covered = {name: rasterise_view(opaque_mesh(scene.proxy), camera).face >= 0
                for name, camera in zip(names, scene.rig.cameras, strict=True)}  # fmt: skip
     pictures: dict[str, list[Picture]] = {name: [] for name in names}
     for moment in timeline.times:
@@ -188,7 +189,7 @@ def _between(taken: Taken, frame: int, shown: Mapping[str, Picture]) -> list[Row
     names = [name for name in rig.names if name in shown]
     cameras = dict(zip(rig.names, rig.cameras, strict=True))
     lumigraph = make_lumigraph(
-        taken.scene(frame).proxy.mesh,
+        opaque_mesh(taken.scene(frame).proxy),
         [cameras[name] for name in names],
         lambda index: (shown[names[index]].astype(np.float32) / np.float32(255), None),
     )

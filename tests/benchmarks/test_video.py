@@ -59,7 +59,7 @@ def test_the_demo_in_motion_is_drawn_once_and_comes_with_a_mesh_a_frame(tmp_path
     assert source.name == "demo-2x2-16-2" and source.hold_out == "every:5"
     assert len(list(source.folder.glob("cam_*/*.png"))) == 8
     before = {path: path.stat().st_mtime_ns for path in source.folder.rglob("*")}
-    assert {video.mesh_at(source.proxy, frame) for frame in range(2)} <= set(before)
+    assert {video.proxy_at(source.proxy, frame) for frame in range(2)} <= set(before)
     assert video.source_of("demo", tmp_path, 16, 2, 2) == source
     assert {path: path.stat().st_mtime_ns for path in source.folder.rglob("*")} == before
 
