@@ -72,6 +72,12 @@ class Clip(clip_data.Clip):
         start, stop = map(self.timeline.frame_at, ends)
         return map(self.scene, times[start : stop + 1])
 
+    def _repr_html_(self) -> str:
+        """The viewer in a frame, for notebooks."""
+        from eigenfield.viewer import scene_html
+
+        return scene_html(self)
+
 
 def _with_methods(scene: data.Scene) -> Scene:
     return Scene(**{one.name: getattr(scene, one.name) for one in fields(scene) if one.init})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import html
 import http.client
 import io
 import re
@@ -11,6 +12,7 @@ import urllib.request
 import pytest
 from PIL import Image
 
+import eigenfield as ef
 from eigenfield.core.errors import OptionError
 from eigenfield.gltf import load_clip, save
 from eigenfield.rendering import RenderJob, viewpoint
@@ -52,6 +54,12 @@ def test_the_poster_is_the_first_frame(file, tmp_path):
             shown, "JPEG", quality=85, optimize=True
         )
         assert (tmp_path / "page.jpg").read_bytes() == shown.getvalue()
+
+
+def test_a_notebook_shows_the_clip(file):
+    shown = ef.load_clip(file)._repr_html_()
+    page = html.unescape(re.search('srcdoc="([^"]*)"', shown)[1]).encode()
+    assert base64.b64decode(EMBEDDED.search(page)[1]) == file.read_bytes() and 'sandbox="allow-scripts' in shown
 
 
 def test_a_page_of_one_frame_holds_a_scene(file, tmp_path):

@@ -1,10 +1,11 @@
-"""A scene in a notebook: the viewer in a frame that holds everything it needs, and may reach nothing."""
+"""A scene or a clip in a notebook: the viewer in a frame that holds everything it needs, and may reach nothing."""
 
 from __future__ import annotations
 
 import html
 from dataclasses import replace
 
+from eigenfield.core.clip import Clip
 from eigenfield.core.errors import EigenfieldError
 from eigenfield.core.scene import Scene
 from eigenfield.gltf import encode_scene
@@ -16,13 +17,16 @@ NOTEBOOK_MAX_BYTES = 64 * 2**20  # of a scene's file; notebooks save what they s
 NOTEBOOK_FEATURES = "xr-spatial-tracking; gyroscope; accelerometer; gamepad"
 
 
-def scene_html(scene: Scene) -> str:
-    """The scene as an <iframe>, for Jupyter and its like; one line of text where it cannot be shown.
+def scene_html(scene: Scene | Clip) -> str:
+    """The scene or the clip as an <iframe>, for Jupyter and its like; one line of text where it cannot be shown.
 
     What has no payload is coded once; the residual is left out. The frame is an origin of its own (`sandbox` without
     `allow-same-origin`): it can neither read the notebook nor act in it."""
     try:
-        glb = scene.derive("glb", lambda: encode_scene(replace(scene, residual=None)))
+        if isinstance(scene, Clip):
+            glb = encode_scene(scene)
+        else:
+            glb = scene.derive("glb", lambda: encode_scene(replace(scene, residual=None)))
         if len(glb) > NOTEBOOK_MAX_BYTES:
             return _line(
                 f"a scene of {len(glb) / 1e6:.0f} MB is too large for a notebook; save it and use "
