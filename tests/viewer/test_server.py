@@ -231,7 +231,7 @@ def test_clients_that_go_away_are_forgotten_in_silence(manifest, caplog, capfd):
                 client.send(b"GET /")
         until(lambda: not started._connections)
         with Client(started.port) as client:
-            assert client.request("/large").body == large.data
+            assert client.request("/large").body == large.data.data
     assert not caplog.records and not capfd.readouterr().err
 
 

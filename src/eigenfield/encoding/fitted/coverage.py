@@ -51,7 +51,7 @@ class _Filling:
         return np.where(known > 0, result, _continue(result, known))
 
 
-def fill_unseen(model: PlaneModel, scales: Scales, surface: Surface) -> None:
+def fill_unseen(model: PlaneModel, scales: Scales, surface: Surface, outline: float = OUTLINE_TEXELS) -> None:
     """Continue mean and textures smoothly where no photograph sees them, or next to none beside a chart.
 
     A step there would cost bytes, and ring into the chart. Views between the cameras see a part of what no photograph
@@ -60,11 +60,12 @@ def fill_unseen(model: PlaneModel, scales: Scales, surface: Surface) -> None:
     Args:
         model: Is changed in place.
         scales: Of the data that it was fitted to.
+        outline: Texels beside what is not seen, from which the less is filled the nearer they are.
     """
     whole = slice(None), slice(None)
-    model.mean = _filling(scales.mean, surface, whole).fill(model.mean)
+    model.mean = _filling(scales.mean, surface, whole, outline).fill(model.mean)
     for block in model.blocks:
-        filling = _filling(scales.coarse, surface, block.window)
+        filling = _filling(scales.coarse, surface, block.window, outline)
 
         def fill(index: int, block: Block = block, filling: _Filling = filling) -> None:
             block.textures[index] = filling.fill(block.textures[index])
@@ -95,7 +96,7 @@ def mean_precision(scales: Scales) -> NDArray[np.float32] | None:
     return np.asarray(precision, np.float32)
 
 
-def _filling(share: NDArray[np.float32], surface: Surface, window: tuple[slice, slice]) -> _Filling:
+def _filling(share: NDArray[np.float32], surface: Surface, window: tuple[slice, slice], outline: float) -> _Filling:
     """What of a window of a picture is filled.
 
     A texel is observed if it is seen, and its middle is in a chart or its share is OBSERVED_MIN_SHARE_RATIO of the
@@ -103,6 +104,7 @@ def _filling(share: NDArray[np.float32], surface: Surface, window: tuple[slice, 
 
     Args:
         share: (h, w) of the whole picture, what each texel answers for.
+        outline: As of `fill_unseen`.
     """
     (height, width), (rows, columns) = surface.size, share.shape
     corners = np.ones((len(surface.texels), 3))
@@ -120,7 +122,7 @@ def _filling(share: NDArray[np.float32], surface: Surface, window: tuple[slice, 
         own = chart[place] == number
         unseen, known = own & ~seen[place], own & seen[place]
         if unseen.any() and known.any():
-            near = np.minimum(ndimage.distance_transform_edt(~unseen) / OUTLINE_TEXELS, 1)
+            near = np.minimum(ndimage.distance_transform_edt(~unseen) / outline, 1)
             source = np.where(known, np.square(near), 0).astype(np.float32)
             charts.append((place, unseen, source))
     return _Filling(observed.astype(np.float32), tuple(charts))
