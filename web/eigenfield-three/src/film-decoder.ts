@@ -36,9 +36,9 @@ export class FilmDecoder {
     return this.opened;
   }
 
-  /** Whether there is room for another unit. */
+  /** Whether there is room for another unit, or the decoder is gone, which `decode` says. */
   get ready(): boolean {
-    return this.onTheWay < MOST_OPEN;
+    return this.onTheWay < MOST_OPEN || this.decoder?.state === "closed";
   }
 
   /** Makes the decoder what the first unit of a group needs. Raises SceneError: `codec`, `damaged`. */

@@ -409,7 +409,7 @@ var Pt = 4, Ft = ["prefer-software", "no-preference"], It = class {
 		return this.opened;
 	}
 	get ready() {
-		return this.onTheWay < Pt;
+		return this.onTheWay < Pt || this.decoder?.state === "closed";
 	}
 	async start(e) {
 		let { level: t, tier: n, width: r, height: i } = ve(e, this.where);
