@@ -18,6 +18,7 @@ from eigenfield.batches.jobs import CaptureJob
 from eigenfield.capture import Capture, open_any, open_footage
 from eigenfield.capture.footage import Footage
 from eigenfield.capture.identity import capture_identity
+from eigenfield.core.open_options import OpenOptions
 from eigenfield.encoding import encode, encode_footage
 from eigenfield.encoding.cost import expected_cost
 from eigenfield.encoding.views import check_selection
@@ -101,13 +102,16 @@ def encode_capture(job: CaptureJob, output: Path, key: str) -> dict[str, Any]:
 
 
 def _opened(job: CaptureJob, output: Path) -> Capture:
-    frames = None if find_objects(output) else output / WORK_FOLDER / job.name / "frames"
-    return open_any(job.path, job.place, work=frames)
+    return open_any(job.path, _place(job, output))
 
 
 def _footage(job: CaptureJob, output: Path) -> Footage:
-    frames = None if find_objects(output) else output / WORK_FOLDER / job.name / "frames"
-    return open_footage(job.path, options=replace(job.place, work=frames))
+    return open_footage(job.path, options=_place(job, output))
+
+
+def _place(job: CaptureJob, output: Path) -> OpenOptions:
+    """How a capture is opened: what is unpacked of it lies in its work folder."""
+    return replace(job.place, work=None if find_objects(output) else output / WORK_FOLDER / job.name / "frames")
 
 
 def _in_store(job: CaptureJob) -> bool:
@@ -194,10 +198,7 @@ def _make_still(job: CaptureJob, output: Path, work: Path, scene_file: Path, pag
 
 def _make_clip(job: CaptureJob, output: Path, work: Path, clip_file: Path, page: Path) -> Made:
     footage = _footage(job, output)
-    clip = encode_footage(
-        footage, job.proxy, job.options, surface_options=job.surface, work=None if find_objects(work) else work,
-        progress=None,
-    )  # fmt: skip
+    clip = encode_footage(footage, job.proxy, job.options, surface_options=job.surface, work=work, progress=None)
     save(clip, clip_file)
     encoded = time.monotonic()
     every = max(1, len(footage) // MEASURED_FRAMES)
