@@ -37,7 +37,6 @@ from eigenfield.core.proxy import MovingProxy, Proxy
 from eigenfield.core.spread import spread_indices
 from eigenfield.demo import CLIP_MESHES, draw_demo_clip
 from eigenfield.encoding import EncodeOptions, encode_footage
-from eigenfield.encoding.clip.encode import GivenProxy
 from eigenfield.encoding.clip.still import estimate_still_surface
 from eigenfield.evaluation.clip import evaluate_clip
 from eigenfield.evaluation.strip import write_strip
@@ -157,7 +156,7 @@ def proxy_of(source: Source, footage: Footage, work: Path) -> Proxy | MovingProx
 
 
 def our_point(
-    source: Source, footage: Footage, proxy: GivenProxy, work: Path, group: str, quality: int
+    source: Source, footage: Footage, proxy: Path | Proxy | MovingProxy, work: Path, group: str, quality: int
 ) -> dict[str, Any]:
     """A file of a quality, read and measured again."""
     path = work / f"clip-{quality}.glb"
@@ -176,7 +175,7 @@ def our_point(
     return point
 
 
-def proxy_at(proxy: GivenProxy, frame: int) -> Path | Proxy:
+def proxy_at(proxy: Path | Proxy | MovingProxy, frame: int) -> Path | Proxy:
     """The surface of a frame: of a sequence or of sheets its own, or the one that stands still."""
     if isinstance(proxy, MovingProxy):
         mesh = replace(proxy.proxy.mesh, vertices=proxy.positions[frame])
@@ -184,11 +183,17 @@ def proxy_at(proxy: GivenProxy, frame: int) -> Path | Proxy:
         if sheets is not None and proxy.opacity is not None:
             sheets = replace(sheets, opacity=np.array(proxy.opacity[frame]))
         return replace(proxy.proxy, mesh=mesh, sheets=sheets)
-    return mesh_files(proxy)[frame] if is_sequence(proxy) else proxy
+    return mesh_files(proxy)[frame] if isinstance(proxy, Path) and is_sequence(proxy) else proxy
 
 
 def our_stills(
-    source: Source, footage: Footage, proxy: GivenProxy, work: Path, clip: Clip, quality: int, frames: Sequence[int]
+    source: Source,
+    footage: Footage,
+    proxy: Path | Proxy | MovingProxy,
+    work: Path,
+    clip: Clip,
+    quality: int,
+    frames: Sequence[int],
 ) -> dict[str, Any]:
     """Some frames encoded by themselves; bytes are scaled up to all frames."""
     sizes, figures, seconds = [], [], 0.0

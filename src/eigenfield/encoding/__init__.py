@@ -135,7 +135,7 @@ def encode(
 @takes_options(EncodeOptions)
 def encode_footage(
     footage: Footage,
-    proxy: str | os.PathLike[str] | Mesh | MovingProxy | Sequence[str | os.PathLike[str] | Mesh] | None = None,
+    proxy: str | os.PathLike[str] | Mesh | Proxy | MovingProxy | Sequence[str | os.PathLike[str] | Mesh] | None = None,
     options: EncodeOptions | None = None,
     *,
     surface_options: SurfaceOptions | None = None,
@@ -149,12 +149,12 @@ def encode_footage(
 
     Args:
         footage: Of cameras that are known.
-        proxy: A triangle mesh in the world of the cameras, or its file. A list of them, one for each frame, or a path
-            with %04d in place of their number: a mesh that moves, whose vertices stay where they are given. Those
-            with the same triangles share the texture coordinates of the first of them; other triangles begin a group.
-            A `core.proxy.MovingProxy`: sheets whose depth and opacity change, behind them an opaque one that stands
-            still. None: the surface of what stands still, made from photographs that are averaged over time, and a
-            sheet before it for what moves, where cameras look one way.
+        proxy: A triangle mesh in the world of the cameras, its file, or an opaque proxy. A list of meshes, one for each
+            frame, or a path with %04d in place of their number: a mesh that moves, whose vertices stay where they are
+            given. Those with the same triangles share the texture coordinates of the first of them; other triangles
+            begin a group. A `core.proxy.MovingProxy`: sheets whose depth and opacity change, behind them an opaque one
+            that stands still. None: the surface of what stands still, made from photographs that are averaged over
+            time, and a sheet before it for what moves, where cameras look one way.
         options: What is asked for; None for the defaults. Those that are for one instant are refused.
         surface_options: How a surface is made that is not given; None for the defaults. It is opaque.
         audio: An Ogg file of Opus, kept as it is, which begins at second 0 of the footage.
