@@ -161,7 +161,7 @@ def file_head(text: bytes, rest: int, path: str | os.PathLike[str] | None, *, is
     if size > limits.MAX_FILE:
         message = f"would be {size} bytes, a .glb holds at most {limits.MAX_FILE}"
         if is_clip:
-            raise OutputError("file-too-large", message, path=path, remedy="make it a folder (export --as folder)")
+            raise OutputError("file-too-large", message, path=path, remedy="make it a folder: -o clip, without .glb")
         remedy = "use fewer textures, a smaller atlas, or --codec avif"
         raise OutputError("file-too-large", message, path=path, remedy=remedy)
     return HEADER.pack(MAGIC, 2, size) + CHUNK.pack(len(text), JSON_CHUNK) + text

@@ -229,7 +229,7 @@ def _stored(
     in memory, which have no files beside them."""
     if layout.first is None or entry.offset is None:
         if not isinstance(place, Path):
-            remedy = "open the file where it lies, or join it by `eigenfield export --as glb`"
+            remedy = "open the file where it lies, or make one file of it (export --as glb)"
             raise FormatError("group-missing", "its groups are files beside it", where=where, remedy=remedy)
         return FileBeside(place, name, entry.length, where)
     first = layout.first + entry.offset
