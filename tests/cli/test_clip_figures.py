@@ -13,6 +13,7 @@ from eigenfield.core.errors import OptionError
 from eigenfield.evaluation import evaluate_clip
 from eigenfield.gltf import load_clip, save
 from eigenfield.imaging.metrics import PSNR_MAX_DECIBELS
+from eigenfield.viewer.exports import write_clip_folder
 from support import printed
 from support.clips import numbered_clip
 from support.moving_clips import tiny_clip, write_footage
@@ -78,6 +79,9 @@ def test_a_file_is_measured_against_a_folder(run, tmp_path):
     assert figures["image"]["encoded"]["flip"] == 0
     assert figures["bytes"]["total"] == (tmp_path / "clip.glb").stat().st_size
     assert (tmp_path / "plots" / "over-time.png").exists() and (tmp_path / "plots" / "contact-sheet.png").exists()
+    write_clip_folder(tmp_path / "clip.glb", tmp_path / "clip")
+    same = json.loads(run("evaluate", tmp_path / "clip", tmp_path / "f", "--json", "--flip", "-q").out)
+    assert same["image"] == figures["image"] and same["bytes"]["mean"] == figures["bytes"]["mean"]
     again = run(*given, "--plots", tmp_path / "plots")
     assert again.code != 0 and "exists already" in again.err
     assert "--curve" in run(*given, "--curve").err

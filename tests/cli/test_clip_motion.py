@@ -65,6 +65,19 @@ def test_a_sequence_of_meshes_becomes_a_clip_that_moves(clip, filmed, run, tmp_p
     assert moved.sum() == 64  # of the plate, and none of the backdrop
 
 
+def test_it_is_encoded_as_a_folder_too(clip, filmed, run, tmp_path):
+    pattern, folder = filmed / "meshes" / "mesh_%04d.ply", filmed / "clip"
+    words = "encode", filmed / "footage", "--clip", "--proxy", pattern, "-o", folder
+    result = run(*words)  # goes on from what is finished
+    assert result.code == 0 and f"{folder}: " in result.out and (folder / "groups" / "00000.eftg").is_file()
+    assert run("export", folder, "--as", "glb", "-o", tmp_path / "again.glb").code == 0
+    assert (tmp_path / "again.glb").read_bytes() == clip.read_bytes()
+    again = run(*words)
+    assert again.code == 2 and "--overwrite" in again.err
+    still = run("encode", filmed / "footage" / "0000", "-o", tmp_path / "still")
+    assert still.code == 2 and "a scene is a .glb file" in still.err
+
+
 def test_it_is_measured_against_its_footage(clip, filmed, run):
     scores = json.loads(run("evaluate", clip, filmed / "footage", "--json").out)
     assert scores["image"]["encoded"]["psnr"] > 30

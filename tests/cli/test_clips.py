@@ -165,6 +165,28 @@ def test_export_writes_one_frame(clip, run, tmp_path):
         ef.export([clip], tmp_path / "app", "app", time=0.5)
 
 
+def test_every_verb_takes_a_folder(clip, run, tmp_path):
+    folder = tmp_path / "clip"
+    code, _, err = run("export", clip, "-o", folder, "--as", "folder")
+    assert code == 0 and "a file for each of 2 groups" in err
+    for place in (folder, folder / "scene.glb"):
+        facts, whole = (json.loads(run("info", "--json", one).out) for one in (place, clip))
+        assert facts["clip"] == whole["clip"] and facts["bytes"]["textures"] == whole["bytes"]["textures"]
+        assert run("validate", place).out == f"{place}: no findings\n"
+        for time, number in (("9", 9), ("0.3s", 3)):
+            picture = tmp_path / "a.png"
+            words = ("--time", time, "--at", "0,0", "--resolution", "480x400", "-o", picture, "--overwrite")
+            assert run("render", place, *words).code == 0
+            assert drawn_number(np.asarray(Image.open(picture))) == number
+    assert run("export", folder, "-o", tmp_path / "again.glb").code == 0
+    assert (tmp_path / "again.glb").read_bytes() == clip.read_bytes()
+    (folder / "groups" / "00001.eftg").unlink()
+    for words in (("info", folder), ("render", folder, "--time", "9", "-o", tmp_path / "b.png")):
+        code, _, err = run(*words)
+        assert code == 2 and err.count("\n") == 1 and "groups/00001.eftg" in err and "copy or download" in err
+    assert "group-missing" in run("validate", folder).out
+
+
 EXPORTS = {
     "page.html": [], "flight.mp4": ["--frames", 2], "f%02d.png": ["--frames", 2], "plain.glb": [], "mesh.obj": [],
     "maps": ["--as", "maps"], "q.png": ["--as", "quilt", "--quilt", "2x2"], "capture": ["--as", "colmap"],

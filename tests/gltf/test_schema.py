@@ -15,7 +15,7 @@ from jsonschema import Draft202012Validator
 from eigenfield.coding import limits
 from eigenfield.coding.codecs import CODECS
 from eigenfield.core.scene import Residual
-from eigenfield.gltf import encode_scene, layout, load
+from eigenfield.gltf import clip_in_files, encode_scene, layout, load
 from eigenfield.gltf.fallback import with_fallback
 from eigenfield.gltf.streams import FEATURES, OTHER_FEATURES
 from support import schema
@@ -48,6 +48,7 @@ def files(good):
     made["residual"] = encode_scene(replace(coded, residual=video))
     for kind, sheets in (("clip", False), ("sheets-clip", True)):
         made[kind] = encode_scene(moving_clip(numbered_clip(sheets=sheets), lambda number, places: places + number))
+    made["files-clip"] = b"".join(clip_in_files(numbered_clip()).scene)
     return made
 
 
@@ -216,6 +217,8 @@ WRONG = [
     ("clip", ("timeline", "groups"), []),
     ("clip", ("timeline", "groups", 0, "frames"), 1025),
     ("clip", ("timeline", "groups", 0, "offset"), 2),
+    ("clip", ("timeline", "groups", 0, "offset"), MISSING),
+    ("clip", ("timeline", "groupFiles"), False),
     ("clip", ("timeline", "groups", 1, "length"), 0),
     ("clip", ("timeline", "groups", 1, "sha256"), "00"),
     ("clip", ("timeline", "groups", 1, "sha256"), MISSING),

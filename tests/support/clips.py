@@ -32,8 +32,9 @@ from eigenfield.core.payloads import Affine, Payload
 from eigenfield.core.proxy import Proxy, Sheets
 from eigenfield.encoding.geometry.coded import coded_cameras, coded_mesh
 from eigenfield.gltf import coded_clip, load_clip
-from eigenfield.gltf.clips import CodedGroups
+from eigenfield.gltf.clips import CodedGroups, StoredGroup
 from eigenfield.gltf.group import group_bytes
+from eigenfield.gltf.source import HeldBytes
 from support import glb_surgery
 from support.scenes import bumpy_square, tiny_scene
 
@@ -170,6 +171,15 @@ def shown_texture(textures: NDArray[np.uint16]) -> int:
     """Which of (N, rows, columns) codes is not zero."""
     (index,) = np.flatnonzero((textures > EMPTY_CODE + CONTRAST // 2).mean(axis=(1, 2)) > 0.02)
     return int(index)
+
+
+def repeated_clip(clip: Clip, times: int) -> Clip:
+    """A clip of coded groups so many times, one after the other."""
+    groups = clip.groups
+    assert isinstance(groups, CodedGroups)
+    made = [StoredGroup(HeldBytes(groups.read(index)), count) for index, count in enumerate(groups.lengths)]
+    timeline = replace(clip.timeline, frames=times * clip.timeline.frames)
+    return replace(clip, timeline=timeline, groups=replace(groups, stored=made * times))
 
 
 def groups_of(data: bytes) -> list[bytes]:

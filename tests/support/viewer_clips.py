@@ -7,6 +7,8 @@ writes into FOLDER
     clip.glb     frames that show their numbers (`support.clips`), in groups of 5, 7, 1 and 12
     far.glb      the same, 2 MB from group to group
     heard.glb    the same with a sound of three seconds, which begins half a second late
+    folder/      heard.glb, whose groups and sound are files
+    short.glb, long.glb, short/, long/  frames 0 to 59, and these fifty times, in groups of 30: as files and as folders
     moving.glb   the same on a mesh that moves, but for the third group, in which it is where the file's mesh is; the
                  second group has a mesh of its own
     moving.json  for each frame the positions of all vertices, three numbers each
@@ -36,6 +38,7 @@ from eigenfield.core.clip import Audio, Clip
 from eigenfield.gltf import save
 from eigenfield.gltf.clips import CodedGroups
 from eigenfield.rendering import ViewWeights, renderer_of
+from eigenfield.viewer.exports import write_clip_folder
 from support.clips import (
     BITS,
     FRONT_MIDDLE,
@@ -45,6 +48,7 @@ from support.clips import (
     groups_of,
     moving_clip,
     numbered_clip,
+    repeated_clip,
     with_groups,
 )
 from support.sounds import opus
@@ -72,6 +76,11 @@ def write(folder: Path) -> None:
         "front": FRONT_MIDDLE, "sheetCodes": digests(sheets), "drawn": DRAWN, "size": SHOWN,
     }  # fmt: skip
     save(replace(clip, audio=Audio(opus(3), 0.5)), folder / "heard.glb", overwrite=True)
+    write_clip_folder(folder / "heard.glb", folder / "folder", overwrite=True)
+    short = numbered_clip((30, 30), rate)
+    for name, made in (("short", short), ("long", repeated_clip(short, 50))):
+        save(made, folder / f"{name}.glb", overwrite=True)
+        write_clip_folder(folder / f"{name}.glb", folder / name, overwrite=True)
     far = with_groups(data, groups_of(data), gap=2**21)
     (folder / "far.glb").write_bytes(far)
     facts["held"] = far.index(groups_of(data)[0]) + len(groups_of(data)[0])

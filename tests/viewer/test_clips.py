@@ -7,18 +7,22 @@ import html
 import http.client
 import io
 import re
+import urllib.error
 import urllib.request
+from dataclasses import replace
 
 import pytest
 from PIL import Image
 
 import eigenfield as ef
+from eigenfield.core.clip import Audio
 from eigenfield.core.errors import OptionError
 from eigenfield.gltf import load_clip, save
 from eigenfield.rendering import RenderJob, viewpoint
 from eigenfield.viewer import view
 from eigenfield.viewer.exports import export
 from support.clips import numbered_clip
+from support.sounds import opus
 
 EMBEDDED = re.compile(rb'id="eigenfield-scene">([^<]*)<')
 
@@ -88,6 +92,26 @@ def test_a_clip_on_disk_is_read_for_each_answer_and_one_that_was_cut_meanwhile_e
         path.write_bytes(file.read_bytes()[:-100])
         with urllib.request.urlopen(f"{server.address}scene.glb") as answer, pytest.raises(http.client.IncompleteRead):
             answer.read()
+
+
+def test_a_folder_is_served_file_by_file_and_a_page_holds_it_as_one_file(tmp_path):
+    save(replace(numbered_clip((2, 3)), audio=Audio(opus(0.5))), tmp_path / "clip.glb")
+    export(tmp_path / "clip.glb", tmp_path / "clip", "folder")
+    for place in (tmp_path / "clip", tmp_path / "clip" / "scene.glb"):
+        with view(place, browser=False) as server:
+            for name in ("scene.glb", "groups/00000.eftg", "groups/00001.eftg", "sound.opus"):
+                with urllib.request.urlopen(f"{server.address}{name}") as answer:
+                    assert answer.read() == (tmp_path / "clip" / name).read_bytes()
+            for name in ("groups/00002.eftg", "eigenfield.json"):
+                with pytest.raises(urllib.error.HTTPError, match="404"):
+                    urllib.request.urlopen(f"{server.address}{name}")
+    export(tmp_path / "clip", tmp_path / "page.html")
+    assert held_in(tmp_path / "page.html") == (tmp_path / "clip.glb").read_bytes()
+    export(tmp_path / "clip", tmp_path / "app", "app")
+    assert (tmp_path / "app" / "samples" / "clip.glb").read_bytes() == (tmp_path / "clip.glb").read_bytes()
+    clip = load_clip(tmp_path / "clip")
+    with view(clip, browser=False) as server, urllib.request.urlopen(f"{server.address}scene.glb") as answer:
+        assert answer.read() == (tmp_path / "clip.glb").read_bytes()
 
 
 def test_photographs_are_not_shown_beside_a_clip(file, tmp_path):

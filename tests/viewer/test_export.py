@@ -27,6 +27,7 @@ from eigenfield.runtime.files import atomic_files
 from eigenfield.viewer import exports
 from eigenfield.viewer.exports import OPTIONS
 from eigenfield.viewer.exports.export import ENDINGS, FILE_ENDINGS
+from support.clips import numbered_clip
 from support.scenes import tiny_scene
 
 KINDS = {  # output, options, and a file that must be there
@@ -40,6 +41,7 @@ KINDS = {  # output, options, and a file that must be there
     "maps": ("maps", ["--as", "maps"], "maps/view_03.png"),
     "quilt": ("q.png", ["--as", "quilt", "--quilt", "3x2"], "q_qs3x2a1.2.png"),
     "colmap": ("capture", ["--as", "colmap"], "capture/sparse/0/points3D.bin"),
+    "folder": ("clip", ["--as", "folder"], "clip/groups/00001.eftg"),
     "app": ("open", ["--as", "app"], "open/samples/scene.glb"),
 }
 
@@ -51,14 +53,23 @@ def scene_file(tmp_path_factory):
     return path
 
 
+@pytest.fixture(scope="module")
+def clip_file(tmp_path_factory):
+    path = tmp_path_factory.mktemp("a clip") / "clip.glb"
+    save(numbered_clip((2, 1)), path)
+    return path
+
+
 @pytest.fixture
-def export(run, scene_file, tmp_path):
-    """`eigenfield export` into a folder of its own; returns exit code and standard error."""
+def export(run, scene_file, clip_file, tmp_path):
+    """`eigenfield export` of a scene (of a clip as a folder) into a folder of its own; returns exit code and standard
+    error."""
     place = tmp_path / "out"
     place.mkdir()
 
     def call(output, *arguments):
-        code, _, err = run("export", scene_file, "-o", place / output, *arguments)
+        source = clip_file if "folder" in arguments else scene_file
+        code, _, err = run("export", source, "-o", place / output, *arguments)
         return code, err
 
     call.place = place

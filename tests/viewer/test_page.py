@@ -133,7 +133,7 @@ def test_the_policy_of_one_file_allows_what_is_in_it_and_no_more():
     assert policy == {
         "default-src": "'none'", "script-src": f"'{digest(elements.one('script', type='module')[2])}'",
         "style-src": f"'{digest(elements.one('style')[2])}'", "img-src": "blob: data:", "connect-src": "blob: data:",
-        "base-uri": "'none'", "form-action": "'none'",
+        "media-src": "blob:", "base-uri": "'none'", "form-action": "'none'",
     }  # fmt: skip
     order = [tag for tag, *_ in elements.found]
     assert order.index("meta") < order.index("script") and made.index(b"http-equiv") < 1024

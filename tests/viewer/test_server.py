@@ -73,7 +73,8 @@ def check_policies(answer):
     policy = dict(part.strip().split(" ", 1) for part in answer.headers["Content-Security-Policy"].split(";"))
     assert policy == {
         "default-src": "'none'", "script-src": "'self'", "style-src": "'self'", "img-src": "'self' blob: data:",
-        "connect-src": "'self' blob:", "base-uri": "'none'", "form-action": "'none'", "frame-ancestors": "'none'",
+        "media-src": "blob:", "connect-src": "'self' blob:",
+        "base-uri": "'none'", "form-action": "'none'", "frame-ancestors": "'none'",
     }  # fmt: skip
     assert answer.headers.items() >= ALWAYS.items()
     allowed = answer.headers["Permissions-Policy"].split(", ")

@@ -46,6 +46,7 @@ function changed(change = () => undefined, document = json) {
 }
 
 const read = (data) => (offset, length) => Promise.resolve(new Uint8Array(data.subarray(offset, offset + length)).buffer);
+const placed = (data) => ({ offset }, length) => read(data)(offset, length); // of a group
 const damaged = (part) => (error) => error.code === "damaged" && error.where.includes(part);
 
 test("a timeline is read, and frames have times and groups", () => {
@@ -71,6 +72,8 @@ const FAULTS = {
   "a side of a film": ["films/0/size", (timeline) => (timeline.films[0].size = [100, 128])],
   "a group over another": ["groups/1/offset", (timeline) => (timeline.groups[1].offset = 4)],
   "a group not aligned": ["groups/1/offset", (timeline) => (timeline.groups[1].offset += 1)],
+  "a group nowhere": ["groups/1/offset", (timeline) => delete timeline.groups[1].offset],
+  "files or not": ["timeline/groupFiles", (timeline) => (timeline.groupFiles = false)],
   "no digest": ["groups/0/sha256", (timeline) => (timeline.groups[0].sha256 = "00")],
   "a place that leaves the film": ["mean", (_, { planes }) => (planes[0].mean.at = [[4096, 0]])],
   "a place at 8": ["mean", (_, { planes }) => (planes[0].mean.at = [[8, 0]])],
@@ -83,6 +86,15 @@ const FAULTS = {
 
 test("a timeline that cannot be is refused with its place", () => {
   for (const [name, [part, change]] of Object.entries(FAULTS)) assert.throws(() => changed(change), damaged(part), name);
+});
+
+test("groups and sound of a folder are files, whose names the document does not say", () => {
+  const audio = { mimeType: "audio/ogg", length: 99 };
+  const { timeline } = changed((timeline) => Object.assign(timeline, { groupFiles: true, audio }));
+  const names = timeline.groups.map((_, i) => `groups/0000${i}.eftg`);
+  assert.deepEqual(timeline.groups.map(({ file, offset }) => [file, offset]), names.map((name) => [name, 0]));
+  assert.deepEqual(timeline.sound, { ...audio, first: 0, offset: 0, file: "sound.opus" });
+  assert.deepEqual(changed().timeline.groups.map(({ file }) => file), names.map(() => null));
 });
 
 const SHEET_FAULTS = {
@@ -110,7 +122,7 @@ test("the opacity of sheets lies in a film of its own; where that cannot be it i
 
 test("groups are opened with weights, scales and units; what is damaged says where", async () => {
   const scene = changed();
-  const groups = new built.Groups(scene, scene.timeline, mesh, read(chunk));
+  const groups = new built.Groups(scene, scene.timeline, mesh, placed(chunk));
   for (const [index, { first, frames }] of scene.timeline.groups.entries()) {
     const group = await groups.open(index);
     assert.deepEqual([group.index, group.first, group.frames, group.units.length], [index, first, frames, frames]);
@@ -120,13 +132,13 @@ test("groups are opened with weights, scales and units; what is damaged says whe
   }
   const wrong = Buffer.from(chunk);
   wrong[scene.timeline.groups[1].offset + 60] ^= 1;
-  await assert.rejects(new built.Groups(scene, scene.timeline, mesh, read(wrong)).open(1), damaged("groups/1"));
+  await assert.rejects(new built.Groups(scene, scene.timeline, mesh, placed(wrong)).open(1), damaged("groups/1"));
 });
 
 test("a mesh that moves is in each frame where Python puts it, also a group's own, in whatever order frames are asked for", async () => {
   const expected = JSON.parse(readFileSync(moving.positions, "utf8"));
   const scene = built.readDocument(moving.json);
-  const groups = new built.Groups(scene, scene.timeline, moving.mesh, read(moving.chunk));
+  const groups = new built.Groups(scene, scene.timeline, moving.mesh, placed(moving.chunk));
   for (const [index, { first, frames }] of scene.timeline.groups.entries()) {
     const { mesh, motion } = await groups.open(index);
     assert.equal(motion === null, index === 2);
@@ -143,12 +155,12 @@ test("a mesh that moves is in each frame where Python puts it, also a group's ow
 test("the first frame is there before the others of its group are", async () => {
   const scene = changed();
   let last = 0;
-  const counted = (offset, length) => {
-    last = Math.max(last, offset + length);
-    return read(chunk)(offset, length);
+  const counted = (place, length) => {
+    last = Math.max(last, place.offset + length);
+    return placed(chunk)(place, length);
   };
   const groups = new built.Groups(scene, scene.timeline, mesh, counted);
-  const [first, whole] = [await groups.begin(), await new built.Groups(scene, scene.timeline, mesh, read(chunk)).open(0)];
+  const [first, whole] = [await groups.begin(), await new built.Groups(scene, scene.timeline, mesh, placed(chunk)).open(0)];
   assert.deepEqual(first.units, whole.units.slice(0, 1));
   assert.deepEqual([first.omega, first.means, first.bases], [whole.omega, whole.means, whole.bases]);
   const rest = whole.units.slice(1).flat().reduce((sum, unit) => sum + unit.length, 0);
@@ -171,7 +183,7 @@ test("heads of groups that cannot be are refused", async () => {
     length.writeUInt32LE(text.length);
     const made = Buffer.concat([length, text, own.subarray(4 + size)]);
     Object.assign(place, { length: made.length, sha256: createHash("sha256").update(made).digest("hex") });
-    return new built.Groups(scene, scene.timeline, mesh, read(made)).open(0);
+    return new built.Groups(scene, scene.timeline, mesh, placed(made)).open(0);
   };
   assert.equal((await openWith(() => undefined)).frames, place.frames);
   const faults = {
@@ -185,7 +197,7 @@ test("heads of groups that cannot be are refused", async () => {
   for (const [name, change] of Object.entries(faults)) {
     await assert.rejects(openWith(change), { code: "damaged" }, name);
   }
-  const cut = new built.Groups(scene, scene.timeline, mesh, read(Buffer.from([255, 255, 255, 255])));
+  const cut = new built.Groups(scene, scene.timeline, mesh, placed(Buffer.from([255, 255, 255, 255])));
   await assert.rejects(cut.open(0), { code: "damaged" });
 });
 
@@ -199,7 +211,7 @@ beforeEach(() => Object.keys(manner).forEach((key) => delete manner[key]));
 function makePlayer() {
   installFakes(manner);
   const scene = changed();
-  const groups = new built.Groups(scene, scene.timeline, mesh, read(chunk));
+  const groups = new built.Groups(scene, scene.timeline, mesh, placed(chunk));
   const [shown, failed] = [[], []];
   const numbers = ({ data }) => [...new Uint32Array(data.slice(0, 8).buffer)];
   const player = new built.Player(scene.timeline, (user) => new built.FrameRing(scene.timeline, groups, user), {

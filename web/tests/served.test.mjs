@@ -38,6 +38,19 @@ async function open(args, options) {
   return { page: opened.page, asked, close };
 }
 
+test("a clip as a folder plays, its groups and its sound from files of their own", async () => {
+  const { page, asked, close } = await open([scenePath("folder")]);
+  await page.waitForFunction(() => window.eigenfield.state().status === "ready");
+  await page.mouse.click(240, 180); // somebody is there: it may be heard
+  await page.evaluate(() => window.eigenfield.field.player.play());
+  await page.waitForFunction(() => window.eigenfield.field.player.sound.time !== null, null, { timeout: 60_000 });
+  await page.evaluate(() => window.eigenfield.field.player.toFrame(9));
+  assert.equal(await page.evaluate(() => window.eigenfield.field.player.frame), 9);
+  assert.equal((await state(page)).title, "folder");
+  assert.ok(asked.some((url) => url.endsWith("/groups/00001.eftg")));
+  await close();
+});
+
 test("a scene beside its photographs: drawn, flipped, compared; nothing from elsewhere; ended by Ctrl-C", async () => {
   const args = [scenePath("photographed.glb"), scenePath("capture")];
   const { page, asked, close } = await open(args, { width: 480, height: 360 });

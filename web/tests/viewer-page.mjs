@@ -6,8 +6,8 @@ import { join } from "node:path";
 import { openPage, sceneBytes, serve, STATIC } from "./harness.mjs";
 
 const POLICY =
-  "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self' blob:; " +
-  "base-uri 'none'; form-action 'none'";
+  "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; media-src blob:; " +
+  "connect-src 'self' blob:; base-uri 'none'; form-action 'none'";
 const PLACE = 'id="eigenfield-config">{}<';
 
 /**

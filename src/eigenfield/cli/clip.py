@@ -33,6 +33,15 @@ def refuse_for_clips(given: dict[str, Any]) -> None:
             raise OptionError("clip-option", f"--{name} is for scenes of one instant", remedy=remedy)
 
 
+def refuse_clip_output(output: Path, overwrite: bool) -> None:
+    """Before any work: check that a clip may be written, as a .glb or, under a name without an ending, as a folder.
+    OptionError, OutputError as `refuse_output`, `refuse_folder`."""
+    from eigenfield.gltf import refuse_output
+    from eigenfield.viewer.exports import refuse_folder
+
+    (refuse_output if output.suffix else refuse_folder)(output, overwrite)
+
+
 def encode_clip(
     capture: Path,
     proxy: Path | None,
@@ -48,13 +57,14 @@ def encode_clip(
     cluster: str | None,
     audio: Path | None,
 ) -> None:
-    """Footage in, a clip out."""
+    """Footage in, a clip out: a .glb, or a folder where the output's name has no ending."""
     from eigenfield.capture import open_footage
     from eigenfield.capture.messages import count_phrase
     from eigenfield.encoding import encode_footage
     from eigenfield.encoding.clip.encode import refuse_still_options
     from eigenfield.encoding.clip.still import surface_of_clip
     from eigenfield.gltf import save
+    from eigenfield.viewer.exports import write_clip_folder
 
     started = time.monotonic()
     refuse_still_options(options)
@@ -69,16 +79,20 @@ def encode_clip(
         clip = encode_footage(
             footage, proxy, options, surface_options=surface, audio=audio, work=work, workers=reached, progress=progress
         )
-        save(clip, output, overwrite=overwrite, progress=progress)
+        if output.suffix:
+            save(clip, output, overwrite=overwrite, progress=progress)
+        else:
+            write_clip_folder(clip, output, overwrite=overwrite)
     log.info("%.0f s", time.monotonic() - started)
     click.echo("\n".join(clip_lines(output, clip)))
 
 
 def clip_lines(output: Path, clip: Clip) -> list[str]:
     """How small a clip is, and the command that comes next."""
+    from eigenfield.gltf import parts
     from eigenfield.runtime.objects import address_of
 
-    size, seconds = output.stat().st_size, clip.timeline.frames / float(clip.timeline.rate)
+    size, seconds = parts(output)["total"], clip.timeline.frames / float(clip.timeline.rate)
     frames = clip.timeline.frames
     return [
         f"{output}: {size / 1e3:,.0f} kB, {frames} frames of {size / frames / 1e3:.1f} kB, "

@@ -18,7 +18,7 @@ from eigenfield.cli.capture_options import (
     reconstruct_capture,
     surface_options,
 )
-from eigenfield.cli.clip import encode_clip, refuse_for_clips
+from eigenfield.cli.clip import encode_clip, refuse_clip_output, refuse_for_clips
 from eigenfield.cli.common import PATH, chosen_workers, common_options, note, note_all, worker_options
 from eigenfield.cli.draft import Window, draft_lines, draft_of
 from eigenfield.cli.field_options import field_options, from_fields
@@ -197,7 +197,7 @@ def command(
     started = time.monotonic()
     whole = default_output(capture) if output is None else output
     output = whole.with_suffix(".draft.glb") if draft and output is None else whole
-    refuse_output(output, overwrite)
+    (refuse_output if place.clip is None else refuse_clip_output)(output, overwrite)
     if is_sequence(proxy):
         if place.clip is None:
             message, remedy = "--proxy names a mesh for each frame", "say --clip, or name one mesh"

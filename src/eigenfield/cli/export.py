@@ -29,6 +29,8 @@ Examples:
   eigenfield export scene.glb -o maps --as maps
   eigenfield export scene.glb -o quilt.png --as quilt --resolution 420x560
   eigenfield export scene.glb -o capture --as colmap
+  eigenfield export clip.glb -o clip --as folder
+  eigenfield export clip -o clip.glb --as glb
   eigenfield export scene.glb other.glb -o open --as app"""
 )
 @click.argument("scenes", type=PATH, nargs=-1, metavar="SCENE...")
@@ -40,7 +42,7 @@ Examples:
     metavar="PATH",
     help="A file or a folder; a file's ending says what is made, if --as does not.",
 )
-@click.option("--as", "kind", metavar="html|mp4|png|glb|obj|maps|quilt|colmap|app", help="What is made.")
+@click.option("--as", "kind", metavar="html|mp4|png|glb|obj|maps|quilt|colmap|folder|app", help="What is made.")
 @click.option(
     "--title",
     metavar="TEXT",
@@ -94,6 +96,7 @@ def command(
     maps    a texture map for each encoded camera, in a folder
     quilt   the views side by side for a Looking Glass display, a .png
     colmap  re-drawn photographs with a COLMAP model, in a folder
+    folder  a clip whose groups are files beside it; glb makes it one file again
     app     a folder for a web server: a page that opens files, with any number of SCENEs to choose from
     """
     from eigenfield.viewer.exports import export

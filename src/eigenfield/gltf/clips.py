@@ -26,7 +26,7 @@ from eigenfield.core.payloads import Payload, Payloads, mesh_key, weights_key
 from eigenfield.core.proxy import Proxy, Sheets
 from eigenfield.core.rig import Rig
 from eigenfield.gltf.group import read_group, read_head
-from eigenfield.gltf.source import ByteSource, HeldBytes, StoredBytes, name_file_in_errors
+from eigenfield.gltf.source import ByteSource, FileBeside, HeldBytes, StoredBytes, name_file_in_errors
 
 if TYPE_CHECKING:
     from eigenfield.coding.mesh.coder import PlacedMesh
@@ -48,7 +48,9 @@ class StoredGroup:
 
     def name_in_errors(self) -> contextlib.AbstractContextManager[None]:
         """Put the name of its file into every FormatError."""
-        return name_file_in_errors(self.data.path) if isinstance(self.data, StoredBytes) else contextlib.nullcontext()
+        if isinstance(self.data, StoredBytes | FileBeside):
+            return name_file_in_errors(self.data.path)
+        return contextlib.nullcontext()
 
 
 def coded_clip(
@@ -120,17 +122,24 @@ class CodedGroups:
         """Whether the mesh moves in a group; its head alone is read. FormatError `group-damaged`."""
         return read_head(self.stored[index].data, self.layout, group_place(index)).motion > 0
 
-    def coded(self, index: int) -> CodedGroup:
-        """A group as it is coded, its streams not decoded. FormatError `group-damaged`, `truncated`."""
+    def read(self, index: int) -> bytes:
+        """The bytes of a group, which are those that its digest says. FormatError `truncated`, `group-damaged`,
+        `group-missing`."""
         one, where = self.stored[index], group_place(index)
         data = bytes(one.data.read(0, one.data.size))
         if len(data) < one.data.size:
             message, remedy = f"the file ends after {len(data)} of the group's {one.data.size} bytes", _AGAIN
             raise FormatError("truncated", message, where=where, remedy=remedy)
         if one.digest is not None and hashlib.sha256(data).hexdigest() != one.digest:
-            message = "the group's bytes are not those that were written"
+            file = f" in {one.data.name}" if isinstance(one.data, FileBeside) else ""
+            message = f"the group's bytes{file} are not those that were written"
             raise FormatError("group-damaged", message, where=where, remedy=_AGAIN)
-        coded = read_group(data, self.layout, where)
+        return data
+
+    def coded(self, index: int) -> CodedGroup:
+        """A group as it is coded, its streams not decoded. FormatError as `read`."""
+        one, where = self.stored[index], group_place(index)
+        coded = read_group(self.read(index), self.layout, where)
         if len(coded.units) != one.frames:
             message = f"a group of {len(coded.units)} frames, {one.frames} are announced"
             raise FormatError("group-damaged", message, where=where)

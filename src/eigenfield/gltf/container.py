@@ -155,11 +155,13 @@ def _without_fractions(value: Any) -> Any:
     return int(value) if isinstance(value, float) and value.is_integer() and abs(value) < MAX_EXACT_INTEGER else value
 
 
-def file_head(text: bytes, rest: int, path: str | os.PathLike[str] | None) -> bytes:
+def file_head(text: bytes, rest: int, path: str | os.PathLike[str] | None, *, is_clip: bool = False) -> bytes:
     """Header and JSON chunk of a file in which `rest` bytes follow. OutputError `file-too-large`, over 4 GiB."""
     size = HEADER.size + CHUNK.size + len(text) + rest
     if size > limits.MAX_FILE:
         message = f"would be {size} bytes, a .glb holds at most {limits.MAX_FILE}"
+        if is_clip:
+            raise OutputError("file-too-large", message, path=path, remedy="make it a folder: -o clip, without .glb")
         remedy = "use fewer textures, a smaller atlas, or --codec avif"
         raise OutputError("file-too-large", message, path=path, remedy=remedy)
     return HEADER.pack(MAGIC, 2, size) + CHUNK.pack(len(text), JSON_CHUNK) + text
@@ -190,6 +192,7 @@ def glb_blocks(
     """
     padding = bytes(-len(binary) % 4)
     length = len(binary) + len(padding)
-    head = file_head(text, CHUNK.size + length + (0 if behind is None else behind.size), path)
+    rest = CHUNK.size + length + (0 if behind is None else behind.size)
+    head = file_head(text, rest, path, is_clip=behind is not None)
     blocks = [head, CHUNK.pack(length, BINARY_CHUNK), binary, padding]
     return chain(blocks, () if behind is None else behind.pieces())

@@ -19,7 +19,7 @@ from eigenfield.gltf.layout import FileLayout, find_extension, unpacked_document
 from eigenfield.gltf.packed import is_packed, repack
 from eigenfield.gltf.read import layout_of, read_scene
 from eigenfield.gltf.read_clip import ClipLayout, clip_layout_of, read_heads, stores_clip
-from eigenfield.gltf.source import name_file_in_errors, open_source
+from eigenfield.gltf.source import name_file_in_errors, open_source, scene_file
 from eigenfield.gltf.streams import streams
 from eigenfield.gltf.strict_json import Value
 from eigenfield.gltf.write import encode_scene
@@ -53,9 +53,11 @@ def describe_clip(path: str | os.PathLike[str]) -> tuple[ClipLayout, list[GroupH
     FormatError as `load_clip`."""
     with name_file_in_errors(path), open_source(Path(path)) as source:
         document, layout = clip_layout_of(source)
-        heads = read_heads(layout, source)
+        heads = read_heads(layout, source, Path(path))
         made = _parts(document)
-        assert layout.films is not None
+        assert layout.films is not None and layout.groups is not None
+        if layout.first is None:
+            made["total"] += sum(one.length for one in (*layout.groups, layout.audio) if one is not None)
         names = dict.fromkeys(range(len(layout.films.sizes)), "textures")
         names |= {} if layout.films.opacity is None else {layout.films.opacity.film: "opacity"}
         names |= {plane.mean.film: "mean" for plane in layout.films.planes}
@@ -112,7 +114,7 @@ def without_residual(data: bytes) -> bytes:
         kept = dict(document.glb.json["extensions"][limits.EXTENSION])
         last = {"bufferView": len(document.glb.json["bufferViews"]) - 1}
         is_last = last.items() <= kept.pop("residual", {}).items()
-        return b"".join(repack(glb, kept, residual=False)) if is_last else data
+        return b"".join(repack(glb, kept, glb.behind(BINARY_CHUNK), residual=False)) if is_last else data
     views, accessors = list(glb.json["bufferViews"]), list(glb.json.get("accessors", []))
     extension = dict(glb.json["extensions"][limits.EXTENSION])
     residual = extension.pop("residual", None)
@@ -138,7 +140,7 @@ def store_scores(path: str | os.PathLike[str], scores: Mapping[str, Any]) -> Non
     Raises:
         OutputError: The file cannot be written.
     """
-    target = Path(os.path.realpath(path))  # a link stays a link
+    target = Path(os.path.realpath(scene_file(path)))  # a link stays a link
     with name_file_in_errors(path), contextlib.ExitStack() as opened:
         source = opened.enter_context(open_source(target))
         glb = parse_glb(source)
@@ -155,7 +157,7 @@ def store_scores(path: str | os.PathLike[str], scores: Mapping[str, Any]) -> Non
 def _with_scores(glb: Glb, extension: Mapping[str, Any], path: str | os.PathLike[str]) -> Iterable[bytes | memoryview]:
     """The blocks of the file with another extension, which is that of the unpacked container."""
     if is_packed(glb):
-        return repack(glb, extension)
+        return repack(glb, extension, glb.behind(BINARY_CHUNK))
     glb.json["extensions"][limits.EXTENSION]["scores"] = extension["scores"]
     text, rest = json_bytes(glb.json), glb.behind(JSON_CHUNK)
     if len(text) > limits.MAX_JSON:

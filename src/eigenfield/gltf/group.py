@@ -100,7 +100,7 @@ def read_group(data: bytes, layout: FilmLayout, where: str) -> CodedGroup:
 
 def read_head(group: ByteSource, layout: FilmLayout, where: str) -> GroupHead:
     """The head of a group, of which nothing else is read. FormatError `group-damaged`: it is not as specified, or the
-    streams do not end where the group does."""
+    streams do not end where the group does; `group-missing`, as of `FileBeside`."""
     try:
         if group.size < HEAD.size:
             raise FormatError("group-damaged", f"{group.size} bytes have no length")
@@ -112,6 +112,8 @@ def read_head(group: ByteSource, layout: FilmLayout, where: str) -> GroupHead:
             raise FormatError("group-damaged", f"a head of more than {limits.MAX_GROUP_JSON} bytes")
         head = _head_of(Value(strict_json.parse(text)), first, layout)
     except FormatError as error:
+        if error.where == where:  # of the file that it is
+            raise
         raise FormatError("group-damaged", f"the group cannot be read: {error.message}", where=where) from error
     end = head.first + sum(head.lengths)
     if end != group.size:

@@ -19,34 +19,36 @@ from eigenfield.gltf.layout_planes import read_size
 from eigenfield.gltf.strict_json import Value, quote
 
 GROUP_ALIGNMENT = 4  # of a group's first byte
+GROUP_FILES = "groupFiles"  # the key, and the feature, of a clip whose groups are files
+SOUND_FILE = "sound.opus"  # beside such a clip
 _DIGEST = re.compile("[0-9a-f]{64}")  # SHA-256
 
 
 @dataclass(frozen=True)
 class GroupEntry:
-    """A group in the chunk of groups.
+    """A group in the chunk of groups, or in a file.
 
     Attributes:
-        offset: Of its first byte.
+        offset: Of its first byte; None: it is a file (`group_file`).
         digest: SHA-256 of its bytes, hexadecimal.
     """
 
     frames: int
-    offset: int
+    offset: int | None
     length: int
     digest: str
 
 
 @dataclass(frozen=True)
 class AudioEntry:
-    """The sound of a clip in the chunk of groups.
+    """The sound of a clip in the chunk of groups, or in a file.
 
     Attributes:
-        offset: Of its first byte.
+        offset: Of its first byte; None: it is `SOUND_FILE`.
         first: Seconds, of its beginning.
     """
 
-    offset: int
+    offset: int | None
     length: int
     first: float
 
@@ -124,13 +126,26 @@ def read_timeline(entry: Value) -> Timeline:
     return Timeline(rate, entry["frames"].integer(1, limits.MAX_FRAMES), first)
 
 
-def read_groups(entry: Value, frames: int, available: int) -> tuple[GroupEntry, ...]:
+def in_files(entry: Value) -> bool:
+    """Whether groups and sound are files; entry: the timeline. FormatError `json-value`, `json-type`."""
+    if entry.has(GROUP_FILES) and entry[GROUP_FILES].value is not True:
+        entry[GROUP_FILES].fail("json-value", "true is expected, or nothing")
+    return entry.has(GROUP_FILES)
+
+
+def group_file(index: int) -> str:
+    """The file of a group, from the folder of the clip's."""
+    return f"groups/{index:05}.eftg"
+
+
+def read_groups(entry: Value, frames: int, available: int | None) -> tuple[GroupEntry, ...]:
     """Where the groups lie.
 
     Args:
         entry: The timeline.
         frames: Of the clip.
-        available: Bytes of the chunk of groups, those behind the end of a file that is cut off counted.
+        available: Bytes of the chunk of groups, those behind the end of a file that is cut off counted; None: each
+            group is a file.
 
     Raises:
         FormatError: `timeline-frames`, the groups have not so many frames; `group-range`, one does not lie within the
@@ -141,18 +156,19 @@ def read_groups(entry: Value, frames: int, available: int) -> tuple[GroupEntry, 
     for item in entry["groups"].items(limits.MAX_GROUPS, 1):
         group = GroupEntry(
             item["frames"].integer(1, limits.MAX_GROUP_FRAMES),
-            item["offset"].integer(0, limits.MAX_FILE),
+            None if available is None else item["offset"].integer(0, limits.MAX_FILE),
             item["length"].integer(1, limits.MAX_GROUP),
             item["sha256"].text(),
         )
         if not _DIGEST.fullmatch(group.digest):
             item["sha256"].fail("json-value", "64 hexadecimal digits expected")
-        if group.offset < end or group.offset % GROUP_ALIGNMENT:
-            message = f"begins at byte {group.offset}; a multiple of {GROUP_ALIGNMENT} from {end} on is expected"
-            item.fail("group-range", message)
-        end = group.offset + group.length
-        if end > available:
-            item.fail("group-range", f"ends at byte {end} of {available} in the chunk of groups")
+        if group.offset is not None and available is not None:
+            if group.offset < end or group.offset % GROUP_ALIGNMENT:
+                message = f"begins at byte {group.offset}; a multiple of {GROUP_ALIGNMENT} from {end} on is expected"
+                item.fail("group-range", message)
+            end = group.offset + group.length
+            if end > available:
+                item.fail("group-range", f"ends at byte {end} of {available} in the chunk of groups")
         groups.append(group)
     total = sum(group.frames for group in groups)
     if total != frames:
@@ -160,7 +176,7 @@ def read_groups(entry: Value, frames: int, available: int) -> tuple[GroupEntry, 
     return tuple(groups)
 
 
-def read_audio(entry: Value, groups: tuple[GroupEntry, ...], available: int) -> AudioEntry | None:
+def read_audio(entry: Value, groups: tuple[GroupEntry, ...], available: int | None) -> AudioEntry | None:
     """Where the sound lies, behind the groups; None: there is none.
 
     Args:
@@ -177,9 +193,12 @@ def read_audio(entry: Value, groups: tuple[GroupEntry, ...], available: int) -> 
     if kind != OPUS_TYPE:
         item["mimeType"].fail("audio-unknown", f"sound of the kind {quote(kind)}, {OPUS_TYPE} expected")
     first = item["first"].number(limits.MAX_TIME) if item.has("first") else 0.0
-    found = AudioEntry(item["offset"].integer(0, limits.MAX_FILE), item["length"].integer(1, limits.MAX_AUDIO), first)
-    behind = groups[-1].offset + groups[-1].length
-    if found.offset < behind or found.offset % GROUP_ALIGNMENT or found.offset + found.length > available:
-        message = f"sound from byte {found.offset} to {found.offset + found.length}"
+    length = item["length"].integer(1, limits.MAX_AUDIO)
+    last = groups[-1]
+    if available is None or last.offset is None:
+        return AudioEntry(None, length, first)
+    offset, behind = item["offset"].integer(0, limits.MAX_FILE), last.offset + last.length
+    if offset < behind or offset % GROUP_ALIGNMENT or offset + length > available:
+        message = f"sound from byte {offset} to {offset + length}"
         item.fail("group-range", f"{message}; a multiple of {GROUP_ALIGNMENT} from {behind} to {available} is expected")
-    return found
+    return AudioEntry(offset, length, first)

@@ -15,7 +15,7 @@ from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError, OutputError
 from eigenfield.gltf import strict_json
 from eigenfield.gltf.buffer import Buffer
-from eigenfield.gltf.container import BINARY_CHUNK, Glb, glb_blocks, json_bytes
+from eigenfield.gltf.container import Glb, Pieces, glb_blocks, json_bytes
 from eigenfield.gltf.deflate import deflate, inflate
 from eigenfield.gltf.document import BufferView, Document
 from eigenfield.gltf.strict_json import Value
@@ -84,11 +84,14 @@ def unpack(glb: Glb) -> Glb:
     return replace(glb, json={**glb.json, "bufferViews": views, "extensions": extensions})
 
 
-def repack(glb: Glb, extension: Mapping[str, Any], residual: bool = True) -> Iterator[bytes | memoryview]:
-    """The blocks of a packed container's file with another extension. Chunks behind the binary one are copied.
+def repack(
+    glb: Glb, extension: Mapping[str, Any], behind: Pieces | None, *, residual: bool = True
+) -> Iterator[bytes | memoryview]:
+    """The blocks of a packed container's file with another extension.
 
     Args:
         extension: That of the unpacked container, changed.
+        behind: Whole chunks that follow the binary one; None: nothing does.
         residual: Whether the last stream stays.
     """
     index = _index(glb)
@@ -98,9 +101,10 @@ def repack(glb: Glb, extension: Mapping[str, Any], residual: bool = True) -> Ite
     kept = [bytes(glb.binary.data[one.offset : one.end]) for one in (streams if residual else streams[:-1])]
     start, data = Document(glb).view_at(index).offset, pack(inner, kept)
     views = [*glb.json["bufferViews"][:-1], {**glb.json["bufferViews"][-1], "byteLength": len(data)}]
+    data += bytes(-(start + len(data)) % 4)  # as `Buffer` ends
     made = {**glb.json, "bufferViews": views, "buffers": [{"byteLength": start + len(data)}]}
     made["extensions"] = {**made["extensions"], limits.EXTENSION: plain}
-    return glb_blocks(json_bytes(made), bytes(glb.binary.data[:start]) + data, behind=glb.behind(BINARY_CHUNK))
+    return glb_blocks(json_bytes(made), bytes(glb.binary.data[:start]) + data, behind=behind)
 
 
 _WHERE = f"/extensions/{limits.EXTENSION}/{FEATURE}"

@@ -55,7 +55,7 @@ def load(path: str | os.PathLike[str], time: float | None = None) -> Scene:
     Limits are checked before memory is taken.
 
     Args:
-        path: Of a .glb.
+        path: Of a .glb, or of a folder with `scene.glb`.
         time: Seconds, of a clip, of which the nearest frame is read. A file of one instant needs none.
 
     Raises:
@@ -67,7 +67,7 @@ def load(path: str | os.PathLike[str], time: float | None = None) -> Scene:
         if time is None or not holds_clip(source):
             return read_scene(source)
         try:
-            return read_clip(source).scene(time)
+            return read_clip(source, path).scene(time)
         except OptionError as error:
             error.path = os.fspath(path)
             raise
@@ -207,7 +207,7 @@ def validate(path: str | os.PathLike[str]) -> list[Finding]:
     with findings.part(), name_file_in_errors(path), open_source(Path(path)) as source:
         document = open_document(source)
         if is_clip(find_extension(document)):
-            found = check_clip(document, findings)
+            found = check_clip(document, findings, Path(path))
         else:
             found = _check_scene(document, findings)
         if found:

@@ -19,6 +19,7 @@ from eigenfield.gltf.document import Document
 from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.group import GroupHead, read_head
 from eigenfield.gltf.layout import (
+    TIMELINE,
     Surroundings,
     check_container,
     find_extension,
@@ -28,8 +29,26 @@ from eigenfield.gltf.layout import (
 )
 from eigenfield.gltf.layout_geometry import read_cameras
 from eigenfield.gltf.layout_sheets import check_sheets, read_faces
-from eigenfield.gltf.layout_timeline import AudioEntry, GroupEntry, read_audio, read_films, read_groups, read_timeline
-from eigenfield.gltf.source import ByteRange, ByteSource, StoredBytes, name_file_in_errors, open_source
+from eigenfield.gltf.layout_timeline import (
+    SOUND_FILE,
+    AudioEntry,
+    GroupEntry,
+    group_file,
+    in_files,
+    read_audio,
+    read_films,
+    read_groups,
+    read_timeline,
+)
+from eigenfield.gltf.source import (
+    ByteRange,
+    ByteSource,
+    FileBeside,
+    StoredBytes,
+    name_file_in_errors,
+    open_source,
+    scene_file,
+)
 from eigenfield.gltf.strict_json import Value
 from eigenfield.runtime.objects import find_objects
 
@@ -42,14 +61,14 @@ class ClipLayout(Surroundings):
 
     Attributes:
         sheets: Faces of each, back to front; None: one opaque surface.
-        first: The first byte of the chunk of groups in the file.
+        first: The first byte of the chunk of groups in the file; None: they are files of their own.
     """
 
     sheets: tuple[int, ...] | None
     timeline: Timeline | None
     films: FilmLayout | None
     groups: tuple[GroupEntry, ...] | None
-    first: int
+    first: int | None
     audio: AudioEntry | None = None
 
 
@@ -60,8 +79,10 @@ def read_clip_layout(document: Document, findings: Findings) -> ClipLayout | Non
         found, glb = find_extension(document), document.glb
         if not is_clip(found):
             found.fail("no-clip", "is a scene of one instant, and a clip is expected", "open it by `load`")
-        if glb.missing or (not glb.missing_groups and GROUPS_CHUNK not in glb.chunks):
-            raise glb.cut_off() if glb.missing else FormatError("group-missing", "the file has no chunk of groups")
+        if glb.missing:
+            raise glb.cut_off()
+        if GROUPS_CHUNK not in glb.chunks and not in_files(found[TIMELINE]):
+            raise FormatError("group-missing", "the file has no chunk of groups")
         return found
 
     attempt = findings.attempt
@@ -78,12 +99,14 @@ def read_clip_layout(document: Document, findings: Findings) -> ClipLayout | Non
         attempt(lambda: check_sheets(extension["sheets"], sheets, around.mesh))
     if cameras is not None and cameras.colours is not None:
         attempt(lambda: extension["cameras"].fail("camera-colour", "cameras of a clip have no colours of their own"))
-    entry, chunk = extension["timeline"], document.glb.chunks[GROUPS_CHUNK]
+    entry = extension[TIMELINE]
+    chunk = None if in_files(entry) else document.glb.chunks[GROUPS_CHUNK]
+    available = None if chunk is None else chunk.size + document.glb.missing_groups
     timeline = attempt(lambda: read_timeline(entry))
     groups = None
     if timeline is not None:
-        groups = attempt(lambda: read_groups(entry, timeline.frames, chunk.size + document.glb.missing_groups))
-    audio = groups and attempt(lambda: read_audio(entry, groups, chunk.size + document.glb.missing_groups))
+        groups = attempt(lambda: read_groups(entry, timeline.frames, available))
+    audio = groups and attempt(lambda: read_audio(entry, groups, available))
     attempt(document.check_addresses)
     return ClipLayout(
         **vars(around),
@@ -91,20 +114,21 @@ def read_clip_layout(document: Document, findings: Findings) -> ClipLayout | Non
         timeline=timeline,
         films=films,
         groups=groups,
-        first=chunk.first,
+        first=None if chunk is None else chunk.first,
         audio=audio or None,
     )
 
 
-def check_clip(document: Document, findings: Findings) -> bool:
-    """Check a clip as a whole, and decode it frame by frame; whether the file holds one."""
+def check_clip(document: Document, findings: Findings, path: Path) -> bool:
+    """Check a clip as a whole, and decode it frame by frame; whether the file at `path` holds one."""
     layout = read_clip_layout(document, findings)
     if layout is None:
         return False
     rig = layout.cameras, layout.view_plane, layout.triangles, layout.reference
     if any(part is None for part in (*rig, layout.mesh, layout.films, layout.groups)):
         return True
-    groups = _groups_of(layout, document.glb.source)
+    place = _place(layout, document.glb.source, path)
+    groups = _groups_of(layout, place)
     for index in range(len(groups.stored)):
         with findings.part():
             for _ in groups.group(index).frames:
@@ -112,18 +136,18 @@ def check_clip(document: Document, findings: Findings) -> bool:
         if any(finding.code == "truncated" for finding in findings.found):
             return True  # nor are those behind it there
     with findings.part():
-        _audio_of(layout, document.glb.source)
+        _audio_of(layout, place)
     return True
 
 
-def read_heads(layout: ClipLayout, source: ByteSource) -> list[GroupHead]:
-    """The heads of the groups that are whole in a file. FormatError `group-damaged`; `group-missing`: none is whole."""
+def read_heads(layout: ClipLayout, source: ByteSource, path: Path) -> list[GroupHead]:
+    """The heads of the groups that are whole in the file at `path`. FormatError `group-damaged`; `group-missing`: none
+    is whole, or a file of one is not there."""
     assert layout.films is not None and layout.groups is not None
-    heads = []
+    heads, place = [], _place(layout, source, path)
     for index, entry in enumerate(layout.groups):
-        first = layout.first + entry.offset
-        group = ByteRange(source, first, first + entry.length)
-        if group.last > source.size:
+        group = _stored(layout, place, entry, group_file(index), group_place(index))
+        if isinstance(group, ByteRange) and group.last > source.size:
             break
         heads.append(read_head(group, layout.films, group_place(index)))
     if not heads:
@@ -154,7 +178,7 @@ def load_clip(path: str | os.PathLike[str]) -> Clip:
         if document.glb.missing_groups:
             log.warning("the file ends within its groups: later frames are missing (copy or download it again)")
         # read later from the file, or from a copy in memory of what an object store has
-        return _clip_of(layout, source if find_objects(path) is not None else Path(path))
+        return _clip_of(layout, _place(layout, source, path) if find_objects(path) is not None else scene_file(path))
 
 
 def holds_clip(data: ByteSource) -> bool:
@@ -168,9 +192,19 @@ def stores_clip(path: str | os.PathLike[str]) -> bool:
         return holds_clip(source)
 
 
-def read_clip(data: ByteSource) -> Clip:
-    """The clip in a file of these bytes, which are read as long as it is used."""
-    return _clip_of(clip_layout_of(data)[1], data)
+def read_clip(data: ByteSource, path: str | os.PathLike[str] | None = None) -> Clip:
+    """The clip in a file of these bytes, which are read as long as it is used.
+
+    Args:
+        path: Of that file, where it has one: groups may be files beside it.
+    """
+    layout = clip_layout_of(data)[1]
+    return _clip_of(layout, data if path is None else _place(layout, data, path))
+
+
+def _place(layout: ClipLayout, source: ByteSource, path: str | os.PathLike[str]) -> ByteSource | Path:
+    """Where the groups are found: in the file itself, else beside it."""
+    return source if layout.first is not None else scene_file(path)
 
 
 def _clip_of(layout: ClipLayout, place: ByteSource | Path) -> Clip:
@@ -179,14 +213,25 @@ def _clip_of(layout: ClipLayout, place: ByteSource | Path) -> Clip:
     try:
         audio = _audio_of(layout, place)
     except FormatError as error:
-        if error.code != "truncated":
+        if error.code == "truncated":
+            log.warning("the file ends within its sound: the clip is silent (copy or download it again)")
+        elif layout.first is None and error.code in ("group-missing", "group-damaged"):
+            log.warning("%s: the clip is silent (%s)", error.message, error.remedy)
+        else:
             raise
-        log.warning("the file ends within its sound: the clip is silent (copy or download it again)")
     return Clip(layout.rig, layout.timeline, groups, layout.settings, layout.scores, layout.generator, audio)
 
 
-def _stored(layout: ClipLayout, place: ByteSource | Path, entry: GroupEntry | AudioEntry) -> ByteSource:
-    """The bytes of an entry of the chunk of groups."""
+def _stored(
+    layout: ClipLayout, place: ByteSource | Path, entry: GroupEntry | AudioEntry, name: str, where: str
+) -> ByteSource:
+    """The bytes of an entry of the chunk of groups, or of the file of this name. FormatError `group-missing`: of bytes
+    in memory, which have no files beside them."""
+    if layout.first is None or entry.offset is None:
+        if not isinstance(place, Path):
+            remedy = "open the file where it lies, or make one file of it (export --as glb)"
+            raise FormatError("group-missing", "its groups are files beside it", where=where, remedy=remedy)
+        return FileBeside(place, name, entry.length, where)
     first = layout.first + entry.offset
     last = first + entry.length
     return StoredBytes(place, first, last) if isinstance(place, Path) else ByteRange(place, first, last)
@@ -196,8 +241,8 @@ def _audio_of(layout: ClipLayout, place: ByteSource | Path) -> Audio | None:
     """The sound; None: there is none. FormatError `audio-unknown`, `truncated`."""
     if layout.audio is None:
         return None
-    data = bytes(_stored(layout, place, layout.audio).read(0, layout.audio.length))
     where, remedy = f"/extensions/{limits.EXTENSION}/timeline/audio", "copy or download it again"
+    data = bytes(_stored(layout, place, layout.audio, SOUND_FILE, where).read(0, layout.audio.length))
     if len(data) < layout.audio.length:
         message = f"the file ends after {len(data)} of the sound's {layout.audio.length} bytes"
         raise FormatError("truncated", message, where=where, remedy=remedy)
@@ -209,5 +254,8 @@ def _audio_of(layout: ClipLayout, place: ByteSource | Path) -> Audio | None:
 def _groups_of(layout: ClipLayout, place: ByteSource | Path) -> CodedGroups:
     """The groups, none of which is read. place: the file, or its path where it is opened for each read."""
     assert layout.films is not None and layout.mesh is not None
-    stored = [StoredGroup(_stored(layout, place, one), one.frames, one.digest) for one in layout.groups or ()]
+    stored = [
+        StoredGroup(_stored(layout, place, one, group_file(index), group_place(index)), one.frames, one.digest)
+        for index, one in enumerate(layout.groups or ())
+    ]
     return CodedGroups(layout.films, stored, layout.rig, layout.mesh, layout.to_rgb, layout.payloads, layout.sheets)

@@ -13,11 +13,13 @@ from pathlib import Path
 from typing import BinaryIO, Protocol
 
 from eigenfield.coding import limits
-from eigenfield.core.errors import FormatError
+from eigenfield.core.errors import FormatError, OptionError
 from eigenfield.core.recognise import refuse_address
 from eigenfield.runtime.objects import find_objects
 
 PIECE_BYTES = 2**20  # that are copied at a time
+SCENE_FILE = "scene.glb"  # of a clip whose groups are files beside it
+AGAIN = "copy or download the whole folder again"
 
 
 class ByteSource(Protocol):
@@ -97,6 +99,9 @@ class ByteRange:
 def open_source(path: Path) -> Iterator[ByteSource]:
     """A file, to be read while the context lasts. What an object store has is copied into memory.
 
+    Args:
+        path: Of the file, or of a folder with `SCENE_FILE`.
+
     Raises:
         FormatError: `file-missing`, `file-unreadable`, `not-a-file`, `file-size`.
         OptionError: `web-address`; `object-missing`, `store`: an object store has no such file.
@@ -105,6 +110,7 @@ def open_source(path: Path) -> Iterator[ByteSource]:
     if objects is not None:
         yield HeldBytes(objects.read())
         return
+    path = scene_file(path)
     try:
         status = path.stat()
         if not stat.S_ISREG(status.st_mode):  # a pipe would wait, a device may never end
@@ -120,6 +126,14 @@ def open_source(path: Path) -> Iterator[ByteSource]:
         raise unreadable_error(error) from error
     with file:
         yield OpenFile(file, size)
+
+
+def scene_file(path: str | os.PathLike[str]) -> Path:
+    """`SCENE_FILE` in a folder that has one; any other path as it is."""
+    with contextlib.suppress(OSError, ValueError):  # a name that no file can have
+        if (inside := Path(path) / SCENE_FILE).is_file():
+            return inside
+    return Path(path)
 
 
 @contextlib.contextmanager
@@ -154,6 +168,39 @@ class StoredBytes:
         """As of `ByteSource`."""
         with name_file_in_errors(self.path), open_source(self.path) as source:
             return ByteRange(source, self.first, self.last).read(first, last)
+
+
+@dataclass(frozen=True, eq=False)
+class FileBeside:
+    """The bytes of a file that belongs to another one, and is open only while they are read.
+
+    Reading raises FormatError `group-missing`: it is not there, or cannot be read; `group-damaged`: it has another
+    length.
+
+    Attributes:
+        path: Of the file that it belongs to.
+        name: Of the file, from the folder of that one.
+        size: The bytes that it must have.
+        where: The place in the JSON that says so, for errors.
+    """
+
+    path: Path
+    name: str
+    size: int
+    where: str
+
+    def read(self, first: int, last: int) -> memoryview:
+        """As of `ByteSource`."""
+        try:
+            with open_source(self.path.parent / self.name) as source:
+                size, data = source.size, source.read(first, last)
+        except (FormatError, OptionError) as error:
+            message = f"its file {self.name} {error.message}"
+            raise FormatError("group-missing", message, path=self.path, where=self.where, remedy=AGAIN) from error
+        if size != self.size:
+            message = f"its file {self.name} has {size} bytes, and {self.size} are announced"
+            raise FormatError("group-damaged", message, path=self.path, where=self.where, remedy=AGAIN)
+        return data
 
 
 def read_file(path: Path) -> bytes:

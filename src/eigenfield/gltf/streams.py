@@ -47,8 +47,8 @@ PLACES = {
     "residual": Place("residual", "video", "video-1", "residual"),
 }
 OTHER_FEATURES = {  # what `needs` may name beside the needs of codecs, and the version that brought it
-    "namePattern": "1.2", "noFallback": "1.10", "packed": "1.8", "precision": "1.4", "regions": "1.2",
-    "sharedPicture": "1.2", "sheets": "1.9", "stacks": "1.2", "timeline": "1.11", "toRGB": "1.2",
+    "groupFiles": "1.11", "namePattern": "1.2", "noFallback": "1.10", "packed": "1.8", "precision": "1.4",
+    "regions": "1.2", "sharedPicture": "1.2", "sheets": "1.9", "stacks": "1.2", "timeline": "1.11", "toRGB": "1.2",
 }  # fmt: skip
 FEATURES = OTHER_FEATURES | {codec.needs: codec.since for codec in CODECS.values() if codec.needs is not None}
 

@@ -14,6 +14,7 @@ from eigenfield.viewer.page import page_html, static_file
 from eigenfield.viewer.photographs import Photographs
 
 SCENE_TYPE = "model/gltf-binary"
+BYTES_TYPE = "application/octet-stream"
 JAVASCRIPT_TYPE = "text/javascript; charset=utf-8"
 STATIC_TYPES = {
     "viewer.js": JAVASCRIPT_TYPE,
@@ -50,6 +51,7 @@ def make_manifest(
     photographs: Photographs | None = None,
     metres_per_unit: float | None = None,
     seconds_left: Callable[[], float | None] | None = None,
+    beside: Mapping[str, ByteSource] | None = None,
 ) -> Manifest:
     """The page, its files, the scene, and a picture for each photograph: path to what makes the content.
 
@@ -61,15 +63,12 @@ def make_manifest(
         metres_per_unit: Metres in one unit of the capture, for headsets.
         seconds_left: The scene is a draft: about when the whole scene takes its place, None where that is not known.
             The page asks for it, and opens anew where there is no such answer any longer.
+        beside: Files of a clip beside its own, by name.
 
     Raises:
         OutputError: `viewer-build`: the page was not built.
     """
-    scene = (
-        Content.of(SCENE_TYPE, glb)
-        if isinstance(glb, bytes)
-        else Content(SCENE_TYPE, glb, f'"{secrets.token_hex(16)}"')  # of this server alone
-    )
+    scene = Content.of(SCENE_TYPE, glb) if isinstance(glb, bytes) else Content(SCENE_TYPE, glb, _own_tag())
     config: dict[str, object] = {"title": title, "scene": "scene.glb", "bytes": scene.data.size, "version": __version__}
     if metres_per_unit is not None:
         config["metresPerUnit"] = metres_per_unit
@@ -80,6 +79,7 @@ def make_manifest(
     fixed = {f"/{name}": Content.of(type, static_file(name)) for name, type in STATIC_TYPES.items()}
     fixed["/"] = Content.of("text/html; charset=utf-8", page_html(config))
     fixed["/scene.glb"] = scene
+    fixed |= {f"/{name}": Content(BYTES_TYPE, data, _own_tag()) for name, data in (beside or {}).items()}
     manifest: dict[str, Callable[[], Content]] = {path: _answer_fixed(content) for path, content in fixed.items()}
     if seconds_left is not None:
         manifest["/draft"] = _answer_seconds(seconds_left)
@@ -87,6 +87,11 @@ def make_manifest(
         for index in photographs.names:
             manifest[f"/photographs/{index}"] = _answer_photograph(photographs, index)
     return manifest
+
+
+def _own_tag() -> str:
+    """An ETag of this server alone."""
+    return f'"{secrets.token_hex(16)}"'
 
 
 def _answer_fixed(content: Content) -> Callable[[], Content]:

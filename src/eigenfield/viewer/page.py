@@ -111,7 +111,7 @@ def single_file(
     script, style = _inline_script(_text("viewer.js")), _inline_style(_text("viewer.css"))
     policy = (
         f"default-src 'none'; script-src '{_hash(script)}'; style-src '{_hash(style)}'; img-src blob: data:; "
-        "connect-src blob: data:; base-uri 'none'; form-action 'none'"
+        "media-src blob:; connect-src blob: data:; base-uri 'none'; form-action 'none'"
     )
     scene = base64.b64encode(glb).decode("ascii")
     page = _text("index.html")

@@ -38,8 +38,8 @@ REACHED_OTHERWISE = (
     "both sides"
 )
 CONTENT_SECURITY_POLICY = (
-    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self' blob:; "
-    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; media-src blob:; "
+    "connect-src 'self' blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
 REFUSED_FEATURES = (
     "camera", "clipboard-read", "display-capture", "geolocation", "hid", "microphone", "midi", "payment",

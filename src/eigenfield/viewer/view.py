@@ -14,7 +14,8 @@ from eigenfield.core.clip import Clip
 from eigenfield.core.errors import FormatError, OptionError
 from eigenfield.core.scene import Scene, check_scale
 from eigenfield.gltf import encode_scene, load_clip, outline, stores_clip, without_residual
-from eigenfield.gltf.source import ByteSource, StoredBytes
+from eigenfield.gltf.clip_forms import files_beside
+from eigenfield.gltf.source import ByteSource, StoredBytes, scene_file
 from eigenfield.runtime.objects import find_objects
 from eigenfield.viewer.manifest import make_manifest
 from eigenfield.viewer.photographs import Photographs
@@ -59,14 +60,15 @@ def view(
     check_scale(metres_per_unit)
     given = {name: value for name, value in place.items() if value is not None}
     name = "scene.glb" if isinstance(scene, Scene | Clip) else Path(scene).name
-    photographs = None
+    photographs, beside = None, dict[str, ByteSource]()
     try:
         loaded, data = _opened(scene)
+        beside = files_beside(loaded) if isinstance(loaded, Clip) and not isinstance(scene, Clip) else beside
     except FormatError as error:
         if error.code != "not-a-scene" or capture is not None or isinstance(scene, Scene | Clip):
             raise
         log.warning("%s has no eigen textures: it is shown as the plain glTF file that it is", scene)
-        data = Path(scene).read_bytes()
+        data = scene_file(scene).read_bytes()
     else:
         if given and not isinstance(capture, str | os.PathLike):
             message = f"--{next(iter(given)).replace('_', '-')} is for a capture, and no folder of one is named"
@@ -76,7 +78,7 @@ def view(
                 message = "a clip has no photographs beside it: they would be of one instant"
                 raise OptionError("clip-photographs", message, path=name, remedy="leave the capture out")
             photographs = _photographs(loaded, capture, given)
-    server = Server(make_manifest(data, name, photographs, metres_per_unit), host, port)
+    server = Server(make_manifest(data, name, photographs, metres_per_unit, beside=beside), host, port)
     server.start()
     if browser and not webbrowser.open(server.address):
         log.warning("no browser was found: open %s in one", server.address)
@@ -90,7 +92,8 @@ def _opened(scene: Scene | Clip | str | os.PathLike[str]) -> tuple[Scene | Clip,
     if find_objects(Path(scene)) is None and stores_clip(scene):
         clip = load_clip(scene)
         clip.scene(clip.timeline.first)
-        return clip, StoredBytes(Path(scene), 0, Path(scene).stat().st_size)
+        file = scene_file(scene)
+        return clip, StoredBytes(file, 0, file.stat().st_size)
     loaded, data = outline(scene)
     return loaded, without_residual(data)
 

@@ -66,3 +66,16 @@ export class Arrival {
     return out.buffer;
   }
 }
+
+/** Pushes all of a body, and ends. Rejects as reading it does, or with the signal's reason. */
+export async function pour(body: ReadableStream<Uint8Array>, arrival: Arrival, signal: AbortSignal): Promise<void> {
+  const reader = body.getReader();
+  signal.addEventListener("abort", () => void reader.cancel().catch(() => undefined));
+  for (;;) {
+    const { done, value } = await reader.read();
+    if (done) break;
+    arrival.push(value);
+  }
+  signal.throwIfAborted();
+  arrival.end();
+}

@@ -6,11 +6,10 @@ import { FrameRing, type RingUser } from "./frame-ring.js";
 import { Groups, setScales, type Group } from "./groups.js";
 import type { SceneDocument } from "./document.js";
 import type { DecodedMesh } from "./mesh-decoder.js";
-import type { ByteReader } from "./packed.js";
 import { decodeTenBits } from "./pictures-10bit.js";
 import { closePieces, type Codes } from "./pieces.js";
 import { Sound } from "./sound.js";
-import type { Film, Timeline } from "./timeline.js";
+import type { Film, PlaceReader, Timeline } from "./timeline.js";
 
 const FORMAT = { mimeType: "video/AV1", bits: 10 };
 
@@ -23,12 +22,12 @@ export interface Clip {
   sound: ((changed: () => void) => Sound) | null; // null: it is silent
 }
 
-/** Decodes the first frame of a clip, once it is there. `read`: bytes of the chunk of groups. Raises SceneError. */
+/** Decodes the first frame of a clip, once it is there. Raises SceneError. */
 export async function openClip(
   scene: SceneDocument,
   timeline: Timeline,
   mesh: DecodedMesh,
-  read: ByteReader,
+  read: PlaceReader,
 ): Promise<Clip> {
   const groups = new Groups(scene, timeline, mesh, read);
   const group = await groups.begin();
@@ -36,7 +35,7 @@ export async function openClip(
   setScales(scene, group);
   const films = await Promise.all(timeline.films.map((film, i) => keyPicture(group.units[0]![i]!, film)));
   const { sound: place } = timeline;
-  const sound = place && ((changed: () => void) => new Sound(place, () => read(place.offset, place.length), changed));
+  const sound = place && ((changed: () => void) => new Sound(place, () => read(place, place.length), changed));
   return { timeline, group, films, mesh, ring: (user) => new FrameRing(timeline, groups, user), sound };
 }
 

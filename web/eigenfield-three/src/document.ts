@@ -51,6 +51,7 @@ export interface SceneDocument {
 }
 
 const LAYOUT_FEATURES: Feature[] = [
+  "groupFiles",
   "namePattern",
   "noFallback",
   "packed",

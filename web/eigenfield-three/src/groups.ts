@@ -10,10 +10,9 @@ import { Value, type Json } from "./json.js";
 import * as limits from "./limits.js";
 import type { DecodedMesh } from "./mesh-decoder.js";
 import type { Motion } from "./mesh-motion.js";
-import type { ByteReader } from "./packed.js";
 import { numbersOf, type Picture } from "./planes.js";
 import type { AffineJson, GroupHeadJson } from "./schema.js";
-import type { GroupPlace, Timeline } from "./timeline.js";
+import type { GroupPlace, PlaceReader, Timeline } from "./timeline.js";
 
 const KEPT = 3; // groups that are open at a time
 const HEAD = 4; // bytes of the length of a group's head
@@ -37,12 +36,12 @@ export interface Group {
 export class Groups {
   private readonly kept = new Map<number, Promise<Group>>(); // that was wanted last is the last
 
-  /** `mesh`: of groups that have none of their own. `read`: bytes of the chunk of groups. */
+  /** `mesh`: of groups that have none of their own. */
   constructor(
     private readonly scene: SceneDocument,
     private readonly timeline: Timeline,
     private readonly mesh: DecodedMesh,
-    private readonly read: ByteReader,
+    private readonly read: PlaceReader,
   ) {}
 
   /** Raises SceneError: `damaged`, `truncated`, `codec-unknown`. */
@@ -60,7 +59,7 @@ export class Groups {
   async begin(): Promise<Group> {
     const place = this.placeOf(0);
     const read = async (length: number): Promise<Uint8Array<ArrayBuffer>> =>
-      new Uint8Array(await this.read(place.offset, Math.min(length, place.length)));
+      new Uint8Array(await this.read(place, Math.min(length, place.length)));
     const start = await read(HEAD);
     const { head, at } = await readHead(await read(HEAD + sizeOfHead(start, place)), place);
     const before = [head.key("weights"), head.key("mesh"), head.key("motion"), head.key("frames").at(0)];
@@ -76,7 +75,7 @@ export class Groups {
 
   private async opened(index: number): Promise<Group> {
     const place = this.placeOf(index);
-    const bytes = new Uint8Array(await this.read(place.offset, place.length));
+    const bytes = new Uint8Array(await this.read(place, place.length));
     await checkDigest(bytes, place);
     const { head, at } = await readHead(bytes, place);
     return this.build(index, bytes, head, at, place.frames);
@@ -135,12 +134,12 @@ export function setScales(scene: SceneDocument, { means, bases }: Pick<Group, "m
 }
 
 /** Without a secure context there is no SHA-256: what is wrong is then found where it is decoded. */
-async function checkDigest(bytes: Uint8Array<ArrayBuffer>, { sha256, where }: GroupPlace): Promise<void> {
+async function checkDigest(bytes: Uint8Array<ArrayBuffer>, { sha256, file, where }: GroupPlace): Promise<void> {
   const subtle = globalThis.crypto?.subtle as SubtleCrypto | undefined;
   if (!subtle) return;
   const digest = new Uint8Array(await subtle.digest("SHA-256", bytes));
   const found = Array.from(digest, (byte) => byte.toString(16).padStart(2, "0")).join("");
-  if (found !== sha256) throw damaged(where, "other bytes than its SHA-256 says");
+  if (found !== sha256) throw damaged(file ?? where, "other bytes than its SHA-256 says");
 }
 
 /** Of the deflated JSON, in bytes. */

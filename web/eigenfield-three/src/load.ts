@@ -1,6 +1,7 @@
 import { GLTFLoader, type GLTF } from "three/addons/loaders/GLTFLoader.js";
 import { refuseAddresses } from "./addresses.js";
 import { Arrival } from "./arrival.js";
+import { Beside } from "./beside.js";
 import { openContainer, type Container } from "./container.js";
 import { isScene } from "./document.js";
 import { SceneError, asSceneError } from "./errors.js";
@@ -43,7 +44,8 @@ export async function loadEigenfield(source: string | Blob | ArrayBuffer, option
     const ranges = (file: string | Blob): Ranges =>
       new Ranges(file, arrival, container.length, () => first.abort(), stop.signal);
     const far = source instanceof ArrayBuffer ? arrival : ranges(source);
-    const gltf = await parseScene(arrival, container, far, options);
+    const beside = typeof source === "string" ? new Beside(source, stop.signal) : null;
+    const gltf = await parseScene(arrival, container, far, beside, options);
     signal?.throwIfAborted();
     const field: unknown = gltf.userData["eigenfield"];
     return { gltf, field: field instanceof EigenField ? field : null };
@@ -54,11 +56,12 @@ export async function loadEigenfield(source: string | Blob | ArrayBuffer, option
   }
 }
 
-/** `far`: where groups of a clip are read. */
+/** `far`: where groups of a clip are read, unless they are files `beside` it; null: of which nothing is known. */
 async function parseScene(
   arrival: Arrival,
   container: Container,
   far: Pick<Arrival, "read">,
+  beside: Beside | null,
   options: EigenfieldOptions,
 ): Promise<GLTF> {
   const loader = new GLTFLoader();
@@ -69,9 +72,15 @@ async function parseScene(
   const start = container.binary();
   start.catch(() => undefined); // reads hear of it
   const readGroups: ByteStream["read"] = (...place) => from(container.groups())(...place);
-  const stream: ByteStream = { total: container.length, read: from(start, arrival), readGroups };
+  const readFile: ByteStream["readFile"] = (...file) => beside?.read(...file) ?? Promise.reject(apart(file[0]));
+  const stream: ByteStream = { total: container.length, read: from(start, arrival), readGroups, readFile };
   loader.register((parser) => new EigenfieldPlugin(parser, { ...options, stream }));
   return loader.parseAsync(container.text, "");
+}
+
+function apart(name: string): SceneError {
+  const message = `The clip is a folder, and its file ${name} cannot be found from here; make one file of it, with \`eigenfield export\`.`;
+  return new SceneError("unsupported", message, name);
 }
 
 /** A glTF file of another kind: as three.js draws it, once all of it is there. */

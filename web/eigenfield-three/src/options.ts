@@ -9,6 +9,8 @@ export interface ByteStream {
   read(offset: number, length: number): Promise<ArrayBuffer>;
   /** The same of the chunk that has the groups of a clip; without it a clip is shown as other viewers show it. */
   readGroups?(offset: number, length: number): Promise<ArrayBuffer>;
+  /** The first `length` bytes of a file of `size` bytes in the folder of a clip, whose groups are such files. */
+  readFile?(name: string, size: number, length: number): Promise<ArrayBuffer>;
 }
 
 export interface EigenfieldOptions {

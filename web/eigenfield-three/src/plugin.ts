@@ -48,7 +48,9 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
     checkAddresses(json as Json);
     Object.assign(json, await unpacked(json, (offset, length) => this.read(offset, length)));
     const scene = readDocument(json);
-    if (scene.timeline && !this.options.stream?.readGroups) return; // shown as other viewers show it
+    const { stream } = this.options;
+    const read = scene.timeline?.groups[0]?.file ? stream?.readFile : stream?.readGroups;
+    if (scene.timeline && !read) return; // shown as other viewers show it
     this.scene = scene;
     if (!this.scene.shown) showEmptyMesh(json);
   }
@@ -113,11 +115,16 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
   }
 
   private openClip(scene: SceneDocument, timeline: Timeline, mesh: DecodedMesh): Promise<Clip> {
-    return openClip(scene, timeline, mesh, (...place) => this.options.stream!.readGroups!(...place));
+    const stream = this.options.stream!;
+    return openClip(scene, timeline, mesh, ({ offset, length: size, file }, length) => {
+      return file === null ? stream.readGroups!(offset, length) : stream.readFile!(file, size, length);
+    });
   }
 
   private fileBytes(): number {
-    if (this.options.stream) return this.options.stream.total;
+    const { groups = [], sound = null } = this.scene?.timeline ?? {};
+    const beside = [...groups, ...(sound ? [sound] : [])].reduce((sum, one) => sum + (one.file ? one.length : 0), 0);
+    if (this.options.stream) return this.options.stream.total + beside;
     const { extensions, json } = this.parser as unknown as {
       extensions: Record<string, { header?: { length?: number } } | undefined>;
       json: { buffers: { byteLength: number }[] };

@@ -1,6 +1,6 @@
 // Bytes of a long clip by place: those that arrived from its beginning on, and others by range.
 
-import { Arrival } from "./arrival.js";
+import { Arrival, pour } from "./arrival.js";
 import { SceneError, truncated } from "./errors.js";
 
 const NEAR = 2 ** 20; // bytes ahead of what has arrived for which one waits
@@ -35,16 +35,9 @@ export class Ranges {
     }
     this.giveUp();
     if (this.source instanceof Blob) return this.slice(this.source, from, to);
-    for (let tried = 1; ; tried++) {
-      try {
-        return await (this.whole?.read(from, to) ?? this.fetch(this.source, from, to));
-      } catch (reason) {
-        this.signal.throwIfAborted();
-        if (tried === TRIES || this.whole || !isNetwork(reason)) throw reason;
-        await new Promise((resolve) => setTimeout(resolve, PAUSE * 2 ** (tried - 1)));
-        this.signal.throwIfAborted();
-      }
-    }
+    const url = this.source;
+    const read = (): Promise<ArrayBuffer> => this.whole?.read(from, to) ?? this.fetch(url, from, to);
+    return retried(this.signal, read, () => this.whole === null);
   }
 
   /** From now on no more is kept of what arrives than there is room for. */
@@ -89,22 +82,27 @@ export class Ranges {
   /** The server sends all of the file, whatever is asked for: it is kept as it comes. */
   private receive(body: ReadableStream<Uint8Array>): Arrival {
     const whole = (this.whole = new Arrival());
-    const reader = body.getReader();
-    this.signal.addEventListener("abort", () => void reader.cancel().catch(() => undefined));
-    const pump = async (): Promise<void> => {
-      for (;;) {
-        const { done, value } = await reader.read();
-        if (done) return whole.end();
-        whole.push(value);
-      }
-    };
-    pump().catch((cause: unknown) => whole.fail(this.signal.aborted ? cause : this.broken(whole.received, cause)));
+    pour(body, whole, this.signal).catch((cause: unknown) => whole.fail(this.signal.aborted ? cause : this.broken(whole.received, cause)));
     return whole;
   }
 
   private broken(at: number, cause: unknown): SceneError {
     const message = `The connection broke at byte ${at} of ${this.length} of the clip; it is tried again when it plays on.`;
     return new SceneError("network", message, String(at), { cause });
+  }
+}
+
+/** What `read` gives, which is tried again a few times while the network breaks off and `again` allows it. */
+export async function retried<T>(signal: AbortSignal, read: () => Promise<T>, again = (): boolean => true): Promise<T> {
+  for (let tried = 1; ; tried++) {
+    try {
+      return await read();
+    } catch (reason) {
+      signal.throwIfAborted();
+      if (tried === TRIES || !isNetwork(reason) || !again()) throw reason;
+      await new Promise((resolve) => setTimeout(resolve, PAUSE * 2 ** (tried - 1)));
+      signal.throwIfAborted();
+    }
   }
 }
 

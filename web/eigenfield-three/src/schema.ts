@@ -57,6 +57,7 @@ export type Feature =
   | "film-1"
   | "mesh-2"
   | "motion-1"
+  | "groupFiles"
   | "namePattern"
   | "noFallback"
   | "packed"
@@ -346,18 +347,20 @@ export interface TimelineJson {
   films: FilmJson[];
   /** Groups in the order of time. */
   groups: GroupJson[];
-  /** The sound of a clip, which lies in the chunk of groups behind the last of them. */
+  /** The sound of a clip, which lies in the chunk of groups behind the last of them, or in a file. */
   audio?: AudioJson;
+  /** Groups and sound are files beside the scene's, and have no offset. */
+  groupFiles?: true;
 }
 
-/** The sound of a clip, which lies in the chunk of groups behind the last of them. */
+/** The sound of a clip, which lies in the chunk of groups behind the last of them, or in a file. */
 export interface AudioJson {
   /** Opus in Ogg. */
   mimeType: "audio/ogg";
   /** When it begins, in seconds. */
   first?: number;
-  /** Its first byte in the chunk. */
-  offset: number;
+  /** Its first byte in the chunk; absent where groups are files. */
+  offset?: number;
   /** Its bytes. */
   length: number;
 }
@@ -370,12 +373,12 @@ export interface FilmJson {
   size: [number, number];
 }
 
-/** Frames that are decoded by themselves, and their bytes in the chunk of groups. */
+/** Frames that are decoded by themselves, and their bytes in the chunk of groups or in a file. */
 export interface GroupJson {
   /** Frames in it. */
   frames: number;
-  /** Its first byte in the chunk. */
-  offset: number;
+  /** Its first byte in the chunk; absent where groups are files. */
+  offset?: number;
   /** Its bytes. */
   length: number;
   /** Digest of its bytes. */

@@ -10,6 +10,7 @@ import type { AudioJson, FilmJson, GroupJson, TimelineJson } from "./schema.js";
 const FILM_STEP = 64; // sides of films are multiples of it
 const PLACE_STEP = 16; // columns and rows at which textures begin
 const OPUS = "audio/ogg";
+const SOUND_FILE = "sound.opus";
 const DIGEST = /^[0-9a-f]{64}$/;
 
 /** A grey video in which textures lie side by side. */
@@ -20,22 +21,28 @@ export interface Film {
   where: string;
 }
 
-/** Frames that are decoded by themselves, and their bytes in the chunk of groups. */
-export interface GroupPlace {
-  first: number; // frame
-  frames: number;
+/** Bytes in the chunk of groups, or of a file beside the clip's. */
+export interface BytePlace {
   offset: number;
   length: number;
+  file: string | null; // its name; null: the chunk
+}
+
+/** The first `length` bytes of a place, once they are there. Rejects with a SceneError. */
+export type PlaceReader = (place: BytePlace, length: number) => Promise<ArrayBuffer>;
+
+/** Frames that are decoded by themselves. */
+export interface GroupPlace extends BytePlace {
+  first: number; // frame
+  frames: number;
   sha256: string;
   where: string;
 }
 
-/** The sound of a clip in the chunk of groups. */
-export interface SoundPlace {
+/** The sound of a clip. */
+export interface SoundPlace extends BytePlace {
   mimeType: string;
   first: number; // seconds, of its beginning
-  offset: number;
-  length: number;
 }
 
 export interface Timeline {
@@ -78,11 +85,11 @@ function readSound(value: Value<TimelineJson>, groups: GroupPlace[]): SoundPlace
   if (!sound.exists) return null;
   if (sound.key("mimeType").text(64) !== OPUS) throw sound.key("mimeType").wrong(`no ${OPUS}`);
   const last = groups.at(-1)!;
-  const offset = sound.key("offset").integer(last.offset + last.length, Number.MAX_SAFE_INTEGER);
-  if (offset % 4) throw sound.key("offset").wrong("no multiple of 4");
+  const file = last.file === null ? null : SOUND_FILE;
+  const offset = file ? 0 : offsetOf(sound.key("offset"), last.offset + last.length);
   const first = sound.key("first");
   const length = sound.key("length").integer(1, limits.MAX_AUDIO);
-  return { mimeType: OPUS, first: first.exists ? first.number() : 0, offset, length };
+  return { mimeType: OPUS, first: first.exists ? first.number() : 0, offset, length, file };
 }
 
 function readFilm(value: Value<FilmJson>): Film {
@@ -94,17 +101,25 @@ function readFilm(value: Value<FilmJson>): Film {
   return { codec, size: [width, height], opacity: false, where: value.where };
 }
 
+function offsetOf(value: Value<number>, least: number): number {
+  const offset = value.integer(least, Number.MAX_SAFE_INTEGER);
+  if (offset % 4) throw value.wrong("no multiple of 4");
+  return offset;
+}
+
 function readGroups(value: Value<TimelineJson>, frames: number): GroupPlace[] {
   let [first, end] = [0, 0];
-  const groups = value.key("groups").items(limits.MAX_GROUPS).map((group: Value<GroupJson>): GroupPlace => {
+  const files = value.key("groupFiles");
+  if (files.exists && files.raw !== true) throw files.wrong("not true");
+  const groups = value.key("groups").items(limits.MAX_GROUPS).map((group: Value<GroupJson>, i): GroupPlace => {
+    const file = files.exists ? `groups/${String(i).padStart(5, "0")}.eftg` : null;
     const count = group.key("frames").integer(1, limits.MAX_GROUP_FRAMES);
     const length = group.key("length").integer(1, limits.MAX_GROUP);
-    const offset = group.key("offset").integer(end, Number.MAX_SAFE_INTEGER);
+    const offset = file ? 0 : offsetOf(group.key("offset"), end);
     const sha256 = group.key("sha256").text(64);
     if (!DIGEST.test(sha256)) throw group.key("sha256").wrong("no SHA-256");
-    if (offset % 4) throw group.key("offset").wrong("no multiple of 4");
     [first, end] = [first + count, offset + length];
-    return { first: first - count, frames: count, offset, length, sha256, where: group.where };
+    return { first: first - count, frames: count, offset, length, file, sha256, where: group.where };
   });
   if (first !== frames) throw value.key("groups").wrong(`${first} frames in groups, and ${frames} in all`);
   return groups;

@@ -6,6 +6,7 @@ Each kind is a module. What is written is whole or absent; existing files stay u
 from __future__ import annotations
 
 from eigenfield.viewer.exports.app import write_app
+from eigenfield.viewer.exports.clip_folder import write_clip_folder
 from eigenfield.viewer.exports.colmap import write_colmap
 from eigenfield.viewer.exports.export import OPTIONS, export
 from eigenfield.viewer.exports.folder import refuse_folder
@@ -24,6 +25,7 @@ __all__ = [
     "quilt_of",
     "refuse_folder",
     "write_app",
+    "write_clip_folder",
     "write_colmap",
     "write_glb",
     "write_guests_page",

@@ -24,8 +24,8 @@ APP_FILES = ("viewer.js", "viewer.css", "worker.js", "icon.svg", "icon-192.png",
 THUMBNAIL_WIDTH_PX = 400  # shown half as wide
 APP_COLOUR = "#15171a"  # the page's ground
 APP_POLICY = (  # `?load=` and `?poster=` may name any host; web/viewer/src/confine.ts narrows it before a scene is read
-    "default-src 'none'; script-src 'self'; style-src 'self'; img-src * blob: data:; connect-src * blob: data:; "
-    "manifest-src 'self'; worker-src 'self'; base-uri 'none'; form-action 'none'"
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src * blob: data:; media-src blob:; "
+    "connect-src * blob: data:; manifest-src 'self'; worker-src 'self'; base-uri 'none'; form-action 'none'"
 )
 APP_HEAD = (
     '<link rel="icon" href="icon.svg">\n<link rel="apple-touch-icon" href="icon-192.png">\n'

@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +18,20 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.notebook import notebook_progress
 from eigenfield.core.progress import Progress
 from eigenfield.core.scene import Scene, check_scale
-from eigenfield.gltf import as_scene, encode_scene, load_any, without_residual
+from eigenfield.gltf import (
+    as_scene,
+    clip_in_one_file,
+    encode_scene,
+    has_group_files,
+    load_any,
+    one_file,
+    without_residual,
+)
 from eigenfield.rendering import FLIGHT_FRAMES, RenderJob, path_points
 from eigenfield.rendering.render_jobs import refuse_flight, write_flight
-from eigenfield.runtime.files import is_numbered, refuse_existing
+from eigenfield.runtime.files import atomic_writer, is_numbered, refuse_existing
 from eigenfield.viewer.exports.app import Sample, draw_thumbnail, write_app
+from eigenfield.viewer.exports.clip_folder import write_clip_folder
 from eigenfield.viewer.exports.colmap import write_colmap
 from eigenfield.viewer.exports.folder import refuse_folder
 from eigenfield.viewer.exports.glb import check_image, write_glb
@@ -42,6 +51,7 @@ OPTIONS = {  # of each kind, beside the options of all
     "maps": {"textures"},
     "quilt": PICTURE_OPTIONS | {"quilt", "spread"},
     "colmap": PICTURE_OPTIONS | {"path", "frames", "residual"},
+    "folder": set(),
     "app": {"title"},
 }
 ENDINGS = {"html": (".html", ".htm"), "mp4": (".mp4",), "png": (".png",), "glb": (".glb",), "quilt": (".png",)}
@@ -66,10 +76,10 @@ def export(
     Args:
         scene: The scene or the clip, or its file; for "app" the files of as many scenes as it offers, or none.
         output: A file or a folder.
-        kind: "html", "mp4", "png" (single pictures), "glb", "obj", "maps", "quilt", "colmap" or "app"; None: by
-            the output's name.
-        time: Seconds, of a clip, of which the nearest frame is exported; None: a page plays it, and other kinds
-            refuse it.
+        kind: "html", "mp4", "png" (single pictures), "glb", "obj", "maps", "quilt", "colmap", "folder" (a clip whose
+            groups are files) or "app"; None: by the output's name.
+        time: Seconds, of a clip, of which the nearest frame is exported; None: a page plays it, a glb of a clip whose
+            groups are files is the clip as one file, and other kinds refuse it.
         overwrite: Whether existing files, and folders that an export wrote, are replaced.
         progress: Reports each picture; by default a bar in a notebook.
         options: Of the kind (`OPTIONS`): fields of `RenderJob` for pictures; `path` and `frames` (`path_points`) and
@@ -89,8 +99,8 @@ def export(
     chosen = _chosen_kind(output, kind, is_numbered(output))
     _check(chosen, output, options)
     scenes = [scene] if isinstance(scene, Scene | Clip | str | os.PathLike) else list(scene)
-    if chosen == "app" and time is not None:
-        raise OptionError("unused-option", "--time is not for app", remedy="leave it out")
+    if chosen in ("app", "folder") and time is not None:
+        raise OptionError("unused-option", f"--time is not for {chosen}", remedy="leave it out")
     if chosen == "app":
         return _write_app(scenes, output, overwrite, progress, **options)
     if len(scenes) != 1:
@@ -103,10 +113,14 @@ def export(
     _refuse(chosen, obj_files(output) if _is_obj(output) else files, points, overwrite)
     if chosen == "glb" and not isinstance(scene, Scene | Clip) and output.exists() and output.samefile(scene):
         raise OptionError("output-kind", f"{output} is the scene itself", remedy="name another file")
+    if chosen == "folder":
+        return _write_clip_folder(scene, output, overwrite)
+    if chosen == "glb" and time is None and not options and _is_in_files(scene):
+        return _write_one_file(scene, output, overwrite)
     drawn = {name: value for name, value in options.items() if name in PICTURE_OPTIONS}
     loaded = scene if isinstance(scene, Scene | Clip) else load_any(scene)
     if chosen == "html" and time is None and isinstance(loaded, Clip):  # the page plays it
-        options["glb"] = encode_scene(scene) if isinstance(scene, Scene | Clip) else Path(scene).read_bytes()
+        options["glb"] = encode_scene(scene) if isinstance(scene, Scene | Clip) else one_file(scene)
         time = loaded.timeline.first
     job = RenderJob(as_scene(loaded, time), **drawn)
     return _write(chosen, job, points, output, options, overwrite, progress)
@@ -123,12 +137,35 @@ def _write_app(
         if isinstance(scene, Scene | Clip):
             name, loaded, data = "scene", scene, encode_scene(scene)
         else:
-            name, loaded, data = Path(scene).stem, load_any(scene), Path(scene).read_bytes()
+            name, loaded, data = Path(scene).stem, load_any(scene), one_file(scene)
         shown = as_scene(loaded, loaded.timeline.first if isinstance(loaded, Clip) else None)
         samples.append(Sample(name, without_residual(data), draw_thumbnail(shown)))
     write_app(samples, output, overwrite=overwrite, progress=progress, **options)
     offered = f", with {', '.join(sample.name for sample in samples)} to choose from" if samples else ""
     return output, f"a page that opens files{offered}; put it on a web server"
+
+
+def _is_in_files(scene: Scene | Clip | str | os.PathLike[str]) -> TypeGuard[str | os.PathLike[str]]:
+    """Whether it is the file of a clip whose groups are files."""
+    return not isinstance(scene, Scene | Clip) and has_group_files(scene)
+
+
+def _write_one_file(path: str | os.PathLike[str], output: Path, overwrite: bool) -> tuple[Path, str]:
+    """Write a clip whose groups are files as one; where, and what was written."""
+    blocks = clip_in_one_file(path)
+    with atomic_writer(output, overwrite=overwrite) as file:
+        file.writelines(blocks)
+    return output, f"{output.stat().st_size / 1e6:.1f} MB, the clip as one file"
+
+
+def _write_clip_folder(scene: Scene | Clip | str | os.PathLike[str], output: Path, overwrite: bool) -> tuple[Path, str]:
+    """Write a clip as files; where, and what was written."""
+    if isinstance(scene, Scene):
+        message = "a scene of one instant has no groups for a folder"
+        raise OptionError("output-kind", message, remedy="name a clip")
+    write_clip_folder(scene, output, overwrite=overwrite)
+    count = len(list((output / "groups").iterdir()))
+    return output, f"scene.glb, and a file for each of {count} groups; put it on a web server"
 
 
 def _refuse(kind: str, files: Sequence[Path], points: NDArray[np.float64] | None, overwrite: bool) -> None:

@@ -1950,9 +1950,9 @@ function Hi({ faces: e, where: t }, { index: n, attributes: r }) {
 	});
 }
 // eigenfield-three/src/timeline.ts
-var Ui = 64, q = 16, Wi = "audio/ogg", Gi = /^[0-9a-f]{64}$/;
-function Ki(e, t, n) {
-	let r = [...Xi(t), ...n ? [n] : []];
+var Ui = 64, q = 16, Wi = "audio/ogg", Gi = "sound.opus", Ki = /^[0-9a-f]{64}$/;
+function qi(e, t, n) {
+	let r = [...Qi(t), ...n ? [n] : []];
 	if (!e.exists) {
 		let e = r.find(({ part: e }) => e);
 		if (e) throw N(e.where, "a texture in a film, and no timeline");
@@ -1960,34 +1960,33 @@ function Ki(e, t, n) {
 	}
 	let [i = 1, a = 1] = e.key("rate").numbers(2, 1, Ue), o = i / a;
 	if (!(Number.isInteger(i) && Number.isInteger(a)) || o > 1e3 || o < 1 / 1e3) throw e.key("rate").wrong("no rate");
-	let s = e.key("first"), c = e.key("films").items(4).map(Ji), l = e.key("frames").integer(1, Le);
-	Zi(r, c);
+	let s = e.key("first"), c = e.key("films").items(4).map(Yi), l = e.key("frames").integer(1, Le);
+	$i(r, c);
 	for (let e of c) e.opacity = e === c[n?.part?.film ?? -1];
-	let u = Yi(e, l);
+	let u = Zi(e, l);
 	return {
 		rate: o,
 		first: s.exists ? s.number() : 0,
 		frames: l,
 		films: c,
 		groups: u,
-		sound: qi(e, u)
+		sound: Ji(e, u)
 	};
 }
-function qi(e, t) {
+function Ji(e, t) {
 	let n = e.key("audio");
 	if (!n.exists) return null;
 	if (n.key("mimeType").text(64) !== Wi) throw n.key("mimeType").wrong(`no ${Wi}`);
-	let r = t.at(-1), i = n.key("offset").integer(r.offset + r.length, 2 ** 53 - 1);
-	if (i % 4) throw n.key("offset").wrong("no multiple of 4");
-	let a = n.key("first"), o = n.key("length").integer(1, He);
+	let r = t.at(-1), i = r.file === null ? null : Gi, a = i ? 0 : Xi(n.key("offset"), r.offset + r.length), o = n.key("first"), s = n.key("length").integer(1, He);
 	return {
 		mimeType: Wi,
-		first: a.exists ? a.number() : 0,
-		offset: i,
-		length: o
+		first: o.exists ? o.number() : 0,
+		offset: a,
+		length: s,
+		file: i
 	};
 }
-function Ji(e) {
+function Yi(e) {
 	let t = oi("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, Ui, Pe);
 	if (n % Ui || r % Ui || n * r > Fe) throw e.key("size").wrong(`a film of ${n} x ${r}`);
 	return {
@@ -1997,27 +1996,34 @@ function Ji(e) {
 		where: e.where
 	};
 }
-function Yi(e, t) {
-	let [n, r] = [0, 0], i = e.key("groups").items(Re).map((e) => {
-		let t = e.key("frames").integer(1, Be), i = e.key("length").integer(1, ze), a = e.key("offset").integer(r, 2 ** 53 - 1), o = e.key("sha256").text(64);
-		if (!Gi.test(o)) throw e.key("sha256").wrong("no SHA-256");
-		if (a % 4) throw e.key("offset").wrong("no multiple of 4");
-		return [n, r] = [n + t, a + i], {
-			first: n - t,
-			frames: t,
-			offset: a,
-			length: i,
-			sha256: o,
+function Xi(e, t) {
+	let n = e.integer(t, 2 ** 53 - 1);
+	if (n % 4) throw e.wrong("no multiple of 4");
+	return n;
+}
+function Zi(e, t) {
+	let [n, r] = [0, 0], i = e.key("groupFiles");
+	if (i.exists && i.raw !== !0) throw i.wrong("not true");
+	let a = e.key("groups").items(Re).map((e, t) => {
+		let a = i.exists ? `groups/${String(t).padStart(5, "0")}.eftg` : null, o = e.key("frames").integer(1, Be), s = e.key("length").integer(1, ze), c = a ? 0 : Xi(e.key("offset"), r), l = e.key("sha256").text(64);
+		if (!Ki.test(l)) throw e.key("sha256").wrong("no SHA-256");
+		return [n, r] = [n + o, c + s], {
+			first: n - o,
+			frames: o,
+			offset: c,
+			length: s,
+			file: a,
+			sha256: l,
 			where: e.where
 		};
 	});
 	if (n !== t) throw e.key("groups").wrong(`${n} frames in groups, and ${t} in all`);
-	return i;
+	return a;
 }
-function Xi(e) {
+function Qi(e) {
 	return e.flatMap(({ mean: e, bases: t }) => [e, ...t.flatMap((e) => e.pictures)]);
 }
-function Zi(e, t) {
+function $i(e, t) {
 	let n = t.map(({ size: e }) => new Uint8Array(e[0] * e[1] / q ** 2));
 	for (let { part: r, where: i } of e) {
 		let e = r && t[r.film];
@@ -2034,13 +2040,13 @@ function Zi(e, t) {
 		}
 	}
 }
-function Qi({ rate: e, first: t, frames: n }, r) {
+function ea({ rate: e, first: t, frames: n }, r) {
 	return Math.min(Math.max(Math.floor((r - t) * e + .5), 0), n - 1);
 }
-function $i({ rate: e, first: t }, n) {
+function ta({ rate: e, first: t }, n) {
 	return t + n / e;
 }
-function ea({ groups: e }, t) {
+function na({ groups: e }, t) {
 	let [n, r] = [0, e.length - 1];
 	for (; n < r;) {
 		let i = n + r + 1 >> 1;
@@ -2049,7 +2055,8 @@ function ea({ groups: e }, t) {
 	return n;
 }
 // eigenfield-three/src/document.ts
-var ta = [
+var ra = [
+	"groupFiles",
 	"namePattern",
 	"noFallback",
 	"packed",
@@ -2060,8 +2067,8 @@ var ta = [
 	"stacks",
 	"timeline",
 	"toRGB"
-], na = Object.values(W).flatMap(({ needs: e }) => e ?? []), ra = /* @__PURE__ */ new Set([...ta, ...na]), ia = 64, aa = 9, oa = 10 ** aa;
-function sa(e) {
+], ia = Object.values(W).flatMap(({ needs: e }) => e ?? []), aa = /* @__PURE__ */ new Set([...ra, ...ia]), oa = 64, sa = 9, ca = 10 ** sa;
+function la(e) {
 	let t = new G(e, "");
 	try {
 		return t.key("extensions").key(be).exists;
@@ -2069,10 +2076,10 @@ function sa(e) {
 		return !1;
 	}
 }
-function ca(e) {
-	let t = new G(e, ""), n = t.key("extensions").key(be), r = da(n), i = mi(t), a = gi(t, i), o = hi(i);
-	fa(t);
-	let s = ha(t, o), c = n.key("cameras"), { count: l, names: u } = ga(c, o), d = ya(c, l), f = d.filter((e) => !e).length, p = Ti(n, f, s, a, o), m = Ei(n, p), h = c.key("colour"), g = c.key("codedColour");
+function ua(e) {
+	let t = new G(e, ""), n = t.key("extensions").key(be), r = pa(n), i = mi(t), a = gi(t, i), o = hi(i);
+	ma(t);
+	let s = _a(t, o), c = n.key("cameras"), { count: l, names: u } = va(c, o), d = xa(c, l), f = d.filter((e) => !e).length, p = Ti(n, f, s, a, o), m = Ei(n, p), h = c.key("colour"), g = c.key("codedColour");
 	if ((h.exists || g.exists) && m.length < 3) throw h.wrong("needs three channels");
 	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), [x, S] = [n.key("mesh"), n.key("timeline")], C = Vi(n.key("sheets"), o);
 	return {
@@ -2083,49 +2090,49 @@ function ca(e) {
 		names: u,
 		heldOut: d,
 		reference: n.key("reference").integer(0, l - 1),
-		calibration: ba(c, l, a, o),
-		sizes: xa(c, l, a),
+		calibration: Sa(c, l, a, o),
+		sizes: Ca(c, l, a),
 		colour: g.exists ? _i("weights", g, o) : h.exists ? a(h, "SCALAR", [K], 6 * l) : null,
-		...Sa(_),
-		triangles: y.exists ? _i("triangles", y, o) : v.exists ? ma(a(v, "SCALAR", [li, ui], null), 2 * Oe) : null,
-		settings: Ca(n.key("settings")),
-		scores: Ca(n.key("scores")),
+		...wa(_),
+		triangles: y.exists ? _i("triangles", y, o) : v.exists ? ga(a(v, "SCALAR", [li, ui], null), 2 * Oe) : null,
+		settings: Ta(n.key("settings")),
+		scores: Ta(n.key("scores")),
 		views: i,
 		mesh: x.exists || S.exists ? _i("mesh", x, o) : null,
 		sheets: C,
-		shown: x.exists && !t.key("meshes").exists ? null : la(t, a),
+		shown: x.exists && !t.key("meshes").exists ? null : da(t, a),
 		preview: s,
-		timeline: Ki(S, p, C && C.opacity.mean)
+		timeline: qi(S, p, C && C.opacity.mean)
 	};
 }
-function la(e, t) {
+function da(e, t) {
 	let n = e.key("meshes").at(0).key("primitives").at(0), r = n.key("mode");
 	if (r.exists && r.integer(0, 6) !== 4) throw r.wrong("no triangles");
 	let [i, a] = [n.key("attributes"), n.key("indices")];
 	return {
-		position: pa(t(i.key("POSITION"), "VEC3", [K], null), Me),
-		uv: pa(t(i.key("TEXCOORD_0"), "VEC2", [K], null), Me),
-		indices: ma(t(a, "SCALAR", [
+		position: ha(t(i.key("POSITION"), "VEC3", [K], null), Me),
+		uv: ha(t(i.key("TEXCOORD_0"), "VEC2", [K], null), Me),
+		indices: ga(t(a, "SCALAR", [
 			ci,
 			li,
 			ui
 		], null), Ne)
 	};
 }
-function ua({ planes: e, sheets: t }) {
+function fa({ planes: e, sheets: t }) {
 	return t ? [...e, t.opacity] : e;
 }
-function da(e) {
+function pa(e) {
 	let t = e.key("version").text(L);
 	if (!/^1\.\d+$/.test(t)) throw new M("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
 	for (let e of n.exists ? n.items(Se) : []) {
 		let t = e.text(L);
-		if (!ra.has(t)) throw new M("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
+		if (!aa.has(t)) throw new M("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
-function fa(e) {
+function ma(e) {
 	let t = e.key("nodes").items(Se), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
@@ -2140,42 +2147,42 @@ function fa(e) {
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
-function pa(e, t) {
+function ha(e, t) {
 	if (e.count > t) throw N(e.where, `more than ${t}`);
 	return e;
 }
-function ma(e, t) {
+function ga(e, t) {
 	if (e.count % 3) throw N(e.where, "torn triangles");
-	return pa(e, 3 * t);
+	return ha(e, 3 * t);
 }
-function ha(e, t) {
+function _a(e, t) {
 	let n = e.key("images");
 	if (!n.exists) return null;
 	let r = n.at(0).key("bufferView");
 	return r.exists ? t(r) : null;
 }
-function ga(e, t) {
+function va(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
 		count: n.key("count").integer(1, Oe),
 		names: _i("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? va(r) : i.items(Oe).map((e) => e.text(L));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? ba(r) : i.items(Oe).map((e) => e.text(L));
 	if (!a.length) throw i.wrong("no cameras");
-	let o = _a(a);
+	let o = ya(a);
 	if (o) throw i.wrong(o);
 	return {
 		count: a.length,
 		names: a
 	};
 }
-function _a(e) {
+function ya(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
-function va(e) {
+function ba(e) {
 	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, Oe));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
-	let r = e.key("parts").items(ia).map((e) => {
+	let r = e.key("parts").items(oa).map((e) => {
 		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(L))];
 		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
 		if (a.exists) {
@@ -2183,7 +2190,7 @@ function va(e) {
 			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
 			return [r, e];
 		}
-		let [o, s] = [e.key("first").integer(0, oa), e.key("step").integer(0, oa)], c = e.key("digits").integer(1, aa);
+		let [o, s] = [e.key("first").integer(0, ca), e.key("step").integer(0, ca)], c = e.key("digits").integer(1, sa);
 		return [r, Array.from({ length: i }, (e, t) => String(o + s * t).padStart(c, "0"))];
 	});
 	return Array.from({ length: t * n }, (t, i) => {
@@ -2192,7 +2199,7 @@ function va(e) {
 		return o;
 	});
 }
-function ya(e, t) {
+function xa(e, t) {
 	let n = Array(t).fill(!1), r = e.key("heldOut");
 	if (!r.exists) return n;
 	for (let e of r.items(t)) {
@@ -2203,21 +2210,21 @@ function ya(e, t) {
 	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
 	return n;
 }
-function ba(e, t, n, r) {
+function Sa(e, t, n, r) {
 	let i = e.key("coded");
 	return i.exists ? _i("cameras", i, r) : {
 		intrinsics: n(e.key("intrinsics"), "SCALAR", [K], 5 * t),
 		poses: n(e.key("poses"), "SCALAR", [K], 12 * t)
 	};
 }
-function xa(e, t, n) {
+function Ca(e, t, n) {
 	let r = e.key("size");
 	if (!r.exists) return n(e.key("sizes"), "SCALAR", [ui], 2 * t);
 	let [i = 0, a = 0] = r.numbers(2, 1, ke);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
-function Sa(e) {
+function wa(e) {
 	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
 	for (let i of [
 		r(t, t) - 1,
@@ -2232,22 +2239,22 @@ function Sa(e) {
 		extent: [i, a]
 	};
 }
-function Ca(e) {
+function Ta(e) {
 	return e.exists ? e.object() : {};
 }
 // eigenfield-three/src/info.ts
-var wa = 1e-6;
-async function Ta(e, t) {
+var Ea = 1e-6;
+async function Da(e, t) {
 	let [n, { lenses: r, poses: i }, a, o] = await Promise.all([
-		Da(e, t),
 		ka(e, t),
-		Aa(e, t),
-		Ea(e, t)
+		ja(e, t),
+		Ma(e, t),
+		Oa(e, t)
 	]);
 	return n.map((t, n) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
-		if (!(s > wa && c > wa)) throw N(r.where, `focal lengths of "${t}"`);
-		let { R: f, t: p } = ja([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
+		if (!(s > Ea && c > Ea)) throw N(r.where, `focal lengths of "${t}"`);
+		let { R: f, t: p } = Na([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
 		if (!m || !h || Math.max(m, h) > 65535 || m * h > Ae) throw N(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
@@ -2265,13 +2272,13 @@ async function Ta(e, t) {
 				0,
 				1
 			]
-		], [_, v] = o ? Ma([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
+		], [_, v] = o ? Pa([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
 		return {
 			name: t,
 			K: g,
 			R: f,
 			t: p,
-			centre: Wa(f, p),
+			centre: Ka(f, p),
 			width: m,
 			height: h,
 			gain: _,
@@ -2279,7 +2286,7 @@ async function Ta(e, t) {
 		};
 	});
 }
-async function Ea({ colour: e, heldOut: t, views: n }, r) {
+async function Oa({ colour: e, heldOut: t, views: n }, r) {
 	if (!e || "type" in e) return e && vi(e, n, r);
 	let { cameras: i, components: a, values: o } = await e.codec.decode(new Uint8Array(await r(e.view)), e.where);
 	if (a !== 6 || i !== t.filter((e) => !e).length) throw N(e.where, `${i} x ${a} colours`);
@@ -2293,25 +2300,25 @@ async function Ea({ colour: e, heldOut: t, views: n }, r) {
 		0
 	] : [...o.subarray(6 * s, 6 * ++s)]));
 }
-async function Da({ names: e, heldOut: t }, n) {
+async function ka({ names: e, heldOut: t }, n) {
 	if (Array.isArray(e)) return e;
-	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : _a(r);
+	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : ya(r);
 	if (i) throw N(e.where, i);
 	return r;
 }
-async function Oa(e, t, n) {
+async function Aa(e, t, n) {
 	return {
 		numbers: await vi(e, t.views, n),
 		where: e.where
 	};
 }
-async function ka(e, t) {
+async function ja(e, t) {
 	let { calibration: n, heldOut: r } = e;
 	if ("intrinsics" in n) {
 		let { intrinsics: r, poses: i } = n;
 		return {
-			lenses: await Oa(r, e, t),
-			poses: await Oa(i, e, t)
+			lenses: await Aa(r, e, t),
+			poses: await Aa(i, e, t)
 		};
 	}
 	let { view: i, codec: a, where: o } = n, s = await a.decode(new Uint8Array(await t(i)), o), c = s.poses.length / 12;
@@ -2325,15 +2332,15 @@ async function ka(e, t) {
 		poses: l(s.poses)
 	};
 }
-async function Aa(e, t) {
-	if (!Array.isArray(e.sizes)) return Oa(e.sizes, e, t);
+async function Ma(e, t) {
+	if (!Array.isArray(e.sizes)) return Aa(e.sizes, e, t);
 	let [n, r] = e.sizes;
 	return {
 		numbers: Uint32Array.from({ length: 2 * e.heldOut.length }, (e, t) => t % 2 ? r : n),
 		where: "its cameras' size"
 	};
 }
-function ja(e, t, n) {
+function Na(e, t, n) {
 	let r = (t) => [
 		e[4 * t] ?? NaN,
 		e[4 * t + 1] ?? NaN,
@@ -2351,22 +2358,22 @@ function ja(e, t, n) {
 		let a = Y(i[e], i[r]) - +(e === r);
 		if (!(Math.abs(a) <= 2e-4)) throw N(t, `the pose of "${n}" is no rotation`);
 	}
-	if (!(Y(Ga(i[0], i[1]), i[2]) > 0)) throw N(t, `the pose of "${n}" is mirrored`);
+	if (!(Y(qa(i[0], i[1]), i[2]) > 0)) throw N(t, `the pose of "${n}" is mirrored`);
 	return {
 		R: i,
 		t: a
 	};
 }
-function Ma(e, t, n) {
+function Pa(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
 	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw N(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
-async function Na(e, t) {
+async function Fa(e, t) {
 	let n = e.heldOut.filter((e) => !e).length;
-	return Pa(n, await Promise.all(J(e).map((r) => Fa(r, n, e, t))));
+	return Ia(n, await Promise.all(J(e).map((r) => La(r, n, e, t))));
 }
-function Pa(e, t) {
+function Ia(e, t) {
 	let n = t.reduce((e, { length: t }) => e + t, 0) / e, r = new Float32Array(e * n), i = 0;
 	for (let a of t) {
 		let t = a.length / e;
@@ -2375,29 +2382,29 @@ function Pa(e, t) {
 	}
 	return r;
 }
-async function Fa({ weights: e, count: t }, n, r, i) {
+async function La({ weights: e, count: t }, n, r, i) {
 	if (!e) return /* @__PURE__ */ new Float32Array();
 	if ("type" in e) return vi(e, r.views, i);
 	let { view: a, codec: o, where: s } = e;
-	return Ia(o.decode(new Uint8Array(await i(a)), s), n, t, s);
+	return Ra(o.decode(new Uint8Array(await i(a)), s), n, t, s);
 }
-function Ia({ cameras: e, components: t, values: n }, r, i, a) {
+function Ra({ cameras: e, components: t, values: n }, r, i, a) {
 	if (e === r && t === i) return yi(n, a);
 	throw N(a, `${e} x ${t} weights, and ${r} encoded cameras x ${i} textures`);
 }
 function J(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
 }
-function La(e) {
+function za(e) {
 	return Math.max(0, ...J(e).map(({ count: e }) => e));
 }
-function Ra(e, t) {
+function Ba(e, t) {
 	let n = [...t.slice(0, e.planes.length), ...J(e).map(({ grid: e }) => e)];
 	return [Math.max(...n.map(([e]) => e)), Math.max(...n.map(([, e]) => e))];
 }
-async function za(e, t) {
+async function Va(e, t) {
 	if (!e.triangles) return /* @__PURE__ */ new Uint32Array();
-	let { where: n } = e.triangles, r = await Ba(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
+	let { where: n } = e.triangles, r = await Ha(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
 		if (Math.max(t, a, o) >= i) throw N(n, `no encoded camera ${Math.max(t, a, o)}`);
@@ -2405,11 +2412,11 @@ async function za(e, t) {
 	}
 	return r;
 }
-async function Ba(e, t, n) {
+async function Ha(e, t, n) {
 	return "type" in e ? Uint32Array.from(await vi(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
 }
-function Va(e, t, n, r, i, a) {
-	let { right: o, up: s } = e, c = Ga(o, s), l = [
+function Ua(e, t, n, r, i, a) {
+	let { right: o, up: s } = e, c = qa(o, s), l = [
 		0,
 		0,
 		0
@@ -2437,8 +2444,8 @@ function Va(e, t, n, r, i, a) {
 		settings: e.settings,
 		scores: e.scores,
 		metresPerUnit: typeof u == "number" && u > 0 && u <= 1e30 ? u : null,
-		bytes: Ha(e, i),
-		size: Ra(e, n),
+		bytes: Wa(e, i),
+		size: Ba(e, n),
 		planes: e.planes.map(({ channels: e, bases: t }, r) => ({
 			channels: e,
 			mean: n[r] ?? [1, 1],
@@ -2454,8 +2461,8 @@ function Va(e, t, n, r, i, a) {
 		facesPlane: Math.abs(Y(l, c)) > .7
 	};
 }
-function Ha(e, t) {
-	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(La(e)).fill(0);
+function Wa(e, t) {
+	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(za(e)).fill(0);
 	for (let { pictures: t } of J(e)) {
 		let e = 0;
 		for (let { view: n, textures: i } of t) {
@@ -2478,7 +2485,7 @@ function Ha(e, t) {
 		textures: s
 	};
 }
-function Ua(e, t) {
+function Ga(e, t) {
 	let { origin: n, extent: r } = e, i = [
 		t[0] - n[0],
 		t[1] - n[1],
@@ -2486,7 +2493,7 @@ function Ua(e, t) {
 	];
 	return [r[0] > 0 ? Y(i, e.right) / r[0] : 0, r[1] > 0 ? Y(i, e.up) / r[1] : 0];
 }
-function Wa(e, t) {
+function Ka(e, t) {
 	let n = (n) => -(e[0][n] * t[0] + e[1][n] * t[1] + e[2][n] * t[2]);
 	return [
 		n(0),
@@ -2497,7 +2504,7 @@ function Wa(e, t) {
 function Y(e, t) {
 	return e[0] * t[0] + e[1] * t[1] + e[2] * t[2];
 }
-function Ga(e, t) {
+function qa(e, t) {
 	return [
 		e[1] * t[2] - e[2] * t[1],
 		e[2] * t[0] - e[0] * t[2],
@@ -2505,7 +2512,7 @@ function Ga(e, t) {
 	];
 }
 // eigenfield-three/src/cameras.ts
-function Ka(e, t, n) {
+function Ja(e, t, n) {
 	let { info: r } = e, i = r.cameras.filter((e, t) => !r.heldOut[t]), a = r.cameras[r.reference];
 	if (!a) throw RangeError(`no camera ${r.reference}`);
 	let { width: o, height: s } = a, c = [
@@ -2544,7 +2551,7 @@ function Ka(e, t, n) {
 	e.viewWeights(t, n, "delaunay").forEach((e, t) => {
 		let n = i[t];
 		if (!e || !n) return;
-		let r = qa(n, o, s);
+		let r = Ya(n, o, s);
 		for (let t of [
 			0,
 			1,
@@ -2555,7 +2562,7 @@ function Ka(e, t, n) {
 			2
 		]) t < 2 && (c[t][i] += e * r[t][i]), l[t][i] += e * n.R[t][i];
 	});
-	let u = Ya(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Ja(t) * m[0], Ja(n) * m[1]], _ = [
+	let u = Za(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Xa(t) * m[0], Xa(n) * m[1]], _ = [
 		0,
 		1,
 		2
@@ -2572,7 +2579,7 @@ function Ka(e, t, n) {
 		offset: null
 	};
 }
-function qa({ K: e, width: t, height: n }, r, i) {
+function Ya({ K: e, width: t, height: n }, r, i) {
 	let a = Math.max(r / t, i / n), [o, s] = [(r - a * t) / 2, (i - a * n) / 2];
 	return [
 		[
@@ -2592,16 +2599,16 @@ function qa({ K: e, width: t, height: n }, r, i) {
 		]
 	];
 }
-function Ja(e) {
+function Xa(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Ya(e) {
+function Za(e) {
 	let t = e;
 	for (let e = 0; e < 50; e++) {
 		let e = [
-			Ga(t[1], t[2]),
-			Ga(t[2], t[0]),
-			Ga(t[0], t[1])
+			qa(t[1], t[2]),
+			qa(t[2], t[0]),
+			qa(t[0], t[1])
 		], n = Y(t[0], e[0]);
 		if (!(n > 1e-12)) break;
 		let r = t.map((t, r) => t.map((t, i) => (t + e[r][i] / n) / 2)), i = Math.max(...r.flatMap((e, n) => e.map((e, r) => Math.abs(e - t[n][r]))));
@@ -2609,24 +2616,24 @@ function Ya(e) {
 	}
 	return t;
 }
-function Xa(e, t, n, r, i = 1) {
+function Qa(e, t, n, r, i = 1) {
 	let a = n.width / n.height, o = i * Math.min(1, a / r), s = i * Math.min(1, r / a), c = {
 		left: (1 - o) / 2,
 		top: (1 - s) / 2,
 		width: o,
 		height: s
 	};
-	return Za(e, t, n), Qa(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
+	return $a(e, t, n), eo(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
 }
-function Za(e, t, n) {
+function $a(e, t, n) {
 	let { R: r, centre: i } = n, a = new x().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
 	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new j()), t.updateMatrixWorld(!0);
 }
-function Qa(e, t, n, r) {
-	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = $a(e, n);
+function eo(e, t, n, r) {
+	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = to(e, n);
 	t.near = d, t.far = f, t.projectionMatrix.set(l * i, -l * a, -(2 * r.left - 1 + l * o), 0, 0, u * s, -(1 - 2 * r.top - u * c), 0, 0, 0, -(f + d) / (f - d), -2 * f * d / (f - d), 0, 0, -1, 0), t.projectionMatrixInverse.copy(t.projectionMatrix).invert();
 }
-function $a(e, t) {
+function to(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
@@ -2636,7 +2643,7 @@ function $a(e, t) {
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
 // eigenfield-three/src/exposure.ts
-function eo(e) {
+function no(e) {
 	let [t, n] = [[
 		1,
 		1,
@@ -2656,46 +2663,46 @@ function eo(e) {
 	};
 }
 // eigenfield-three/src/memory.ts
-var to = 4 / 3, no = lo({
+var ro = 4 / 3, io = fo({
 	components: 4,
 	halves: !0
-}), ro = {
+}), ao = {
 	components: 4,
 	halves: !1
-}, io = {
+}, oo = {
 	components: 2,
 	halves: !1
-}, ao = {
+}, so = {
 	components: 2,
 	halves: !0
-}, oo = 2 ** 20, so = 1 / 64, co = 34;
-function lo({ components: e, halves: t }) {
+}, co = 2 ** 20, lo = 1 / 64, uo = 34;
+function fo({ components: e, halves: t }) {
 	return (e > 2 ? 4 : e) * (t ? 2 : 1);
 }
-function uo() {
+function po() {
 	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
-	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && fo(e) ? Math.min(t ?? 4, 6) * 128 * oo : Math.min(t ?? 8, 8) * 256 * oo;
+	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && mo(e) ? Math.min(t ?? 4, 6) * 128 * co : Math.min(t ?? 8, 8) * 256 * co;
 }
-function fo(e) {
+function mo(e) {
 	return (e?.maxTouchPoints ?? 0) > 1;
 }
 function X([e, t], n) {
 	return [Math.ceil(e / n), Math.ceil(t / n)];
 }
-function po(e, t) {
+function ho(e, t) {
 	let [n, r] = X(e, t);
 	return n * r;
 }
-function mo(e) {
+function go(e) {
 	return Math.ceil(e / 4);
 }
-function ho(e, t) {
-	return t * go(e);
+function _o(e, t) {
+	return t * vo(e);
 }
-function go(e) {
+function vo(e) {
 	return Math.max(1, Math.ceil(e / 4));
 }
-function _o(e) {
+function yo(e) {
 	let { atlas: t, means: n, bases: r } = e, i = [
 		t,
 		...n.map(({ size: e }) => e),
@@ -2703,7 +2710,7 @@ function _o(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-var vo = [{
+var bo = [{
 	meanDown: 1,
 	scaleDown: 1,
 	halves: !0
@@ -2726,14 +2733,14 @@ var vo = [{
 	scaleDown: t * e,
 	halves: !1
 })))];
-function yo(e, t) {
-	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => bo(e, t.meanDown) + e.geometry + xo(e, t, n), o = (n, r) => a(n, r) + wo(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = vo.filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
+function xo(e, t) {
+	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => So(e, t.meanDown) + e.geometry + Co(e, t, n), o = (n, r) => a(n, r) + Eo(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = bo.filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
 	for (; !u && l > 0; l--) u = c.find((e) => o(e, l - 1));
-	u ??= vo.at(-1);
-	let d = To({
+	u ??= bo.at(-1);
+	let d = Do({
 		...u,
 		usable: l
-	}, e), f = Eo(d, e, t);
+	}, e), f = Oo(d, e, t);
 	return {
 		...u,
 		usable: l,
@@ -2742,58 +2749,58 @@ function yo(e, t) {
 		limitation: f
 	};
 }
-function bo(e, t) {
+function So(e, t) {
 	let n = e.means.map(({ size: e, channels: n, tenBits: r, opacity: i }) => {
-		let a = i ? no : 0;
-		return (lo({
+		let a = i ? io : 0;
+		return (fo({
 			components: n,
 			halves: r
-		}) * mo(n) + a) * po(e, t);
-	}), r = _o({
+		}) * go(n) + a) * ho(e, t);
+	}), r = yo({
 		...e,
 		means: e.means.filter(({ opacity: e }) => !e)
 	}).map((n) => {
-		let r = n.join() === e.atlas.join() ? to : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
-		return no * po(n, t) * (r + +!!i);
+		let r = n.join() === e.atlas.join() ? ro : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
+		return io * ho(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function xo({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
+function Co({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
 	return e.reduce((e, a) => {
 		let o = Math.min(i, a.count);
 		if (!o) return e;
-		let s = t ? go(o) * 129 * 129 * no : 0;
-		return e + lo({
+		let s = t ? vo(o) * 129 * 129 * io : 0;
+		return e + fo({
 			components: o,
 			halves: r && a.tenBits
-		}) * ho(o, a.channels) * po(a.size, n) + s;
+		}) * _o(o, a.channels) * ho(a.size, n) + s;
 	}, 0);
 }
-function So({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
-	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = Co([...a, ...o].map(({ size: e }) => e)), l = Math.floor(so * i / (lo(ro) * s)), u = [s, Math.min(c, Math.max(co, l))], d = [...n > 1 ? a.map((e) => X(e.size, n)) : [], ...r > 1 ? o.map((e) => X(e.size, r)) : []];
+function wo({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
+	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = To([...a, ...o].map(({ size: e }) => e)), l = Math.floor(lo * i / (fo(ao) * s)), u = [s, Math.min(c, Math.max(uo, l))], d = [...n > 1 ? a.map((e) => X(e.size, n)) : [], ...r > 1 ? o.map((e) => X(e.size, r)) : []];
 	return {
 		picture: {
 			size: u,
-			format: ro
+			format: ao
 		},
 		codes: [...a, ...o].some(({ tenBits: e }) => e) ? {
 			size: u,
-			format: io
+			format: oo
 		} : null,
 		smaller: d.length ? {
-			size: Co(d),
-			format: ao
+			size: To(d),
+			format: so
 		} : null
 	};
 }
-function Co(e) {
+function To(e) {
 	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
 }
-function wo(e, t, n) {
-	let r = Object.values(So(e, t, n)).map((e) => e ? lo(e.format) * po(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(..._o(e).map((e) => po(e, 1))) : 0;
+function Eo(e, t, n) {
+	let r = Object.values(wo(e, t, n)).map((e) => e ? fo(e.format) * ho(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(...yo(e).map((e) => ho(e, 1))) : 0;
 	return [...r, i].reduce((e, t) => e + t, 0);
 }
-function To({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
+function Do({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 	let a = Math.max(0, ...i.bases.map(({ count: e }) => e)), o = [];
 	return e < a && o.push({
 		kind: "count",
@@ -2807,28 +2814,28 @@ function To({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 		percent: Math.round(100 / t)
 	}), o;
 }
-function Eo(e, t, n) {
+function Oo(e, t, n) {
 	if (!e.length) return null;
 	let r = e.map((e) => e.kind === "count" ? `${e.part} of ${e.whole} eigen textures are drawn` : e.kind === "bits" ? "eigen textures have 8 bits" : `${e.kind === "mean" ? "the mean texture has" : "eigen textures have"} ${e.percent} % of ${e.kind === "mean" ? "its" : "their"} width and height`), i = {
 		meanDown: 1,
 		scaleDown: 1,
 		halves: !0
-	}, a = bo(t, 1) + xo(t, i, Infinity) + wo(t, i, n.memory) + t.geometry, o = a > n.memory ? `the scene needs ${Do(a)} MB of graphics memory and ${Do(n.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${Oo(r.join(", "))}: ${o}.`;
+	}, a = So(t, 1) + Co(t, i, Infinity) + Eo(t, i, n.memory) + t.geometry, o = a > n.memory ? `the scene needs ${ko(a)} MB of graphics memory and ${ko(n.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${Ao(r.join(", "))}: ${o}.`;
 }
-function Do(e) {
+function ko(e) {
 	return (e / 1e6).toFixed(+(e < 1e7));
 }
-function Oo(e) {
+function Ao(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var ko = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\n#define REACH 2\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec2 beside;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nfloat codeOf(vec2 shift) { return shift.x + float(REACH) + float(2 * REACH + 1) * (shift.y + float(REACH)); }\nvec2 shiftOf(vec4 place) {\n  int code = int(place.w + 0.5) - 1;\n  return code < 0 ? vec2(0.0) : vec2(code % (2 * REACH + 1) - REACH, code / (2 * REACH + 1) - REACH);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec4 place = rayWeights || beside.x > 0.0 ? texelFetch(places, ivec2(gl_FragCoord.xy), 0) : vec4(0.0);\n  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);\n  own -= beside * shiftOf(place);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Ao = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", jo = 2, Mo = `
+var jo = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\n#define REACH 2\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec2 beside;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nfloat codeOf(vec2 shift) { return shift.x + float(REACH) + float(2 * REACH + 1) * (shift.y + float(REACH)); }\nvec2 shiftOf(vec4 place) {\n  int code = int(place.w + 0.5) - 1;\n  return code < 0 ? vec2(0.0) : vec2(code % (2 * REACH + 1) - REACH, code / (2 * REACH + 1) - REACH);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec4 place = rayWeights || beside.x > 0.0 ? texelFetch(places, ivec2(gl_FragCoord.xy), 0) : vec4(0.0);\n  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);\n  own -= beside * shiftOf(place);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Mo = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", No = 2, Po = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${Ao}${ko}`, No = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", Po = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nflat out vec2 shift;\nvoid main() {\n  point = onPlane;\n  shift = shifts[gl_InstanceID];\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shift, 0.0, 1.0);\n}\n", Fo = `${Mo}
+${Mo}${jo}`, Fo = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", Io = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nflat out vec2 shift;\nvoid main() {\n  point = onPlane;\n  shift = shifts[gl_InstanceID];\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shift, 0.0, 1.0);\n}\n", Lo = `${Po}
 in vec3 point;
 flat in vec2 shift;
 out vec4 place;
@@ -2836,12 +2843,12 @@ void main() {
   place = placeOf(point);
   place.w += codeOf(shift);
 }
-`, Io = "sumTextures", Lo = "finerValue", Ro = "finerOpacity";
-function zo(n, r, i) {
+`, Ro = "sumTextures", zo = "finerValue", Bo = "finerOpacity";
+function Vo(n, r, i) {
 	let o = new k({
 		glslVersion: h,
-		vertexShader: No,
-		fragmentShader: `${Mo}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
+		vertexShader: Fo,
+		fragmentShader: `${Po}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
 		uniforms: {
 			rectangle: { value: new ie(...r) },
 			...i
@@ -2877,7 +2884,7 @@ function zo(n, r, i) {
 	let c = new S(s, o);
 	return c.frustumCulled = !1, c;
 }
-function Bo([e, t], n) {
+function Ho([e, t], n) {
 	return new ae(e, t, {
 		type: g,
 		depthBuffer: !1,
@@ -2886,29 +2893,29 @@ function Bo([e, t], n) {
 		magFilter: n ? y : w
 	});
 }
-function Vo(e, t) {
-	let n = Ga(e.right, e.up), r = [
+function Uo(e, t) {
+	let n = qa(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
 		t[2] - e.origin[2]
 	];
-	return [...Ua(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
+	return [...Ga(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
 }
-function Ho(t, n, r) {
+function Wo(t, n, r) {
 	let { index: i } = t, a = t.getAttribute("position"), o = t.getAttribute("uv"), s = new Float32Array(3 * a.count), c = new Float32Array(2 * a.count);
-	for (let e = 0; e < a.count; e++) s.set(Vo(n, [
+	for (let e = 0; e < a.count; e++) s.set(Uo(n, [
 		a.getX(e),
 		a.getY(e),
 		a.getZ(e)
 	]), 3 * e), c.set([o.getX(e), o.getY(e)], 2 * e);
-	let l = Array.from({ length: 5 }, (e, t) => t - jo), d = l.flatMap((e) => l.map((t) => new re(t, e)));
+	let l = Array.from({ length: 5 }, (e, t) => t - No), d = l.flatMap((e) => l.map((t) => new re(t, e)));
 	d.sort((e, t) => t.lengthSq() - e.lengthSq());
 	let f = new v();
 	f.setAttribute("position", new e(c, 2)), f.setAttribute("onPlane", new e(s, 3)), f.setIndex(i && new e(i.array, 1)), f.instanceCount = d.length, f.boundingSphere = new ee();
 	let p = new k({
 		glslVersion: h,
-		vertexShader: Po.replace("SHIFTS", String(d.length)),
-		fragmentShader: Fo,
+		vertexShader: Io.replace("SHIFTS", String(d.length)),
+		fragmentShader: Lo,
 		uniforms: {
 			texel: { value: new re(2 / r.width, 2 / r.height) },
 			shifts: { value: d }
@@ -2927,19 +2934,19 @@ function Ho(t, n, r) {
 		}
 	};
 }
-var Uo = new i(0), Wo = new i();
-function Go(e, t, n) {
+var Go = new i(0), Ko = new i();
+function qo(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(Wo), e.setClearColor(Uo, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(Wo, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(Ko), e.setClearColor(Go, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(Ko, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/composer.ts
-var Ko = {
+var Jo = {
 	version: 0,
 	mean: !0,
 	opacity: 0,
@@ -2949,7 +2956,7 @@ var Ko = {
 	eye: null,
 	places: 0,
 	maps: null
-}, qo = class {
+}, Yo = class {
 	snaps;
 	surface;
 	plane;
@@ -2960,14 +2967,14 @@ var Ko = {
 	camera = new n();
 	constructor(e, t, n, r, i, a, o) {
 		this.snaps = i, this.surface = a, this.plane = o;
-		let [s, ...c] = _o({
+		let [s, ...c] = yo({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), l = (e, n) => {
-			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => Xo(t, i ? X(e, r) : null)), o = new A();
+			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => Qo(t, i ? X(e, r) : null)), o = new A();
 			return a.forEach(({ quad: e }, t) => o.add(Object.assign(e, { renderOrder: t }))), {
-				target: Bo(X(e, r), n),
+				target: Ho(X(e, r), n),
 				scene: o,
 				steps: a,
 				places: null
@@ -2975,7 +2982,7 @@ var Ko = {
 		}, u = l(s ?? e, !0);
 		this.grids = c.map((e) => l(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = zo(Lo, [
+			let t = Vo(zo, [
 				0,
 				0,
 				1,
@@ -2983,24 +2990,24 @@ var Ko = {
 			], { coarse: { value: e.texture } });
 			u.scene.add(Object.assign(t, { renderOrder: u.scene.children.length }));
 		}
-		this.grids.push(u), this.opacity = n && Jo(n, r);
+		this.grids.push(u), this.opacity = n && Xo(n, r);
 	}
 	get texture() {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && $o(this.composed, n) || (this.composed = n, Go(e, t, () => {
+		this.composed && ts(this.composed, n) || (this.composed = n, qo(e, t, () => {
 			n.opacity > this.opacityDrawn && this.drawOpacity(e, n.opacity);
 			for (let t of this.grids) {
 				(n.eye !== null && t.steps.some(({ part: e }) => e.basis) || this.snaps) && this.findPlaces(e, t, n.places);
-				for (let e of t.steps) Zo(e, t.places?.target.texture ?? null, n);
+				for (let e of t.steps) $o(e, t.places?.target.texture ?? null, n);
 				this.draw(e, t.scene, t.target, this.opacityDrawn > 0 && t === this.grids.at(-1));
 			}
 		}));
 	}
 	dispose() {
-		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), Yo(n);
-		this.opacity?.target.dispose(), this.opacity && [this.opacity.sum, this.opacity.finer].forEach(Yo);
+		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), Zo(n);
+		this.opacity?.target.dispose(), this.opacity && [this.opacity.sum, this.opacity.finer].forEach(Zo);
 	}
 	drawOpacity(e, t) {
 		let [n, r] = [this.grids.at(-1), this.opacity];
@@ -3008,7 +3015,7 @@ var Ko = {
 	}
 	findPlaces(e, t, n) {
 		if (t.places?.version === n) return;
-		let r = t.places?.target ?? Bo([t.target.width, t.target.height], !1), { scene: i, free: a } = Ho(this.surface.geometry, this.plane, r);
+		let r = t.places?.target ?? Ho([t.target.width, t.target.height], !1), { scene: i, free: a } = Wo(this.surface.geometry, this.plane, r);
 		this.draw(e, i, r), a(), t.places = {
 			target: r,
 			version: n
@@ -3020,11 +3027,11 @@ var Ko = {
 		r && i.colorMask(!0, !0, !0, !1), e.clear(!0, !1, !1), r && i.colorMask(!0, !0, !0, !0), e.render(t, this.camera);
 	}
 };
-function Jo(e, t) {
-	let n = Bo(X(e.grid, t), !1), r = Xo(e, null);
-	for (let e of r) Zo(e, null, Ko);
+function Xo(e, t) {
+	let n = Ho(X(e.grid, t), !1), r = Qo(e, null);
+	for (let e of r) $o(e, null, Jo);
 	let [i, a] = [new A(), new A()];
-	return i.add(...r.map(({ quad: e }) => e)), a.add(zo(Ro, [
+	return i.add(...r.map(({ quad: e }) => e)), a.add(Vo(Bo, [
 		0,
 		0,
 		1,
@@ -3035,17 +3042,17 @@ function Jo(e, t) {
 		finer: a
 	};
 }
-function Yo(e) {
+function Zo(e) {
 	for (let { geometry: t, material: n } of e.children) t.dispose(), n.dispose();
 }
-function Xo(e, t) {
+function Qo(e, t) {
 	let [n, r, i, a] = e.rectangle, o = t && new re(1 / ((i - n) * t[0]), 1 / ((a - r) * t[1])), s = e.colours.length, [c, l] = [e.scale.length / (4 * s), Math.floor(64 / s)], u = [];
 	for (let t = 0; t < c; t += l) {
 		let n = Array.from({ length: 64 }, (t, n) => new j(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), r = e.basis ? 1 : 4, i = zo(Io, e.rectangle, {
+		])), r = e.basis ? 1 : 4, i = Vo(Ro, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(t * s / r) },
 			sharing: { value: r },
@@ -3070,31 +3077,31 @@ function Xo(e, t) {
 	}
 	return u;
 }
-function Zo({ part: e, first: t, groups: n, quad: r }, i, a) {
+function $o({ part: e, first: t, groups: n, quad: r }, i, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Qo(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => es(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
 	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", i), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function Qo(e, t, n, r) {
+function es(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function $o(e, t) {
+function ts(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
 // eigenfield-three/src/maps.ts
-function es(e, t, n, i, a) {
+function ns(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? go(t) : 0;
+		u += e, d += t ? vo(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -3113,7 +3120,7 @@ function es(e, t, n, i, a) {
 	return p.format = O, p.type = g, p.minFilter = p.magFilter = y, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
 }
 // eigenfield-three/src/eigen-weights.ts
-var ts = class {
+var rs = class {
 	info;
 	counts;
 	omega;
@@ -3145,12 +3152,12 @@ var ts = class {
 		if (n >= 0) return Float64Array.from(this.omega.subarray(n * this.total, (n + 1) * this.total));
 		let r = this.info.cameras[e];
 		if (!r) throw RangeError(`no camera ${e}`);
-		return this.at(...Ua(this.info.viewPlane, r.centre), t);
+		return this.at(...Ga(this.info.viewPlane, r.centre), t);
 	}
 	maps(e, t) {
 		if (this.made?.mixing === e && this.made.usable === t) return this.made.texture;
 		this.dispose();
-		let n = es(this.views, e, this.omega, this.counts, t);
+		let n = ns(this.views, e, this.omega, this.counts, t);
 		return this.made = {
 			texture: n,
 			mixing: e,
@@ -3160,20 +3167,20 @@ var ts = class {
 	dispose() {
 		this.made?.texture.dispose();
 	}
-}, ns = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", rs = {
+}, is = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", as = {
 	bilinear: 0,
 	bicubic: 1
-}, is = {
+}, os = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, as = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", os = as.replace("void main", "invariant gl_Position;\nvoid main"), ss = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", cs = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", ls = `${ss}
-${Ao}${ns}
+}, ss = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", cs = ss.replace("void main", "invariant gl_Position;\nvoid main"), ls = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", us = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", ds = `${ls}
+${Mo}${is}
 uniform float shownGain;       // of the eigen texture around mid grey
 in vec2 surfaceUv;
 vec3 eigenColour(vec3 value) { return clamp(0.5 + shownGain * value, 0.0, 1.0); }
-`, us = `${ls}${cs}
+`, fs = `${ds}${us}
 in vec3 surfacePlace;
 out vec4 fragment;
 void main() {
@@ -3183,7 +3190,7 @@ void main() {
   if (shown == 3) colour = errorColour(colour, surfacePlace);
   fragment = vec4(colour, 1.0);
 }
-`, ds = `${ls}
+`, ps = `${ds}
 layout(location = 0) out vec4 fragment;
 layout(location = 1) out vec4 solid;
 vec3 threeBytes(float depth) {
@@ -3197,98 +3204,98 @@ void main() {
   float depth = (gl_FragCoord.z - gl_DepthRange.near) / gl_DepthRange.diff;
   solid = colour.a < 0.5 ? vec4(0.0) : vec4(threeBytes(depth), 1.0);
 }
-`, fs = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", ps = {
+`, ms = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", hs = {
 	blending: a,
 	blendSrc: E,
 	blendDst: D
-}, ms = {
+}, gs = {
 	depthWrite: !1,
 	stencilWrite: !0,
 	stencilFunc: d,
 	stencilZPass: _
 };
-function hs(e, t) {
+function _s(e, t) {
 	let n = {
 		composed: { value: null },
 		finest: { value: 1 },
 		exposureScale: { value: new j(1, 1, 1) },
 		exposureBias: { value: new j() },
-		shown: { value: is.picture },
+		shown: { value: os.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new x() }
 	}, r = new k({
 		glslVersion: h,
-		vertexShader: t ? os : as,
-		fragmentShader: t ? ds : us,
+		vertexShader: t ? cs : ss,
+		fragmentShader: t ? ps : fs,
 		uniforms: n,
-		defines: { BICUBIC: rs.bicubic },
+		defines: { BICUBIC: as.bicubic },
 		side: e ? u : m,
 		...t ? {
-			...ps,
-			...ms
+			...hs,
+			...gs
 		} : {}
 	});
 	return r.name = "eigen textures", r;
 }
-function gs(e) {
+function vs(e) {
 	let { side: t } = e;
 	return new k({
 		name: "depth of sheets",
 		glslVersion: h,
-		vertexShader: os,
-		fragmentShader: fs,
+		vertexShader: cs,
+		fragmentShader: ms,
 		colorWrite: !1,
 		side: t,
 		stencilWrite: !0,
 		stencilZPass: oe
 	});
 }
-function _s(e, t, n) {
-	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !vs(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
+function ys(e, t, n) {
+	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !bs(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
 	u && (d.elements[13] = 1), e.toPhotograph.value.multiplyMatrices(d, l.multiply(c)), e.photograph.value = n;
 }
-function vs(e) {
+function bs(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
 // eigenfield-three/src/film-codes.ts
-var ys = /* @__PURE__ */ new Set([
+var xs = /* @__PURE__ */ new Set([
 	"I420P10",
 	"I422P10",
 	"I444P10"
-]), bs = /* @__PURE__ */ new Set([
+]), Ss = /* @__PURE__ */ new Set([
 	"I420",
 	"I420A",
 	"I422",
 	"I444",
 	"NV12"
-]), xs = /* @__PURE__ */ new Set([
+]), Cs = /* @__PURE__ */ new Set([
 	"RGBA",
 	"RGBX",
 	"BGRA",
 	"BGRX"
-]), Ss = 1, Cs = Uint16Array.from({ length: 256 }, (e, t) => Math.round(t * 1023 / 255)), ws = Uint16Array.from({ length: 256 }, (e, t) => Cs[16 + Math.round(t * 219 / 255)]), Ts = ws.map((e, t) => t === 0 ? 0 : t === 255 ? 1023 : e);
-async function Es(e, t, n = !1) {
+]), ws = 1, Ts = Uint16Array.from({ length: 256 }, (e, t) => Math.round(t * 1023 / 255)), Es = Uint16Array.from({ length: 256 }, (e, t) => Ts[16 + Math.round(t * 219 / 255)]), Ds = Es.map((e, t) => t === 0 ? 0 : t === 255 ? 1023 : e);
+async function Os(e, t, n = !1) {
 	let r = e.format ?? "", { width: i, height: a } = e.visibleRect ?? {
 		width: 0,
 		height: 0
 	};
-	if (!ys.has(r) && !bs.has(r) && !xs.has(r)) throw new M("unsupported", `This browser does not hand out its frames (${r || "no format"}).`, "");
+	if (!xs.has(r) && !Ss.has(r) && !Cs.has(r)) throw new M("unsupported", `This browser does not hand out its frames (${r || "no format"}).`, "");
 	let o = e.allocationSize(), s = t && t.length >= o ? t : new Uint8Array(o), [c] = await e.copyTo(s), { offset: l, stride: u } = c ?? {
 		offset: 0,
 		stride: 0
 	};
-	if (ys.has(r)) return {
+	if (xs.has(r)) return {
 		data: s.subarray(l),
 		width: i,
 		height: a,
 		stride: u,
 		room: s
 	};
-	let d = xs.has(r), [f, p] = d ? [4, l + Ss] : [1, l], m = d && e.colorSpace?.fullRange === !1 ? n ? Ts : ws : Cs;
-	return Ds(s.subarray(p), u, f, [i, a], m);
+	let d = Cs.has(r), [f, p] = d ? [4, l + ws] : [1, l], m = d && e.colorSpace?.fullRange === !1 ? n ? Ds : Es : Ts;
+	return ks(s.subarray(p), u, f, [i, a], m);
 }
-function Ds(e, t, n, [r, i], a = Cs) {
+function ks(e, t, n, [r, i], a = Ts) {
 	let o = new Uint16Array(r * i);
 	for (let s = 0; s < i; s++) for (let i = 0; i < r; i++) o[s * r + i] = a[e[s * t + n * i]];
 	return {
@@ -3298,7 +3305,7 @@ function Ds(e, t, n, [r, i], a = Cs) {
 		stride: 2 * r
 	};
 }
-function Os({ data: e, stride: t }, { size: [n, r], at: i }) {
+function As({ data: e, stride: t }, { size: [n, r], at: i }) {
 	return i.map(([i, a]) => ({
 		data: e.subarray(a * t + 2 * i),
 		width: n,
@@ -3307,21 +3314,21 @@ function Os({ data: e, stride: t }, { size: [n, r], at: i }) {
 	}));
 }
 // eigenfield-three/src/pieces.ts
-function ks(e) {
+function js(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
 // eigenfield-three/src/strength.ts
-var As = 128, js = .98;
-async function Ms(e, t, n, r) {
+var Ms = 128, Ns = .98;
+async function Ps(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = Ni(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(As, As).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = Ni(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Ms, Ms).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	return u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, As, As);
-		let { data: u } = d.getImageData(0, 0, As, As);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, Ms, Ms);
+		let { data: u } = d.getImageData(0, 0, Ms, Ms);
 		(l ? [
 			0,
 			1,
@@ -3330,15 +3337,15 @@ async function Ms(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), ks(u), Ns(f);
+	}), js(u), Fs(f);
 }
-function Ns(e) {
+function Fs(e) {
 	e.sort((e, t) => e - t);
-	let t = e[Math.floor(js * e.length)] ?? 0;
+	let t = e[Math.floor(Ns * e.length)] ?? 0;
 	return t > 0 ? .45 / t : 1;
 }
 // eigenfield-three/src/film-textures.ts
-var Ps = class {
+var Is = class {
 	scene;
 	films;
 	filling = null;
@@ -3364,7 +3371,7 @@ var Ps = class {
 	}
 	put(e) {
 		e.together(() => {
-			ua(this.scene).forEach(({ mean: t }, n) => e.putMean(n, {
+			fa(this.scene).forEach(({ mean: t }, n) => e.putMean(n, {
 				pieces: this.piecesOf(t),
 				precision: null
 			})), J(this.scene).forEach(({ pictures: [t] }, n) => {
@@ -3374,7 +3381,7 @@ var Ps = class {
 	}
 	piecesOf({ part: e }) {
 		let t = e && this.films[e.film];
-		return t ? Os(t, e).map((e) => ({
+		return t ? As(t, e).map((e) => ({
 			picture: e,
 			row: 0,
 			rows: e.height
@@ -3382,44 +3389,44 @@ var Ps = class {
 	}
 	gainOf({ part: e, pieces: t, scale: n, zero: r }, i, a) {
 		let o = e && this.films[e.film];
-		return o ? Ns(Os(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
+		return o ? Fs(As(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
 			let s = t * i + o, c = Math.max(...(a[o] ?? [0]).map(Math.abs)) * (n[s] ?? 0);
-			return Is(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
+			return Rs(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
 		})) : 1;
 	}
-}, Fs = 8;
-function Is({ data: e, width: t, height: n, stride: r }) {
+}, Ls = 8;
+function Rs({ data: e, width: t, height: n, stride: r }) {
 	let i = [];
-	for (let a = 0; a < n; a += Fs) for (let n = 0; n < t; n += Fs) {
+	for (let a = 0; a < n; a += Ls) for (let n = 0; n < t; n += Ls) {
 		let t = a * r + 2 * n;
 		i.push(e[t] + 256 * e[t + 1]);
 	}
 	return i;
 }
 // eigenfield-three/src/container.ts
-var Ls = 1179937895, Rs = 1313821514, zs = 5130562, Bs = 1280591429;
-async function Vs(e) {
+var zs = 1179937895, Bs = 1313821514, Vs = 5130562, Hs = 1280591429;
+async function Us(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof M && t.code === "truncated" ? Ks(e.received === 0) : t;
+		throw t instanceof M && t.code === "truncated" ? Js(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== Ls) throw Ks(!1);
+	if (new DataView(t).getUint32(0, !0) !== zs) throw Js(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
 	if (r !== 2) throw new M("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
 	if (i < 20) throw N("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== Rs) throw N("16", "it does not begin with JSON");
+	if (a.getUint32(4, !0) !== Bs) throw N("16", "it does not begin with JSON");
 	if (o > xe) throw N("12", `${o} bytes of JSON`);
 	if (20 + o > i) throw N("12", "a chunk longer than the file");
-	let s = Us(await e.read(20, 20 + o)), c = (t, n) => () => Hs(e, 20 + o, i, t, n);
+	let s = Gs(await e.read(20, 20 + o)), c = (t, n) => () => Ws(e, 20 + o, i, t, n);
 	return {
 		length: i,
 		text: s,
-		json: Ws(s, "20"),
-		binary: c(zs, "binary chunk"),
-		groups: c(Bs, "chunk of groups")
+		json: Ks(s, "20"),
+		binary: c(Vs, "binary chunk"),
+		groups: c(Hs, "chunk of groups")
 	};
 }
-async function Hs(e, t, n, r, i) {
+async function Ws(e, t, n, r, i) {
 	let a = t;
 	for (let t = 1; t < 64 && a + 8 <= n; t++) {
 		let t = new DataView(await e.read(a, a + 8)), i = t.getUint32(0, !0);
@@ -3429,22 +3436,22 @@ async function Hs(e, t, n, r, i) {
 	}
 	throw N(String(t), `no ${i}`);
 }
-function Us(e) {
+function Gs(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
 		throw N("20", "its JSON is not UTF-8");
 	}
 }
-function Ws(e, t) {
-	if (Gs(e) > 64) throw N(t, "its JSON is nested too deep");
+function Ks(e, t) {
+	if (qs(e) > 64) throw N(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
 		throw N(t, "its JSON cannot be read");
 	}
 }
-function Gs(e) {
+function qs(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3455,11 +3462,11 @@ function Gs(e) {
 	}
 	return n;
 }
-function Ks(e) {
+function Js(e) {
 	return new M("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/groups.ts
-var qs = 3, Js = 4, Ys = class {
+var Ys = 3, Xs = 4, Zs = class {
 	scene;
 	timeline;
 	mesh;
@@ -3471,16 +3478,16 @@ var qs = 3, Js = 4, Ys = class {
 	open(e) {
 		let t = this.kept.get(e) ?? this.opened(e);
 		t.catch(() => this.kept.get(e) === t && this.kept.delete(e)), this.kept.delete(e), this.kept.set(e, t);
-		for (let [e] of this.kept) this.kept.size > qs && this.kept.delete(e);
+		for (let [e] of this.kept) this.kept.size > Ys && this.kept.delete(e);
 		return t;
 	}
 	async begin() {
-		let e = this.placeOf(0), t = async (t) => new Uint8Array(await this.read(e.offset, Math.min(t, e.length))), { head: n, at: r } = await ec(await t(Js + Qs(await t(Js), e)), e), i = [
+		let e = this.placeOf(0), t = async (t) => new Uint8Array(await this.read(e, Math.min(t, e.length))), { head: n, at: r } = await nc(await t(Xs + ec(await t(Xs), e)), e), i = [
 			n.key("weights"),
 			n.key("mesh"),
 			n.key("motion"),
 			n.key("frames").at(0)
-		].reduce((e, { raw: t }) => e + $s(t), r);
+		].reduce((e, { raw: t }) => e + tc(t), r);
 		return this.build(0, await t(i), n, r, 1);
 	}
 	placeOf(e) {
@@ -3489,13 +3496,13 @@ var qs = 3, Js = 4, Ys = class {
 		return t;
 	}
 	async opened(e) {
-		let t = this.placeOf(e), n = new Uint8Array(await this.read(t.offset, t.length));
-		await Zs(n, t);
-		let { head: r, at: i } = await ec(n, t);
+		let t = this.placeOf(e), n = new Uint8Array(await this.read(t, t.length));
+		await $s(n, t);
+		let { head: r, at: i } = await nc(n, t);
 		return this.build(e, n, r, i, t.frames);
 	}
 	build(e, t, n, r, i) {
-		let a = this.placeOf(e), o = tc(t, r, a), s = this.weightsOf(n, o), c = this.meshOf(n, o), l = nc(n, o, c, a), { first: u, frames: d } = a, f = rc(n, a, this.timeline.films.length, o, i);
+		let a = this.placeOf(e), o = rc(t, r, a), s = this.weightsOf(n, o), c = this.meshOf(n, o), l = ic(n, o, c, a), { first: u, frames: d } = a, f = ac(n, a, this.timeline.films.length, o, i);
 		return {
 			index: e,
 			first: u,
@@ -3516,52 +3523,52 @@ var qs = 3, Js = 4, Ys = class {
 		return r;
 	}
 	weightsOf(e, t) {
-		let n = this.scene.heldOut.filter((e) => !e).length, r = ac(e.key("weights"), this.scene.planes.length);
-		return Pa(n, this.scene.planes.flatMap(({ bases: e }, i) => {
-			let a = r[i] && ac(r[i], e.length);
+		let n = this.scene.heldOut.filter((e) => !e).length, r = sc(e.key("weights"), this.scene.planes.length);
+		return Ia(n, this.scene.planes.flatMap(({ bases: e }, i) => {
+			let a = r[i] && sc(r[i], e.length);
 			return e.map(({ count: e }, r) => {
 				let i = a[r];
-				return Ia(W["weights-1"].decode(t(i), i.where), n, e, i.where);
+				return Ra(W["weights-1"].decode(t(i), i.where), n, e, i.where);
 			});
 		}));
 	}
 	scalesOf(e) {
 		let { planes: t } = this.scene;
 		return {
-			means: ac(e.key("means"), t.length).map((e, n) => ic(e, t[n].mean)),
-			bases: ac(e.key("bases"), t.length).flatMap((e, n) => {
+			means: sc(e.key("means"), t.length).map((e, n) => oc(e, t[n].mean)),
+			bases: sc(e.key("bases"), t.length).flatMap((e, n) => {
 				let { bases: r } = t[n];
-				return ac(e, r.length).map((e, t) => ic(e, r[t].pictures[0]));
+				return sc(e, r.length).map((e, t) => oc(e, r[t].pictures[0]));
 			})
 		};
 	}
 };
-function Xs(e, { means: t, bases: n }) {
+function Qs(e, { means: t, bases: n }) {
 	e.planes.forEach(({ mean: e }, n) => Object.assign(e, t[n])), J(e).forEach(({ pictures: [e] }, t) => e && Object.assign(e, n[t]));
 }
-async function Zs(e, { sha256: t, where: n }) {
-	let r = globalThis.crypto?.subtle;
-	if (!r) return;
-	let i = new Uint8Array(await r.digest("SHA-256", e));
-	if (Array.from(i, (e) => e.toString(16).padStart(2, "0")).join("") !== t) throw N(n, "other bytes than its SHA-256 says");
+async function $s(e, { sha256: t, file: n, where: r }) {
+	let i = globalThis.crypto?.subtle;
+	if (!i) return;
+	let a = new Uint8Array(await i.digest("SHA-256", e));
+	if (Array.from(a, (e) => e.toString(16).padStart(2, "0")).join("") !== t) throw N(n ?? r, "other bytes than its SHA-256 says");
 }
-function Qs(e, { where: t }) {
-	if (e.length < Js) throw N(t, "no head");
+function ec(e, { where: t }) {
+	if (e.length < Xs) throw N(t, "no head");
 	return new DataView(e.buffer).getUint32(0, !0);
 }
-function $s(e) {
-	return typeof e == "number" ? e : Array.isArray(e) ? e.reduce((e, t) => e + $s(t), 0) : 0;
+function tc(e) {
+	return typeof e == "number" ? e : Array.isArray(e) ? e.reduce((e, t) => e + tc(t), 0) : 0;
 }
-async function ec(e, { where: t }) {
-	let n = Js + Qs(e, { where: t });
+async function nc(e, { where: t }) {
+	let n = Xs + ec(e, { where: t });
 	if (n > e.length) throw N(t, "a head longer than the group");
-	let r = await ye(e.subarray(Js, n), "deflate-raw", Ve, t);
+	let r = await ye(e.subarray(Xs, n), "deflate-raw", Ve, t);
 	return {
-		head: new G(Ws(new TextDecoder("utf-8").decode(r), t), t),
+		head: new G(Ks(new TextDecoder("utf-8").decode(r), t), t),
 		at: n
 	};
 }
-function tc(e, t, n) {
+function rc(e, t, n) {
 	let r = t;
 	return (t) => {
 		let i = r;
@@ -3569,29 +3576,29 @@ function tc(e, t, n) {
 		return e.subarray(i, r);
 	};
 }
-function nc(e, t, n, { frames: r }) {
+function ic(e, t, n, { frames: r }) {
 	let i = e.key("motion");
 	if (!i.exists) return null;
 	let a = W["motion-1"].decode(t(i), n, i.where);
 	if (a.frames !== r) throw i.wrong(`${a.frames} frames of ${r}`);
 	return a;
 }
-function rc(e, t, n, r, i) {
-	return ac(e.key("frames"), t.frames).slice(0, i).map((e) => ac(e, n).map((e) => r(e)));
+function ac(e, t, n, r, i) {
+	return sc(e.key("frames"), t.frames).slice(0, i).map((e) => sc(e, n).map((e) => r(e)));
 }
-function ic(e, { pieces: t, textures: n }) {
+function oc(e, { pieces: t, textures: n }) {
 	let r = e;
 	return {
 		scale: Fi(r.key("scale"), t, n),
 		zero: Fi(r.key("zero"), t, n)
 	};
 }
-function ac(e, t) {
+function sc(e, t) {
 	let n = e.items(t);
 	if (n.length !== t) throw e.wrong(`${t} entries are needed`);
 	return n;
 }
-var oc = 3, sc = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", cc = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform int first; // row of the picture with which the texture begins\nout vec4 stored;\nvoid main() {\n  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));\n}\n", lc = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", uc = `#version 300 es
+var cc = 3, lc = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", uc = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform int first; // row of the picture with which the texture begins\nout vec4 stored;\nvoid main() {\n  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));\n}\n", dc = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", fc = `#version 300 es
 precision highp float;
 precision highp int;
 uniform highp sampler2D picture; // values, and whether they are of a chart
@@ -3601,7 +3608,7 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec2 own = texelFetch(picture, at, 0).rg;
   vec2 sum = vec2(own.r * own.g, own.g);
-  for (int far = 1; far <= ${oc} && sum.y == 0.0; far++) {
+  for (int far = 1; far <= ${cc} && sum.y == 0.0; far++) {
     for (int y = -far; y <= far; y++) {
       for (int x = -far; x <= far; x++) {
         vec2 near = texelFetch(picture, clamp(at + ivec2(x, y), ivec2(0), size - 1), 0).rg;
@@ -3611,9 +3618,9 @@ void main() {
   }
   stored = vec4(sum.y > 0.0 ? sum.x / sum.y : own.r);
 }
-`, dc = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
+`, pc = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
 // eigenfield-three/src/parts.ts
-function fc(e, t, n) {
+function mc(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -3623,7 +3630,7 @@ function fc(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = hc(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = _c(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -3651,7 +3658,7 @@ function fc(e, t, n) {
 						a + e[1] / i[1]
 					],
 					colours: f,
-					...gc(l, u, h, n.halves && Mi(l)),
+					...vc(l, u, h, n.halves && Mi(l)),
 					basis: {
 						ready: m,
 						column: o,
@@ -3659,17 +3666,17 @@ function fc(e, t, n) {
 					}
 				});
 			}
-			o += p, s += h ? go(h) : 0;
+			o += p, s += h ? vo(h) : 0;
 		}
 	}), r;
 }
-function pc(e, t, n, r) {
-	fc(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
+function hc(e, t, n, r) {
+	mc(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
 		scale: t,
 		bias: n
 	}));
 }
-function mc({ planes: e, sheets: t }, { means: n, needs: r }) {
+function gc({ planes: e, sheets: t }, { means: n, needs: r }) {
 	let i = n[e.length], a = r.means[e.length]?.size;
 	return !t || !i || !a ? null : {
 		stored: i,
@@ -3685,11 +3692,11 @@ function mc({ planes: e, sheets: t }, { means: n, needs: r }) {
 			0,
 			0
 		]],
-		...hc(t.opacity),
+		..._c(t.opacity),
 		basis: null
 	};
 }
-function hc({ mean: e, channels: t, precision: n }) {
+function _c({ mean: e, channels: t, precision: n }) {
 	let { scale: r, zero: i } = e, a = n ? 4 : 1 / Pi(e, Mi([e])), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
@@ -3700,8 +3707,8 @@ function hc({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function gc(e, t, n, r) {
-	let i = e.flatMap((e) => Array(e.textures).fill(Pi(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * go(n), c = {
+function vc(e, t, n, r) {
+	let i = e.flatMap((e) => Array(e.textures).fill(Pi(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * vo(n), c = {
 		scale: new Float32Array(s),
 		bias: new Float32Array(s)
 	};
@@ -3712,7 +3719,7 @@ function gc(e, t, n, r) {
 	return c;
 }
 // eigenfield-three/src/player.ts
-var _c = .25, vc = class extends f {
+var yc = .25, bc = class extends f {
 	timeline;
 	user;
 	first;
@@ -3747,7 +3754,7 @@ var _c = .25, vc = class extends f {
 		return this.shown.number;
 	}
 	get time() {
-		return $i(this.timeline, this.shown.number);
+		return ta(this.timeline, this.shown.number);
 	}
 	get sought() {
 		return (this.following ?? this.goal ?? this.shown.position) % this.frames;
@@ -3756,7 +3763,7 @@ var _c = .25, vc = class extends f {
 		return this.goal !== null;
 	}
 	get group() {
-		let { groups: e } = this.timeline, t = ea(this.timeline, this.shown.number);
+		let { groups: e } = this.timeline, t = na(this.timeline, this.shown.number);
 		return {
 			index: t,
 			count: e.length,
@@ -3789,7 +3796,7 @@ var _c = .25, vc = class extends f {
 		this.plays && (this.plays = !1, this.clock = this.shown.position, this.sound?.rest(), this.dispatchEvent({ type: "change" }));
 	}
 	seek(e) {
-		return this.toFrame(Qi(this.timeline, e));
+		return this.toFrame(ea(this.timeline, e));
 	}
 	toFrame(e) {
 		return this.toPosition(this.lap + Math.min(Math.max(Math.round(e), 0), this.frames - 1));
@@ -3801,7 +3808,7 @@ var _c = .25, vc = class extends f {
 	}
 	update(e = performance.now()) {
 		if (this.disposed) return;
-		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, _c);
+		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, yc);
 		if (this.last = this.plays && this.goal === null ? e : null, this.goal === null && !this.plays) return;
 		this.goal === null ? (this.clock = this.advanced(t), this.sound?.follow(this.first + this.clock % this.frames / this.rate, this.pace)) : this.sound?.rest();
 		let n = this.ring.take(this.goal ?? Math.floor(this.clock));
@@ -3848,11 +3855,11 @@ var _c = .25, vc = class extends f {
 	fail(e, t) {
 		if (this.disposed) return;
 		this.user.failed(e), t === null && this.pause();
-		let n = this.goal !== null && ea(this.timeline, this.goal % this.frames);
+		let n = this.goal !== null && na(this.timeline, this.goal % this.frames);
 		n === !1 || t !== null && n !== t || (this.goal = this.following = null, this.settle());
 	}
-}, yc = 65535;
-function bc(e, t) {
+}, xc = 65535;
+function Sc(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
 	if (!i) throw new M("damaged", "The proxy mesh has no triangles; make or download the file again.");
 	if (r.count !== n.count) throw N(t.uv.where, `${r.count} for ${n.count} vertices`);
@@ -3862,37 +3869,37 @@ function bc(e, t) {
 	}
 	for (let e of i.array) if (e >= n.count) throw N(t.indices.where, `no vertex ${e}`);
 }
-async function xc({ view: e, codec: t, where: n }, r) {
+async function Cc({ view: e, codec: t, where: n }, r) {
 	let i = t.decode(new Uint8Array(await r(e)), n);
 	if (!i.indices.length) throw N(n, "a mesh without faces");
 	return i;
 }
-function Sc({ positions: n, uv: r, indices: i }) {
+function wc({ positions: n, uv: r, indices: i }) {
 	let a = new t();
 	a.setAttribute("position", new e(n.slice(), 3)), a.setAttribute("uv", new e(r, 2));
-	let o = n.length / 3 <= yc;
+	let o = n.length / 3 <= xc;
 	return a.setIndex(new e(o ? Uint16Array.from(i) : i, 1)), a;
 }
-function Cc(e) {
+function Tc(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/footprint.ts
-var wc = 256;
-function Tc(e, t, n) {
+var Ec = 256;
+function Dc(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / wc)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / Ec)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Ec(t, i.getX(e), i.getY(e), i.getZ(e))), l = Dc(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Oc(t, i.getX(e), i.getY(e), i.getZ(e))), l = kc(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = Dc(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = kc(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -3902,7 +3909,7 @@ function Tc(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function Ec({ K: e, R: t, t: n }, r, i, a) {
+function Oc({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -3910,12 +3917,12 @@ function Ec({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function Dc(e) {
+function kc(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/sheet-stack.ts
-var Oc = "sheets", kc = 16, Ac = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", jc = `${ss}${cs}
+var Ac = "sheets", jc = 16, Mc = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Nc = `${ls}${us}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -3940,7 +3947,7 @@ void main() {
   gl_FragDepth = depth;
   fragment = colour;
 }
-`, Mc = new ie(), Nc = class {
+`, Pc = new ie(), Fc = class {
 	material;
 	scene = new A();
 	camera = new n();
@@ -3950,16 +3957,16 @@ void main() {
 	everywhere = new t();
 	target = null;
 	constructor(t) {
-		this.material = t, this.depth = gs(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
+		this.material = t, this.depth = vs(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
 			let { materialIndex: o = 0 } = a, s = this.sheets.material.length / 2, c = s - 1 - (o >> 1);
 			e.getContext().depthRange(c / s, (c + 1) / s);
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
 		let { shown: n, photograph: r, toPhotograph: i } = t.uniforms;
 		this.screen = new k({
-			name: Oc,
+			name: Ac,
 			glslVersion: h,
-			vertexShader: Ac,
-			fragmentShader: jc,
+			vertexShader: Mc,
+			fragmentShader: Nc,
 			uniforms: {
 				shown: n,
 				photograph: r,
@@ -3973,7 +3980,7 @@ void main() {
 				toPlace: { value: new x() }
 			},
 			transparent: !0,
-			...ps
+			...hs
 		});
 		let a = new Float32Array([
 			-1,
@@ -3989,7 +3996,7 @@ void main() {
 		this.everywhere.setAttribute("position", new e(a, 3));
 	}
 	get bytes() {
-		return this.target ? kc * this.target.width * this.target.height : 0;
+		return this.target ? jc * this.target.width * this.target.height : 0;
 	}
 	setGeometry(e, t) {
 		e.clearGroups();
@@ -4007,7 +4014,7 @@ void main() {
 	attach(e, t) {
 		for (let t of [e.material].flat()) t.visible = !1;
 		let n = new S(this.everywhere, this.screen);
-		n.name = Oc, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
+		n.name = Ac, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
 			t(n, i), this.draw(n, i, e);
 		}, e.add(n);
 	}
@@ -4018,18 +4025,18 @@ void main() {
 		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
 	}
 	draw(e, t, n) {
-		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Mc);
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Pc);
 		if (!a || !o) return;
-		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Pc(a, o));
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Ic(a, o));
 		let { target: s } = this;
-		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), Go(e, t, () => {
+		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), qo(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
 		}), e.getContext().depthRange(0, 1);
 		let { uniforms: c } = this.screen;
 		this.set("sheets", s.textures[0]), this.set("solid", s.textures[1]), this.set("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
 	}
 };
-function Pc(e, t) {
+function Ic(e, t) {
 	let n = new l(e, t, ne);
 	n.format = c;
 	let r = new ae(e, t, {
@@ -4043,7 +4050,7 @@ function Pc(e, t) {
 	return i && (i.type = te), r;
 }
 // eigenfield-three/src/surface.ts
-var Fc = class {
+var Lc = class {
 	meshes;
 	faces;
 	reference;
@@ -4058,7 +4065,7 @@ var Fc = class {
 		if (!i) throw Error("a field needs a mesh");
 		this.mesh = i;
 		let a = [i.material].flat().some((e) => e.side !== m);
-		this.material = hs(a, t !== null), this.stack = t && new Nc(this.material);
+		this.material = _s(a, t !== null), this.stack = t && new Fc(this.material);
 		for (let t of e) {
 			let e = (e, n) => r(e, n, t);
 			this.stack ? this.stack.attach(t, e) : (t.material = this.material, t.onBeforeRender = (t, n, r) => e(t, r));
@@ -4085,52 +4092,52 @@ var Fc = class {
 		e.boundingBox = e.boundingSphere = null, this.faces = t, this.version += 1, this.show(t);
 	}
 	show(e) {
-		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? Tc(this.geometry, this.reference, [1, 1]) : 0;
+		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? Dc(this.geometry, this.reference, [1, 1]) : 0;
 	}
 	dispose() {
 		this.stack?.dispose(), this.material.dispose(), this.geometry.dispose();
 	}
 };
 // eigenfield-three/src/gpu.ts
-function Ic(e) {
+function Rc(e) {
 	let t = e.getContext();
 	if (!(t instanceof WebGL2RenderingContext)) throw new M("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
 	if ((t.getExtension("EXT_color_buffer_float") ?? t.getExtension("EXT_color_buffer_half_float")) || t.isContextLost()) return t;
 	throw new M("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
 }
-function Lc(e, t) {
+function zc(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function Rc(e, { components: t, halves: n }) {
+function Bc(e, { components: t, halves: n }) {
 	return t > 2 ? n ? e.RGBA16F : e.RGBA8 : t > 1 ? n ? e.RG16F : e.RG8 : n ? e.R16F : e.R8;
 }
-function zc(e, [t, n], r, i, a) {
-	return Hc(e, e.TEXTURE_2D_ARRAY, () => {
-		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, Rc(e, a), t, n, r);
+function Vc(e, [t, n], r, i, a) {
+	return Wc(e, e.TEXTURE_2D_ARRAY, () => {
+		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, Bc(e, a), t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function Bc(e, t, n, r) {
+function Hc(e, t, n, r) {
 	let { width: i, height: a } = n, o = r > 2 ? e.RGBA : r > 1 ? e.RG : e.RED;
-	Uc(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
+	Gc(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
 }
-function Vc(e, [t, n], r) {
-	return Hc(e, e.TEXTURE_2D, () => {
-		e.texStorage2D(e.TEXTURE_2D, 1, Rc(e, r), t, n);
+function Uc(e, [t, n], r) {
+	return Wc(e, e.TEXTURE_2D, () => {
+		e.texStorage2D(e.TEXTURE_2D, 1, Bc(e, r), t, n);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D, t, e.NEAREST);
 	});
 }
-function Hc(e, t, n) {
+function Wc(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return Uc(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return Gc(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function Uc(e, t, n, r) {
+function Gc(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -4144,7 +4151,7 @@ function Uc(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-function Wc(e, t, n) {
+function Kc(e, t, n) {
 	let r = e.createProgram();
 	for (let [i, a] of [[e.VERTEX_SHADER, t], [e.FRAGMENT_SHADER, n]]) {
 		let t = e.createShader(i);
@@ -4152,7 +4159,7 @@ function Wc(e, t, n) {
 	}
 	return e.linkProgram(r), r;
 }
-function Gc(e, t, n, r) {
+function qc(e, t, n, r) {
 	if (!n) {
 		r();
 		return;
@@ -4160,9 +4167,9 @@ function Gc(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), Uc(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), Gc(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function Kc(e, t) {
+function Jc(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -4177,13 +4184,13 @@ function Kc(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r && e.isProgram(r) ? r : null), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/charts.ts
-function qc(e, t) {
-	let n = Wc(e, ...dc), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
+function Yc(e, t) {
+	let n = Kc(e, ...pc), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
 		let { index: o } = t, s = t.getAttribute("uv"), c = Float32Array.from({ length: 2 * (o?.count ?? 0) }, (e, t) => {
 			let n = o?.getX(t >> 1) ?? 0;
 			return t % 2 ? s.getY(n) : s.getX(n);
 		}), [l, u] = [e.createVertexArray(), e.createBuffer()], d = e.getParameter(e.ARRAY_BUFFER_BINDING);
-		Kc(e, () => {
+		Jc(e, () => {
 			e.useProgram(n), e.bindVertexArray(l), e.bindBuffer(e.ARRAY_BUFFER, u), e.bufferData(e.ARRAY_BUFFER, c, e.STREAM_DRAW);
 			let t = e.getAttribLocation(n, "uv");
 			e.enableVertexAttribArray(t), e.vertexAttribPointer(t, 2, e.FLOAT, !1, 0, 0), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, a, 0), e.viewport(0, 0, ...i), e.colorMask(!0, !0, !0, !0), e.drawArrays(e.TRIANGLES, 0, c.length / 2);
@@ -4194,7 +4201,7 @@ function qc(e, t) {
 			let { geometry: r } = t;
 			if (i?.grid.join() !== n.join() || i.geometry !== r) {
 				e.deleteTexture(i?.texture ?? null);
-				let t = Vc(e, n, {
+				let t = Uc(e, n, {
 					components: 1,
 					halves: !1
 				});
@@ -4212,7 +4219,7 @@ function qc(e, t) {
 	};
 }
 // eigenfield-three/src/packing.ts
-var Jc = [
+var Xc = [
 	"precisions",
 	"covered",
 	"factors",
@@ -4223,14 +4230,14 @@ var Jc = [
 	"nodes",
 	"zero"
 ];
-function Yc(e, t, n, r) {
+function Zc(e, t, n, r) {
 	let [i, a, o] = [
-		Wc(e, sc, cc),
-		Wc(e, sc, lc),
-		Wc(e, sc, uc)
-	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && qc(e, r), u = !1, d = (t) => Object.fromEntries(Jc.map((n) => [n, e.getUniformLocation(t, n)])), [f, p] = [d(i), d(a)], m = (t, n, r, i, a, o, s) => {
+		Kc(e, lc, uc),
+		Kc(e, lc, dc),
+		Kc(e, lc, fc)
+	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && Yc(e, r), u = !1, d = (t) => Object.fromEntries(Xc.map((n) => [n, e.getUniformLocation(t, n)])), [f, p] = [d(i), d(a)], m = (t, n, r, i, a, o, s) => {
 		let { picture: c, rows: l } = n, { size: u, corner: d, unit: f, codes: p } = i;
-		Xc(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
+		Qc(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
 			0,
 			1,
 			2,
@@ -4242,33 +4249,33 @@ function Yc(e, t, n, r) {
 		h(t, n), e.colorMask(r === 0, r === 1, r === 2, r === 3);
 	}, _ = (r, s, d, _, v, y) => {
 		let { picture: b, row: x, rows: S } = r, [C, w] = v.size, T = C < b.width || w < S ? t.smaller : null, E = Math.max(1, Math.floor((T ? n - 2 : n) * w / S)), D = u && s === t.codes, O = (T && l?.covered(v.grid)) ?? null;
-		Gc(e, 0, D ? null : s, () => {
+		qc(e, 0, D ? null : s, () => {
 			for (let t = 0; t < w; t += E) {
 				let n = Math.min(E, w - t), o = Math.floor(t * S / w), s = Math.ceil((t + n) * S / w);
-				Xc(b) ? Qc(e, b, x + o, s - o) : Zc(e, b, x + o, s - o);
+				Qc(b) ? el(e, b, x + o, s - o) : $c(e, b, x + o, s - o);
 				let l = () => {
 					let s = T || y ? p : f;
 					e.useProgram(T || y ? a : i), e.bindVertexArray(c), e.uniform1i(s.precisions, +!!y), e.uniform1i(s.covered, T ? 2 : 0), e.uniform2i(s.nodes, y?.precision.width ?? 0, y?.precision.height ?? 0), e.uniform1f(s.zero, y?.zero ?? 0), T ? (h(T, null), e.colorMask(!0, !0, !0, !0)) : g(d, _), m(s, r, _.channel, v, o, t, n);
 				};
-				Gc(e, 2, O, () => {
-					D ? l() : Kc(e, l);
+				qc(e, 2, O, () => {
+					D ? l() : Jc(e, l);
 				});
 			}
-		}), T && Gc(e, 0, T, () => Kc(e, () => {
+		}), T && qc(e, 0, T, () => Jc(e, () => {
 			e.useProgram(o), e.bindVertexArray(c), e.uniform2i(e.getUniformLocation(o, "size"), C, w), g(d, _), e.viewport(0, 0, C, w), e.drawArrays(e.TRIANGLES, 0, 3);
 		}));
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let s = Xc(n.picture) ? t.codes : t.picture;
+			let s = Qc(n.picture) ? t.codes : t.picture;
 			if (!s) return;
 			let c = () => i.forEach((e) => _(n, s, r, e, a, o));
-			o ? Gc(e, 1, t.precision, () => {
-				Zc(e, o.precision, 0, o.precision.height), c();
+			o ? qc(e, 1, t.precision, () => {
+				$c(e, o.precision, 0, o.precision.height), c();
 			}) : c();
 		},
 		together(n) {
-			Gc(e, 0, t.codes, () => Kc(e, () => {
+			qc(e, 0, t.codes, () => Jc(e, () => {
 				u = !0;
 				try {
 					n();
@@ -4288,17 +4295,17 @@ function Yc(e, t, n, r) {
 		}
 	};
 }
-function Xc(e) {
+function Qc(e) {
 	return "data" in e;
 }
-function Zc(e, t, n, r) {
+function $c(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function Qc(e, { data: t, width: n, stride: r }, i, a) {
+function el(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
 // eigenfield-three/src/textures.ts
-var $c = class {
+var tl = class {
 	parts;
 	source;
 	surface;
@@ -4327,7 +4334,7 @@ var $c = class {
 			tenBits: Mi(t.pictures)
 		})));
 		this.layout = s;
-		let c = ua(i).map(({ channels: e, mean: t }, n) => {
+		let c = fa(i).map(({ channels: e, mean: t }, n) => {
 			let r = n === i.planes.length;
 			return {
 				size: o[n] ?? [1, 1],
@@ -4342,7 +4349,7 @@ var $c = class {
 			means: c,
 			bases: s,
 			rays: a.facesPlane,
-			geometry: el(n.geometry)
+			geometry: nl(n.geometry)
 		}, this.means = c.map(() => new p()), this.bases = s.map(() => new p()), this.ready = s.map(({ count: e }) => Array(e).fill(!1)), this.stillVersions = c.map(() => 0);
 	}
 	get hasMeans() {
@@ -4356,7 +4363,7 @@ var $c = class {
 		return Math.min(t, ...e);
 	}
 	get bytes() {
-		return this.plan ? this.plan.bytes - this.needs.geometry + el(this.surface.geometry) : 0;
+		return this.plan ? this.plan.bytes - this.needs.geometry + nl(this.surface.geometry) : 0;
 	}
 	get attached() {
 		return this.renderer !== null || this.disposed;
@@ -4386,7 +4393,7 @@ var $c = class {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		let n = Ic(e);
+		let n = Rc(e);
 		if (n.isContextLost()) return;
 		let { packer: r, plan: i } = this.makeRoom(n);
 		this.plan = i, this.packer = r, this.onPlan(i), await this.source.fill(this.filling(n, i, t)), t.aborted || this.onComplete();
@@ -4436,12 +4443,12 @@ var $c = class {
 		this.version += 1;
 	}
 	putMean(e, t, n, { pieces: r, precision: i }) {
-		let [a, o] = [this.means[n]?.sourceTexture, ua(this.parts.scene)[n]], { size: s, tenBits: c } = this.needs.means[n] ?? {};
+		let [a, o] = [this.means[n]?.sourceTexture, fa(this.parts.scene)[n]], { size: s, tenBits: c } = this.needs.means[n] ?? {};
 		if (!(a instanceof WebGLTexture) || !o || !s) return;
 		this.stillVersions[n] = this.version += 1;
 		let { mean: l, channels: u } = o, d = X(s, t.meanDown), [f] = r;
 		if (f && r.length === 1 && "close" in f.picture && !c && d.join() === s.join()) {
-			Bc(e, a, f.picture, u);
+			Hc(e, a, f.picture, u);
 			return;
 		}
 		let p = {
@@ -4475,25 +4482,25 @@ var $c = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs;
-		this.needs.geometry = el(this.surface.geometry);
+		this.needs.geometry = nl(this.surface.geometry);
 		let r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
-		for (let i = this.options.memory ?? uo();; i /= 2) {
-			let a = yo(this.needs, Lc(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => zc(e, X(t, o), mo(n), !1, {
+		for (let i = this.options.memory ?? po();; i /= 2) {
+			let a = xo(this.needs, zc(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => Vc(e, X(t, o), go(n), !1, {
 				components: n,
 				halves: r
 			})), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return zc(e, a ? X(t, s) : [1, 1], a ? ho(a, n) : 1, u, {
+				return Vc(e, a ? X(t, s) : [1, 1], a ? _o(a, n) : 1, u, {
 					components: Math.max(1, a),
 					halves: l && i
 				});
-			})], f = So(this.needs, a, i), [p, m, h] = [
+			})], f = wo(this.needs, a, i), [p, m, h] = [
 				f.picture,
 				f.codes,
 				f.smaller
-			].map((t) => t ? Vc(e, t.size, t.format) : null), g = Vc(e, Co(r), ro);
+			].map((t) => t ? Uc(e, t.size, t.format) : null), g = Uc(e, To(r), ao);
 			if (p && g && (m || !f.codes) && (h || !f.smaller) && !d.includes(null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = d[t] ?? null), {
-				packer: Yc(e, {
+				packer: Zc(e, {
 					picture: p,
 					codes: m ?? null,
 					precision: g,
@@ -4512,11 +4519,11 @@ var $c = class {
 		}
 	}
 };
-function el({ attributes: e, index: t }) {
+function nl({ attributes: e, index: t }) {
 	return Object.values(e).reduce((e, t) => e + t.array.byteLength, 0) + (t?.array.byteLength ?? 0);
 }
 // eigenfield-three/src/field.ts
-var tl = 1.5, nl = .001, rl = class extends f {
+var rl = 1.5, il = .001, al = class extends f {
 	parts;
 	source;
 	mesh;
@@ -4552,7 +4559,7 @@ var tl = 1.5, nl = .001, rl = class extends f {
 	constructor(e, t, n = {}) {
 		super(), this.parts = e, this.source = t;
 		let { scene: r, info: i } = e, a = r.sheets?.faces ?? null;
-		this.surface = new Fc(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = La(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip && this.shape(e.clip.group, 0, e.clip.mesh, !1), this.textures = new $c(e, t, this.surface, n), this.complete = new Promise((e, t) => {
+		this.surface = new Lc(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = za(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip && this.shape(e.clip.group, 0, e.clip.mesh, !1), this.textures = new tl(e, t, this.surface, n), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0), this.listen(), n.renderer && this.textures.attach(n.renderer);
 	}
@@ -4596,20 +4603,20 @@ var tl = 1.5, nl = .001, rl = class extends f {
 		this.textures.onPlan = (e) => {
 			let { scene: t } = this.parts;
 			this.freeComposers(), this.summed = {
-				parts: fc(t, this.textures, e),
-				opacity: mc(t, this.textures)
+				parts: mc(t, this.textures, e),
+				opacity: gc(t, this.textures)
 			}, e.limitation && queueMicrotask(() => this.dispatchEvent({ type: "limited" }));
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return tl * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
+		return rl * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
 	}
 	weightsOf(e) {
 		let { scene: t, info: n, weights: r } = this.parts;
-		return new ts(n, J(t).map(({ count: e }) => e), e, r);
+		return new rs(n, J(t).map(({ count: e }) => e), e, r);
 	}
 	makePlayer({ timeline: e, ring: t, sound: n }) {
-		return new vc(e, t, {
+		return new bc(e, t, {
 			show: (e) => this.showFrame(e),
 			failed: (e) => this.dispatchEvent({
 				type: "error",
@@ -4618,22 +4625,22 @@ var tl = 1.5, nl = .001, rl = class extends f {
 		}, n);
 	}
 	showFrame({ number: e, group: t, films: n }) {
-		this.group && this.shape(t, e - t.first, this.group.mesh, this.group.motion !== null), t !== this.group && this.enter(t), this.source instanceof Ps && this.source.show(n);
+		this.group && this.shape(t, e - t.first, this.group.mesh, this.group.motion !== null), t !== this.group && this.enter(t), this.source instanceof Is && this.source.show(n);
 	}
 	shape({ mesh: e, motion: t }, n, r, i) {
 		if (this.surface.geometry !== this.moved || e === r && !t && !i) return;
-		let a = e === r ? this.moved : Sc(e), o = a.getAttribute("position");
+		let a = e === r ? this.moved : wc(e), o = a.getAttribute("position");
 		t ? t.place(n, o.array) : o.copyArray(e.positions), o.needsUpdate = !0, this.moved = a, this.surface.setGeometry(a);
 	}
 	enter(e) {
 		let { scene: t } = this.parts, { plan: n } = this.textures;
-		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), Xs(t, e), n && pc(this.summed.parts, t, this.textures, n);
+		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), Qs(t, e), n && hc(this.summed.parts, t, this.textures, n);
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = ol(t, n), [i, a] = Ua(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
+		let r = cl(t, n), [i, a] = Ga(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
 		this.setView(), this.setExposure(o, [i, a]);
-		let u = rs[this.filter];
+		let u = as[this.filter];
 		l.defines.BICUBIC !== u && (l.defines.BICUBIC = u, l.needsUpdate = !0), l.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
@@ -4642,7 +4649,7 @@ var tl = 1.5, nl = .001, rl = class extends f {
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
 		if (!s) {
 			let { parts: e, opacity: t } = this.summed;
-			s = new qo(i, e, t, o, this.coarser > 1, this.surface, a), this.composers.set(o, s);
+			s = new Yo(i, e, t, o, this.coarser > 1, this.surface, a), this.composers.set(o, s);
 		}
 		s.compose(e, t, n);
 		let { composed: c, finest: l } = this.surface.material.uniforms;
@@ -4653,15 +4660,15 @@ var tl = 1.5, nl = .001, rl = class extends f {
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.surface.material.uniforms.shown.value, r = n === is.eigen ? this.shownEigen : null;
+		let n = this.surface.material.uniforms.shown.value, r = n === os.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			opacity: this.textures.opacityVersion,
 			only: r,
-			count: n === is.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === os.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && Vo(this.info.viewPlane, t),
+			eye: t && Uo(this.info.viewPlane, t),
 			places: t || this.coarser > 1 ? this.surface.version : 0,
 			maps: t && this.weights.maps(this.mixing, this.usable)
 		};
@@ -4669,7 +4676,7 @@ var tl = 1.5, nl = .001, rl = class extends f {
 	setExposure(e, t) {
 		let { cameras: n, heldOut: r, mixedColours: i, viewPlane: a } = this.info, o = this.exposure ?? (i || this.showsErrors ? e : null), s = o === null ? void 0 : n[o], c = [[s, 1]];
 		if (i && (o === null || r[o])) {
-			let e = s ? Ua(a, s.centre) : t, { camera: n, weight: r } = this.parts.weights.at(...e, this.mixing);
+			let e = s ? Ga(a, s.centre) : t, { camera: n, weight: r } = this.parts.weights.at(...e, this.mixing);
 			c = [
 				0,
 				1,
@@ -4677,7 +4684,7 @@ var tl = 1.5, nl = .001, rl = class extends f {
 				3
 			].map((e) => [this.encoded[n[e] ?? 0], r[e] ?? 0]);
 		}
-		let { scale: l, bias: u } = eo(c), { exposureScale: d, exposureBias: f } = this.surface.material.uniforms;
+		let { scale: l, bias: u } = no(c), { exposureScale: d, exposureBias: f } = this.surface.material.uniforms;
 		d.value.fromArray(l), f.value.fromArray(u);
 	}
 	get showsErrors() {
@@ -4685,9 +4692,9 @@ var tl = 1.5, nl = .001, rl = class extends f {
 	}
 	setView() {
 		let { uniforms: e } = this.surface.material, t = this.showsErrors, n = this.view === "error" && !t ? "picture" : this.view, r = this.shownEigen;
-		e.shown.value = is[n === "eigen" && r >= this.loaded ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
+		e.shown.value = os[n === "eigen" && r >= this.loaded ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
 		let i = t && this.info.cameras[this.camera ?? 0];
-		i && this.photograph && _s(e, i, this.photograph);
+		i && this.photograph && ys(e, i, this.photograph);
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -4700,29 +4707,29 @@ var tl = 1.5, nl = .001, rl = class extends f {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= nl * Math.max(...r);
+		return Math.abs(i) <= il * Math.max(...r);
 	}
 	fail(e) {
-		if (sl(e)) return;
+		if (ll(e)) return;
 		let t = ue(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
 		this.dispatchEvent({
 			type: "error",
 			error: new M(t.code, r, t.where)
 		});
 	}
-}, il = new x(), al = new j();
-function ol(e, t) {
-	return al.setFromMatrixPosition(e.matrixWorld).applyMatrix4(il.copy(t.matrixWorld).invert()), [
-		al.x,
-		al.y,
-		al.z
+}, ol = new x(), sl = new j();
+function cl(e, t) {
+	return sl.setFromMatrixPosition(e.matrixWorld).applyMatrix4(ol.copy(t.matrixWorld).invert()), [
+		sl.x,
+		sl.y,
+		sl.z
 	];
 }
-function sl(e) {
+function ll(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var cl = class {
+var ul = class {
 	received = 0;
 	onPush = () => void 0;
 	chunks = [];
@@ -4766,11 +4773,129 @@ var cl = class {
 		}
 		return n.buffer;
 	}
-}, ll = 8, ul = 2 / 3, dl = /* @__PURE__ */ new Set([
+};
+async function dl(e, t, n) {
+	let r = e.getReader();
+	for (n.addEventListener("abort", () => void r.cancel().catch(() => void 0));;) {
+		let { done: e, value: n } = await r.read();
+		if (e) break;
+		t.push(n);
+	}
+	n.throwIfAborted(), t.end();
+}
+// eigenfield-three/src/ranges.ts
+var fl = 2 ** 20, pl = 2 ** 25, ml = 3, hl = 500, gl = class {
+	source;
+	arrival;
+	length;
+	part;
+	signal;
+	parted = !1;
+	begun = !1;
+	whole = null;
+	constructor(e, t, n, r, i) {
+		this.source = e, this.arrival = t, this.length = n, this.part = r, this.signal = i;
+	}
+	async read(e, t) {
+		let { arrival: n } = this;
+		if (t <= n.received || !this.begun || !this.parted && e <= n.received + fl) {
+			let r = await n.read(e, t).catch((e) => {
+				if (this.signal.aborted || !(this.parted || this.begun && vl(e))) throw e;
+			});
+			if (this.begun || this.limit(), r) return r;
+		}
+		if (this.giveUp(), this.source instanceof Blob) return this.slice(this.source, e, t);
+		let r = this.source;
+		return _l(this.signal, () => this.whole?.read(e, t) ?? this.fetch(r, e, t), () => this.whole === null);
+	}
+	limit() {
+		let { arrival: e } = this;
+		this.begun = !0, e.onPush = () => {
+			e.received >= pl && e.received < this.length && this.giveUp();
+		}, e.onPush();
+	}
+	giveUp() {
+		this.parted || (this.parted = !0, this.part());
+	}
+	async slice(e, t, n) {
+		let r = await e.slice(t, n).arrayBuffer();
+		if (r.byteLength < n - t) throw ce(t + r.byteLength, n);
+		return r;
+	}
+	async fetch(e, t, n) {
+		let r = { Range: `bytes=${t}-${n - 1}` }, i = await fetch(e, {
+			headers: r,
+			signal: this.signal
+		}).catch((e) => {
+			throw this.signal.aborted ? e : this.broken(t, e);
+		});
+		if (i.status === 200 && i.body) return this.receive(i.body).read(t, n);
+		if (i.status !== 206) throw await i.body?.cancel(), this.broken(t, `The server answered ${i.status}`);
+		let a = await i.arrayBuffer().catch((e) => {
+			throw this.signal.aborted ? e : this.broken(t, e);
+		});
+		if (a.byteLength !== n - t) throw this.broken(t + a.byteLength, "a range that was cut short");
+		return a;
+	}
+	receive(e) {
+		let t = this.whole = new ul();
+		return dl(e, t, this.signal).catch((e) => t.fail(this.signal.aborted ? e : this.broken(t.received, e))), t;
+	}
+	broken(e, t) {
+		return new M("network", `The connection broke at byte ${e} of ${this.length} of the clip; it is tried again when it plays on.`, String(e), { cause: t });
+	}
+};
+async function _l(e, t, n = () => !0) {
+	for (let r = 1;; r++) try {
+		return await t();
+	} catch (t) {
+		if (e.throwIfAborted(), r === ml || !vl(t) || !n()) throw t;
+		await new Promise((e) => setTimeout(e, hl * 2 ** (r - 1))), e.throwIfAborted();
+	}
+}
+function vl(e) {
+	return e instanceof M && e.code === "network";
+}
+// eigenfield-three/src/beside.ts
+var yl = class {
+	scene;
+	signal;
+	arriving = /* @__PURE__ */ new Map();
+	constructor(e, t) {
+		this.scene = e, this.signal = t;
+	}
+	read(e, t, n) {
+		return _l(this.signal, async () => {
+			let r = this.arriving.get(e) ?? this.fetch(e, t);
+			try {
+				let i = await r.read(0, n);
+				return n === t && this.arriving.delete(e), i;
+			} catch (t) {
+				throw this.arriving.delete(e), t;
+			}
+		});
+	}
+	fetch(e, t) {
+		let n = new ul();
+		return this.arriving.set(e, n), this.receive(e, t, n).catch((t) => {
+			n.fail(this.signal.aborted || t instanceof M ? t : bl(e, t));
+		}), n;
+	}
+	async receive(e, t, n) {
+		let r = new URL(e, new URL(this.scene, document.baseURI)), { ok: i, status: a, headers: o, body: s } = await fetch(r, { signal: this.signal }), c = o.get("Content-Encoding") ? null : o.get("Content-Length"), l = i && c !== null && Number(c) !== t;
+		if (i && s && !l) return dl(s, n, this.signal);
+		throw await s?.cancel(), l ? N(e, `${c} bytes of ${t}`) : bl(e, `The server answered ${a}`);
+	}
+};
+function bl(e, t) {
+	return new M("network", `The clip's file ${e} cannot be fetched; put it beside the clip's own. It is tried again when it plays on.`, e, { cause: t });
+}
+// eigenfield-three/src/frame-ring.ts
+var xl = 8, Sl = 2 / 3, Cl = /* @__PURE__ */ new Set([
 	"damaged",
 	"truncated",
 	"network"
-]), fl = class {
+]), wl = class {
 	timeline;
 	groups;
 	user;
@@ -4803,13 +4928,13 @@ var cl = class {
 		return this.decoders.reduce((e, t) => e + t.open, 0);
 	}
 	get reach() {
-		return Math.max(this.newest, this.from) + ll / 2;
+		return Math.max(this.newest, this.from) + xl / 2;
 	}
 	isOver(e) {
 		return this.newest >= e && ![...this.slots.keys()].some((t) => t <= e);
 	}
 	seek(e) {
-		let t = ea(this.timeline, this.numberOf(e));
+		let t = na(this.timeline, this.numberOf(e));
 		if (this.broken.has(t)) return !1;
 		let n = e - this.numberOf(e) + (this.timeline.groups[t]?.first ?? 0), r = this.slots.has(e) && ![...this.skipped].some((t) => t > e);
 		(this.given === null || this.next <= n || e < this.next && !r) && (this.stop(), this.next = n), this.wanted = this.from = e;
@@ -4851,7 +4976,7 @@ var cl = class {
 		return e % this.timeline.frames;
 	}
 	get hasRoom() {
-		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = Math.max(this.from, this.wanted) + ll;
+		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = Math.max(this.from, this.wanted) + xl;
 		return this.next < Math.min(n, t) && this.decoders.every(({ ready: e }) => e);
 	}
 	async feedAll() {
@@ -4860,14 +4985,14 @@ var cl = class {
 				this,
 				this.next,
 				this.numberOf(this.next)
-			], r = ea(this.timeline, n);
+			], r = na(this.timeline, n);
 			if (this.broken.has(r)) {
 				this.pass(r, t);
 				continue;
 			}
 			this.fed = r;
 			let i = this.given?.index === r ? this.given : await this.groups.open(r), a = n - i.first, o = i.units[a] ?? [];
-			if (a >= i.frames * ul && this.prepare((r + 1) % this.timeline.groups.length), i.motion?.read(a), a === 0 && await Promise.all(this.decoders.map((e, t) => e.start(o[t]))), e !== this.turn || (this.given = i, this.next = t + 1, this.decoders.forEach((e, n) => e.decode(o[n], t, a === 0)), a === i.frames - 1 && await Promise.all(this.decoders.map((e) => e.flush())), e !== this.turn)) return;
+			if (a >= i.frames * Sl && this.prepare((r + 1) % this.timeline.groups.length), i.motion?.read(a), a === 0 && await Promise.all(this.decoders.map((e, t) => e.start(o[t]))), e !== this.turn || (this.given = i, this.next = t + 1, this.decoders.forEach((e, n) => e.decode(o[n], t, a === 0)), a === i.frames - 1 && await Promise.all(this.decoders.map((e) => e.flush())), e !== this.turn)) return;
 		}
 	}
 	prepare(e) {
@@ -4876,7 +5001,7 @@ var cl = class {
 	async receive(e, t, n) {
 		let [{ turn: r }, i] = [this, this.slotOf(t)];
 		if (!i) return;
-		let a = await Es(n, this.rooms[e]?.pop() ?? null, this.timeline.films[e]?.opacity);
+		let a = await Os(n, this.rooms[e]?.pop() ?? null, this.timeline.films[e]?.opacity);
 		if (r !== this.turn || this.slots.get(t) !== i) return this.reuseOne(e, a);
 		i.films[e] = a, i.films.includes(null) || this.user.ready();
 	}
@@ -4892,7 +5017,7 @@ var cl = class {
 		return this.slots.set(e, n), n;
 	}
 	fail(e) {
-		if (!(e instanceof M) || !dl.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(e, null);
+		if (!(e instanceof M) || !Cl.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(e, null);
 		this.halt();
 		for (let [e, t] of this.slots) t.films.includes(null) && this.forget(e, t);
 		this.broken.add(this.fed), this.user.failed(e, this.fed), this.feed();
@@ -4921,7 +5046,7 @@ var cl = class {
 	reuseOne(e, { room: t }) {
 		t && this.rooms[e]?.push(t);
 	}
-}, pl = .3, ml = .2, hl = 2, gl = class {
+}, Tl = .3, El = .2, Dl = 2, Ol = class {
 	place;
 	read;
 	changed;
@@ -4952,7 +5077,7 @@ var cl = class {
 		let r = e - this.place.first;
 		if (r < 0 || r >= n.duration) return n.pause();
 		let i = r - n.currentTime;
-		Math.abs(i) > pl * Math.max(t, 1) ? n.seeking || (n.currentTime = r) : n.playbackRate = t * (1 + Math.min(Math.max(hl * i, -.2), ml)), n.paused && !this.starting && this.start(n);
+		Math.abs(i) > Tl * Math.max(t, 1) ? n.seeking || (n.currentTime = r) : n.playbackRate = t * (1 + Math.min(Math.max(Dl * i, -.2), El)), n.paused && !this.starting && this.start(n);
 	}
 	rest() {
 		this.audio?.pause();
@@ -4975,64 +5100,64 @@ var cl = class {
 	fail() {
 		this.silent = !0, this.audio = null, this.changed();
 	}
-}, _l = {
+}, kl = {
 	mimeType: "video/AV1",
 	bits: 10
 };
-async function vl(e, t, n, r) {
-	let i = new Ys(e, t, n, r), a = await i.begin();
-	a.motion?.read(0), Xs(e, a);
-	let o = await Promise.all(t.films.map((e, t) => yl(a.units[0][t], e))), { sound: s } = t;
+async function Al(e, t, n, r) {
+	let i = new Zs(e, t, n, r), a = await i.begin();
+	a.motion?.read(0), Qs(e, a);
+	let o = await Promise.all(t.films.map((e, t) => jl(a.units[0][t], e))), { sound: s } = t;
 	return {
 		timeline: t,
 		group: a,
 		films: o,
 		mesh: n,
-		ring: (e) => new fl(t, i, e),
-		sound: s && ((e) => new gl(s, () => r(s.offset, s.length), e))
+		ring: (e) => new wl(t, i, e),
+		sound: s && ((e) => new Ol(s, () => r(s, s.length), e))
 	};
 }
-async function yl(e, { size: t, where: n }) {
+async function jl(e, { size: t, where: n }) {
 	let r = {
 		view: -1,
-		codec: _l,
+		codec: kl,
 		textures: 1,
 		pieces: 1,
 		where: n
 	}, i = await Yr(_e(e.slice().buffer, n), r, t), a = i[0].picture;
 	if ("data" in a) return a;
 	let o = new OffscreenCanvas(...t).getContext("2d");
-	return o.drawImage(a, 0, 0), ks(i), Ds(o.getImageData(0, 0, ...t).data, 4 * t[0], 4, t);
+	return o.drawImage(a, 0, 0), js(i), ks(o.getImageData(0, 0, ...t).data, 4 * t[0], 4, t);
 }
 // eigenfield-three/src/means.ts
-async function bl(e, t) {
-	let { mean: n, meanSize: r } = e, i = e.precision && await xl(await t(e.precision.view), e.precision);
+async function Ml(e, t) {
+	let { mean: n, meanSize: r } = e, i = e.precision && await Nl(await t(e.precision.view), e.precision);
 	return {
 		pieces: await n.codec.decode(await t(n.view), n, r),
 		precision: i
 	};
 }
-async function xl(e, t) {
+async function Nl(e, t) {
 	let { type: n } = Ir(e) ?? {}, { mimeType: r } = t.codec;
 	if (n && n !== r) throw N(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
 	if (!i) throw N(t.where, "no picture");
 	return i.picture;
 }
-function Sl({ pieces: e, precision: t }) {
-	ks(e), t?.close();
+function Pl({ pieces: e, precision: t }) {
+	js(e), t?.close();
 }
 // eigenfield-three/src/packed.ts
-var Cl = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", wl = 4;
-async function Tl(e, t) {
+var Fl = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Il = 4;
+async function Ll(e, t) {
 	let n = new G(e, ""), r = n.key("extensions").key(be), i = r.key("packed");
 	if (!i.exists) return e;
-	da(r);
+	pa(r);
 	let a = mi(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < wl) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, wl)).getUint32(0, !0);
-	if (wl + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new G(Ws(await Dl(await t(o.offset + wl, s), i.where), i.where), i.where).object(), u = El(new G(c, `${i.where}/lengths`), o, wl + s), { packed: d, ...f } = r.object();
+	if (!o || o.length < Il) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, Il)).getUint32(0, !0);
+	if (Il + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new G(Ks(await zl(await t(o.offset + Il, s), i.where), i.where), i.where).object(), u = Rl(new G(c, `${i.where}/lengths`), o, Il + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
 		bufferViews: [...n.key("bufferViews").items(Se).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
@@ -5045,7 +5170,7 @@ async function Tl(e, t) {
 		}
 	};
 }
-function El(e, t, n) {
+function Rl(e, t, n) {
 	let r = n, i = e.items(Se).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
@@ -5057,8 +5182,8 @@ function El(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function Dl(e, t) {
-	let n = new TextEncoder().encode(Cl), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function zl(e, t) {
+	let n = new TextEncoder().encode(Fl), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -5077,8 +5202,8 @@ async function Dl(e, t) {
 	}
 }
 // eigenfield-three/src/still-textures.ts
-var Ol = 3;
-function kl(e) {
+var Bl = 3;
+function Vl(e) {
 	return J(e).flatMap((e, t) => {
 		let n = 0;
 		return e.pictures.map((r) => {
@@ -5092,27 +5217,27 @@ function kl(e) {
 		});
 	}).sort((e, t) => e.first - t.first || e.number - t.number);
 }
-function Al(e, t, n) {
-	let r = kl(e), i = n, a = ({ basis: e, picture: n }) => {
+function Hl(e, t, n) {
+	let r = Vl(e), i = n, a = ({ basis: e, picture: n }) => {
 		let r = t(n.view).then((t) => n.codec.decode(t, n, e.size));
 		return r.catch(() => void 0), r;
 	};
 	return {
 		async fill(n) {
-			let { plan: o, signal: s } = n, c = i ?? await Promise.all(ua(e).map((e) => bl(e, t)));
+			let { plan: o, signal: s } = n, c = i ?? await Promise.all(fa(e).map((e) => Ml(e, t)));
 			i = null, c.forEach((e, t) => {
-				n.putMean(t, e), Sl(e);
+				n.putMean(t, e), Pl(e);
 			});
 			let l = r.filter(({ first: e }) => e < o.usable), u = [], d = 0;
 			try {
 				for (let { number: e, first: t, picture: r } of l) {
 					if (s.aborted) return;
-					for (let e of l.slice(d, d + Ol - u.length)) u.push(a(e)), d += 1;
+					for (let e of l.slice(d, d + Bl - u.length)) u.push(a(e)), d += 1;
 					let i = await u[0] ?? [];
-					u.shift(), n.putTextures(e, t, i, r), ks(i), n.announce();
+					u.shift(), n.putTextures(e, t, i, r), js(i), n.announce();
 				}
 			} finally {
-				for (let e of u) e.then(ks).catch(() => void 0);
+				for (let e of u) e.then(js).catch(() => void 0);
 			}
 			n.end();
 		},
@@ -5120,41 +5245,41 @@ function Al(e, t, n) {
 			let r = 0;
 			for (let { channels: i, bases: a } of e.planes) {
 				let o = e.colours.slice(r, r += i), s = a.find(({ count: e }) => e > n);
-				if (s) return Ms(s, n, o, t);
+				if (s) return Ps(s, n, o, t);
 			}
 			return Promise.resolve(1);
 		},
 		dispose() {
-			i?.forEach(Sl), i = null;
+			i?.forEach(Pl), i = null;
 		}
 	};
 }
 // eigenfield-three/src/grid.ts
-function jl(e) {
+function Ul(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = Ml(e, n, r) ?? (n === r ? null : Ml(e, r, n));
+		let r = t / n, i = Wl(e, n, r) ?? (n === r ? null : Wl(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function Ml(e, t, n) {
-	let [r, i] = [Pl(e, 0), Pl(e, 1)];
-	if (t === 1 && Fl(i) > 0 || n === 1 && Fl(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => Il(i, e) - Il(i, t));
+function Wl(e, t, n) {
+	let [r, i] = [Kl(e, 0), Kl(e, 1)];
+	if (t === 1 && ql(i) > 0 || n === 1 && ql(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => Jl(i, e) - Jl(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Il(r, e) - Il(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Jl(r, e) - Jl(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return Nl(n, t, (e, t) => Il(r, o(t, e))) && Nl(t, n, (e, t) => Il(i, o(e, t))) ? {
+	return Gl(n, t, (e, t) => Jl(r, o(t, e))) && Gl(t, n, (e, t) => Jl(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function Nl(e, t, n) {
+function Gl(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -5164,33 +5289,33 @@ function Nl(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function Pl(e, t) {
+function Kl(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function Fl(e) {
+function ql(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var Il = (e, t) => e[t] ?? 0, Ll = 1e-6, Rl = 32, zl = class {
+var Jl = (e, t) => e[t] ?? 0, Yl = 1e-6, Xl = 32, Zl = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = jl(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = Ul(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(Bl(e), this.isLine ? 0 : Bl(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(Ql(e), this.isLine ? 0 : Ql(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => Xl(e, t, this.places) : e === "bilinear" && this.grid ? Ql(this.places, this.grid) : Ul(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => cu(e, t, this.places) : e === "bilinear" && this.grid ? uu(this.places, this.grid) : tu(this.places, this.triangles);
 	}
 };
-function Bl(e) {
+function Ql(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Vl(e) {
+function $l(e) {
 	let t = {
 		camera: [
 			0,
@@ -5210,7 +5335,7 @@ function Vl(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function Hl(e, t, n, r, i, a) {
+function eu(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -5218,49 +5343,49 @@ function Hl(e, t, n, r, i, a) {
 		m
 	];
 }
-function Ul(e, t) {
+function tu(e, t) {
 	if (!t.length) {
-		let t = Yl(e, Jl(e));
-		return (n, r) => ql(n, r, e, t);
+		let t = su(e, ou(e));
+		return (n, r) => au(n, r, e, t);
 	}
-	let n = Gl(e, t, 3), r = Kl(t);
+	let n = ru(e, t, 3), r = iu(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * Rl + $(i)] ?? []) {
+		for (let r of n[$(a) * Xl + $(i)] ?? []) {
 			let [n, l, u] = [
-				Wl(t, r, 0),
-				Wl(t, r, 1),
-				Wl(t, r, 2)
-			], d = Hl(i, a, e, n, l, u), f = Math.min(...d);
+				nu(t, r, 0),
+				nu(t, r, 1),
+				nu(t, r, 2)
+			], d = eu(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? ql(i, a, e, r) : Vl(c.map((e, n) => [Wl(t, o, n), e]));
+		return s < -1e-9 ? au(i, a, e, r) : $l(c.map((e, n) => [nu(t, o, n), e]));
 	};
 }
-var Wl = (e, t, n) => e[3 * t + n] ?? 0;
+var nu = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * Rl)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * Xl)));
 }
-function Gl(e, t, n) {
+function ru(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * Rl + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * Xl + t]?.push(i);
 	}
 	return r;
 }
-function Kl(e) {
+function iu(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [Wl(e, n, r), Wl(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [nu(e, n, r), nu(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -5269,7 +5394,7 @@ function Kl(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function ql(e, t, n, r) {
+function au(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -5284,12 +5409,12 @@ function ql(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return Vl([[o, 1 - c], [s, c]]);
+	return $l([[o, 1 - c], [s, c]]);
 }
-function Jl(e) {
+function ou(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function Yl(e, t) {
+function su(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -5310,7 +5435,7 @@ function Yl(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function Xl(e, t, n) {
+function cu(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -5324,12 +5449,12 @@ function Xl(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || Zl(n, r, i, a) <= Ll) return ql(e, t, n, Yl(n, [
+	if (a < 0 || lu(n, r, i, a) <= Yl) return au(e, t, n, su(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = Hl(e, t, n, r, i, a);
+	let [l, u, d] = eu(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -5345,15 +5470,15 @@ function Xl(e, t, n) {
 		]
 	};
 }
-function Zl(e, t, n, r) {
+function lu(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function Ql(e, t) {
+function uu(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = Yl(e, Jl(e));
-		return (n, r) => ql(n, r, e, t);
+		let t = su(e, ou(e));
+		return (n, r) => au(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -5362,7 +5487,7 @@ function Ql(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = Gl(e, o.flat(), 4), c = [];
+	let s = ru(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -5370,12 +5495,12 @@ function Ql(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * Rl + $(t)] ?? []) {
-			let s = o[a], c = s ? $l(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * Xl + $(t)] ?? []) {
+			let s = o[a], c = s ? du(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return ql(t, n, e, l);
-		let [a, c] = eu(t, n, e, r);
+		if (!r || i < -1e-9) return au(t, n, e, l);
+		let [a, c] = fu(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -5387,7 +5512,7 @@ function Ql(e, t) {
 		};
 	};
 }
-function $l(e, t, n, r) {
+function du(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -5395,7 +5520,7 @@ function $l(e, t, n, r) {
 	}
 	return i;
 }
-function eu(e, t, n, r) {
+function fu(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -5413,29 +5538,29 @@ function eu(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = tu(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [tu(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = pu(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [pu(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function tu(e) {
+function pu(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var nu = class {
+var mu = class {
 	parser;
 	options;
 	name = be;
 	scene = null;
 	ours;
 	constructor(e, t = {}) {
-		this.parser = e, this.options = t, this.ours = sa(e.json);
+		this.parser = e, this.options = t, this.ours = la(e.json);
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
-		this.options.renderer && Ic(this.options.renderer);
+		this.options.renderer && Rc(this.options.renderer);
 		let { json: e } = this.parser;
-		pe(e), Object.assign(e, await Tl(e, (e, t) => this.read(e, t)));
-		let t = ca(e);
-		(!t.timeline || this.options.stream?.readGroups) && (this.scene = t, this.scene.shown || ru(e));
+		pe(e), Object.assign(e, await Ll(e, (e, t) => this.read(e, t)));
+		let t = ua(e), { stream: n } = this.options, r = t.timeline?.groups[0]?.file ? n?.readFile : n?.readGroups;
+		(!t.timeline || r) && (this.scene = t, this.scene.shown || hu(e));
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
@@ -5456,180 +5581,111 @@ var nu = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = iu(e, this.parser), [r] = n;
+		let n = gu(e, this.parser), [r] = n;
 		if (!r) throw N("/meshes/0", "no node shows it");
-		t.shown && bc(r.geometry, t.shown);
+		t.shown && Sc(r.geometry, t.shown);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
 			if (n.byteLength < (t.views[e]?.length ?? 0)) throw le(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await xc(t.mesh, i), o = t.timeline && a && await this.openClip(t, t.timeline, a);
+		}, a = t.mesh && await Cc(t.mesh, i), o = t.timeline && a && await this.openClip(t, t.timeline, a);
 		if (a) {
-			let e = Sc(a);
+			let e = wc(a);
 			r.geometry.dispose();
 			for (let t of n) t.geometry = e;
 		}
 		t.sheets && Hi(t.sheets, r.geometry);
 		let [s, c, l, u] = await Promise.all([
-			Promise.all(o ? [] : ua(t).map((e) => bl(e, i))),
-			Ta(t, i),
-			o ? o.group.omega : Na(t, i),
-			za(t, i)
-		]), d = c.filter((e, n) => !t.heldOut[n]), f = new zl(Float64Array.from(d.flatMap((e) => Ua(t, e.centre))), u, t.extent[1] === 0), p = o ? ua(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
+			Promise.all(o ? [] : fa(t).map((e) => Ml(e, i))),
+			Da(t, i),
+			o ? o.group.omega : Fa(t, i),
+			Va(t, i)
+		]), d = c.filter((e, n) => !t.heldOut[n]), f = new Zl(Float64Array.from(d.flatMap((e) => Ga(t, e.centre))), u, t.extent[1] === 0), p = o ? fa(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
 			scene: t,
-			info: Va(t, c, p, f.grid, this.fileBytes(), Cc(r.geometry)),
+			info: Ua(t, c, p, f.grid, this.fileBytes(), Tc(r.geometry)),
 			meshes: n,
 			meanSizes: p,
 			omega: l,
 			weights: f,
 			clip: o
-		}, h = o ? new Ps(t, o.films) : Al(t, i, s);
-		e.userData.eigenfield = new rl(m, h, this.options);
+		}, h = o ? new Is(t, o.films) : Hl(t, i, s);
+		e.userData.eigenfield = new al(m, h, this.options);
 	}
 	openClip(e, t, n) {
-		return vl(e, t, n, (...e) => this.options.stream.readGroups(...e));
+		let r = this.options.stream;
+		return Al(e, t, n, ({ offset: e, length: t, file: n }, i) => n === null ? r.readGroups(e, i) : r.readFile(n, t, i));
 	}
 	fileBytes() {
-		if (this.options.stream) return this.options.stream.total;
-		let { extensions: e, json: t } = this.parser;
-		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
+		let { groups: e = [], sound: t = null } = this.scene?.timeline ?? {}, n = [...e, ...t ? [t] : []].reduce((e, t) => e + (t.file ? t.length : 0), 0);
+		if (this.options.stream) return this.options.stream.total + n;
+		let { extensions: r, json: i } = this.parser;
+		return r.KHR_binary_glTF?.header?.length ?? i.buffers[0]?.byteLength ?? 0;
 	}
 };
-function ru(e) {
+function hu(e) {
 	let [t] = e.nodes;
 	t && (t.mesh = 0), e.meshes = [{ primitives: [{
 		attributes: {},
 		material: 0
 	}] }], e.materials = [{ doubleSided: !0 }];
 }
-function iu(e, t) {
+function gu(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		au(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		_u(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function au(e) {
+function _u(e) {
 	return e.isMesh === !0;
 }
-// eigenfield-three/src/ranges.ts
-var ou = 2 ** 20, su = 2 ** 25, cu = 3, lu = 500, uu = class {
-	source;
-	arrival;
-	length;
-	part;
-	signal;
-	parted = !1;
-	begun = !1;
-	whole = null;
-	constructor(e, t, n, r, i) {
-		this.source = e, this.arrival = t, this.length = n, this.part = r, this.signal = i;
-	}
-	async read(e, t) {
-		let { arrival: n } = this;
-		if (t <= n.received || !this.begun || !this.parted && e <= n.received + ou) {
-			let r = await n.read(e, t).catch((e) => {
-				if (this.signal.aborted || !(this.parted || this.begun && du(e))) throw e;
-			});
-			if (this.begun || this.limit(), r) return r;
-		}
-		if (this.giveUp(), this.source instanceof Blob) return this.slice(this.source, e, t);
-		for (let n = 1;; n++) try {
-			return await (this.whole?.read(e, t) ?? this.fetch(this.source, e, t));
-		} catch (e) {
-			if (this.signal.throwIfAborted(), n === cu || this.whole || !du(e)) throw e;
-			await new Promise((e) => setTimeout(e, lu * 2 ** (n - 1))), this.signal.throwIfAborted();
-		}
-	}
-	limit() {
-		let { arrival: e } = this;
-		this.begun = !0, e.onPush = () => {
-			e.received >= su && e.received < this.length && this.giveUp();
-		}, e.onPush();
-	}
-	giveUp() {
-		this.parted || (this.parted = !0, this.part());
-	}
-	async slice(e, t, n) {
-		let r = await e.slice(t, n).arrayBuffer();
-		if (r.byteLength < n - t) throw ce(t + r.byteLength, n);
-		return r;
-	}
-	async fetch(e, t, n) {
-		let r = { Range: `bytes=${t}-${n - 1}` }, i = await fetch(e, {
-			headers: r,
-			signal: this.signal
-		}).catch((e) => {
-			throw this.signal.aborted ? e : this.broken(t, e);
-		});
-		if (i.status === 200 && i.body) return this.receive(i.body).read(t, n);
-		if (i.status !== 206) throw await i.body?.cancel(), this.broken(t, `The server answered ${i.status}`);
-		let a = await i.arrayBuffer().catch((e) => {
-			throw this.signal.aborted ? e : this.broken(t, e);
-		});
-		if (a.byteLength !== n - t) throw this.broken(t + a.byteLength, "a range that was cut short");
-		return a;
-	}
-	receive(e) {
-		let t = this.whole = new cl(), n = e.getReader();
-		return this.signal.addEventListener("abort", () => void n.cancel().catch(() => void 0)), (async () => {
-			for (;;) {
-				let { done: e, value: r } = await n.read();
-				if (e) return t.end();
-				t.push(r);
-			}
-		})().catch((e) => t.fail(this.signal.aborted ? e : this.broken(t.received, e))), t;
-	}
-	broken(e, t) {
-		return new M("network", `The connection broke at byte ${e} of ${this.length} of the clip; it is tried again when it plays on.`, String(e), { cause: t });
-	}
-};
-function du(e) {
-	return e instanceof M && e.code === "network";
-}
 // eigenfield-three/src/load.ts
-async function fu(e, t = {}) {
+async function vu(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new cl(), [i, a] = [new AbortController(), new AbortController()], o = () => {
+	let r = new ul(), [i, a] = [new AbortController(), new AbortController()], o = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", o), i.signal.addEventListener("abort", () => a.abort());
-	let s = hu(e, r, a.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", o));
+	let s = Su(e, r, a.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", o));
 	try {
-		let o = await Vs(r);
-		if (!sa(o.json)) return {
-			gltf: await mu(r, o, s),
+		let o = await Us(r);
+		if (!la(o.json)) return {
+			gltf: await xu(r, o, s),
 			field: null
 		};
-		let c = await pu(r, o, e instanceof ArrayBuffer ? r : ((e) => new uu(e, r, o.length, () => a.abort(), i.signal))(e), t);
+		let c = await yu(r, o, e instanceof ArrayBuffer ? r : ((e) => new gl(e, r, o.length, () => a.abort(), i.signal))(e), typeof e == "string" ? new yl(e, i.signal) : null, t);
 		n?.throwIfAborted();
 		let l = c.userData.eigenfield;
 		return {
 			gltf: c,
-			field: l instanceof rl ? l : null
+			field: l instanceof al ? l : null
 		};
 	} catch (e) {
 		throw i.abort(), n?.throwIfAborted(), ue(e);
 	}
 }
-async function pu(e, t, n, r) {
-	let i = new se(), a = (e, t = n) => async (n, r) => {
+async function yu(e, t, n, r, i) {
+	let a = new se(), o = (e, t = n) => async (n, r) => {
 		let i = await e + n;
 		return t.read(i, i + r);
-	}, o = t.binary();
-	o.catch(() => void 0);
-	let s = {
+	}, s = t.binary();
+	s.catch(() => void 0);
+	let c = {
 		total: t.length,
-		read: a(o, e),
-		readGroups: (...e) => a(t.groups())(...e)
+		read: o(s, e),
+		readGroups: (...e) => o(t.groups())(...e),
+		readFile: (...e) => r?.read(...e) ?? Promise.reject(bu(e[0]))
 	};
-	return i.register((e) => new nu(e, {
-		...r,
-		stream: s
-	})), i.parseAsync(t.text, "");
+	return a.register((e) => new mu(e, {
+		...i,
+		stream: c
+	})), a.parseAsync(t.text, "");
 }
-async function mu(e, t, n) {
+function bu(e) {
+	return new M("unsupported", `The clip is a folder, and its file ${e} cannot be found from here; make one file of it, with \`eigenfield export\`.`, e);
+}
+async function xu(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -5641,25 +5697,25 @@ async function mu(e, t, n) {
 		throw new M("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function hu(e, t, n, r) {
+async function Su(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? gu(e) : await _u(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? Cu(e) : await wu(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : vu(t.received, e);
+			throw n.aborted ? e : Tu(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function gu(e) {
+function Cu(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function _u(e, t) {
+async function wu(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new M("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -5670,7 +5726,7 @@ async function _u(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function vu(e, t) {
+function Tu(e, t) {
 	return new M("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { rl as EigenField, nu as EigenfieldPlugin, vc as Player, Oc as SHEETS, M as SceneError, uo as defaultMemory, fu as loadEigenfield, Ka as novelCamera, Xa as placeCamera, fe as refuseAddresses };
+export { al as EigenField, mu as EigenfieldPlugin, bc as Player, Ac as SHEETS, M as SceneError, po as defaultMemory, vu as loadEigenfield, Ja as novelCamera, Qa as placeCamera, fe as refuseAddresses };
