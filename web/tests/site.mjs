@@ -76,11 +76,13 @@ test("the first page: a picture within a second, few bytes, nobody else asked, a
 });
 
 test("the clip of the first page shows its picture there, and plays when it is opened", async () => {
-  const { page, close } = await open("index.html", { context: { reducedMotion: "no-preference" } });
-  const card = page.locator(".scenes a", { hasText: "clip" });
+  const first = await open("index.html");
+  const card = first.page.locator(".scenes a", { hasText: "clip" });
   await card.scrollIntoViewIfNeeded();
-  await page.waitForFunction((image) => image.naturalWidth > 100, await card.locator("img").elementHandle());
-  await card.click();
+  await first.page.waitForFunction((image) => image.naturalWidth > 100, await card.locator("img").elementHandle());
+  const path = await card.getAttribute("href");
+  await first.close();
+  const { page, close } = await open(path, { context: { reducedMotion: "no-preference" } });
   await page.waitForFunction(() => window.eigenfield?.field?.player?.frame > 1, undefined, { timeout: 60_000 });
   const { playing, message } = await page.evaluate(() => window.eigenfield.state());
   assert.deepEqual([playing, message], [true, null]);
