@@ -67,6 +67,9 @@ def test_encoded_captures_are_small_and_say_what_they_were_made_from(monkeypatch
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
+    """The built site: the one that EIGENFIELD_SITE names, which `make docs` has just made, or one of its own."""
+    if built := os.environ.get("EIGENFIELD_SITE"):
+        return Path(built).resolve()
     if not SPHINX:
         pytest.skip("needs Sphinx, furo and MyST: pip install -e '.[docs]'")
     out = tmp_path_factory.mktemp("site")
