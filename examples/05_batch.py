@@ -10,7 +10,7 @@ import eigenfield as ef
 
 place = data.folder()
 (place / "captures").mkdir(exist_ok=True)
-for name, columns in (("one", 3), ("two", 4)):
+for name, columns in (("one", 2), ("two", 3)):
     data.capture(place / "captures", name, columns)
 
 result = ef.batch(place / "captures", place / "scenes", preset="small", surface="relief")

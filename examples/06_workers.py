@@ -12,7 +12,7 @@ import eigenfield as ef
 def main() -> None:
     place = data.folder()
     (place / "captures").mkdir(exist_ok=True)
-    for name, columns in (("one", 3), ("two", 4)):
+    for name, columns in (("one", 2), ("two", 3)):
         data.capture(place / "captures", name, columns)
     # cluster="ssh:anna,bert" or the address of a Dask scheduler in place of workers=2: docs/cluster.md
     result = ef.batch(place / "captures", place / "shared", workers=2, preset="small", surface="relief")

@@ -16,7 +16,7 @@ def folder() -> Path:
     return place
 
 
-def capture(place: Path, name: str = "capture", columns: int = 4) -> Path:
+def capture(place: Path, name: str = "capture", columns: int = 3) -> Path:
     """PLACE/NAME with images/, transforms.json and the exact proxy.ply, drawn where it is not there."""
     if not (place / name).exists():
         draw_demo_capture(place / name, rows=3, columns=columns, size=96)

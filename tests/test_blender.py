@@ -19,6 +19,7 @@ import eigenfield as ef
 from eigenfield.capture import open_any
 from eigenfield.proxy import read_mesh
 from eigenfield.rendering import texture
+from support.clips import moving_clip, numbered_clip
 
 ROOT = Path(__file__).parents[1]
 BPY = Path(os.environ.get("EIGENFIELD_BPY") or ROOT / "build/bpy/bin/python")
@@ -32,7 +33,7 @@ def pack(path: Path, *version: str) -> Path:
 def test_the_zip_has_equal_bytes_and_the_version_of_a_release(tmp_path):
     first = pack(tmp_path / "a.zip")
     assert first.read_bytes() == pack(tmp_path / "b.zip").read_bytes()
-    files = "__init__ array encode field imported panel parallax preferences program sight steps"
+    files = "__init__ array clip encode field imported panel parallax preferences program sight steps"
     names = {"LICENSE", "blender_manifest.toml", *(f"{name}.py" for name in files.split())}
     with zipfile.ZipFile(pack(tmp_path / "c.zip", "1.2.3")) as archive:
         assert set(archive.namelist()) == names
@@ -52,9 +53,13 @@ def blender(script: str, folder: Path, *more: object) -> None:
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory) -> Path:
+def bpy() -> None:
     if not any(BPY.parents[1].glob("lib/python*/site-packages/bpy")):
         pytest.skip("no bpy: `make bpy` installs it in build/bpy, or EIGENFIELD_BPY names a Python that has it")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory, bpy) -> Path:
     folder = tmp_path_factory.mktemp("blender")
     blender("blender_render.py", folder)
     return folder
@@ -97,8 +102,8 @@ def test_each_frame_of_an_animation_is_a_capture(folder):
 
 
 @pytest.fixture(scope="module")
-def program(folder) -> Path:
-    path = folder / "program"
+def program(tmp_path_factory, bpy) -> Path:
+    path = tmp_path_factory.mktemp("program") / "eigenfield"
     path.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m eigenfield "$@"\n')
     path.chmod(0o755)
     return path
@@ -171,3 +176,26 @@ def test_what_is_encoded_is_drawn_in_blender_as_it_was_rendered(folder, program)
     assert -10 * np.log10(np.square(rendered - drawn).mean()) > 30
     assert "broken.glb" in (folder / "refused.txt").read_text()
     assert "names '../drawn.png', which is not in its folder" in (folder / "outside.txt").read_text()
+
+
+@pytest.mark.slow
+def test_a_clip_shows_the_frame_of_a_time(tmp_path, program):
+    """At 10 frames a second; the mesh moves by its number."""
+    clip = moving_clip(numbered_clip((3, 2), first=5.0), lambda number, places: places + np.array([6 * number, 0, 0]))
+    ef.save(clip, tmp_path / "clip.glb")
+    blender("blender_clip.py", tmp_path, program)
+    listing = json.loads((tmp_path / "clip.frame_0002.textures/eigenfield.json").read_text())
+    plane, eye = listing["viewPlane"], np.array(listing["camera"]["translation"])
+    at = (eye - plane["origin"])[:2] / plane["extent"]
+    for name, frame in (("second", 2), ("fourth", 4), ("opened", 4), ("kept", 4), ("first", 0)):
+        scene, seen = clip.scene(float(clip.timeline.times[frame])), np.load(tmp_path / f"{name}.npz")
+        wanted = texture(scene, at=(float(at[0]), float(at[1]))).clip(0, 1)
+        assert np.quantile(np.abs(seen["texture"] - wanted), 0.999) < 4 / 255
+    between = (np.load(tmp_path / f"{name}.npz")["vertices"] for name in ("second", "fourth"))
+    moved, (a, b) = np.subtract(*between), (clip.scene(5 + frame / 10).proxy.mesh.vertices for frame in (2, 4))
+    np.testing.assert_allclose(np.abs(moved).max(axis=0), np.abs(a - b).max(axis=0), atol=1e-5)
+    said = json.loads((tmp_path / "said.json").read_text())
+    assert said["times"] == pytest.approx([0.2, 0.43, 0.43, 0.4, 0])
+    frames = 2, 4, 4, 4, 0
+    assert said["folders"] == [f"clip.frame_{frame:04}.textures" for frame in frames]
+    assert not said["before"] and said["panel"] == [f"Frame {frame} of 5, counted from 0" for frame in frames]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
 import sys
 import time
 from pathlib import Path
@@ -12,6 +12,9 @@ import numpy as np
 import pytest
 
 from eigenfield.encoding import verdict
+from eigenfield.gltf import container, save
+from support.clips import numbered_clip
+from support.scenes import tiny_scene
 
 ADDON = Path(__file__).parents[1] / "addons/blender/eigenfield"
 FRAME = -1.0, 1.0, -0.5, 0.5  # at depth 1
@@ -20,15 +23,10 @@ print('{"step": "depth", "stage": "views", "done": 1, "total": 4, "part": null, 
 """
 
 
-def part(name: str) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(f"addon_{name}", ADDON / f"{name}.py")
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-program, parallax = part("program"), part("parallax")
+package = ModuleType("addon")
+package.__path__ = [str(ADDON)]
+sys.modules["addon"] = package
+clip, parallax, program = (importlib.import_module(f"addon.{name}") for name in ("clip", "parallax", "program"))
 
 
 def run(script: str, *words: str):
@@ -68,6 +66,20 @@ def test_the_error_of_a_job_is_the_program_s_own_line(tmp_path):
     assert silent.error == f"{sys.executable} failed"
     with pytest.raises(program.RefusalError, match="does not run"):
         program.Job(str(tmp_path / "none"))
+
+
+def test_a_job_is_waited_for_and_stopped_where_nobody_waits():
+    job = run(LINE + "import time; time.sleep(0.5); print('all')")
+    said = list(job.steps())
+    assert said[0][0] in (0, 0.25) and said[-1] == (0.25, "depth") and job.output == ["all"]
+    with pytest.raises(program.RefusalError, match="no more"):
+        list(run("import sys; print('no more', file=sys.stderr); sys.exit(2)").steps())
+    job = run("import time; time.sleep(60)")
+    steps = job.steps()
+    next(steps)
+    steps.close()
+    wait(job)
+    assert job.stopped
 
 
 def test_jobs_end_with_blender_and_are_no_errors_then():
@@ -135,3 +147,42 @@ def test_the_longest_good_spacing_is_at_a_limit():
         assert longest == pytest.approx(0.015 * 800 / 1000 / (1 / 2 - 1 / 3))
     assert parallax.good_factor(0.0, 0.2) == pytest.approx(0.5)
     assert parallax.good_factor(0.0, 1.0) == np.inf
+
+
+@pytest.fixture
+def clip_file(tmp_path):
+    save(numbered_clip((3, 2)), tmp_path / "clip.glb")
+    return tmp_path / "clip.glb"
+
+
+def test_a_clip_is_known_by_its_chunk_of_groups(clip_file, tmp_path):
+    assert container.GROUPS_CHUNK == clip.GROUPS_CHUNK and clip.is_clip(clip_file)
+    data = clip_file.read_bytes()
+    clip_file.write_bytes(data[:-8])  # within its last group
+    assert clip.is_clip(clip_file)
+    for damaged in (b"", b"glTF", data[:40], b"ply" + data[3:]):
+        clip_file.write_bytes(damaged)
+        assert not clip.is_clip(clip_file)
+    save(tiny_scene(), tmp_path / "scene.glb")
+    assert not clip.is_clip(tmp_path / "scene.glb")
+
+
+def test_the_program_says_when_frames_are_shown(clip_file, monkeypatch):
+    monkeypatch.setattr(clip, "Job", lambda found, *words: program.Job(sys.executable, *found, *words))
+    steps, found = clip.timeline_steps(clip_file, ["-m", "eigenfield"]), None
+    while found is None:
+        try:
+            next(steps)
+        except StopIteration as stop:
+            found = stop.value
+    assert found == clip.Timeline(10, 5)
+    with pytest.raises(program.RefusalError, match="another version, or another program"):
+        list(clip.timeline_steps(clip_file, ["-c", "print('{}')"]))
+
+
+def test_the_frame_of_a_time_is_the_nearest_one_that_there_is():
+    timeline = clip.Timeline(10, 5)
+    assert [timeline.frame_at(time) for time in (0, 0.04, 0.06, 0.26, 0.4, 9)] == [0, 0, 1, 3, 4, 4]
+    uneven = clip.Timeline(30000 / 1001, 90)
+    times = np.float32([uneven.time_of(frame) for frame in range(90)])  # as Blender keeps them
+    assert [uneven.frame_at(float(time)) for time in times] == list(range(90))

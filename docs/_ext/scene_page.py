@@ -2,7 +2,8 @@
 
 `docs/scene.glb` is what `eigenfield demo` leaves in demo/scene.glb. `docs/scenes/` has encoded captures whose licence
 lets anybody show them: NAME.glb, and NAME.json with its `title` and, in `from`, what it was made from, by whom and
-under which licence.
+under which licence. Of these `in-motion.glb` is a clip, of what `draw_demo_clip(folder, rows=3, columns=3, size=256,
+frames=24)` draws, on the mesh of each frame (`encode folder --clip --proxy folder/mesh_%04d.ply`).
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ def captures(docs: Path) -> dict[Path, dict[str, str]]:
 
 
 def card(path: Path, about: dict[str, str]) -> str:
-    """A picture that leads to the scene's page, and what it was made from."""
+    """A picture that leads to the page of a scene or a clip, which plays there, and what it was made from."""
     title, made = html.escape(about["title"]), html.escape(f"{about['from']}; {path.stat().st_size / 1000:.0f} kB")
     picture = f'<img src="open/samples/{path.stem}.jpg" alt="" loading="lazy">'
     return f'<a href="scenes/{path.stem}.html">{picture}<strong>{title}</strong><span>{made}</span></a>'

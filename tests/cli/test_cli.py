@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import time
+from itertools import cycle
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,7 @@ from eigenfield.cli.encode import default_output
 from eigenfield.gltf import save
 from eigenfield.imaging.png import png_bytes
 from eigenfield.runtime.files import write_bytes
+from eigenfield.runtime.signals import STOP_SIGNALS
 from support.captures import write_capture
 
 
@@ -283,20 +285,19 @@ def test_unknown_options_and_traceback(run, scene, tmp_path):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are POSIX")
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "number", [signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", None), signal.SIGKILL], ids=lambda n: n.name
-)
-def test_a_stopped_encode_leaves_no_debris(folder, tmp_path, number):
-    """At several moments: the output is whole or absent, and nothing else is there, or the next run removes it."""
+@pytest.mark.parametrize("signals", [STOP_SIGNALS, [getattr(signal, "SIGKILL", None)]], ids=["stopped", "killed"])
+def test_a_stopped_encode_leaves_no_debris(folder, tmp_path, signals):
+    """At several moments: the output is whole or absent, and nothing else is there, or the next run removes it. All
+    signals that stop it are handled by one function."""
     output = tmp_path / "scene.glb"
     command = [sys.executable, "-m", "eigenfield", "encode", str(folder), "--proxy", str(folder / "proxy.ply"),
                "-o", str(output), "--atlas", "512", "-q", "--overwrite"]  # fmt: skip
-    for wait in (0.4, 0.9, 1.4, 1.9):
+    for wait, number in zip((0.4, 0.9, 1.4, 1.9), cycle(signals), strict=False):
         process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, stdout=subprocess.DEVNULL)
         time.sleep(wait)
         process.send_signal(number)
         _, err = process.communicate(timeout=60)
-        if number != signal.SIGKILL:
+        if number in STOP_SIGNALS:
             assert process.returncode in (0, 130, -number), err
             assert process.returncode != 130 or "interrupted" in err
             assert [path.name for path in tmp_path.iterdir()] in ([], ["scene.glb"])

@@ -83,6 +83,8 @@ def test_a_command_that_a_message_gives_runs(command, places, run, tmp_path, mon
     _, verb, *words = shlex.split(command)
     capture = places.get("FOOTAGE" if "--clip" in words else verb, places["CAPTURE"])
     given = [verb, *(str(capture if word in ("CAPTURE", "{}") else places.get(word, word)) for word in words)]
+    if verb == "encode":
+        given += ["--preset", "small"]
     if verb == "calibrate":
         given += ["-o", str(tmp_path / "cameras")]
     if verb == "view":  # serves until it is stopped

@@ -123,7 +123,7 @@ def test_some_of_it_moves_and_some_stands_still(drawn):
 
 def test_two_drawings_have_the_same_bytes_at_one_and_two_threads_and_after_a_stop(tmp_path):
     def draw(name, progress=None):
-        draw_demo_clip(tmp_path / name, rows=1, columns=3, size=32, frames=3, progress=progress)
+        draw_demo_clip(tmp_path / name, rows=1, columns=3, size=32, frames=2, progress=progress)
 
     def interrupt(stage, done, total):
         if done == 1:

@@ -77,28 +77,39 @@ def four():
 
 @pytest.fixture(scope="module")
 def fine(four, tmp_path_factory):
-    """The bytes of a clip of four frames, at quality 70."""
+    """The bytes of a clip of four frames, at a quality near the preset's."""
     path = tmp_path_factory.mktemp("fine") / "clip.glb"
-    save(encode_footage(four, MESH, EncodeOptions(quality=70), group="2"), path)
+    save(encode_footage(four, MESH, EncodeOptions(quality=88), group="2"), path)
     return path.stat().st_size
 
 
-@pytest.mark.parametrize("kind", ["size", "bitrate", "psnr", "too little"])
+@pytest.mark.parametrize("kind", ["size", "psnr", "too little"])
 def test_a_target_is_reached_by_the_quality_or_the_nearest_is_taken(four, fine, kind, tmp_path):
-    target = {"size": Target(size=fine), "bitrate": Target(bitrate=round(8 * fine / 0.4)), "psnr": Target(psnr=32.0),
-              "too little": Target(size=1200)}[kind]  # fmt: skip
+    target = {"size": Target(size=fine), "psnr": Target(psnr=32.0), "too little": Target(size=1200)}[kind]
     clip = encode_footage(four, MESH, EncodeOptions(target=target), group="2", work=tmp_path / "work")
     save(clip, tmp_path / "clip.glb")
     size, quality = (tmp_path / "clip.glb").stat().st_size, clip.settings["clip"]["quality"]
     if kind == "psnr":
         found = np.mean([measured(clip.scene(number / 10), four.frames[number]) for number in range(4)])
         assert abs(found - 32) < 1.0
+        again = encode_footage(four, MESH, EncodeOptions(quality=quality), group="2")
+        assert list(map(stored_bytes, again.groups.stored)) == list(map(stored_bytes, clip.groups.stored))
     elif kind == "too little":
         assert quality == 20 and size > 1200
     else:
         assert 0.8 * fine < size <= 1.03 * fine
-    again = encode_footage(four, MESH, EncodeOptions(quality=quality), group="2")
-    assert list(map(stored_bytes, again.groups.stored)) == list(map(stored_bytes, clip.groups.stored))
+
+
+def test_a_bitrate_is_the_size_of_so_many_seconds(four, monkeypatch):
+    asked = []
+
+    def reached(groups, target, stages, first, progress):
+        asked.append(target)
+        return first
+
+    monkeypatch.setattr("eigenfield.encoding.clip.encode.reach_quality", reached)
+    encode_footage(four, MESH, EncodeOptions(target=Target(bitrate=200_000)), group="2")
+    assert asked == [Target(size=10_000)]  # of 0.4 s
 
 
 def stored_bytes(group) -> bytes:

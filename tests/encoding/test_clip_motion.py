@@ -105,11 +105,11 @@ def test_meshes_that_stand_still_are_no_motion(plate):
     assert np.array_equal(clip.scene(0.0).proxy.mesh.vertices, clip.scene(0.5).proxy.mesh.vertices)
 
 
-@pytest.mark.parametrize("count", [None, pytest.param(2, marks=pytest.mark.slow)])
-def test_workers_make_the_same_groups_and_each_begins_anew(plate, tmp_path, count):
+@pytest.mark.slow
+def test_workers_make_the_same_groups_and_each_begins_anew(plate, tmp_path):
     meshes, footage = plate
     alone = encode_footage(footage, meshes, OPTIONS, group="3")
-    with open_executor(count) as workers:
+    with open_executor(2) as workers:
         spread = encode_footage(footage, meshes, OPTIONS, group="3", work=tmp_path, workers=workers)
     for one, other in zip(alone.groups.stored, spread.groups.stored, strict=True):
         assert one.data.read(0, one.data.size) == other.data.read(0, other.data.size)

@@ -147,6 +147,7 @@ def test_a_clip_without_a_mesh_goes_on_where_it_was_stopped(passing, tmp_path):
     assert clip.timeline.frames == 4 and list(clip.groups.lengths) == [2, 2]
 
 
+@pytest.mark.slow
 def test_one_command_makes_a_clip_and_proxy_makes_the_same_surface(passing, tmp_path, run):
     small = tmp_path / "footage"
     shutil.copytree(passing, small)

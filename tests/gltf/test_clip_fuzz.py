@@ -27,7 +27,7 @@ FILES: dict[bool, bytes] = {}
 
 def clip_file(sheets=False) -> bytes:
     if sheets not in FILES:
-        still = numbered_clip((3, 2), sheets=sheets)
+        still = numbered_clip((2, 1), sheets=sheets)
         own = {} if sheets else {1: finer_mesh(still)}
         FILES[sheets] = encode_scene(moving_clip(still, lambda number, places: places + number, own))
     return FILES[sheets]

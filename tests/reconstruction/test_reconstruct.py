@@ -146,6 +146,7 @@ def test_the_proxy_verb_writes_mesh_and_cameras(photos, made, tmp_path, run):
     assert run("proxy", photos, "-o", tmp_path / "mesh.obj")[0] == 2
 
 
+@pytest.mark.slow
 def test_bare_photographs_are_measured_by_the_scenes_own_cameras(photos, made, tmp_path, run):
     work, _ = made
     scene = tmp_path / "scene.glb"

@@ -75,6 +75,20 @@ test("the first page: a picture within a second, few bytes, nobody else asked, a
   await close();
 });
 
+test("the clip of the first page shows its picture there, and plays when it is opened", async () => {
+  const first = await open("index.html");
+  const card = first.page.locator(".scenes a", { hasText: "clip" });
+  await card.scrollIntoViewIfNeeded();
+  await first.page.waitForFunction((image) => image.naturalWidth > 100, await card.locator("img").elementHandle());
+  const path = await card.getAttribute("href");
+  await first.close();
+  const { page, close } = await open(path, { context: { reducedMotion: "no-preference" } });
+  await page.waitForFunction(() => window.eigenfield?.field?.player?.frame > 1, undefined, { timeout: 60_000 });
+  const { playing, message } = await page.evaluate(() => window.eigenfield.state());
+  assert.deepEqual([playing, message], [true, null]);
+  await close();
+});
+
 test("pages can be read by everybody: contrast, names, headings, keys, in light and dark, on a desk and a phone", async () => {
   assert.ok(PAGES.length > 15, `${PAGES.length} pages`);
   const found = [];

@@ -6,7 +6,7 @@ import bpy
 
 from .array import array_of
 from .encode import Run, rendered
-from .imported import EIGENFIELD_OT_import
+from .imported import CLIP, FRAME, EIGENFIELD_OT_import, timeline_of
 from .parallax import MEANINGS
 from .program import RefusalError
 from .sight import promise
@@ -108,7 +108,23 @@ class EIGENFIELD_PT_encode(bpy.types.Panel):
             write(layout, context, Run.viewer.error, icon="ERROR")
 
 
-CLASSES = EIGENFIELD_PT_array, EIGENFIELD_PT_encode
+class EIGENFIELD_PT_clip(bpy.types.Panel):
+    bl_label = "Clip"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Eigenfield"
+
+    @classmethod
+    def poll(cls, context):
+        return context.object is not None and CLIP in context.object
+
+    def draw(self, context):
+        mesh = context.object
+        self.layout.prop(mesh, "eigenfield_time")
+        write(self.layout, context, f"Frame {mesh[FRAME]} of {timeline_of(mesh).frames}, counted from 0")
+
+
+CLASSES = EIGENFIELD_PT_array, EIGENFIELD_PT_encode, EIGENFIELD_PT_clip
 
 
 def register():

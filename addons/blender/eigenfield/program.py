@@ -99,6 +99,19 @@ class Job:
         words = line.get("step") or line.get("stage") or "starting", line.get("left"), line.get("note")
         return ", ".join(word for word in words if word)
 
+    def steps(self):
+        """Wait for its end; yields how far it is, and returns it. Raises RefusalError where it failed, and stops it
+        where nobody waits any more."""
+        try:
+            while self.is_running:
+                yield self.part or 0, self.words
+        finally:
+            if self.is_running:
+                self.stop()
+        if self.error:
+            raise RefusalError(self.error)
+        return self
+
     def stop(self):
         """Ask it to end. It removes what it has begun to write."""
         self.stopped = True
