@@ -26,7 +26,7 @@ def scene(tmp_path_factory: pytest.TempPathFactory) -> tuple[PhotoSet, LightFiel
     return photographed(tmp_path_factory.mktemp("scene") / "photos")
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 2**32 - 1), st.floats(1e-3, 1e3), st.integers(3, 12))
 def test_similarities_are_recovered(seed, scale, count):
     random = np.random.default_rng(seed)

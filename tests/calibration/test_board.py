@@ -22,7 +22,6 @@ from support.charts import CHARUCO, CHECKER, TOML
 
 
 @given(st.integers(3, 9), st.integers(3, 9))
-@settings(deadline=None)
 def test_turns_of_a_checkerboard_are_rotations_and_colours_decide_between_them(columns, rows):
     board = boards.checkerboard(columns, rows, 1.0)
     points = board.points[:, :2]
@@ -114,7 +113,7 @@ def test_a_damaged_charuco_toml(tmp_path, text):
 
 
 @given(st.integers(0, 2**31))
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=20)
 def test_projection_is_opencvs_and_its_derivatives_are_right(seed):
     random = np.random.default_rng(seed)
     points = random.uniform([-1, -1, 1.5], [1, 1, 3], (7, 3))

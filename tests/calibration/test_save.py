@@ -258,7 +258,7 @@ def test_a_file_in_the_way_and_a_skew_are_refused(tmp_path):
     assert error.value.code == "camera-skew" and not (tmp_path / "out").exists()
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.lists(st.floats(-1, 1), min_size=4, max_size=4))
 def test_quaternions_turn_as_their_matrices(q):
     w, x, y, z = q

@@ -260,7 +260,7 @@ def test_counts_beyond_the_file_are_refused_before_anything_is_allocated(tmp_pat
     refused("colmap-damaged", tmp_path)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.data())
 def test_changed_bytes_are_read_or_refused(tmp_path_factory, data):
     folder = tmp_path_factory.getbasetemp() / "colmap fuzz"

@@ -101,7 +101,7 @@ def written(request):
 
 
 @given(edits=st.lists(EDITS, min_size=1, max_size=4))
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=120)
 def test_damage_raises_nothing_but_capture_errors(written, edits):
     find, read, folder, path, target, data = written
     target.write_bytes(edited(data, edits))
@@ -109,7 +109,7 @@ def test_damage_raises_nothing_but_capture_errors(written, edits):
 
 
 @given(data=st.binary(max_size=300))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_garbage_raises_nothing_but_capture_errors(written, data):
     find, read, folder, path, target, _ = written
     target.write_bytes(data)
@@ -117,7 +117,7 @@ def test_garbage_raises_nothing_but_capture_errors(written, data):
 
 
 @given(text=st.text(alphabet="ab:[]{},-'\"#! \n\t1.%_", max_size=80))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 def test_any_text_is_a_storage_or_an_error(text):
     with tempfile.TemporaryDirectory() as name:
         path = Path(name) / "a.yml"

@@ -361,7 +361,7 @@ def test_the_focal_length_of_a_grid_is_one_or_none(tmp_path):
 
 
 @pytest.mark.filterwarnings("ignore::UserWarning")  # Pillow's, of EXIF that is cut short
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.integers(0, 400), st.binary(min_size=1, max_size=8))
 def test_damaged_exif_is_no_focal_length_or_one(tmp_path_factory, at, change):
     path = tmp_path_factory.getbasetemp() / "exif1.jpg"
@@ -431,7 +431,7 @@ NAMES = st.from_regex(r"[a-z]{0,3}[0-9]{0,3}[_.-]{0,2}[0-9]{0,4}(_-?[0-9]{1,3}\.
 )
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(
     st.lists(NAMES, min_size=1, max_size=9, unique=True),
     st.sampled_from([None, *[row.name for row in FORMATS]]),

@@ -88,7 +88,7 @@ def test_a_cfg_without_disparities_is_whole(tmp_path):
     assert len(light_field) == 9 and light_field.views[0].bounds is None
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.integers(0, len(CFG) - 1), st.binary(max_size=6), st.integers(0, 12))
 def test_any_cfg_is_read_or_refused(tmp_path_factory, at, change, cut):
     path = tmp_path_factory.getbasetemp() / "any.cfg"

@@ -124,7 +124,7 @@ def test_truncated_files_are_refused(tmp_path, make):
         assert refused(tmp_path / "a").code in ("image-truncated", "image-unreadable")
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(kind=st.sampled_from([heic, jxl]), data=st.data())
 @pytest.mark.filterwarnings("ignore")
 def test_changed_bytes_give_a_picture_or_a_capture_error(tmp_path_factory, kind, data):

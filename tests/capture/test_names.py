@@ -132,7 +132,7 @@ def test_grid_names_as_people_write_them(tmp_path, form):
     refused("grid-size", tmp_path, grid=(4, 3))
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.data())
 def test_any_words_and_separators_give_the_same_grid(tmp_path_factory, data):
     """Names made of a head, two words or none, separators, numbers with or without leading zeros, and a tail."""

@@ -296,7 +296,7 @@ def test_broken_profiles_are_ignored_with_a_warning(tmp_path, caplog, profile):
     assert "a.png" in caplog.text and "profile" in caplog.text
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.data())
 def test_damaged_profiles_never_raise_anything_else(data):
     profile = bytearray(profile_bytes(ADOBE, SRGB_PARA))
@@ -467,7 +467,7 @@ def test_a_bomb_is_refused_by_its_header(tmp_path, monkeypatch):
     assert refused(tmp_path / "a.png").code == "image-too-large"
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(kind=st.sampled_from(["PNG", "JPEG", "WEBP", "TIFF", "AVIF", "PNG16", "TIFF16"]), data=st.data())
 @pytest.mark.filterwarnings("ignore")
 def test_changed_bytes_give_a_picture_or_a_capture_error(tmp_path_factory, kind, data):

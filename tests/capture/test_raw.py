@@ -92,7 +92,7 @@ def test_damage_and_size(tmp_path, monkeypatch):
         read_header(path)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(data=st.data())
 @pytest.mark.filterwarnings("ignore")
 def test_changed_bytes_give_a_picture_or_a_capture_error(tmp_path_factory, data):

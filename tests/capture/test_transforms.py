@@ -8,7 +8,7 @@ import threading
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
@@ -211,7 +211,6 @@ def test_a_photograph_of_another_aspect_is_an_error(tmp_path):
     assert "v1.png" in str(error) and "40x27" in str(error) and "40x30" in str(error)
 
 
-@settings(deadline=None)
 @given(
     st.integers(200, 8000), st.integers(200, 8000), st.floats(0.05, 1), st.sampled_from([np.floor, np.ceil, np.round])
 )

@@ -132,7 +132,7 @@ PLACES = [
 ]  # fmt: skip
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(st.sampled_from(PLACES), JSON)
 @example("frames/0/transform_matrix/1/2", float("inf"))
 def test_any_value_anywhere_is_read_or_refused(tmp_path_factory, path, value):

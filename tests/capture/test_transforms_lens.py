@@ -80,7 +80,7 @@ def test_what_is_not_read_is_refused_by_name(tmp_path, extra, code, words):
     assert words in str(refused(code, write(tmp_path, document() | extra)))
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.data())
 def test_a_list_is_the_same_as_names(tmp_path_factory, data):
     folder = tmp_path_factory.getbasetemp() / "lists"

@@ -41,7 +41,7 @@ def test_what_is_no_sequence_header_is_refused(data):
 
 
 @given(st.binary(max_size=80))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 def test_any_bytes_are_read_or_refused(data):
     pieces = [data[start:end] for _, start, _, end in units(data)]
     assert data.startswith(b"".join(pieces)) and len(picture_units(data)) <= len(data)

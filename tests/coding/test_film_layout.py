@@ -28,7 +28,7 @@ PLANES = st.lists(
 
 
 @given(PLANES, st.none() | SIDES)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_what_goes_into_a_film_comes_out_of_it(planes, opacity):
     layout = film_layout(planes, opacity)
     assert [plane.channels for plane in layout.planes] == [plane.channels for plane in planes]

@@ -81,7 +81,7 @@ def test_a_ball_with_a_seam_and_poles():
     assert nearest.max() <= step / 2 + 1e-6
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(st.integers(0, 2**31), st.integers(3, 60), st.integers(0, 120))
 def test_any_triangles_come_back(seed, vertices, faces):
     mesh, lattice = coded_meshes.soup(seed, vertices, faces)
@@ -91,7 +91,7 @@ def test_any_triangles_come_back(seed, vertices, faces):
     assert np.array_equal(coded_meshes.corner_set(back, lattice, 12), coded_meshes.corner_set(mesh, lattice, 12))
 
 
-@settings(deadline=None, max_examples=25)
+@settings(max_examples=25)
 @given(st.integers(0, 2**31), st.integers(3, 60), st.integers(0, 120))
 def test_any_triangles_over_a_plane_come_back(seed, vertices, faces):
     mesh, _ = coded_meshes.soup(seed, vertices, faces)
@@ -114,7 +114,7 @@ def parts_of(mesh, counts):
     return [replace(mesh, faces=faces) for faces in np.split(mesh.faces, np.cumsum(counts)[:-1])]
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(st.lists(st.tuples(st.integers(0, 2**31), st.integers(3, 30), st.integers(1, 40)), min_size=1, max_size=5),
        st.booleans())  # fmt: skip
 def test_sheets_come_back_in_their_order_each_with_its_faces(soups, flat):
@@ -190,7 +190,7 @@ def streams():
     return [encode_mesh(*made)[0] for made in (coded_meshes.relief(8, 9, charts=2), coded_meshes.ball(6, 4))]
 
 
-@settings(deadline=None, max_examples=150)
+@settings(max_examples=150)
 @given(st.data())
 def test_damaged_bytes_give_a_mesh_or_a_format_error(streams, data):
     try:

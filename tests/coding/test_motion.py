@@ -82,7 +82,7 @@ def test_surfaces_that_touch_can_part():
     assert np.array_equal(decoded(encode_motion(places, faces, frames), places, faces, 2), frames)
 
 
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 @given(st.integers(0, 2**31), st.integers(3, 40), st.integers(1, 60), st.integers(1, 6), st.integers(0, 19))
 def test_any_motion_comes_back(seed, vertices, faces, count, digits):
     places, corners = placed(*coded_meshes.soup(seed, vertices, faces))

@@ -38,7 +38,7 @@ def decoded(data, count, contexts=4):
     return values, coder
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(st.lists(st.one_of(st.integers(-3, 3), st.integers(-LARGEST, LARGEST)), max_size=200))
 def test_integers_come_back(values):
     data = encoded(values)
@@ -101,7 +101,7 @@ def test_four_bytes_behind_the_end_may_be_read():
         range_coder.check_end(coder, "here")
 
 
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 @given(st.binary(max_size=300))
 def test_any_bytes_decode_to_numbers_in_range(data):
     back, _ = decoded(data, 100)

@@ -188,7 +188,7 @@ def streams():
     ]  # fmt: skip
 
 
-@settings(deadline=None, max_examples=150)
+@settings(max_examples=150)
 @given(st.data())
 def test_damaged_bytes_give_numbers_or_a_format_error(streams, data):
     decode, stream = data.draw(st.sampled_from(streams))

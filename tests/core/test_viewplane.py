@@ -25,7 +25,7 @@ def grid_points(rows, columns, dx=1.0, dy=0.7):
     return np.array([[c * dx, r * dy, 0] for r in range(rows) for c in range(columns)])
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(seed=st.integers(0, 10_000))
 def test_coordinates_follow_the_cameras_whatever_the_world(seed):
     """X grows to the right of the cameras, Y against their down axis, ±1 at the edges."""

@@ -112,7 +112,7 @@ def test_same_bytes_at_any_number_of_threads(monkeypatch):
     assert results[0] == results[1] == results[2]
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(cameras=st.integers(3, 12), texels=st.integers(1, 60), channels=st.integers(1, 6), seed=st.integers(0, 99))
 def test_weights_are_white_and_errors_fall(cameras, texels, channels, seed):
     maps = random_maps(cameras, texels, channels, seed)

@@ -120,7 +120,7 @@ def test_subsampled_pixels_are_some_of_all(world):
         assert same is data
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.integers(2, 40), st.integers(2, 40), st.integers(1, 3), st.booleans(), st.integers(0, 2**31))
 def test_drawing_and_its_transpose(height, width, channels, opaque, seed):
     random = np.random.default_rng(seed)

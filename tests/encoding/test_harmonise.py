@@ -181,7 +181,7 @@ def test_an_unknown_model_is_refused(folders):
 # the fit on its own
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.integers(2, 12), st.sampled_from(["gain", "affine"]), st.integers(0, 2**32 - 1))
 def test_the_fit_withstands_outliers_and_holes(cameras, model, seed):
     random = np.random.default_rng(seed)

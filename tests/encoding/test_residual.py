@@ -424,7 +424,7 @@ ODD = st.one_of(
 
 
 @given(st.sampled_from(["bufferView", "size", "full", "order", "scale"]), ODD)
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 def test_odd_entries_never_surprise(tmp_path_factory, data, key, value):
     changed = glb_surgery.changed(data, ours("residual", key, value=value))
     outcome(tmp_path_factory.getbasetemp() / "odd.glb", changed)

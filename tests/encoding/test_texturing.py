@@ -230,7 +230,7 @@ def test_unseen_texels_are_filled_smoothly():
     assert np.abs(np.diff(picture, axis=1)).max() < 0.12
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(height=st.integers(1, 33), width=st.integers(1, 33), channels=st.integers(1, 6), seed=st.integers(0, 99))
 def test_push_pull_keeps_what_is_known_and_stays_within_its_range(height, width, channels, seed):
     generator = np.random.default_rng(seed)

@@ -19,7 +19,7 @@ from support.scenes import bumpy_square, row_grid, tiny_scene
 
 
 @given(st.integers(0, 2**32 - 1))
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 def test_quaternions_are_rotations(seed):
     q = np.random.default_rng(seed).normal(size=4)
     q /= np.linalg.norm(q)

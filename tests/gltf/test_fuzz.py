@@ -50,7 +50,7 @@ def test_a_truncation_that_mends_its_header_is_refused(tmp_path, good, codec):
 
 
 @given(st.sampled_from(CODECS), st.lists(st.tuples(st.floats(0, 1), st.integers(0, 255)), min_size=1, max_size=6))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_flipped_bytes_never_surprise(tmp_path_factory, good, codec, flips):
     data = bytearray(good[codec])
     for place, value in flips:
@@ -59,7 +59,7 @@ def test_flipped_bytes_never_surprise(tmp_path_factory, good, codec, flips):
 
 
 @given(st.sampled_from(CODECS), st.integers(0, 4), st.binary(min_size=1, max_size=40), st.floats(0, 1))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 def test_damaged_pictures_never_surprise(tmp_path_factory, good, codec, which, noise, place):
     gltf, binary = glb_surgery.split(good[codec])
     extension = gltf["extensions"][limits.EXTENSION]
@@ -88,7 +88,7 @@ ODD = st.one_of(
 
 
 @given(st.data())
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 def test_changed_json_never_surprises(tmp_path_factory, good, data):
     gltf, binary = glb_surgery.split(good[data.draw(st.sampled_from(CODECS))])
     for _ in range(data.draw(st.integers(1, 3))):

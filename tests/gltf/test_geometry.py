@@ -92,7 +92,7 @@ def test_what_stands_before_a_relief_makes_it_none():
     assert relief_lattice(beside(wall, layer, 0.5), cameras, DEPTH_ERROR_PX) is not None
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     st.integers(120, 3000), st.floats(0.3, 1), st.floats(0, 0.6), st.sampled_from([1, 2, 4]), st.integers(0, 2**32 - 1)
 )

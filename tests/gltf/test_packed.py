@@ -188,7 +188,7 @@ def test_every_length_is_refused_or_drawn_of_the_textures_that_are_there(data, t
 
 
 @given(st.lists(st.tuples(st.floats(0, 1), st.integers(0, 255)), min_size=1, max_size=6))
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 def test_flipped_bytes_never_surprise(tmp_path_factory, data, flips):
     """In the packed part: JSON and streams."""
     gltf, binary = split_packed(data)

@@ -63,7 +63,7 @@ def test_steps_and_qualities_of_the_encoder(crf):
 
 
 def test_a_damaged_picture_is_refused(data):
-    @settings(max_examples=60, deadline=None)
+    @settings(max_examples=60)
     @given(st.integers(0, len(data) - 1), st.integers(0, 255), st.booleans())
     def damage(place, value, cut):
         broken = data[:place] if cut else data[:place] + bytes([value]) + data[place + 1 :]

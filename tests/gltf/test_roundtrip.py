@@ -158,7 +158,7 @@ def test_a_mean_of_any_range_keeps_it(tmp_path):
 
 
 @given(st.integers(1, 5), st.floats(1e-6, 1e4), st.integers(0, 2**32 - 1), st.booleans())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_quantising_textures_never_clips_and_errs_by_half_a_step(count, size, seed, photographic):
     textures = np.random.default_rng(seed).normal(size=(count, 6, 5, 3), scale=size).astype(np.float32)
     ones = np.ones((count, 3), np.float32)

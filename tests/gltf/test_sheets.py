@@ -165,7 +165,7 @@ def test_an_opacity_of_colours_is_refused(tmp_path, plain):
 
 
 @given(st.lists(st.tuples(st.floats(0, 1), st.integers(0, 255)), min_size=1, max_size=6))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_flipped_bytes_never_surprise(tmp_path_factory, data, flips):
     changed = bytearray(data)
     for place, value in flips:

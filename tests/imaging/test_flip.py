@@ -79,7 +79,7 @@ def test_the_greatest_difference_is_one():
     assert 0.96 < flip(black, black + np.uint8(255)) < 0.97
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(height=st.integers(1, 60), width=st.integers(1, 60), seed=st.integers(0, 99), spread=st.floats(0, 120))
 def test_the_map_is_that_of_the_authors(height, width, seed, spread):
     photograph, drawn = pair(height, width, seed, spread)
@@ -123,7 +123,7 @@ def test_a_new_line_is_seen_where_it_is():
     assert at[0].max() == 0  # further than any filter reaches
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(seed=st.integers(0, 99), height=st.integers(4, 90), width=st.integers(4, 60), share=st.floats(0.005, 1))
 def test_masked_flip_is_its_definition(seed, height, width, share):
     photograph, drawn = pair(height, width, seed)

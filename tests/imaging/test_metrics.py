@@ -126,7 +126,7 @@ def test_values_are_rounded_and_clipped_before_they_are_compared():
     assert to_codes(np.array([[[0.5 / 255, 1.5 / 255, 2.0]]], np.float32)).tolist() == [[[0, 2, 255]]]  # half to even
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(height=st.integers(11, 150), width=st.integers(11, 90), seed=st.integers(0, 9), spread=st.floats(0.1, 80))
 def test_whole_frame_agrees_with_scikit_image(height, width, seed, spread):
     photograph, drawn = noise(height, width, seed, spread)
@@ -139,7 +139,7 @@ def test_whole_frame_agrees_with_scikit_image(height, width, seed, spread):
         )
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(seed=st.integers(0, 99), height=st.integers(11, 140), width=st.integers(11, 80), share=st.floats(0.005, 1))
 def test_masked_figures_agree_with_their_definition(seed, height, width, share):
     photograph, drawn = noise(height, width, seed % 7)

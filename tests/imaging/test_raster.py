@@ -79,7 +79,7 @@ def test_what_lies_behind_the_camera_and_degenerate_triangles_draw_nothing():
     assert not (rasterise_view(line, EYE).face >= 0).any()
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(seed=st.integers(0, 10_000))
 def test_no_cracks_between_triangles(seed):
     """A square cut into a random fan and grid covers every pixel inside it."""

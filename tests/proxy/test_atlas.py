@@ -78,7 +78,7 @@ def test_statistics_count_what_is_covered_twice():
     assert statistics.fill == pytest.approx(0.6 * 0.4, abs=0.01)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(angle=st.floats(0, 6.3), size=st.floats(0.1, 0.6), flip=st.booleans())
 def test_statistics_do_not_depend_on_turning_scaling_and_mirroring(angle, size, flip):
     mesh = grid(5, height=0.2)

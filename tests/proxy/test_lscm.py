@@ -64,7 +64,7 @@ def test_developable_surfaces_are_unrolled(shape):
     np.testing.assert_allclose(area, triangle_areas(vertices[faces]), rtol=0.02)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(seed=st.integers(0, 1000), scale=st.floats(1e-3, 1e4))
 def test_a_plane_keeps_its_shape_wherever_it_lies(seed, scale):
     random = np.random.default_rng(seed)
@@ -198,7 +198,7 @@ def test_a_wide_background_does_not_take_the_atlas():
     assert np.isclose(scales[0] / scales[1], 6, rtol=0.02)  # as far behind: texels are spread as pixels are
 
 
-@settings(max_examples=2, deadline=None)
+@settings(max_examples=2)
 @given(seed=st.integers(0, 100))
 def test_rough_surfaces_get_an_atlas_without_overlap(seed):
     random = np.random.default_rng(seed)

@@ -80,7 +80,7 @@ def test_views_are_found_by_what_people_type():
 # ---------------------------------------------------------------- cutting
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.floats(0.2, 0.9), st.floats(-0.5, 0.5), st.floats(-0.5, 0.5))
 def test_a_disc_is_cut_out_of_a_square(radius, x, y):
     sphere = SpherePrimitive((x, y, 0.0), radius)

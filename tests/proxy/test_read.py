@@ -343,7 +343,7 @@ def whole(tmp_path_factory):
     return folder, files
 
 
-@settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=120, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(kind=st.sampled_from(["ply", "ascii", "obj", "glb", "stl", "off"]), at=st.floats(0, 1), damage=st.data())
 def test_truncated_and_altered_files_raise_nothing_but_proxy_errors(whole, kind, at, damage):
     folder, files = whole

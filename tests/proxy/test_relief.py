@@ -141,7 +141,7 @@ def bumpy(seed, height=48, width=64):
     return d.astype(np.float32), gone <= np.quantile(gone, random.uniform(0.8, 1))
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(seed=st.integers(0, 10_000), tolerance=st.floats(0.02, 0.5))
 def test_every_relief_covers_its_pixels_within_the_tolerance(seed, tolerance):
     d, valid = bumpy(seed)
@@ -168,7 +168,7 @@ def test_every_relief_covers_its_pixels_within_the_tolerance(seed, tolerance):
     np.testing.assert_array_equal(again.faces, mesh.faces)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(seed=st.integers(0, 10_000))
 @example(seed=7331)
 def test_every_pixel_of_noise_is_cut_without_crossings(seed):

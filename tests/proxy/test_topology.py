@@ -45,7 +45,7 @@ def test_an_outer_border_is_no_hole():
     assert np.array_equal(fill_holes(mesh, 10.0).faces, mesh.faces)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.integers(3, 40), st.integers(0, 2**31))
 def test_least_area_triangulates_any_loop(count, seed):
     random = np.random.default_rng(seed)

@@ -41,7 +41,7 @@ def test_planes_of_several_sizes_and_regions(context, count):
     assert count == 0 or np.abs(expected - composed(made, weights, 0)).max() > 20 * CLOSE  # there is much to be seen
 
 
-@settings(deadline=None, max_examples=15, derandomize=True)
+@settings(max_examples=15, derandomize=True)
 @given(data=st.data())
 def test_any_sizes_channels_and_regions(context, data):
     """Also textures of more channels than share a texel, and an atlas that no mean and no basis has."""

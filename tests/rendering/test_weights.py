@@ -74,7 +74,7 @@ def test_a_place_takes_of_the_cameras_around_it_alone(mode, most):
         assert weights.rows.max() < len(scene.rig.encoded)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(seed=st.integers(0, 1000), mode=st.sampled_from(["delaunay", "bilinear"]))
 def test_continuous_modes_reproduce_positions_and_sum_to_one(seed, mode):
     """Inside the hull the weighted mean of the cameras' places is the viewpoint itself."""
@@ -102,7 +102,7 @@ def test_a_cameras_own_observation_has_no_rounding_of_its_place():
         assert camera_weights(scene, index).rows.tolist() == [index]
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(seed=st.integers(0, 1000))
 def test_nearest3_is_equation_7(seed):
     random = np.random.default_rng(seed)

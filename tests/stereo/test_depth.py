@@ -57,7 +57,7 @@ def two_layers():
 
 
 @given(st.floats(-1.5, 1.5))
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=5)
 def test_the_sweep_is_least_at_the_plane(label):
     matrices = grid_matrices(3)
     pictures = photograph([(label, 0, 0, paint(4), everywhere)], matrices, 48)
