@@ -1,7 +1,7 @@
-import { BufferAttribute as e, BufferGeometry as t, Camera as n, ClampToEdgeWrapping as r, Color as i, CustomBlending as a, DataArrayTexture as o, DataUtils as s, DepthStencilFormat as c, DepthTexture as l, DoubleSide as u, EqualStencilFunc as d, EventDispatcher as f, ExternalTexture as p, FrontSide as m, GLSL3 as h, HalfFloatType as g, IncrementStencilOp as _, InstancedBufferGeometry as v, LinearFilter as y, LinearMipmapLinearFilter as b, Matrix4 as x, Mesh as S, MeshBasicMaterial as C, NearestFilter as w, NoBlending as T, OneFactor as E, OneMinusSrcAlphaFactor as D, RGBAFormat as O, RawShaderMaterial as k, Scene as A, Sphere as ee, UnsignedByteType as te, UnsignedInt248Type as ne, Vector2 as re, Vector3 as j, Vector4 as ie, WebGLRenderTarget as ae, ZeroStencilOp as oe } from "three";
-import { GLTFLoader as se } from "three/addons/loaders/GLTFLoader.js";
+import { BufferAttribute as e, BufferGeometry as t, Camera as n, ClampToEdgeWrapping as r, Color as i, CustomBlending as a, DataArrayTexture as o, DataUtils as s, DepthStencilFormat as c, DepthTexture as l, DoubleSide as u, EqualStencilFunc as d, EventDispatcher as f, ExternalTexture as p, FrontSide as m, GLSL3 as h, HalfFloatType as g, IncrementStencilOp as _, InstancedBufferGeometry as v, LinearFilter as y, LinearMipmapLinearFilter as b, Matrix4 as x, Mesh as S, MeshBasicMaterial as C, NearestFilter as w, NoBlending as T, OneFactor as E, OneMinusSrcAlphaFactor as ee, RGBAFormat as D, RawShaderMaterial as O, Scene as k, Sphere as te, UnsignedByteType as ne, UnsignedInt248Type as re, Vector2 as ie, Vector3 as A, Vector4 as ae, WebGLRenderTarget as oe, ZeroStencilOp as se } from "three";
+import { GLTFLoader as ce } from "three/addons/loaders/GLTFLoader.js";
 // eigenfield-three/src/errors.ts
-var M = class extends Error {
+var j = class extends Error {
 	code;
 	where;
 	name = "SceneError";
@@ -9,65 +9,65 @@ var M = class extends Error {
 		super(t, r), this.code = e, this.where = n;
 	}
 };
-function N(e, t) {
-	return new M("damaged", `The file is damaged (${e}: ${t}); make or download it again.`, e);
+function M(e, t) {
+	return new j("damaged", `The file is damaged (${e}: ${t}); make or download it again.`, e);
 }
-function ce(e, t) {
-	return new M("truncated", `The file is cut off after ${e} of ${t} bytes; download or copy it again.`, String(e));
+function le(e, t) {
+	return new j("truncated", `The file is cut off after ${e} of ${t} bytes; download or copy it again.`, String(e));
 }
-function le(e) {
-	return new M("truncated", `The file is cut off (${e}); download or copy it again.`, e);
+function ue(e) {
+	return new j("truncated", `The file is cut off (${e}); download or copy it again.`, e);
 }
-function ue(e, t = "") {
-	return e instanceof M ? e : new M("damaged", `The file cannot be read (${(e instanceof Error ? e.message : String(e)).replace(/^THREE\.GLTFLoader: /, "")}); make or download it again.`, t, { cause: e });
+function de(e, t = "") {
+	return e instanceof j ? e : new j("damaged", `The file cannot be read (${(e instanceof Error ? e.message : String(e)).replace(/^THREE\.GLTFLoader: /, "")}); make or download it again.`, t, { cause: e });
 }
 // eigenfield-three/src/addresses.ts
-var de = 60;
-function fe(e) {
+var fe = 60;
+function pe(e) {
 	return {
 		name: "EIGENFIELD_addresses",
-		beforeRoot: async () => pe(e.json)
+		beforeRoot: async () => me(e.json)
 	};
 }
-function pe(e) {
+function me(e) {
 	let t = [["", e]];
 	for (let e = t.pop(); e; e = t.pop()) {
 		let [n, r] = e;
 		if (typeof r == "object" && r) for (let [e, i] of Object.entries(r)) {
 			if (e === "extras" && !Array.isArray(r)) continue;
 			let a = `${n}/${e}`;
-			if (e === "uri" && !(typeof i == "string" && /^data:/i.test(i))) throw me(a, JSON.stringify(i));
+			if (e === "uri" && !(typeof i == "string" && /^data:/i.test(i))) throw he(a, JSON.stringify(i));
 			t.push([a, i]);
 		}
 	}
 }
-function me(e, t) {
-	return new M("address", `The file names another one (${e}: ${t.length > de ? `${t.slice(0, de)}…` : t}), which is not fetched; export all of it as one .glb.`, e);
+function he(e, t) {
+	return new j("address", `The file names another one (${e}: ${t.length > fe ? `${t.slice(0, fe)}…` : t}), which is not fetched; export all of it as one .glb.`, e);
 }
 // eigenfield-three/src/av1-picture.ts
-var he = 1, ge = 7;
-function _e(e, t) {
-	let { level: n, tier: r, width: i, height: a } = ve(new Uint8Array(e), t), o = r << 7 | 76, s = P("ipco", [
-		...P("ispe", [
-			...F(0),
-			...F(i),
-			...F(a)
+var ge = 1, _e = 7;
+function ve(e, t) {
+	let { level: n, tier: r, width: i, height: a } = ye(new Uint8Array(e), t), o = r << 7 | 76, s = N("ipco", [
+		...N("ispe", [
+			...P(0),
+			...P(i),
+			...P(a)
 		]),
-		...P("pixi", [
-			...F(0),
+		...N("pixi", [
+			...P(0),
 			3,
 			10,
 			10,
 			10
 		]),
-		...P("av1C", [
+		...N("av1C", [
 			129,
 			n,
 			o,
 			0
 		]),
-		...P("colr", [
-			...I("nclx"),
+		...N("colr", [
+			...be("nclx"),
 			0,
 			2,
 			0,
@@ -76,25 +76,25 @@ function _e(e, t) {
 			2,
 			128
 		])
-	]), c = P("ftyp", [
-		...I("avif"),
-		...F(0),
-		...I("avifmif1miafMA1B")
-	]), l = (t) => P("meta", [
-		...F(0),
-		...P("hdlr", [
-			...F(0),
-			...F(0),
-			...I("pict"),
+	]), c = N("ftyp", [
+		...be("avif"),
+		...P(0),
+		...be("avifmif1miafMA1B")
+	]), l = (t) => N("meta", [
+		...P(0),
+		...N("hdlr", [
+			...P(0),
+			...P(0),
+			...be("pict"),
 			...Array(13).fill(0)
 		]),
-		...P("pitm", [
-			...F(0),
+		...N("pitm", [
+			...P(0),
 			0,
 			1
 		]),
-		...P("iloc", [
-			...F(0),
+		...N("iloc", [
+			...P(0),
 			68,
 			0,
 			0,
@@ -105,14 +105,14 @@ function _e(e, t) {
 			0,
 			0,
 			1,
-			...F(t),
-			...F(e.byteLength)
+			...P(t),
+			...P(e.byteLength)
 		]),
-		...P("iinf", [
-			...F(0),
+		...N("iinf", [
+			...P(0),
 			0,
 			1,
-			...P("infe", [
+			...N("infe", [
 				2,
 				0,
 				0,
@@ -121,13 +121,13 @@ function _e(e, t) {
 				1,
 				0,
 				0,
-				...I("av01"),
+				...be("av01"),
 				0
 			])
 		]),
-		...P("iprp", [...s, ...P("ipma", [
-			...F(0),
-			...F(1),
+		...N("iprp", [...s, ...N("ipma", [
+			...P(0),
+			...P(1),
 			0,
 			1,
 			4,
@@ -139,12 +139,12 @@ function _e(e, t) {
 	]), u = c.length + l(0).length + 8, d = [
 		...c,
 		...l(u),
-		...F(8 + e.byteLength),
-		...I("mdat")
+		...P(8 + e.byteLength),
+		...be("mdat")
 	], f = new Uint8Array(u + e.byteLength);
 	return f.set(d), f.set(new Uint8Array(e), u), f.buffer;
 }
-function ve(e, t) {
+function ye(e, t) {
 	let n = e[0] ?? 0, r = 8 * (1 + (n >> 2 & 1) + (n >> 1 & 1)), i = (t) => {
 		let n = 0;
 		for (let i = r + t; r < i; r++) n = 2 * n + ((e[r >> 3] ?? 0) >> 7 - (r & 7) & 1);
@@ -153,8 +153,8 @@ function ve(e, t) {
 	i(4);
 	let a = i(1) === 1, o = !a && i(7) !== 0;
 	a || i(12);
-	let s = i(5), c = !a && s > ge ? i(1) : 0, [l, u] = [i(4) + 1, i(4) + 1], [d, f] = [i(l) + 1, i(u) + 1];
-	if (n >> 3 !== he || o || r > 8 * e.length) throw N(t, "no AV1 sequence header");
+	let s = i(5), c = !a && s > _e ? i(1) : 0, [l, u] = [i(4) + 1, i(4) + 1], [d, f] = [i(l) + 1, i(u) + 1];
+	if (n >> 3 !== ge || o || r > 8 * e.length) throw M(t, "no AV1 sequence header");
 	return {
 		level: s,
 		tier: c,
@@ -162,14 +162,14 @@ function ve(e, t) {
 		height: f
 	};
 }
-function P(e, t) {
+function N(e, t) {
 	return [
-		...F(8 + t.length),
-		...I(e),
+		...P(8 + t.length),
+		...be(e),
 		...t
 	];
 }
-function F(e) {
+function P(e) {
 	return [
 		24,
 		16,
@@ -177,24 +177,24 @@ function F(e) {
 		0
 	].map((t) => e >>> t & 255);
 }
-function I(e) {
+function be(e) {
 	return Array.from(e, (e) => e.charCodeAt(0));
 }
 // eigenfield-three/src/inflate.ts
-async function ye(e, t, n, r) {
+async function xe(e, t, n, r) {
 	let i = [], a = 0, o = new Blob([e]).stream().pipeThrough(new DecompressionStream(t)).getReader();
 	try {
 		for (let e = await o.read(); !e.done && a <= n; e = await o.read()) i.push(e.value), a += e.value.length;
 	} catch {
-		throw N(r, "it does not inflate");
+		throw M(r, "it does not inflate");
 	}
-	if (a > n) throw await o.cancel(), N(r, `more than ${n} bytes`);
+	if (a > n) throw await o.cancel(), M(r, `more than ${n} bytes`);
 	let s = new Uint8Array(a), c = 0;
 	for (let e of i) s.set(e, c), c += e.length;
 	return s;
 }
 // eigenfield-three/src/limits.ts
-var be = "EIGENFIELD_eigen_textures", xe = 64 * 2 ** 20, Se = 16384, Ce = 16384, we = 1024, Te = 2 ** 27, Ee = 4096, De = 8 * 2 ** 30, Oe = 1e5, ke = 65535, Ae = 2 ** 29, L = 1024, je = 2 ** 25, Me = 2 ** 26, Ne = 2 ** 27, Pe = 8192, Fe = 2 ** 24, Ie = 2 ** 25, Le = 2 ** 20, Re = 2 ** 16, ze = 2 ** 30, Be = 1024, Ve = 2 ** 22, He = 2 ** 28, Ue = 2 ** 31 - 1, We = 2 ** 28, Ge = 1e30, R = 65536, Ke = 126, qe = 64, Je = 0, Ye = 1, Xe = 2, Ze = 24, Qe = 44, $e = 21, et = 26214, tt = 4, nt = Float64Array.from({ length: 4095 }, (e, t) => Math.round(R / (1 + Math.exp((2047 - t) / 256)))), rt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), it = Float64Array.from({ length: 127 }, (e, t) => Math.round(R / (t + 1.5)));
+var Se = "EIGENFIELD_eigen_textures", Ce = 64 * 2 ** 20, F = 16384, we = 16384, Te = 1024, Ee = 2 ** 27, De = 4096, Oe = 8 * 2 ** 30, I = 1e5, ke = 65535, Ae = 2 ** 29, L = 1024, je = 2 ** 25, Me = 2 ** 26, Ne = 2 ** 27, Pe = 8192, Fe = 2 ** 24, Ie = 2 ** 25, Le = 2 ** 20, Re = 2 ** 16, ze = 2 ** 30, Be = 1024, Ve = 2 ** 22, He = 2 ** 28, Ue = 2 ** 31 - 1, We = 2 ** 28, Ge = 1e30, R = 65536, Ke = 126, qe = 64, Je = 0, Ye = 1, Xe = 2, Ze = 24, Qe = 44, $e = 21, et = 26214, tt = 4, nt = Float64Array.from({ length: 4095 }, (e, t) => Math.round(R / (1 + Math.exp((2047 - t) / 256)))), rt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), it = Float64Array.from({ length: 127 }, (e, t) => Math.round(R / (t + 1.5)));
 function z(e) {
 	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + z(Math.floor(e / 4294967296));
 }
@@ -212,7 +212,7 @@ var at = class {
 		for (let e = 0; e < tt; e++) this.code = this.code * 256 + this.next();
 	}
 	checkEnd(e) {
-		if (this.at > this.bytes.length + tt) throw le(e);
+		if (this.at > this.bytes.length + tt) throw ue(e);
 	}
 	flag(e, t, n, r) {
 		return this.node(e, t, n, r, 0) === 1;
@@ -259,12 +259,12 @@ var at = class {
 	}
 };
 function B(e, t, n, r = 1) {
-	if (e.length < t) throw le(n);
-	if (e[0] !== r) throw N(n, `coded numbers of version ${e[0]}`);
+	if (e.length < t) throw ue(n);
+	if (e[0] !== r) throw M(n, `coded numbers of version ${e[0]}`);
 	return new DataView(e.buffer, e.byteOffset, e.byteLength);
 }
 function ot(e, t, n, r) {
-	if (t > n || t > 16 * e.length + 1024) throw N(r, `${t} numbers announced`);
+	if (t > n || t > 16 * e.length + 1024) throw M(r, `${t} numbers announced`);
 }
 // eigenfield-three/src/table-decoder.ts
 var st = 12, ct = 1, lt = 3, ut = 312, dt = lt * ut, ft = 938, pt = 24, mt = 16, ht = 1722, gt = 1726, _t = 4, vt = 5;
@@ -311,24 +311,24 @@ function wt(e, t, n, r) {
 	for (let l = 0; l < t; l++) {
 		if (s = +!!e.flag(ht + s, ht + s, 1724, _t), !s) continue;
 		let t = o + e.integer(1725, 1725, 1725, _t);
-		if (!(t >= 0 && t < n) || a[t]) throw N(r, "a grid with a camera out of place");
+		if (!(t >= 0 && t < n) || a[t]) throw M(r, "a grid with a camera out of place");
 		a[t] = 1, i[l] = t, o = t + 1, c += 1;
 	}
-	if (c !== n) throw N(r, "a grid without all cameras");
+	if (c !== n) throw M(r, "a grid without all cameras");
 	return i;
 }
 // eigenfield-three/src/camera-decoder.ts
-var Tt = 130, V = 11, Et = 1, Dt = 2, Ot = 2, kt = 44 * Oe + 1024;
+var Tt = 130, V = 11, Et = 1, Dt = 2, Ot = 2, kt = 44 * I + 1024;
 async function At(e, t) {
-	if (e[0] !== Ot) throw N(t, `version ${e[0]}`);
-	let n = await ye(Uint8Array.from(e.subarray(1)), "deflate-raw", kt, t);
+	if (e[0] !== Ot) throw M(t, `version ${e[0]}`);
+	let n = await xe(Uint8Array.from(e.subarray(1)), "deflate-raw", kt, t);
 	return jt(Uint8Array.from([1, ...n]), t);
 }
 function jt(e, t) {
 	let n = B(e, Tt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Et) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
-	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw N(t, "cameras that cannot be");
-	if (i > 1e5 || a && o * s < i) throw N(t, `${i} cameras`);
-	ot(e, Math.max(V * i, o * s), V * Oe, t);
+	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw M(t, "cameras that cannot be");
+	if (i > 1e5 || a && o * s < i) throw M(t, `${i} cameras`);
+	ot(e, Math.max(V * i, o * s), V * I, t);
 	let l = Tt + (a ? 132 : 0);
 	B(e, l, t);
 	let u = (e, t) => a ? n.getFloat32(Tt + 4 * (e * V + t), !0) : 0, d = yt(e.subarray(l)), f = a ? wt(d, o * s, i, t) : null, p = Ct(d, i, V, (r & Dt) !== 0);
@@ -353,7 +353,7 @@ function jt(e, t) {
 		}
 		Mt(_, g, m, t), v += 1;
 	}
-	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw N(t, "cameras that are not finite");
+	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw M(t, "cameras that are not finite");
 	return m;
 }
 function Mt(e, t, n, r) {
@@ -392,8 +392,76 @@ function Nt(e, t, n, r) {
 		]
 	].flat();
 }
+// eigenfield-three/src/film-codes.ts
+var Pt = /* @__PURE__ */ new Set([
+	"I420P10",
+	"I422P10",
+	"I444P10"
+]), Ft = /* @__PURE__ */ new Set([
+	"I420",
+	"I420A",
+	"I422",
+	"I444",
+	"NV12"
+]), It = /* @__PURE__ */ new Set([
+	"RGBA",
+	"RGBX",
+	"BGRA",
+	"BGRX"
+]), Lt = 1, Rt = Uint16Array.from({ length: 256 }, (e, t) => Math.round(t * 1023 / 255)), zt = Uint16Array.from({ length: 256 }, (e, t) => Rt[16 + Math.round(t * 219 / 255)]), Bt = zt.map((e, t) => t === 0 ? 0 : t === 255 ? 1023 : e);
+async function Vt(e, t, n = !1) {
+	let r = e.format ?? "", { width: i, height: a } = e.visibleRect ?? {
+		width: 0,
+		height: 0
+	};
+	if (!Pt.has(r) && !Ft.has(r) && !It.has(r)) {
+		let t = Ut(e, [i, a]);
+		if (t) return Wt(t, 4 * i, 4, [i, a], Ht(e, n));
+		throw new j("unsupported", `This browser does not hand out its frames (${r || "no format"}).`, "");
+	}
+	let o = e.allocationSize(), s = t && t.length >= o ? t : new Uint8Array(o), [c] = await e.copyTo(s), { offset: l, stride: u } = c ?? {
+		offset: 0,
+		stride: 0
+	};
+	if (Pt.has(r)) return {
+		data: s.subarray(l),
+		width: i,
+		height: a,
+		stride: u,
+		room: s
+	};
+	let d = It.has(r), [f, p] = d ? [4, l + Lt] : [1, l], m = d ? Ht(e, n) : Rt;
+	return Wt(s.subarray(p), u, f, [i, a], m);
+}
+function Ht(e, t) {
+	return e.colorSpace?.fullRange === !1 ? t ? Bt : zt : Rt;
+}
+function Ut(e, t) {
+	if (typeof OffscreenCanvas > "u" || !t[0]) return null;
+	let n = new OffscreenCanvas(...t).getContext("2d", { willReadFrequently: !0 });
+	return n?.drawImage(e, 0, 0), n?.getImageData(0, 0, ...t).data ?? null;
+}
+function Wt(e, t, n, [r, i], a = Rt) {
+	let o = new Uint16Array(r * i);
+	for (let s = 0; s < i; s++) for (let i = 0; i < r; i++) o[s * r + i] = a[e[s * t + n * i]];
+	return {
+		data: new Uint8Array(o.buffer),
+		width: r,
+		height: i,
+		stride: 2 * r,
+		grown: !0
+	};
+}
+function Gt({ data: e, stride: t }, { size: [n, r], at: i }) {
+	return i.map(([i, a]) => ({
+		data: e.subarray(a * t + 2 * i),
+		width: n,
+		height: r,
+		stride: t
+	}));
+}
 // eigenfield-three/src/film-decoder.ts
-var Pt = 4, Ft = ["prefer-software", "no-preference"], It = class {
+var Kt = 4, qt = ["prefer-software", "no-preference"], Jt = class {
 	size;
 	where;
 	user;
@@ -408,13 +476,16 @@ var Pt = 4, Ft = ["prefer-software", "no-preference"], It = class {
 	get open() {
 		return this.opened;
 	}
+	get busy() {
+		return this.onTheWay > 0;
+	}
 	get ready() {
-		return this.onTheWay < Pt || this.decoder?.state === "closed";
+		return this.onTheWay < Kt || this.decoder?.state === "closed";
 	}
 	async start(e) {
-		let { level: t, tier: n, width: r, height: i } = ve(e, this.where);
-		if (r !== this.size[0] || i !== this.size[1]) throw N(this.where, `frames of ${r} x ${i}`);
-		let a = `av01.0.${String(t).padStart(2, "0")}${n ? "H" : "M"}.10`, { turn: o } = this, s = this.config?.codec === a, c = s ? this.config : await Lt(a, this.size, this.where);
+		let { level: t, tier: n, width: r, height: i } = ye(e, this.where);
+		if (r !== this.size[0] || i !== this.size[1]) throw M(this.where, `frames of ${r} x ${i}`);
+		let a = `av01.0.${String(t).padStart(2, "0")}${n ? "H" : "M"}.10`, { turn: o } = this, s = this.config?.codec === a, c = s ? this.config : await Yt(a, this.size, this.where);
 		o === this.turn && c && (s && this.decoder?.state === "configured" || (this.config = c, this.decoder && this.decoder.state !== "closed" || (this.decoder = this.made()), this.decoder.configure(c)));
 	}
 	decode(e, t, n) {
@@ -438,7 +509,7 @@ var Pt = 4, Ft = ["prefer-software", "no-preference"], It = class {
 		let e = new VideoDecoder({
 			output: (e) => void this.receive(e),
 			error: (t) => {
-				this.decoder === e && (t.name === "QuotaExceededError" ? this.user.lost() : this.fail(this.turn, N(this.where, t.message)));
+				this.decoder === e && (t.name === "QuotaExceededError" ? this.user.lost() : t.name === "NotSupportedError" ? this.fail(this.turn, Xt(this.where)) : this.fail(this.turn, M(this.where, t.message)));
 			}
 		});
 		return e;
@@ -447,7 +518,7 @@ var Pt = 4, Ft = ["prefer-software", "no-preference"], It = class {
 		let { turn: t } = this;
 		this.opened += 1;
 		try {
-			await this.user.take(e.timestamp, e);
+			await this.user.take(e.timestamp, (...t) => Vt(e, ...t));
 		} catch (e) {
 			this.fail(t, e);
 		} finally {
@@ -458,21 +529,24 @@ var Pt = 4, Ft = ["prefer-software", "no-preference"], It = class {
 		e === this.turn && (this.reset(), this.user.failed(t));
 	}
 };
-async function Lt(e, [t, n], r) {
-	for (let r of typeof VideoDecoder > "u" ? [] : Ft) {
+async function Yt(e, [t, n], r) {
+	for (let r of typeof VideoDecoder > "u" ? [] : qt) {
 		let i = {
 			codec: e,
 			codedWidth: t,
 			codedHeight: n,
 			hardwareAcceleration: r,
 			optimizeForLatency: !0
-		}, { supported: a } = await VideoDecoder.isConfigSupported(i);
-		if (a) return i;
+		};
+		if ((await VideoDecoder.isConfigSupported(i).catch(() => null))?.supported) return i;
 	}
-	throw new M("codec", `This browser ${globalThis.isSecureContext ? "decodes no AV1 of 10 bits" : "plays clips from https and localhost only"}; ${globalThis.isSecureContext ? "use a newer browser" : "open the page from there"}. The first frame is shown.`, r);
+	throw Xt(r);
+}
+function Xt(e) {
+	return new j("codec", `This browser ${globalThis.isSecureContext ? "decodes no AV1 of 10 bits" : "plays clips from https and localhost only"}; ${globalThis.isSecureContext ? "use a newer browser" : "open the page from there"}. The first frame is shown.`, e);
 }
 // eigenfield-three/src/mesh-front.ts
-var Rt = 0, zt = 2 ** 24, Bt = class {
+var Zt = 0, Qt = 2 ** 24, $t = class {
 	points;
 	start;
 	end;
@@ -510,8 +584,8 @@ var Rt = 0, zt = 2 ** 24, Bt = class {
 	}
 	closeLeft(e) {
 		let [t, n] = [this.before[e], this.after[e]], r = this.start[t];
-		if (this.status[e] = this.status[t] = Rt, this.status[n] === 1 && this.end[n] === r && n !== t) {
-			this.status[n] = Rt, this.link(this.before[t], this.after[n]);
+		if (this.status[e] = this.status[t] = Zt, this.status[n] === 1 && this.end[n] === r && n !== t) {
+			this.status[n] = Zt, this.link(this.before[t], this.after[n]);
 			return;
 		}
 		let i = this.before[t], a = this.add(r, this.end[e], this.start[e]);
@@ -519,7 +593,7 @@ var Rt = 0, zt = 2 ** 24, Bt = class {
 	}
 	closeRight(e) {
 		let [t, n] = [this.before[e], this.after[e]];
-		this.status[e] = this.status[n] = Rt;
+		this.status[e] = this.status[n] = Zt;
 		let r = this.after[n], i = this.add(this.start[e], this.end[n], this.end[e]);
 		this.link(t, i), this.link(i, r);
 	}
@@ -529,9 +603,9 @@ var Rt = 0, zt = 2 ** 24, Bt = class {
 			this.after[e],
 			this.into[t]
 		];
-		this.status[e] = Rt;
+		this.status[e] = Zt;
 		let a = this.add(this.start[e], t, this.end[e]), o = this.add(t, this.end[e], this.start[e]);
-		i >= 0 && this.status[i] !== Rt ? (this.link(a, this.after[i]), this.link(i, o)) : this.link(a, o), this.link(n, a), this.link(o, r), this.into[t] = a;
+		i >= 0 && this.status[i] !== Zt ? (this.link(a, this.after[i]), this.link(i, o)) : this.link(a, o), this.link(n, a), this.link(o, r), this.into[t] = a;
 	}
 	link(e, t) {
 		this.after[e] = t, this.before[t] = e;
@@ -539,7 +613,7 @@ var Rt = 0, zt = 2 ** 24, Bt = class {
 	add(e, t, n) {
 		let { heap: r, key: i, points: a } = this, o = this.gates++;
 		this.start[o] = e, this.end[o] = t, this.opposite[o] = n, this.status[o] = 1, this.into[t] = o;
-		let s = (a[3 * e] + a[3 * t]) * zt + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
+		let s = (a[3 * e] + a[3 * t]) * Qt + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
 		for (; c > 0;) {
 			let e = c - 1 >> 1;
 			if (i[e] <= s) break;
@@ -547,57 +621,57 @@ var Rt = 0, zt = 2 ** 24, Bt = class {
 		}
 		return r[c] = o, i[c] = s, o;
 	}
-}, Vt = 2 ** 20, Ht = .8, Ut = 44, Wt = 385, Gt = 897, Kt = 1086, qt = 1095, [Jt, Yt, Xt, Zt, Qt] = [
+}, en = 2 ** 20, tn = .8, nn = 44, rn = 385, an = 897, on = 1086, sn = 1095, [cn, ln, un, dn, fn] = [
 	0,
 	1,
 	2,
 	3,
 	15
 ];
-function $t(e) {
-	return Math.floor(Math.min(Math.max(e, -Vt), Vt) + .5);
+function pn(e) {
+	return Math.floor(Math.min(Math.max(e, -en), en) + .5);
 }
-function en(e, t, n) {
+function mn(e, t, n) {
 	let r = Math.max((1 << n) - 1, 1);
 	return (e[3 * t] & r ? 1 : 0) + (e[3 * t + 1] & r ? 2 : 0);
 }
-function tn(e, t, n, r, i) {
-	i.flat ? nn(e, t, n, r, i.fine) : rn(e, t, n, r);
+function hn(e, t, n, r, i) {
+	i.flat ? gn(e, t, n, r, i.fine) : _n(e, t, n, r);
 }
-function nn(e, t, n, r, i) {
+function gn(e, t, n, r, i) {
 	let { a, b: o, o: s, pair: c } = r, [l, u, d, f] = [
 		t[3 * a],
 		t[3 * a + 1],
 		t[3 * o],
 		t[3 * o + 1]
-	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? Ht : -.8, _ = 1 << i >> 1, v = $t((l + d) * .5 + g * m) + _ >> i, y = $t((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(z(Math.floor((p * p + m * m) / b)), 23), S = Math.min(z(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, Jt), T = Math.min(z(Math.abs(w)), 7), [E, D] = [577, 705], O = T * 2 + +(w > 0), k = e.integer(Wt + x * 8 + C, E + O * 8 + C, D + S * 8 + T, Yt);
-	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + k << i, i === 0) return;
-	let A = en(t, a, i) + 4 * en(t, o, i);
-	if (e.flag(Gt + A, 913 + en(t, s, i), 917 + c, Qt)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
+	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? tn : -.8, _ = 1 << i >> 1, v = pn((l + d) * .5 + g * m) + _ >> i, y = pn((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(z(Math.floor((p * p + m * m) / b)), 23), S = Math.min(z(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, cn), T = Math.min(z(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(rn + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, ln);
+	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + O << i, i === 0) return;
+	let k = mn(t, a, i) + 4 * mn(t, o, i);
+	if (e.flag(an + k, 913 + mn(t, s, i), 917 + c, fn)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
 }
-function rn(e, t, n, { a: r, b: i, o: a }) {
+function _n(e, t, n, { a: r, b: i, o: a }) {
 	let o = 0;
 	for (let e = 0; e < 3; e++) o += (t[3 * i + e] - t[3 * r + e]) ** 2;
 	let s = Math.min(z(o), 43), c = 0;
 	for (let o = 0; o < 3; o++) {
-		let l = $t(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, Ut + o * 24 + c, 116 + o * Ut + s, Xt);
+		let l = pn(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, nn + o * 24 + c, 116 + o * nn + s, un);
 		t[3 * n + o] = l + u, c = Math.min(z(Math.abs(u)), 23);
 	}
 }
-function an(e, t, n, r, i) {
+function vn(e, t, n, r, i) {
 	for (let a = 0; a < (i ? 2 : 3); a++) {
-		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -Vt), Vt) : 0, o = Kt + a;
-		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, Zt);
+		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -en), en) : 0, o = on + a;
+		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, dn);
 	}
 }
 // eigenfield-three/src/mesh-faces.ts
-var on = 13, sn = 11, cn = 12, H = 169, ln = 8, un = qt, dn = un + H + 104 + 26, fn = dn + H + 104 + on, pn = fn + 64 + 64 + H, mn = pn + H + 4 + 1, hn = mn + 6, [gn, _n, vn, yn, bn] = [
+var yn = 13, bn = 11, xn = 12, H = 169, Sn = 8, Cn = sn, wn = Cn + H + 104 + 26, Tn = wn + H + 104 + yn, En = Tn + 64 + 64 + H, Dn = En + H + 4 + 1, On = Dn + 6, [kn, An, jn, Mn, Nn] = [
 	4,
 	5,
 	6,
 	7,
 	8
-], xn = [
+], Pn = [
 	-1,
 	-.4,
 	0,
@@ -608,12 +682,12 @@ var on = 13, sn = 11, cn = 12, H = 169, ln = 8, un = qt, dn = un + H + 104 + 26,
 	2,
 	4
 ];
-function Sn(e, t, n, r, i) {
+function Fn(e, t, n, r, i) {
 	let a = new Int32Array(3 * t), o = {
 		points: a,
 		faces: new Int32Array(3 * n),
 		parents: new Int32Array(3 * t).fill(-1)
-	}, s = new Int32Array(t), c = new Bt(a, n), [l, u] = [0, 0], d = (e, t, n) => {
+	}, s = new Int32Array(t), c = new $t(a, n), [l, u] = [0, 0], d = (e, t, n) => {
 		o.faces.set([
 			e,
 			t,
@@ -625,11 +699,11 @@ function Sn(e, t, n, r, i) {
 			n
 		]) s[r] += 1;
 	}, f = () => {
-		if (l >= t) throw N(i, "more places than announced");
+		if (l >= t) throw M(i, "more places than announced");
 		return l++;
 	}, p = () => {
 		let t = e.raw(z(l - 1));
-		if (t >= l) throw N(i, "a place that is not there yet");
+		if (t >= l) throw M(i, "a place that is not there yet");
 		return t;
 	}, m = () => {
 		let t = [
@@ -637,56 +711,56 @@ function Sn(e, t, n, r, i) {
 			-1,
 			-1
 		];
-		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(mn + n, mn + 3 + n, mn + n, bn)) t[n] = p();
+		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(Dn + n, Dn + 3 + n, Dn + n, Nn)) t[n] = p();
 		else {
 			let i = t[n] = f();
-			an(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
+			vn(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
 		}
 		let [n, o, s] = t;
-		if (n === o || o === s || s === n) throw N(i, "a face of two corners");
+		if (n === o || o === s || s === n) throw M(i, "a face of two corners");
 		d(n, o, s), c.seed(t);
-	}, h = (e, t, n, i) => c.status[t] === 2 ? cn : c.status[t] !== 1 || n === i || t === e ? sn : Cn(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
+	}, h = (e, t, n, i) => c.status[t] === 2 ? xn : c.status[t] !== 1 || n === i || t === e ? bn : In(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
 	for (; u < n;) {
 		let t = c.next();
 		if (t < 0) {
 			m();
 			continue;
 		}
-		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * on + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = un + H + 104 + 2 * y + +(_ === v);
-		if (y < sn && e.flag(un + x, un + H + y * ln + S, w, gn)) {
+		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * yn + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = Cn + H + 104 + 2 * y + +(_ === v);
+		if (y < bn && e.flag(Cn + x, Cn + H + y * Sn + S, w, kn)) {
 			d(l, n, _), c.closeLeft(t);
 			continue;
 		}
-		if (b < sn && (v !== _ || y >= sn) && e.flag(dn + x, dn + H + b * ln + C, dn + H + 104 + b, _n)) {
+		if (b < bn && (v !== _ || y >= bn) && e.flag(wn + x, wn + H + b * Sn + C, wn + H + 104 + b, An)) {
 			d(l, n, v), c.closeRight(t);
 			continue;
 		}
-		let T = +(y === cn) + (b === cn ? 2 : 0), E = en(a, n, r.fine) + 4 * en(a, l, r.fine), D = fn + 64 + S * ln + C;
-		if (e.flag(fn + T * 16 + E, D, fn + 64 + 64 + x, vn)) {
+		let T = +(y === xn) + (b === xn ? 2 : 0), E = mn(a, n, r.fine) + 4 * mn(a, l, r.fine), ee = Tn + 64 + S * Sn + C;
+		if (e.flag(Tn + T * 16 + E, ee, Tn + 64 + 64 + x, jn)) {
 			c.status[t] = 2;
 			continue;
 		}
-		let O;
-		if (e.flag(pn + x, pn + H + T, pn + H + 4, yn)) {
-			O = f();
+		let D;
+		if (e.flag(En + x, En + H + T, En + H + 4, Mn)) {
+			D = f();
 			let i = c.opposite[t];
 			o.parents.set([
 				n,
 				l,
 				i
-			], 3 * O), tn(e, a, O, {
+			], 3 * D), hn(e, a, D, {
 				a: n,
 				b: l,
 				o: i,
 				pair: x
 			}, r);
-		} else if (O = p(), O === n || O === l) throw N(i, "a face of two corners");
-		d(l, n, O), c.openOut(t, O);
+		} else if (D = p(), D === n || D === l) throw M(i, "a face of two corners");
+		d(l, n, D), c.openOut(t, D);
 	}
-	if (l !== t) throw N(i, "fewer places than announced");
+	if (l !== t) throw M(i, "fewer places than announced");
 	return o;
 }
-function Cn(e, t, n, r, i, a) {
+function In(e, t, n, r, i, a) {
 	let o = (n, r) => a && r === 2 ? 0 : e[3 * n + r] - e[3 * t + r], [s, c, l] = [
 		o(n, 0),
 		o(n, 1),
@@ -709,21 +783,21 @@ function Cn(e, t, n, r, i, a) {
 		s * m - c * p
 	], S = Math.sqrt(g * g + _ * _ + v * v);
 	if (S === 0 || g * y + _ * b + v * x > 0) return 0;
-	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = xn.findIndex((e) => C < e);
+	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = Pn.findIndex((e) => C < e);
 	return w < 0 ? 10 : w + 1;
 }
 // eigenfield-three/src/mesh-corners.ts
-var wn = 32, Tn = 4, [En, Dn, On, kn] = [
+var Ln = 32, Rn = 4, [zn, Bn, Vn, Hn] = [
 	0,
 	1,
 	2,
 	3
-], An = hn, jn = An + 64 + 12 + 16, U = jn + Tn + 1, Mn = U + 4, [Nn, Pn, Fn] = [
+], Un = On, Wn = Un + 64 + 12 + 16, U = Wn + Rn + 1, Gn = U + 4, [Kn, qn, Jn] = [
 	9,
 	10,
 	11
 ];
-function In(e, t) {
+function Yn(e, t) {
 	let n = new Int32Array(t + 1);
 	for (let t of e) n[t + 1] += 1;
 	for (let e = 0; e < t; e++) n[e + 1] += n[e];
@@ -733,7 +807,7 @@ function In(e, t) {
 		corners: i
 	};
 }
-function Ln(e, t, n, r, i, a, o) {
+function Xn(e, t, n, r, i, a, o) {
 	let s = t.faces.length / 3, c = Math.min(s, Math.floor(n / 3)), l = {
 		faces: new Int32Array(3 * s),
 		place: new Int32Array(n),
@@ -748,7 +822,7 @@ function Ln(e, t, n, r, i, a, o) {
 		0,
 		0,
 		0
-	], m = new Int32Array(Tn), h = /* @__PURE__ */ new Int32Array(8), [g, _, v] = [
+	], m = new Int32Array(Rn), h = /* @__PURE__ */ new Int32Array(8), [g, _, v] = [
 		0,
 		0,
 		-1
@@ -757,7 +831,7 @@ function Ln(e, t, n, r, i, a, o) {
 		return -1;
 	}, b = (e, n) => {
 		let [a, o] = [t.faces[3 * e + n], t.faces[3 * e + (n + 1) % 3]];
-		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + wn); t++) {
+		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + Ln); t++) {
 			let n = Math.floor(i[t] / 3);
 			if (n >= e) break;
 			if (y(n, o) >= 0) return n;
@@ -766,48 +840,48 @@ function Ln(e, t, n, r, i, a, o) {
 	}, x = (e, t) => l.faces[3 * e + y(e, t)], S = (n, r) => {
 		let i = t.faces[3 * n + r], a = u[i];
 		if (a < 0) return -1;
-		h.fill(kn);
+		h.fill(Hn);
 		let s = 0;
 		for (let e of [r, (r + 2) % 3]) {
 			if (f[e] < 0) continue;
 			let t = x(f[e], i);
 			s === 1 && m[0] === t ? h[1] = p[e] : (m[s] = t, h[2 * s] = p[e], s += 1);
 		}
-		for (let e = 0; e < wn && s < Tn && a >= 0; e++) (s < 1 || a !== m[0]) && (s < 2 || a !== m[1]) && (m[s++] = a), a = d[a];
+		for (let e = 0; e < Ln && s < Rn && a >= 0; e++) (s < 1 || a !== m[0]) && (s < 2 || a !== m[1]) && (m[s++] = a), a = d[a];
 		let c = -1;
 		for (let t = 0; t < s && c < 0; t++) {
-			let [n, i] = [h[2 * t], h[2 * t + 1]], a = An + 76 + Math.min(s, 3) * 4 + n;
-			e.flag(An + t * 16 + n * 4 + i, An + 64 + t * 3 + r, a, Nn) && (c = m[t]);
+			let [n, i] = [h[2 * t], h[2 * t + 1]], a = Un + 76 + Math.min(s, 3) * 4 + n;
+			e.flag(Un + t * 16 + n * 4 + i, Un + 64 + t * 3 + r, a, Kn) && (c = m[t]);
 		}
 		if (c < 0) {
-			if (e.flag(jn + s, jn + s, jn + Tn, Pn)) return -1;
-			if (c = e.raw(z(g - 1)), c >= g || l.place[c] !== i) throw N(o, "a corner that is elsewhere");
+			if (e.flag(Wn + s, Wn + s, Wn + Rn, qn)) return -1;
+			if (c = e.raw(z(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
 		}
-		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? Dn : On);
+		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? Bn : Vn);
 		return c;
 	}, C = () => {
 		let t = _++;
-		if (!e.flag(U, U, U, Fn)) return l.kinds[t] = e.flag(U + 1, U + 1, U + 1, Fn) ? 2 : 0, t;
+		if (!e.flag(U, U, U, Jn)) return l.kinds[t] = e.flag(U + 1, U + 1, U + 1, Jn) ? 2 : 0, t;
 		l.kinds[t] = 1;
 		let n = v;
-		if (v = t, n >= 0 && e.flag(U + 2, U + 2, U + 2, Fn)) {
+		if (v = t, n >= 0 && e.flag(U + 2, U + 2, U + 2, Jn)) {
 			let n = e.raw(z(t - 1));
-			if (n >= t || l.kinds[n] !== 1) throw N(o, "a map that is not there");
+			if (n >= t || l.kinds[n] !== 1) throw M(o, "a map that is not there");
 			return l.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
 		}
-		let r = n >= 0 && e.flag(U + 3, U + 3, U + 3, Fn);
+		let r = n >= 0 && e.flag(U + 3, U + 3, U + 3, Jn);
 		for (let i = 0; i < 4; i++) l.maps[6 * t + i] = r ? l.maps[6 * n + i] : e.raw(32);
 		for (let n = 4; n < 6; n++) l.maps[6 * t + n] = e.raw(a);
 		return t;
 	};
 	for (let e = 0; e < s; e++) {
-		for (let t = 0; t < 3; t++) f[t] = b(e, t), p[t] = En;
+		for (let t = 0; t < 3; t++) f[t] = b(e, t), p[t] = zn;
 		let r = -1, i = [];
 		for (let a = 0; a < 3; a++) {
 			let s = S(e, a);
 			if (s >= 0) r = l.chart[s];
 			else {
-				if (g >= n) throw N(o, "more vertices than announced");
+				if (g >= n) throw M(o, "more vertices than announced");
 				s = g++;
 				let r = t.faces[3 * e + a];
 				l.place[s] = r, d[s] = u[r], u[r] = s, i.push(s);
@@ -817,11 +891,11 @@ function Ln(e, t, n, r, i, a, o) {
 		r < 0 && (r = C());
 		for (let e of i) l.chart[e] = r;
 	}
-	if (g !== n) throw N(o, "fewer vertices than announced");
+	if (g !== n) throw M(o, "fewer vertices than announced");
 	return l;
 }
 // eigenfield-three/src/mesh-values.ts
-var Rn = 16, zn = 6, Bn = 13, Vn = 14, Hn = 20, Un = Mn, Wn = Un + 169 + 280 + 182, Gn = Wn + 144 + 576 + 48, [Kn, qn] = [12, 13], Jn = [
+var Zn = 16, Qn = 6, $n = 13, er = 14, tr = 20, nr = Gn, rr = nr + 169 + 280 + 182, ir = rr + 144 + 576 + 48, [ar, or] = [12, 13], sr = [
 	.5,
 	1.5,
 	3,
@@ -829,14 +903,14 @@ var Rn = 16, zn = 6, Bn = 13, Vn = 14, Hn = 20, Un = Mn, Wn = Un + 169 + 280 + 1
 	12,
 	30
 ];
-function Yn(e, t) {
-	return $t(Number.isNaN(e) ? t : e);
+function cr(e, t) {
+	return pn(Number.isNaN(e) ? t : e);
 }
-function Xn(e) {
-	let t = Jn.filter((t) => Math.abs(e) >= t).length;
-	return e < 0 ? zn - t : zn + t;
+function lr(e) {
+	let t = sr.filter((t) => Math.abs(e) >= t).length;
+	return e < 0 ? Qn - t : Qn + t;
 }
-function Zn(e, t, n, r) {
+function ur(e, t, n, r) {
 	let { points: i, faces: a, parents: o } = t, s = /* @__PURE__ */ new Float64Array(9), c = (e) => i[3 * e], l = (e) => i[3 * e + 1], u = (e) => i[3 * e + 2], d = (e, t) => {
 		let [n, r, i] = [
 			c(t) - c(e),
@@ -857,18 +931,18 @@ function Zn(e, t, n, r) {
 			Infinity,
 			-Infinity
 		];
-		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + Rn); e++) for (let i = 1; i < 3; i++) {
-			let o = Qn(a, r[e], i);
+		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + Zn); e++) for (let i = 1; i < 3; i++) {
+			let o = dr(a, r[e], i);
 			if (o >= t) continue;
 			let s = d(t, o);
 			h += s * u(o), g += s, _ = Math.min(_, u(o)), v = Math.max(v, u(o));
-			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + Rn); e++) for (let n = 1; n < 3; n++) {
-				let i = Qn(a, r[e], n);
+			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + Zn); e++) for (let n = 1; n < 3; n++) {
+				let i = dr(a, r[e], n);
 				i < t && d(t, i);
 			}
 		}
 		let y = 13, b = t > 0 ? u(t - 1) : 0, x = b;
-		g > 0 && (y = Math.min(z(v - _), 12), b = h / g, x = Math.min(Math.max($n(s), p), m));
+		g > 0 && (y = Math.min(z(v - _), 12), b = h / g, x = Math.min(Math.max(fr(s), p), m));
 		let S = b, [C, w, T] = [
 			o[3 * t],
 			o[3 * t + 1],
@@ -886,15 +960,15 @@ function Zn(e, t, n, r) {
 				S = Math.min(Math.max(u(C) + t * (u(w) - u(C)) + c * (u(T) - u(C)), p), m);
 			}
 		}
-		let E = Yn(x, b), [D, O] = [Xn(S - E), Xn(b - E)], k = e.integer(Un + D * Bn + O, Un + 169 + y * Hn + f, Un + 169 + 280 + D * Vn + y, Kn), A = E + k;
-		i[3 * t + 2] = A, f = Math.min(z(Math.abs(k)), 19), p = t === 0 ? A : Math.min(p, A), m = t === 0 ? A : Math.max(m, A);
+		let E = cr(x, b), [ee, D] = [lr(S - E), lr(b - E)], O = e.integer(nr + ee * $n + D, nr + 169 + y * tr + f, nr + 169 + 280 + ee * er + y, ar), k = E + O;
+		i[3 * t + 2] = k, f = Math.min(z(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
 	}
 }
-function Qn(e, t, n) {
+function dr(e, t, n) {
 	let r = t % 3;
 	return e[t - r + (r + n) % 3];
 }
-function $n(e) {
+function fr(e) {
 	let [t, n, r] = [
 		e[0],
 		e[1],
@@ -914,7 +988,7 @@ function $n(e) {
 	];
 	return (s * u - c * d + l * f) / (t * u - n * d + r * f);
 }
-function er(e, t, n, r, i) {
+function pr(e, t, n, r, i) {
 	let { faces: a, chart: o, kinds: s, place: c } = t, l = new Int32Array(2 * c.length), u = [0, 0], d = -1;
 	for (let t = 0; t < c.length; t++) {
 		let f = s[o[t]];
@@ -926,25 +1000,25 @@ function er(e, t, n, r, i) {
 			-1,
 			0
 		];
-		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + Rn); e++) {
-			let [r, s] = [Qn(a, i[e], 1), Qn(a, i[e], 2)];
+		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + Zn); e++) {
+			let [r, s] = [dr(a, i[e], 1), dr(a, i[e], 2)];
 			if (r < t && o[r] === o[t] && (g = Math.max(g, r)), s < t && o[s] === o[t] && (g = Math.max(g, s)), r >= t || s >= t) continue;
-			let [u, d] = tr(n, c, l, t, r, s, f === 2);
+			let [u, d] = mr(n, c, l, t, r, s, f === 2);
 			if (!Number.isFinite(u) || !Number.isFinite(d)) continue;
 			p += u, m += d, h += 1;
 			let v = Math.abs(l[2 * r] - l[2 * s]) + Math.abs(l[2 * r + 1] - l[2 * s + 1]);
 			_ = Math.max(_, z(v));
 		}
 		g < 0 && (g = d), d = t;
-		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = Wn + 144;
+		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = rr + 144;
 		for (let n = 0; n < 2; n++) {
-			let r = e.integer(Wn + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], qn + n);
-			l[2 * t + n] = Yn(y[n], 0) + r, u[n] = Math.min(z(Math.abs(r)), 23);
+			let r = e.integer(rr + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], or + n);
+			l[2 * t + n] = cr(y[n], 0) + r, u[n] = Math.min(z(Math.abs(r)), 23);
 		}
 	}
 	return l;
 }
-function tr(e, t, n, r, i, a, o) {
+function mr(e, t, n, r, i, a, o) {
 	let [s, c, l] = [
 		0,
 		0,
@@ -958,15 +1032,15 @@ function tr(e, t, n, r, i, a, o) {
 	return [n[2 * i] + f * u - m * d, n[2 * i + 1] + f * d + m * u];
 }
 // eigenfield-three/src/mesh-decoder.ts
-var nr = 144, rr = 2, ir = 3, ar = 18, or = 8;
-function sr(e, t) {
-	return lr(e, t, 1);
+var hr = 144, gr = 2, _r = 3, vr = 18, yr = 8;
+function br(e, t) {
+	return Sr(e, t, 1);
 }
-function cr(e, t) {
-	return lr(e, t, rr);
+function xr(e, t) {
+	return Sr(e, t, gr);
 }
-function lr(e, t, n) {
-	let r = B(e, nr, t, n), [i, a, o] = [
+function Sr(e, t, n) {
+	let r = B(e, hr, t, n), [i, a, o] = [
 		r.getUint8(1),
 		r.getUint8(2),
 		r.getUint8(3)
@@ -975,24 +1049,24 @@ function lr(e, t, n) {
 		8,
 		12
 	].map((e) => r.getUint32(e, !0)), u = Float64Array.from({ length: 16 }, (e, t) => r.getFloat64(16 + 8 * t, !0));
-	if (s > Me || l > Me || c > Ne) throw N(t, `${l} vertices and ${c} faces`);
-	if (ot(e, Math.max(s, c, l), Ne, t), i > 1 || o > or * i || a < 1 || a > ar || !u.every(Number.isFinite)) throw N(t, "a lattice that cannot be");
-	let d = new at(e.subarray(nr), Gn, 16), f = Sn(d, s, c, {
+	if (s > Me || l > Me || c > Ne) throw M(t, `${l} vertices and ${c} faces`);
+	if (ot(e, Math.max(s, c, l), Ne, t), i > 1 || o > yr * i || a < 1 || a > vr || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
+	let d = new at(e.subarray(hr), ir, 16), f = Fn(d, s, c, {
 		flat: i === 1,
 		fine: o
 	}, t);
 	d.checkEnd(t);
-	let p = In(f.faces, s);
-	i && Zn(d, f, p.first, p.corners);
-	let m = n === rr ? a + ir : 32, h = Ln(d, f, l, p.first, p.corners, m, t), g = ur(f.points, u), _ = In(h.faces, l), v = er(d, h, g, _.first, _.corners);
+	let p = Yn(f.faces, s);
+	i && ur(d, f, p.first, p.corners);
+	let m = n === gr ? a + _r : 32, h = Xn(d, f, l, p.first, p.corners, m, t), g = Cr(f.points, u), _ = Yn(h.faces, l), v = pr(d, h, g, _.first, _.corners);
 	d.checkEnd(t);
 	let y = new Float32Array(h.maps.buffer);
-	return fr({
-		...dr(f, h, g, v, 2 ** a, (e) => n === rr ? h.maps[e] / 2 ** (a + 1) - 2 : y[e]),
+	return Tr({
+		...wr(f, h, g, v, 2 ** a, (e) => n === gr ? h.maps[e] / 2 ** (a + 1) - 2 : y[e]),
 		matrix: u
 	}, t);
 }
-function ur(e, t) {
+function Cr(e, t) {
 	let n = new Float64Array(e.length);
 	for (let r = 0; r < e.length; r += 3) {
 		let i = (n) => t[4 * n] * e[r] + t[4 * n + 1] * e[r + 1] + t[4 * n + 2] * e[r + 2] + t[4 * n + 3], a = i(3);
@@ -1000,7 +1074,7 @@ function ur(e, t) {
 	}
 	return n;
 }
-function dr(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) {
+function wr(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) {
 	let u = new Float32Array(3 * n.length), d = new Int32Array(3 * n.length), f = new Float32Array(2 * n.length), p = new Float32Array(a.buffer);
 	return n.forEach((t, n) => {
 		u.set(o.subarray(3 * t, 3 * t + 3), 3 * n), d.set(e.points.subarray(3 * t, 3 * t + 3), 3 * n);
@@ -1016,18 +1090,18 @@ function dr(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) 
 		places: d
 	};
 }
-function fr(e, t) {
+function Tr(e, t) {
 	let n = (e) => Math.abs(e) <= Ge;
-	if (!e.positions.every(n) || !e.uv.every(n)) throw N(t, "positions or texture coordinates that are not finite");
+	if (!e.positions.every(n) || !e.uv.every(n)) throw M(t, "positions or texture coordinates that are not finite");
 	return e;
 }
 // eigenfield-three/src/mesh-motion.ts
-var pr = 11, mr = 2 ** 20, hr = 8, [gr, _r] = [7, 8], vr = 12, [yr, br, xr, Sr] = [
+var Er = 11, Dr = 2 ** 20, Or = 8, [kr, Ar] = [7, 8], jr = 12, [Mr, Nr, Pr, Fr] = [
 	0,
 	1,
 	2,
 	3
-], Cr = 576, wr = 720, Tr = 1152, Er = 1159, Dr = 3, Or = 4, kr = class {
+], Ir = 576, Lr = 720, Rr = 1152, zr = 1159, Br = 3, Vr = 4, Hr = class {
 	mesh;
 	where;
 	frames;
@@ -1040,16 +1114,16 @@ var pr = 11, mr = 2 ** 20, hr = 8, [gr, _r] = [7, 8], vr = 12, [yr, br, xr, Sr] 
 	decoded = 0;
 	constructor(e, t, n) {
 		this.mesh = t, this.where = n;
-		let r = B(e, pr, n), i = t.places.length / 3, a = r.getUint32(5, !0);
+		let r = B(e, Er, n), i = t.places.length / 3, a = r.getUint32(5, !0);
 		this.frames = r.getUint16(9, !0);
-		let o = pr + this.frames;
-		if (r.getUint32(1, !0) !== i || a > i) throw N(n, `${a} vertices that move, of another mesh`);
-		if (this.frames < 1 || this.frames > 1024 || this.frames * a > Ie) throw N(n, `${a} vertices that move in ${this.frames} frames`);
-		if (B(e, o, n), this.flags = e.slice(pr, o), this.flags.some((e) => e > gr + _r)) throw N(n, "frames that cannot be");
-		if (ot(e, this.flags.reduce((e, t) => e + (t & 1) + (t >> 1 & 1) + (t >> 2 & 1), 0) * a, 3 * Ie, n), this.moving = new Int32Array(a), this.steps = new Int32Array(a && 3 * a * (2 + this.frames)), this.off = new Int32Array(3 * a), this.around = Nr(t.places, t.indices), !a) return;
-		this.decoder = new at(e.subarray(o), Er, Or);
-		let s = Mr(this.decoder, i, this.around);
-		if (s.reduce((e, t) => e + t, 0) !== a) throw N(n, "other vertices that move");
+		let o = Er + this.frames;
+		if (r.getUint32(1, !0) !== i || a > i) throw M(n, `${a} vertices that move, of another mesh`);
+		if (this.frames < 1 || this.frames > 1024 || this.frames * a > Ie) throw M(n, `${a} vertices that move in ${this.frames} frames`);
+		if (B(e, o, n), this.flags = e.slice(Er, o), this.flags.some((e) => e > kr + Ar)) throw M(n, "frames that cannot be");
+		if (ot(e, this.flags.reduce((e, t) => e + (t & 1) + (t >> 1 & 1) + (t >> 2 & 1), 0) * a, 3 * Ie, n), this.moving = new Int32Array(a), this.steps = new Int32Array(a && 3 * a * (2 + this.frames)), this.off = new Int32Array(3 * a), this.around = Kr(t.places, t.indices), !a) return;
+		this.decoder = new at(e.subarray(o), zr, Vr);
+		let s = Gr(this.decoder, i, this.around);
+		if (s.reduce((e, t) => e + t, 0) !== a) throw M(n, "other vertices that move");
 		this.around = this.start(s);
 	}
 	read(e) {
@@ -1061,7 +1135,7 @@ var pr = 11, mr = 2 ** 20, hr = 8, [gr, _r] = [7, 8], vr = 12, [yr, br, xr, Sr] 
 		let r = this.moving.length;
 		if (!r) return;
 		let i = this.steps.subarray(3 * r * (2 + e), 3 * r * (3 + e));
-		this.moving.forEach((e, r) => t.set(Ar(i, 3 * r, n), 3 * e));
+		this.moving.forEach((e, r) => t.set(Ur(i, 3 * r, n), 3 * e));
 	}
 	start(e) {
 		let { places: t, indices: n } = this.mesh, r = new Int32Array(e.length).fill(-1), i = 0;
@@ -1069,7 +1143,7 @@ var pr = 11, mr = 2 ** 20, hr = 8, [gr, _r] = [7, 8], vr = 12, [yr, br, xr, Sr] 
 			e && (this.moving[i] = t, r[t] = i++);
 		});
 		let a = new Int32Array(3 * i);
-		return this.moving.forEach((e, n) => a.set(t.subarray(3 * e, 3 * e + 3), 3 * n)), this.steps.set(a), this.steps.set(a, a.length), Nr(a, Int32Array.from(n, (e) => r[e]));
+		return this.moving.forEach((e, n) => a.set(t.subarray(3 * e, 3 * e + 3), 3 * n)), this.steps.set(a), this.steps.set(a, a.length), Kr(a, Int32Array.from(n, (e) => r[e]));
 	}
 	readFrame(e, t) {
 		let { steps: n, around: r, off: i } = this, { near: a, starts: o, twins: s } = r, c = 3 * this.moving.length, [l, u, d, f] = [
@@ -1077,9 +1151,9 @@ var pr = 11, mr = 2 ** 20, hr = 8, [gr, _r] = [7, 8], vr = 12, [yr, br, xr, Sr] 
 			c * (2 + t),
 			c * (1 + t),
 			c * t
-		], p = (l & _r) !== 0, m = new Int32Array(c);
+		], p = (l & Ar) !== 0, m = new Int32Array(c);
 		for (let t = 0; t < this.moving.length; t++) {
-			let [r, c] = [o[t], o[t + 1]], h = c - r, g = s[t] ? yr : h === 0 ? Sr : h === 1 ? xr : br;
+			let [r, c] = [o[t], o[t + 1]], h = c - r, g = s[t] ? Mr : h === 0 ? Fr : h === 1 ? Pr : Nr;
 			for (let o = 0; o < 3; o++) {
 				let s = 3 * t + o;
 				if (!(l >> o & 1)) {
@@ -1097,18 +1171,18 @@ var pr = 11, mr = 2 ** 20, hr = 8, [gr, _r] = [7, 8], vr = 12, [yr, br, xr, Sr] 
 					p && (r -= n[d + t] - n[f + t]), _ = Math.min(_, r), v = Math.max(v, r), y += r, b += Math.abs(m[t]);
 				}
 				let x = n[d + s];
-				p && (x += x - n[f + s]), h && (x += Math.floor((2 * y + h) / (2 * h))), x = Math.min(Math.max(x, -mr), mr);
-				let S = jr(h && Math.floor(4 * b / h)), C = jr(4 * Math.abs(i[s])), w = jr(h && v - _);
-				m[s] = e.integer((g * vr + S) * vr + C, Cr + (o * 4 + g) * vr + w, wr + (o * vr + w) * vr + S, o), n[u + s] = x + m[s];
+				p && (x += x - n[f + s]), h && (x += Math.floor((2 * y + h) / (2 * h))), x = Math.min(Math.max(x, -Dr), Dr);
+				let S = Wr(h && Math.floor(4 * b / h)), C = Wr(4 * Math.abs(i[s])), w = Wr(h && v - _);
+				m[s] = e.integer((g * jr + S) * jr + C, Ir + (o * 4 + g) * jr + w, Lr + (o * jr + w) * jr + S, o), n[u + s] = x + m[s];
 			}
 		}
 		this.off = m, e.checkEnd(this.where), this.check(u, c);
 	}
 	check(e, t) {
-		for (let n = e; n < e + t; n += 3) if (!Ar(this.steps, n, this.mesh.matrix).every((e) => Math.abs(e) <= 1e30)) throw N(this.where, "positions that are not finite");
+		for (let n = e; n < e + t; n += 3) if (!Ur(this.steps, n, this.mesh.matrix).every((e) => Math.abs(e) <= 1e30)) throw M(this.where, "positions that are not finite");
 	}
 };
-function Ar(e, t, n) {
+function Ur(e, t, n) {
 	let [r, i, a] = [
 		e[t],
 		e[t + 1],
@@ -1120,20 +1194,20 @@ function Ar(e, t, n) {
 		o(2) / s
 	];
 }
-function jr(e) {
+function Wr(e) {
 	return Math.min(z(e), 11);
 }
-function Mr(e, t, { near: n, starts: r }) {
+function Gr(e, t, { near: n, starts: r }) {
 	let i = new Uint8Array(t), a = 0;
 	for (let o = 0; o < t; o++) {
 		let [t, s] = [r[o], r[o + 1]], c = 0;
 		for (let e = t; e < s; e++) c += i[n[e]];
 		let l = s === t ? 3 : c === 0 ? 0 : c === s - t ? 2 : 1;
-		a = Number(e.flag(Tr + l, 1156 + a, 1158, Dr)), i[o] = a;
+		a = Number(e.flag(Rr + l, 1156 + a, 1158, Br)), i[o] = a;
 	}
 	return i;
 }
-function Nr(e, t) {
+function Kr(e, t) {
 	let n = e.length / 3, r = Array.from({ length: n }, () => []), i = new Uint8Array(n), a = /* @__PURE__ */ new Map();
 	for (let t = 0; t < n; t++) {
 		let n = `${e[3 * t]} ${e[3 * t + 1]} ${e[3 * t + 2]}`, o = a.get(n);
@@ -1145,7 +1219,7 @@ function Nr(e, t) {
 		let a = e - e % 3;
 		for (let i of [1, 2]) {
 			let o = t[a + (e + i) % 3];
-			o >= 0 && o < n && r[n].length < hr && r[n].push(o);
+			o >= 0 && o < n && r[n].length < Or && r[n].push(o);
 		}
 	}
 	let o = new Int32Array(n + 1);
@@ -1156,10 +1230,10 @@ function Nr(e, t) {
 	};
 }
 // eigenfield-three/src/name-decoder.ts
-var Pr = 4 * L;
-async function Fr(e, t, n) {
-	let r = Math.min(je, Pr * t), i = await ye(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
-	if (a === 0 || !Number.isInteger(a)) throw N(n, `${i.length} bytes of ${t} names`);
+var qr = 4 * L;
+async function Jr(e, t, n) {
+	let r = Math.min(je, qr * t), i = await xe(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
+	if (a === 0 || !Number.isInteger(a)) throw M(n, `${i.length} bytes of ${t} names`);
 	let o = new TextDecoder("utf-8", {
 		fatal: !0,
 		ignoreBOM: !0
@@ -1171,22 +1245,22 @@ async function Fr(e, t, n) {
 		try {
 			c.push(o.decode(s.subarray(0, r)));
 		} catch {
-			throw N(n, "names that are not UTF-8");
+			throw M(n, "names that are not UTF-8");
 		}
 	}
 	return c;
 }
 // eigenfield-three/src/headers.ts
-function Ir(e) {
+function Yr(e) {
 	let t = new DataView(e);
 	try {
-		return Rr(t) ?? zr(t) ?? Br(t) ?? Vr(t);
+		return Zr(t) ?? Qr(t) ?? $r(t) ?? ei(t);
 	} catch (e) {
 		if (e instanceof RangeError) return null;
 		throw e;
 	}
 }
-function Lr(e, t) {
+function Xr(e, t) {
 	return String.fromCharCode(...[
 		0,
 		1,
@@ -1194,15 +1268,15 @@ function Lr(e, t) {
 		3
 	].map((n) => e.getUint8(t + n)));
 }
-function Rr(e) {
-	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || Lr(e, 12) !== "IHDR" ? null : {
+function Zr(e) {
+	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || Xr(e, 12) !== "IHDR" ? null : {
 		type: "image/png",
 		width: e.getUint32(16),
 		height: e.getUint32(20),
 		bits: null
 	};
 }
-function zr(e) {
+function Qr(e) {
 	if (e.getUint16(0) !== 65496) return null;
 	for (let t = 2;;) {
 		let n = e.getUint16(t);
@@ -1225,12 +1299,12 @@ function zr(e) {
 		t += 2 + e.getUint16(t + 2);
 	}
 }
-function Br(e) {
-	if (Lr(e, 0) !== "RIFF" || Lr(e, 8) !== "WEBP") return null;
+function $r(e) {
+	if (Xr(e, 0) !== "RIFF" || Xr(e, 8) !== "WEBP") return null;
 	let t = {
 		type: "image/webp",
 		bits: null
-	}, n = Lr(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
+	}, n = Xr(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
 	if (n === "VP8X") return {
 		...t,
 		width: 1 + r(24),
@@ -1250,11 +1324,11 @@ function Br(e) {
 		height: e.getUint16(28, !0) & 16383
 	} : null;
 }
-function Vr(e) {
-	if (Lr(e, 4) !== "ftyp") return null;
+function ei(e) {
+	if (Xr(e, 4) !== "ftyp") return null;
 	let t = null, n = null, r = (i, a) => {
 		for (let o = i; o + 8 <= a;) {
-			let i = e.getUint32(o), s = Lr(e, o + 4), c = i === 0 ? a : o + i;
+			let i = e.getUint32(o), s = Xr(e, o + 4), c = i === 0 ? a : o + i;
 			if (i === 1 || c < o + 8 || c > a) return;
 			if (s === "meta" && r(o + 12, c), (s === "iprp" || s === "ipco") && r(o + 8, c), s === "ispe") {
 				let [n, r] = [e.getUint32(o + 12), e.getUint32(o + 16)];
@@ -1277,31 +1351,31 @@ function Vr(e) {
 	};
 }
 // eigenfield-three/src/pictures-8bit.ts
-var Hr = {
+var ti = {
 	colorSpaceConversion: "none",
 	premultiplyAlpha: "none"
-}, Ur = {
+}, ni = {
 	"image/avif": "AAAAHGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZgAAAOltZXRhAAAAAAAAACFoZGxyAAAAAAAAAABwaWN0AAAAAAAAAAAAAAAAAAAAAA5waXRtAAAAAAABAAAAHmlsb2MAAAAARAAAAQABAAAAAQAAAQ0AAAAZAAAAKGlpbmYAAAAAAAEAAAAaaW5mZQIAAAAAAQAAYXYwMUNvbG9yAAAAAGhpcHJwAAAASWlwY28AAAAUaXNwZQAAAAAAAAAIAAAACAAAAA5waXhpAAAAAAEIAAAADGF2MUOBABwAAAAAE2NvbHJuY2x4AAEADQAGgAAAABdpcG1hAAAAAAAAAAEAAQQBAoMEAAAAIW1kYXQSAAoIGAi/aYCGg1AyCxlGIYeeaACQQNmg",
 	"image/webp": "UklGRh4AAABXRUJQVlA4TBEAAAAvAAAAAAdQwAIWsP+BiOh/AAA="
 };
-function Wr(e, t, n) {
-	let r = Ir(e);
-	if (!r) throw N(t.where, "no picture");
+function ri(e, t, n) {
+	let r = Yr(e);
+	if (!r) throw M(t.where, "no picture");
 	let { width: i, height: a, bits: o } = r;
-	if (n && (i !== n[0] || a !== n[1])) throw N(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
-	if (t.codec.bits !== 8 && t.codec.bits !== o) throw N(t.where, `no picture of ${t.codec.bits} bits`);
+	if (n && (i !== n[0] || a !== n[1])) throw M(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
+	if (t.codec.bits !== 8 && t.codec.bits !== o) throw M(t.where, `no picture of ${t.codec.bits} bits`);
 	let s = i * a;
-	if (!s || i > 16384 || a > 32768 || s > Te) throw N(t.where, `a picture of ${i} x ${a}`);
+	if (!s || i > 16384 || a > 32768 || s > Ee) throw M(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
-var Gr = async (e, t, n) => {
-	let r = t.pieces * t.textures, [i, a] = Wr(e, t, n && [n[0], r * n[1]]), o = Ir(e)?.type ?? t.codec.mimeType, s;
+var ii = async (e, t, n) => {
+	let r = t.pieces * t.textures, [i, a] = ri(e, t, n && [n[0], r * n[1]]), o = Yr(e)?.type ?? t.codec.mimeType, s;
 	try {
-		s = await createImageBitmap(new Blob([e], { type: o }), Hr);
+		s = await createImageBitmap(new Blob([e], { type: o }), ti);
 	} catch (e) {
-		throw await Kr(o) ? N(t.where, "it cannot be decoded") : qr(o, t, e);
+		throw await ai(o) ? M(t.where, "it cannot be decoded") : oi(o, t, e);
 	}
-	if (s.width !== i || s.height !== a) throw s.close(), N(t.where, `decoded to ${s.width} x ${s.height}, not to ${i} x ${a}`);
+	if (s.width !== i || s.height !== a) throw s.close(), M(t.where, `decoded to ${s.width} x ${s.height}, not to ${i} x ${a}`);
 	let c = a / r;
 	return Array.from({ length: r }, (e, t) => ({
 		picture: s,
@@ -1309,8 +1383,8 @@ var Gr = async (e, t, n) => {
 		rows: c
 	}));
 };
-async function Kr(e) {
-	let t = Ur[e];
+async function ai(e) {
+	let t = ni[e];
 	if (!t) return !0;
 	let n = Uint8Array.from(atob(t), (e) => e.charCodeAt(0));
 	try {
@@ -1319,17 +1393,17 @@ async function Kr(e) {
 		return !1;
 	}
 }
-function qr(e, t, n) {
-	return new M("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
+function oi(e, t, n) {
+	return new j("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
 }
 // eigenfield-three/src/pictures-10bit.ts
-var Jr = /* @__PURE__ */ new Set([
+var si = /* @__PURE__ */ new Set([
 	"I420P10",
 	"I422P10",
 	"I444P10"
-]), Yr = async (e, t, n) => {
-	let r = t.pieces * t.textures, [i, a] = Wr(e, t, n && [n[0], r * n[1]]), o = await Xr(e, i, a);
-	if (!o) return Gr(e, t, n);
+]), ci = async (e, t, n) => {
+	let r = t.pieces * t.textures, [i, a] = ri(e, t, n && [n[0], r * n[1]]), o = await li(e, i, a);
+	if (!o) return ii(e, t, n);
 	let s = a / r;
 	return Array.from({ length: r }, (e, t) => ({
 		picture: o,
@@ -1337,7 +1411,7 @@ var Jr = /* @__PURE__ */ new Set([
 		rows: s
 	}));
 };
-async function Xr(e, t, n) {
+async function li(e, t, n) {
 	if (typeof ImageDecoder > "u") return null;
 	let r = null, i = null;
 	try {
@@ -1346,7 +1420,7 @@ async function Xr(e, t, n) {
 			type: "image/avif"
 		}), i = (await r.decode()).image;
 		let a = i.visibleRect;
-		if (!Jr.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
+		if (!si.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
 		let o = new Uint8Array(i.allocationSize()), [s] = await i.copyTo(o);
 		return s ? {
 			data: o.subarray(s.offset),
@@ -1361,57 +1435,57 @@ async function Xr(e, t, n) {
 	}
 }
 // eigenfield-three/src/triangle-decoder.ts
-var Zr = 5;
-function Qr(e, t) {
-	let n = B(e, Zr, t).getUint32(1, !0);
-	ot(e, 3 * n, 6 * Oe, t);
-	let r = yt(e.subarray(Zr)), i = Ct(r, n, 3, !0);
+var ui = 5;
+function di(e, t) {
+	let n = B(e, ui, t).getUint32(1, !0);
+	ot(e, 3 * n, 6 * I, t);
+	let r = yt(e.subarray(ui)), i = Ct(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
-	if (!a.every((e) => e >= 0 && e < 1e5)) throw N(t, "triangles of cameras that there cannot be");
+	if (!a.every((e) => e >= 0 && e < 1e5)) throw M(t, "triangles of cameras that there cannot be");
 	return { corners: Uint32Array.from(a) };
 }
 // eigenfield-three/src/weight-decoder.ts
-var $r = 14, ei = 2 ** 20;
-function ti(e, t) {
-	let n = B(e, $r, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
-	if (n.getUint8(1) > 1 || i === 0) throw N(t, "weights of no camera, or of an unknown kind");
-	ot(e, o * s * Math.max(a, 1), We, t), B(e, $r + 4 * a, t);
+var fi = 14, pi = 2 ** 20;
+function mi(e, t) {
+	let n = B(e, fi, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
+	if (n.getUint8(1) > 1 || i === 0) throw M(t, "weights of no camera, or of an unknown kind");
+	ot(e, o * s * Math.max(a, 1), We, t), B(e, fi + 4 * a, t);
 	let c = o * s;
-	if (c < i) throw N(t, "a grid with too few cells");
-	let l = yt(e.subarray($r + 4 * a)), u = r ? wt(l, c, i, t) : null, d = u !== null && i === c, f = [
+	if (c < i) throw M(t, "a grid with too few cells");
+	let l = yt(e.subarray(fi + 4 * a)), u = r ? wt(l, c, i, t) : null, d = u !== null && i === c, f = [
 		0,
 		1,
 		2
-	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * ei * Math.max(o, s);
+	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * pi * Math.max(o, s);
 	for (let e = 0; e < a; e++) {
-		let r = n.getFloat32($r + 4 * e, !0);
-		if (!(r > 0 && r < Infinity)) throw N(t, "a step that is not positive");
+		let r = n.getFloat32(fi + 4 * e, !0);
+		if (!(r > 0 && r < Infinity)) throw M(t, "a step that is not positive");
 		let i = bt(l), h = St(l, s, f[i], i);
-		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw N(t, `numbers of component ${e} that cannot be`);
+		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw M(t, `numbers of component ${e} that cannot be`);
 		f[i] = h;
-		let g = i === 2 ? ni(h, o, s) : h;
+		let g = i === 2 ? hi(h, o, s) : h;
 		for (let t = 0; t < c; t++) {
 			let n = u ? u[t] : t;
 			n >= 0 && (p[n * a + e] = g[t] * r);
 		}
 		l.checkEnd(t);
 	}
-	if (!p.every(Number.isFinite)) throw N(t, "weights that are not finite");
+	if (!p.every(Number.isFinite)) throw M(t, "weights that are not finite");
 	return {
 		cameras: i,
 		components: a,
 		values: p
 	};
 }
-function ni(e, t, n) {
-	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = ri(n);
+function hi(e, t, n) {
+	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = gi(n);
 	for (let i = 0; i < t; i++) for (let t = 0; t < n; t++) {
 		let o = 0;
 		for (let r = 0; r < n; r++) o += a(r, t) * e[i * n + r];
 		r[i * n + t] = o;
 	}
-	let o = ri(t);
+	let o = gi(t);
 	for (let e = 0; e < t; e++) for (let a = 0; a < n; a++) {
 		let s = 0;
 		for (let i = 0; i < t; i++) s += o(i, e) * r[i * n + a];
@@ -1419,13 +1493,13 @@ function ni(e, t, n) {
 	}
 	return i;
 }
-function ri(e) {
+function gi(e) {
 	let [t, n] = [Math.sqrt(1 / e), Math.sqrt(2 / e)], r = Float64Array.from({ length: 4 * e }, (t, r) => n * Math.cos(Math.PI * r / (2 * e)));
 	return (n, i) => n === 0 ? t : r[(2 * i + 1) * n % (4 * e)];
 }
 // eigenfield-three/src/codecs.ts
-function ii(e) {
-	let [t, n] = [Gr, Gr];
+function _i(e) {
+	let [t, n] = [ii, ii];
 	return {
 		kind: "picture",
 		decode: t,
@@ -1443,13 +1517,13 @@ function ii(e) {
 var W = {
 	"mesh-1": {
 		kind: "mesh",
-		decode: sr,
+		decode: br,
 		needs: "codedMesh",
 		limits: ["MAX_VERTICES", "MAX_TRIANGLES"]
 	},
 	"mesh-2": {
 		kind: "mesh",
-		decode: cr,
+		decode: xr,
 		needs: "mesh-2",
 		limits: ["MAX_VERTICES", "MAX_TRIANGLES"]
 	},
@@ -1467,64 +1541,64 @@ var W = {
 	},
 	"names-1": {
 		kind: "names",
-		decode: Fr,
+		decode: Jr,
 		needs: "codedNames",
 		limits: ["MAX_NAMES", "MAX_CAMERAS"]
 	},
 	"triangles-1": {
 		kind: "triangles",
-		decode: Qr,
+		decode: di,
 		needs: "codedTriangles",
 		limits: ["MAX_CAMERAS"]
 	},
 	"weights-1": {
 		kind: "weights",
-		decode: ti,
+		decode: mi,
 		needs: "codedWeights",
 		limits: ["MAX_WEIGHTS"]
 	},
 	"film-1": {
 		kind: "film",
-		decode: (...e) => new It(...e),
+		decode: (...e) => new Jt(...e),
 		needs: "film-1",
 		limits: ["MAX_FILM_SIDE", "MAX_FILM_PIXELS"]
 	},
 	"motion-1": {
 		kind: "motion",
-		decode: (...e) => new kr(...e),
+		decode: (...e) => new Hr(...e),
 		needs: "motion-1",
 		limits: ["MAX_GROUP_FRAMES", "MAX_MOTION"]
 	},
-	png: ii("image/png"),
-	webp: ii("image/webp"),
-	avif: ii("image/avif"),
-	jpeg: ii("image/jpeg"),
+	png: _i("image/png"),
+	webp: _i("image/webp"),
+	avif: _i("image/avif"),
+	jpeg: _i("image/jpeg"),
 	"av1-10bit-1": {
-		...ii("image/avif"),
+		..._i("image/avif"),
 		bits: 10,
-		decode: Yr,
+		decode: ci,
 		needs: "bits"
 	},
 	"av1-10bit-2": {
-		...ii("video/AV1"),
+		..._i("video/AV1"),
 		bits: 10,
-		decode: (e, t, n) => Yr(_e(e, t.where), t, n),
-		bitmaps: (e, t, n) => Gr(_e(e, t.where), t, n),
+		decode: (e, t, n) => ci(ve(e, t.where), t, n),
+		bitmaps: (e, t, n) => ii(ve(e, t.where), t, n),
 		needs: "av1-10bit-2"
 	}
-}, ai = {
+}, vi = {
 	mesh: "mesh-1",
 	cameras: "cameras-1",
 	names: "names-1",
 	triangles: "triangles-1",
 	weights: "weights-1"
 };
-function oi(e, t, n) {
+function yi(e, t, n) {
 	let r = t.exists ? t.text(L) : n, i = Object.hasOwn(W, r) ? W[r] : null;
 	if (i?.kind === e) return i;
-	throw new M("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
+	throw new j("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
 }
-function si(e, t) {
+function bi(e, t) {
 	return Object.keys(W).find((n) => {
 		let r = W[n];
 		return r.kind === "picture" && r.mimeType === e && (t ?? r.bits) === r.bits;
@@ -1586,27 +1660,27 @@ var G = class e {
 		];
 	}
 	wrong(e) {
-		return N(this.where || "/", this.exists ? e : "missing");
+		return M(this.where || "/", this.exists ? e : "missing");
 	}
-}, ci = 5121, li = 5123, ui = 5125, K = 5126, di = {
-	[ci]: 1,
-	[li]: 2,
-	[ui]: 4,
-	[K]: 4
-}, fi = /* @__PURE__ */ new Set([
+}, xi = 5121, Si = 5123, Ci = 5125, wi = 5126, Ti = {
+	[xi]: 1,
+	[Si]: 2,
+	[Ci]: 4,
+	[wi]: 4
+}, Ei = /* @__PURE__ */ new Set([
 	"cameras",
 	"triangles",
 	"weights"
-]), pi = {
+]), Di = {
 	SCALAR: 1,
 	VEC2: 2,
 	VEC3: 3
 };
-function mi(e) {
+function Oi(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
-	return e.key("bufferViews").items(Se).map((e) => {
+	return e.key("bufferViews").items(F).map((e) => {
 		let t = e.key("byteOffset"), r = e.key("byteStride");
 		e.key("buffer").integer(0, 0);
 		let i = {
@@ -1618,11 +1692,11 @@ function mi(e) {
 		return i;
 	});
 }
-function hi(e) {
+function ki(e) {
 	return (t) => t.integer(0, e.length - 1);
 }
-function gi(e, t) {
-	let n = e.key("accessors"), r = n.exists ? n.items(Se) : [];
+function Ai(e, t) {
+	let n = e.key("accessors"), r = n.exists ? n.items(F) : [];
 	return (e, n, i, a) => {
 		let o = r[e.integer(0, r.length - 1)];
 		if (!o) throw e.wrong("no such accessor");
@@ -1632,14 +1706,14 @@ function gi(e, t) {
 		if (o.key("sparse").exists) throw o.wrong("sparse");
 		let c = o.key("normalized");
 		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = pi[n] ?? 1, u = o.key("count").integer(1, We);
+		let l = Di[n] ?? 1, u = o.key("count").integer(1, We);
 		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
 		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
 		if (!f) throw o.wrong("no such buffer view");
-		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = di[s] * l;
+		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = Ti[s] * l;
 		if (f.stride && (f.stride < h || n === "SCALAR")) throw o.wrong("a stride that cannot be");
 		if (m + (u - 1) * (f.stride || h) + h > f.length) throw o.wrong("outside its buffer view");
-		if ((m + f.offset) % di[s]) throw o.wrong("not aligned");
+		if ((m + f.offset) % Ti[s]) throw o.wrong("not aligned");
 		return {
 			view: d,
 			offset: m,
@@ -1650,40 +1724,40 @@ function gi(e, t) {
 		};
 	};
 }
-function _i(e, t, n) {
-	let r = typeof t.raw == "number" && fi.has(e), i = oi(e, r ? new G(void 0, t.where) : t.key("codec"), ai[e]);
+function ji(e, t, n) {
+	let r = typeof t.raw == "number" && Ei.has(e), i = yi(e, r ? new G(void 0, t.where) : t.key("codec"), vi[e]);
 	return {
 		view: n(r ? t : t.key("bufferView")),
 		codec: i,
 		where: t.where
 	};
 }
-async function vi(e, t, n) {
+async function Mi(e, t, n) {
 	let r = await n(e.view), i = t[e.view]?.length ?? Infinity;
-	if (r.byteLength < i) throw le(e.where);
-	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + di[c] * o * s);
-	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : yi(new Float32Array(l), e.where);
+	if (r.byteLength < i) throw ue(e.where);
+	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + Ti[c] * o * s);
+	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : Ni(new Float32Array(l), e.where);
 }
-function yi(e, t) {
-	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw N(t, `${n} among its numbers`);
+function Ni(e, t) {
+	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw M(t, `${n} among its numbers`);
 	return e;
 }
 // eigenfield-three/src/planes.ts
-var bi = 8, xi = 16, Si = "av1-10bit-2";
-function Ci(e, t) {
-	return new M("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
+var Pi = 8, Fi = 16, Ii = "av1-10bit-2";
+function Li(e, t) {
+	return new j("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function wi(e, t = Ce) {
+function Ri(e, t = we) {
 	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
 	if (!n || !r) throw e.wrong("two numbers are needed");
-	if (n * r > Te) throw e.wrong(`more than ${Te} texels`);
+	if (n * r > Ee) throw e.wrong(`more than ${Ee} texels`);
 	return [n, r];
 }
-function Ti(e, t, n, r, i) {
+function zi(e, t, n, r, i) {
 	let a = e.key("planes").items(16);
 	if (!a.length) throw e.key("planes").wrong("no plane");
 	let o = a.map((e, a) => {
-		let o = e.key("channels").integer(1, 64), s = Ii(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => zi(e, o, t, r, i);
+		let o = e.key("channels").integer(1, 64), s = Xi(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => $i(e, o, t, r, i);
 		return {
 			channels: o,
 			...s,
@@ -1693,15 +1767,15 @@ function Ti(e, t, n, r, i) {
 	for (let { channels: e, meanSize: t, bases: n } of o) {
 		s += 4 * e * (t ? t[0] * t[1] : 0);
 		for (let { size: t, count: r, pictures: i } of n) {
-			let n = i.reduce((e, { textures: t, codec: n }) => e + t * (n.bits === bi ? 1 : 2), 0);
+			let n = i.reduce((e, { textures: t, codec: n }) => e + t * (n.bits === Pi ? 1 : 2), 0);
 			s += t[0] * t[1] * e * n, c += r;
 		}
 	}
-	if (c > 4096) throw e.key("planes").wrong(`more than ${Ee} textures`);
-	if (s > De) throw e.key("planes").wrong("too large when it is decoded");
+	if (c > 4096) throw e.key("planes").wrong(`more than ${De} textures`);
+	if (s > Oe) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
-function Ei(e, t) {
+function Bi(e, t) {
 	let n = t.reduce((e, { channels: t }) => e + t, 0), r = e.key("toRGB");
 	if (r.exists) {
 		let e = r.numbers(3 * n), t = (t, r) => e[t * n + r] ?? 0;
@@ -1733,11 +1807,11 @@ function Ei(e, t) {
 			1
 		]
 	];
-	throw Ci(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
+	throw Li(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
 }
-function Di(e, t, n, r, i, a = !1) {
-	let o = Oi(e), s = t === 3 && o.bits === bi ? 1 : t;
-	r && Bi(e, s * n, r);
+function Vi(e, t, n, r, i, a = !1) {
+	let o = Hi(e), s = t === 3 && o.bits === Pi ? 1 : t;
+	r && ea(e, s * n, r);
 	let [c, l] = [e.key("scale"), e.key("zero")], u = {
 		view: i(e.key("bufferView")),
 		codec: o,
@@ -1746,26 +1820,26 @@ function Di(e, t, n, r, i, a = !1) {
 		where: e.where,
 		part: null
 	};
-	return a && o.bits === bi && !c.exists && !l.exists ? {
+	return a && o.bits === Pi && !c.exists && !l.exists ? {
 		...u,
-		...ji(t)
+		...Gi(t)
 	} : {
 		...u,
-		scale: Fi(c, t, n),
-		zero: Fi(l, t, n)
+		scale: Yi(c, t, n),
+		zero: Yi(l, t, n)
 	};
 }
-function Oi(e) {
+function Hi(e) {
 	let t = e.key("mimeType").text(L);
-	if (!si(t)) throw e.key("mimeType").wrong("an unknown type");
-	let n = e.key("bits"), r = n.exists ? n.integer(1, xi) : bi, i = si(t, r);
+	if (!bi(t)) throw e.key("mimeType").wrong("an unknown type");
+	let n = e.key("bits"), r = n.exists ? n.integer(1, Fi) : Pi, i = bi(t, r);
 	if (!i) throw n.wrong(`${r} bits of ${t}`);
-	let a = e.key("codec"), o = oi("picture", a, i);
+	let a = e.key("codec"), o = yi("picture", a, i);
 	if (o.mimeType !== t || o.bits !== r) throw a.wrong(`${r} bits of ${t}`);
 	return o;
 }
-function ki(e, t, n) {
-	let r = e.key("at").items(Ee * t).map((e) => {
+function Ui(e, t, n) {
+	let r = e.key("at").items(De * t).map((e) => {
 		let [t = 0, n = 0] = e.numbers(2, 0, Pe);
 		if (!Number.isInteger(t) || !Number.isInteger(n)) throw e.wrong("no whole numbers");
 		return [t, n];
@@ -1782,7 +1856,7 @@ function ki(e, t, n) {
 	};
 	return {
 		view: -1,
-		codec: W[Si],
+		codec: W[Ii],
 		textures: r.length / t,
 		pieces: t,
 		where: i,
@@ -1790,33 +1864,33 @@ function ki(e, t, n) {
 		...o
 	};
 }
-function Ai(e, t, n) {
-	let r = ki(e, t, n);
+function Wi(e, t, n) {
+	let r = Ui(e, t, n);
 	if (r.textures !== 1) throw e.key("at").wrong(`${t} places are needed`);
 	return r;
 }
-function ji(e) {
+function Gi(e) {
 	return {
 		scale: Array(e).fill(1 / 255),
 		zero: Array(e).fill(0)
 	};
 }
-function Mi(e) {
-	return e.some(({ codec: e }) => e.bits > bi);
+function Ki(e) {
+	return e.some(({ codec: e }) => e.bits > Pi);
 }
-function Ni({ codec: e }) {
+function qi({ codec: e }) {
 	return (2 ** e.bits - 1) / 255;
 }
-function Pi(e, t) {
-	return t ? 1 : 1 / (255 * Ni(e));
+function Ji(e, t) {
+	return t ? 1 : 1 / (255 * qi(e));
 }
-function Fi(e, t, n) {
+function Yi(e, t, n) {
 	let r = e.items(t * n).map((e) => e.number());
 	if (r.length === t * n) return r;
 	if (r.length !== t) throw e.wrong(`${t} or ${t * n} numbers are needed`);
 	return Array(n).fill(r).flat();
 }
-function Ii(e, t, n, r) {
+function Xi(e, t, n, r) {
 	let i = e.key("mean");
 	if (!i.exists) {
 		if (n === null || t !== 1 && t !== 3) throw i.wrong("no mean");
@@ -1828,29 +1902,29 @@ function Ii(e, t, n, r) {
 				pieces: 1,
 				where: "/images/0",
 				part: null,
-				...ji(t)
+				...Gi(t)
 			},
 			meanSize: null,
 			precision: null
 		};
 	}
-	let a = wi(i.key("size"));
+	let a = Ri(i.key("size"));
 	if (i.key("film").exists) return {
-		mean: Ai(i, t, a),
+		mean: Wi(i, t, a),
 		meanSize: a,
 		precision: null
 	};
-	let o = Di(i, t, 1, a, r, !0);
+	let o = Vi(i, t, 1, a, r, !0);
 	return {
 		mean: o,
 		meanSize: a,
-		precision: Ri(i.key("precision"), o, r)
+		precision: Qi(i.key("precision"), o, r)
 	};
 }
-function Li(e, t) {
-	let n = wi(e.key("size")), r = e.key("film").exists ? Ai(e, 1, n) : (() => {
-		let r = Oi(e);
-		return Bi(e, 1, n), {
+function Zi(e, t) {
+	let n = Ri(e.key("size")), r = e.key("film").exists ? Wi(e, 1, n) : (() => {
+		let r = Hi(e);
+		return ea(e, 1, n), {
 			view: t(e.key("bufferView")),
 			codec: r,
 			textures: 1,
@@ -1870,10 +1944,10 @@ function Li(e, t) {
 		precision: null
 	};
 }
-function Ri(e, t, n) {
+function Qi(e, t, n) {
 	if (!e.exists) return null;
-	if (t.codec.bits === bi) throw e.wrong(`of a mean of ${bi} bits`);
-	let r = wi(e.key("size"), we), i = oi("picture", e.key("codec"), "png");
+	if (t.codec.bits === Pi) throw e.wrong(`of a mean of ${Pi} bits`);
+	let r = Ri(e.key("size"), Te), i = yi("picture", e.key("codec"), "png");
 	if (i !== W.png) throw e.key("codec").wrong("no PNG");
 	return {
 		view: n(e.key("bufferView")),
@@ -1884,14 +1958,14 @@ function Ri(e, t, n) {
 		where: e.where
 	};
 }
-function zi(e, t, n, r, i) {
-	let a = wi(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? wi(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, Ce) : [];
+function $i(e, t, n, r, i) {
+	let a = Ri(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Ri(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, we) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
 	let d = e.where;
 	if (e.key("film").exists) {
-		let n = ki(e, t, a), { textures: r } = n;
-		if (r > 4096) throw e.wrong(`more than ${Ee} textures`);
+		let n = Ui(e, t, a), { textures: r } = n;
+		if (r > 4096) throw e.wrong(`more than ${De} textures`);
 		return {
 			size: a,
 			grid: c,
@@ -1902,15 +1976,15 @@ function zi(e, t, n, r, i) {
 			where: d
 		};
 	}
-	let f = 0, p = e.key("picture"), m = p.exists ? p.object() : {}, h = e.key("textures").items(Ee).map((e) => {
+	let f = 0, p = e.key("picture"), m = p.exists ? p.object() : {}, h = e.key("textures").items(De).map((e) => {
 		let n = new G({
 			...m,
 			...e.object()
-		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, Ee) : 1;
-		return f += o, Di(n, t, o, a, i);
+		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, De) : 1;
+		return f += o, Vi(n, t, o, a, i);
 	});
-	if (f > 4096) throw e.wrong(`more than ${Ee} textures`);
-	let g = e.key("codedWeights"), _ = f ? g.exists ? _i("weights", g, i) : r(e.key("weights"), "SCALAR", [K], n * f) : null;
+	if (f > 4096) throw e.wrong(`more than ${De} textures`);
+	let g = e.key("codedWeights"), _ = f ? g.exists ? ji("weights", g, i) : r(e.key("weights"), "SCALAR", [wi], n * f) : null;
 	return {
 		size: a,
 		grid: c,
@@ -1921,86 +1995,88 @@ function zi(e, t, n, r, i) {
 		where: d
 	};
 }
-function Bi(e, t, [n, r]) {
+function ea(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
-	if (n * i > Te) throw e.wrong(`more than ${Te} texels`);
+	if (n * i > Ee) throw e.wrong(`more than ${Ee} texels`);
 }
 // eigenfield-three/src/sheets.ts
-function Vi(e, t) {
+function ta(e, t) {
 	if (!e.exists) return null;
 	let n = e.key("faces").items(32).map((e) => e.integer(1, Ne));
 	if (!n.length) throw e.key("faces").wrong("no sheet");
 	return {
 		faces: n,
-		opacity: Li(e.key("opacity"), t),
+		opacity: Zi(e.key("opacity"), t),
 		where: e.where
 	};
 }
-function Hi({ faces: e, where: t }, { index: n, attributes: r }) {
+function na({ faces: e, where: t }, { index: n, attributes: r }) {
 	let i = e.reduce((e, t) => e + t, 0), a = (n?.count ?? 0) / 3;
-	if (i !== a) throw N(`${t}/faces`, `the sheets have ${i} triangles, the mesh has ${a}`);
+	if (i !== a) throw M(`${t}/faces`, `the sheets have ${i} triangles, the mesh has ${a}`);
 	let o = new Uint8Array(r.position?.count ?? 0), s = 0;
 	e.forEach((e, r) => {
 		for (let i = s + 3 * e; s < i; s++) {
 			let e = n?.getX(s) ?? 0, i = o[e] || r + 1, a = `sheets ${i - 1} and ${r} share vertex ${e}`;
-			if (i !== r + 1) throw N(`${t}/faces`, a);
+			if (i !== r + 1) throw M(`${t}/faces`, a);
 			o[e] = i;
 		}
 	});
 }
 // eigenfield-three/src/timeline.ts
-var Ui = 64, q = 16, Wi = "audio/ogg", Gi = /^[0-9a-f]{64}$/;
-function Ki(e, t, n) {
-	let r = [...Xi(t), ...n ? [n] : []];
+var ra = 64, K = 16, ia = "audio/ogg", aa = /^[0-9a-f]{64}$/;
+function oa(e, t, n) {
+	let r = [...ua(t), ...n ? [n] : []];
 	if (!e.exists) {
 		let e = r.find(({ part: e }) => e);
-		if (e) throw N(e.where, "a texture in a film, and no timeline");
+		if (e) throw M(e.where, "a texture in a film, and no timeline");
 		return null;
 	}
 	let [i = 1, a = 1] = e.key("rate").numbers(2, 1, Ue), o = i / a;
 	if (!(Number.isInteger(i) && Number.isInteger(a)) || o > 1e3 || o < 1 / 1e3) throw e.key("rate").wrong("no rate");
-	let s = e.key("first"), c = e.key("films").items(4).map(Ji), l = e.key("frames").integer(1, Le);
-	Zi(r, c);
-	for (let e of c) e.opacity = e === c[n?.part?.film ?? -1];
-	let u = Yi(e, l);
+	let s = e.key("first"), c = e.key("films").items(4).map(ca), l = e.key("frames").integer(1, Le);
+	da(r, c);
+	let u = new Set([...t.map(({ mean: e }) => e), n].map((e) => c[e?.part?.film ?? -1]));
+	for (let e of c) e.opacity = e === c[n?.part?.film ?? -1], e.detail = !u.has(e);
+	let d = la(e, l);
 	return {
 		rate: o,
 		first: s.exists ? s.number() : 0,
 		frames: l,
 		films: c,
-		groups: u,
-		sound: qi(e, u)
+		groups: d,
+		sound: sa(e, d)
 	};
 }
-function qi(e, t) {
+function sa(e, t) {
 	let n = e.key("audio");
 	if (!n.exists) return null;
-	if (n.key("mimeType").text(64) !== Wi) throw n.key("mimeType").wrong(`no ${Wi}`);
+	if (n.key("mimeType").text(64) !== ia) throw n.key("mimeType").wrong(`no ${ia}`);
 	let r = t.at(-1), i = n.key("offset").integer(r.offset + r.length, 2 ** 53 - 1);
 	if (i % 4) throw n.key("offset").wrong("no multiple of 4");
 	let a = n.key("first"), o = n.key("length").integer(1, He);
 	return {
-		mimeType: Wi,
+		mimeType: ia,
 		first: a.exists ? a.number() : 0,
 		offset: i,
 		length: o
 	};
 }
-function Ji(e) {
-	let t = oi("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, Ui, Pe);
-	if (n % Ui || r % Ui || n * r > Fe) throw e.key("size").wrong(`a film of ${n} x ${r}`);
+function ca(e) {
+	let t = yi("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, ra, Pe);
+	if (n % ra || r % ra || n * r > Fe) throw e.key("size").wrong(`a film of ${n} x ${r}`);
 	return {
 		codec: t,
 		size: [n, r],
 		opacity: !1,
+		detail: !1,
 		where: e.where
 	};
 }
-function Yi(e, t) {
+function la(e, t) {
 	let [n, r] = [0, 0], i = e.key("groups").items(Re).map((e) => {
 		let t = e.key("frames").integer(1, Be), i = e.key("length").integer(1, ze), a = e.key("offset").integer(r, 2 ** 53 - 1), o = e.key("sha256").text(64);
-		if (!Gi.test(o)) throw e.key("sha256").wrong("no SHA-256");
+		if (!aa.test(o)) throw e.key("sha256").wrong("no SHA-256");
 		if (a % 4) throw e.key("offset").wrong("no multiple of 4");
 		return [n, r] = [n + t, a + i], {
 			first: n - t,
@@ -2014,33 +2090,33 @@ function Yi(e, t) {
 	if (n !== t) throw e.key("groups").wrong(`${n} frames in groups, and ${t} in all`);
 	return i;
 }
-function Xi(e) {
+function ua(e) {
 	return e.flatMap(({ mean: e, bases: t }) => [e, ...t.flatMap((e) => e.pictures)]);
 }
-function Zi(e, t) {
-	let n = t.map(({ size: e }) => new Uint8Array(e[0] * e[1] / q ** 2));
+function da(e, t) {
+	let n = t.map(({ size: e }) => new Uint8Array(e[0] * e[1] / K ** 2));
 	for (let { part: r, where: i } of e) {
 		let e = r && t[r.film];
-		if (!r || !e) throw N(i, "it lies in no film");
-		let [a, o] = [e.size[0] / q, n[r.film]], [s, c] = r.size.map((e) => Math.ceil(e / q));
+		if (!r || !e) throw M(i, "it lies in no film");
+		let [a, o] = [e.size[0] / K, n[r.film]], [s, c] = r.size.map((e) => Math.ceil(e / K));
 		for (let [t, n] of r.at) {
 			let l = t + r.size[0] <= e.size[0] && n + r.size[1] <= e.size[1];
-			if (t % q || n % q || !l) throw N(i, `a texture at ${t}, ${n} of its film`);
-			for (let e = n / q; e < n / q + c; e++) {
-				let r = o.subarray(e * a + t / q, e * a + t / q + s);
-				if (r.includes(1)) throw N(i, `two textures at ${t}, ${n} of a film`);
+			if (t % K || n % K || !l) throw M(i, `a texture at ${t}, ${n} of its film`);
+			for (let e = n / K; e < n / K + c; e++) {
+				let r = o.subarray(e * a + t / K, e * a + t / K + s);
+				if (r.includes(1)) throw M(i, `two textures at ${t}, ${n} of a film`);
 				r.fill(1);
 			}
 		}
 	}
 }
-function Qi({ rate: e, first: t, frames: n }, r) {
+function fa({ rate: e, first: t, frames: n }, r) {
 	return Math.min(Math.max(Math.floor((r - t) * e + .5), 0), n - 1);
 }
-function $i({ rate: e, first: t }, n) {
+function pa({ rate: e, first: t }, n) {
 	return t + n / e;
 }
-function ea({ groups: e }, t) {
+function q({ groups: e }, t) {
 	let [n, r] = [0, e.length - 1];
 	for (; n < r;) {
 		let i = n + r + 1 >> 1;
@@ -2049,7 +2125,7 @@ function ea({ groups: e }, t) {
 	return n;
 }
 // eigenfield-three/src/document.ts
-var ta = [
+var ma = [
 	"namePattern",
 	"noFallback",
 	"packed",
@@ -2060,21 +2136,21 @@ var ta = [
 	"stacks",
 	"timeline",
 	"toRGB"
-], na = Object.values(W).flatMap(({ needs: e }) => e ?? []), ra = /* @__PURE__ */ new Set([...ta, ...na]), ia = 64, aa = 9, oa = 10 ** aa;
-function sa(e) {
+], ha = Object.values(W).flatMap(({ needs: e }) => e ?? []), ga = /* @__PURE__ */ new Set([...ma, ...ha]), _a = 64, va = 9, ya = 10 ** va;
+function ba(e) {
 	let t = new G(e, "");
 	try {
-		return t.key("extensions").key(be).exists;
+		return t.key("extensions").key(Se).exists;
 	} catch {
 		return !1;
 	}
 }
-function ca(e) {
-	let t = new G(e, ""), n = t.key("extensions").key(be), r = da(n), i = mi(t), a = gi(t, i), o = hi(i);
-	fa(t);
-	let s = ha(t, o), c = n.key("cameras"), { count: l, names: u } = ga(c, o), d = ya(c, l), f = d.filter((e) => !e).length, p = Ti(n, f, s, a, o), m = Ei(n, p), h = c.key("colour"), g = c.key("codedColour");
+function xa(e) {
+	let t = new G(e, ""), n = t.key("extensions").key(Se), r = wa(n), i = Oi(t), a = Ai(t, i), o = ki(i);
+	Ta(t);
+	let s = Oa(t, o), c = n.key("cameras"), { count: l, names: u } = ka(c, o), d = Ma(c, l), f = d.filter((e) => !e).length, p = zi(n, f, s, a, o), m = Bi(n, p), h = c.key("colour"), g = c.key("codedColour");
 	if ((h.exists || g.exists) && m.length < 3) throw h.wrong("needs three channels");
-	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), [x, S] = [n.key("mesh"), n.key("timeline")], C = Vi(n.key("sheets"), o);
+	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), [x, S] = [n.key("mesh"), n.key("timeline")], C = ta(n.key("sheets"), o);
 	return {
 		version: r,
 		generator: b.exists ? b.text(L) : "",
@@ -2083,50 +2159,50 @@ function ca(e) {
 		names: u,
 		heldOut: d,
 		reference: n.key("reference").integer(0, l - 1),
-		calibration: ba(c, l, a, o),
-		sizes: xa(c, l, a),
-		colour: g.exists ? _i("weights", g, o) : h.exists ? a(h, "SCALAR", [K], 6 * l) : null,
-		...Sa(_),
-		triangles: y.exists ? _i("triangles", y, o) : v.exists ? ma(a(v, "SCALAR", [li, ui], null), 2 * Oe) : null,
-		settings: Ca(n.key("settings")),
-		scores: Ca(n.key("scores")),
+		calibration: Na(c, l, a, o),
+		sizes: Pa(c, l, a),
+		colour: g.exists ? ji("weights", g, o) : h.exists ? a(h, "SCALAR", [wi], 6 * l) : null,
+		...Fa(_),
+		triangles: y.exists ? ji("triangles", y, o) : v.exists ? Da(a(v, "SCALAR", [Si, Ci], null), 2 * I) : null,
+		settings: Ia(n.key("settings")),
+		scores: Ia(n.key("scores")),
 		views: i,
-		mesh: x.exists || S.exists ? _i("mesh", x, o) : null,
+		mesh: x.exists || S.exists ? ji("mesh", x, o) : null,
 		sheets: C,
-		shown: x.exists && !t.key("meshes").exists ? null : la(t, a),
+		shown: x.exists && !t.key("meshes").exists ? null : Sa(t, a),
 		preview: s,
-		timeline: Ki(S, p, C && C.opacity.mean)
+		timeline: oa(S, p, C && C.opacity.mean)
 	};
 }
-function la(e, t) {
+function Sa(e, t) {
 	let n = e.key("meshes").at(0).key("primitives").at(0), r = n.key("mode");
 	if (r.exists && r.integer(0, 6) !== 4) throw r.wrong("no triangles");
 	let [i, a] = [n.key("attributes"), n.key("indices")];
 	return {
-		position: pa(t(i.key("POSITION"), "VEC3", [K], null), Me),
-		uv: pa(t(i.key("TEXCOORD_0"), "VEC2", [K], null), Me),
-		indices: ma(t(a, "SCALAR", [
-			ci,
-			li,
-			ui
+		position: Ea(t(i.key("POSITION"), "VEC3", [wi], null), Me),
+		uv: Ea(t(i.key("TEXCOORD_0"), "VEC2", [wi], null), Me),
+		indices: Da(t(a, "SCALAR", [
+			xi,
+			Si,
+			Ci
 		], null), Ne)
 	};
 }
-function ua({ planes: e, sheets: t }) {
+function Ca({ planes: e, sheets: t }) {
 	return t ? [...e, t.opacity] : e;
 }
-function da(e) {
+function wa(e) {
 	let t = e.key("version").text(L);
-	if (!/^1\.\d+$/.test(t)) throw new M("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
+	if (!/^1\.\d+$/.test(t)) throw new j("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
-	for (let e of n.exists ? n.items(Se) : []) {
+	for (let e of n.exists ? n.items(F) : []) {
 		let t = e.text(L);
-		if (!ra.has(t)) throw new M("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
+		if (!ga.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
-function fa(e) {
-	let t = e.key("nodes").items(Se), n = Array(t.length).fill(!1);
+function Ta(e) {
+	let t = e.key("nodes").items(F), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
 		for (let e of r.exists ? r.items(t.length) : []) {
@@ -2135,47 +2211,47 @@ function fa(e) {
 			n[r] = !0;
 		}
 	}
-	for (let r of e.key("scenes").items(Se)) {
+	for (let r of e.key("scenes").items(F)) {
 		let e = r.key("nodes");
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
-function pa(e, t) {
-	if (e.count > t) throw N(e.where, `more than ${t}`);
+function Ea(e, t) {
+	if (e.count > t) throw M(e.where, `more than ${t}`);
 	return e;
 }
-function ma(e, t) {
-	if (e.count % 3) throw N(e.where, "torn triangles");
-	return pa(e, 3 * t);
+function Da(e, t) {
+	if (e.count % 3) throw M(e.where, "torn triangles");
+	return Ea(e, 3 * t);
 }
-function ha(e, t) {
+function Oa(e, t) {
 	let n = e.key("images");
 	if (!n.exists) return null;
 	let r = n.at(0).key("bufferView");
 	return r.exists ? t(r) : null;
 }
-function ga(e, t) {
+function ka(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
-		count: n.key("count").integer(1, Oe),
-		names: _i("names", n, t)
+		count: n.key("count").integer(1, I),
+		names: ji("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? va(r) : i.items(Oe).map((e) => e.text(L));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? ja(r) : i.items(I).map((e) => e.text(L));
 	if (!a.length) throw i.wrong("no cameras");
-	let o = _a(a);
+	let o = Aa(a);
 	if (o) throw i.wrong(o);
 	return {
 		count: a.length,
 		names: a
 	};
 }
-function _a(e) {
+function Aa(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
-function va(e) {
-	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, Oe));
+function ja(e) {
+	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, I));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
-	let r = e.key("parts").items(ia).map((e) => {
+	let r = e.key("parts").items(_a).map((e) => {
 		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(L))];
 		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
 		if (a.exists) {
@@ -2183,7 +2259,7 @@ function va(e) {
 			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
 			return [r, e];
 		}
-		let [o, s] = [e.key("first").integer(0, oa), e.key("step").integer(0, oa)], c = e.key("digits").integer(1, aa);
+		let [o, s] = [e.key("first").integer(0, ya), e.key("step").integer(0, ya)], c = e.key("digits").integer(1, va);
 		return [r, Array.from({ length: i }, (e, t) => String(o + s * t).padStart(c, "0"))];
 	});
 	return Array.from({ length: t * n }, (t, i) => {
@@ -2192,7 +2268,7 @@ function va(e) {
 		return o;
 	});
 }
-function ya(e, t) {
+function Ma(e, t) {
 	let n = Array(t).fill(!1), r = e.key("heldOut");
 	if (!r.exists) return n;
 	for (let e of r.items(t)) {
@@ -2203,21 +2279,21 @@ function ya(e, t) {
 	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
 	return n;
 }
-function ba(e, t, n, r) {
+function Na(e, t, n, r) {
 	let i = e.key("coded");
-	return i.exists ? _i("cameras", i, r) : {
-		intrinsics: n(e.key("intrinsics"), "SCALAR", [K], 5 * t),
-		poses: n(e.key("poses"), "SCALAR", [K], 12 * t)
+	return i.exists ? ji("cameras", i, r) : {
+		intrinsics: n(e.key("intrinsics"), "SCALAR", [wi], 5 * t),
+		poses: n(e.key("poses"), "SCALAR", [wi], 12 * t)
 	};
 }
-function xa(e, t, n) {
+function Pa(e, t, n) {
 	let r = e.key("size");
-	if (!r.exists) return n(e.key("sizes"), "SCALAR", [ui], 2 * t);
+	if (!r.exists) return n(e.key("sizes"), "SCALAR", [Ci], 2 * t);
 	let [i = 0, a = 0] = r.numbers(2, 1, ke);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
-function Sa(e) {
+function Fa(e) {
 	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
 	for (let i of [
 		r(t, t) - 1,
@@ -2232,23 +2308,23 @@ function Sa(e) {
 		extent: [i, a]
 	};
 }
-function Ca(e) {
+function Ia(e) {
 	return e.exists ? e.object() : {};
 }
 // eigenfield-three/src/info.ts
-var wa = 1e-6;
-async function Ta(e, t) {
+var La = 1e-6;
+async function Ra(e, t) {
 	let [n, { lenses: r, poses: i }, a, o] = await Promise.all([
-		Da(e, t),
-		ka(e, t),
-		Aa(e, t),
-		Ea(e, t)
+		Ba(e, t),
+		Ha(e, t),
+		Ua(e, t),
+		za(e, t)
 	]);
 	return n.map((t, n) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
-		if (!(s > wa && c > wa)) throw N(r.where, `focal lengths of "${t}"`);
-		let { R: f, t: p } = ja([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
-		if (!m || !h || Math.max(m, h) > 65535 || m * h > Ae) throw N(a.where, `"${t}" is ${m} x ${h} pixels`);
+		if (!(s > La && c > La)) throw M(r.where, `focal lengths of "${t}"`);
+		let { R: f, t: p } = Wa([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
+		if (!m || !h || Math.max(m, h) > 65535 || m * h > Ae) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
 				s,
@@ -2265,13 +2341,13 @@ async function Ta(e, t) {
 				0,
 				1
 			]
-		], [_, v] = o ? Ma([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
+		], [_, v] = o ? Ga([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
 		return {
 			name: t,
 			K: g,
 			R: f,
 			t: p,
-			centre: Wa(f, p),
+			centre: ro(f, p),
 			width: m,
 			height: h,
 			gain: _,
@@ -2279,10 +2355,10 @@ async function Ta(e, t) {
 		};
 	});
 }
-async function Ea({ colour: e, heldOut: t, views: n }, r) {
-	if (!e || "type" in e) return e && vi(e, n, r);
+async function za({ colour: e, heldOut: t, views: n }, r) {
+	if (!e || "type" in e) return e && Mi(e, n, r);
 	let { cameras: i, components: a, values: o } = await e.codec.decode(new Uint8Array(await r(e.view)), e.where);
-	if (a !== 6 || i !== t.filter((e) => !e).length) throw N(e.where, `${i} x ${a} colours`);
+	if (a !== 6 || i !== t.filter((e) => !e).length) throw M(e.where, `${i} x ${a} colours`);
 	let s = 0;
 	return Float32Array.from(t.flatMap((e) => e ? [
 		1,
@@ -2293,31 +2369,31 @@ async function Ea({ colour: e, heldOut: t, views: n }, r) {
 		0
 	] : [...o.subarray(6 * s, 6 * ++s)]));
 }
-async function Da({ names: e, heldOut: t }, n) {
+async function Ba({ names: e, heldOut: t }, n) {
 	if (Array.isArray(e)) return e;
-	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : _a(r);
-	if (i) throw N(e.where, i);
+	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : Aa(r);
+	if (i) throw M(e.where, i);
 	return r;
 }
-async function Oa(e, t, n) {
+async function Va(e, t, n) {
 	return {
-		numbers: await vi(e, t.views, n),
+		numbers: await Mi(e, t.views, n),
 		where: e.where
 	};
 }
-async function ka(e, t) {
+async function Ha(e, t) {
 	let { calibration: n, heldOut: r } = e;
 	if ("intrinsics" in n) {
 		let { intrinsics: r, poses: i } = n;
 		return {
-			lenses: await Oa(r, e, t),
-			poses: await Oa(i, e, t)
+			lenses: await Va(r, e, t),
+			poses: await Va(i, e, t)
 		};
 	}
 	let { view: i, codec: a, where: o } = n, s = await a.decode(new Uint8Array(await t(i)), o), c = s.poses.length / 12;
-	if (c !== r.length) throw N(o, `${c} cameras in it, and ${r.length} names`);
+	if (c !== r.length) throw M(o, `${c} cameras in it, and ${r.length} names`);
 	let l = (e) => ({
-		numbers: yi(e, o),
+		numbers: Ni(e, o),
 		where: o
 	});
 	return {
@@ -2325,15 +2401,15 @@ async function ka(e, t) {
 		poses: l(s.poses)
 	};
 }
-async function Aa(e, t) {
-	if (!Array.isArray(e.sizes)) return Oa(e.sizes, e, t);
+async function Ua(e, t) {
+	if (!Array.isArray(e.sizes)) return Va(e.sizes, e, t);
 	let [n, r] = e.sizes;
 	return {
 		numbers: Uint32Array.from({ length: 2 * e.heldOut.length }, (e, t) => t % 2 ? r : n),
 		where: "its cameras' size"
 	};
 }
-function ja(e, t, n) {
+function Wa(e, t, n) {
 	let r = (t) => [
 		e[4 * t] ?? NaN,
 		e[4 * t + 1] ?? NaN,
@@ -2349,24 +2425,24 @@ function ja(e, t, n) {
 	];
 	for (let e = 0; e < 3; e++) for (let r = e; r < 3; r++) {
 		let a = Y(i[e], i[r]) - +(e === r);
-		if (!(Math.abs(a) <= 2e-4)) throw N(t, `the pose of "${n}" is no rotation`);
+		if (!(Math.abs(a) <= 2e-4)) throw M(t, `the pose of "${n}" is no rotation`);
 	}
-	if (!(Y(Ga(i[0], i[1]), i[2]) > 0)) throw N(t, `the pose of "${n}" is mirrored`);
+	if (!(Y(io(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
 	return {
 		R: i,
 		t: a
 	};
 }
-function Ma(e, t, n) {
+function Ga(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
-	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw N(t.colour?.where ?? "", `gain or offset of "${n}"`);
+	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw M(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
-async function Na(e, t) {
+async function Ka(e, t) {
 	let n = e.heldOut.filter((e) => !e).length;
-	return Pa(n, await Promise.all(J(e).map((r) => Fa(r, n, e, t))));
+	return qa(n, await Promise.all(J(e).map((r) => Ja(r, n, e, t))));
 }
-function Pa(e, t) {
+function qa(e, t) {
 	let n = t.reduce((e, { length: t }) => e + t, 0) / e, r = new Float32Array(e * n), i = 0;
 	for (let a of t) {
 		let t = a.length / e;
@@ -2375,41 +2451,41 @@ function Pa(e, t) {
 	}
 	return r;
 }
-async function Fa({ weights: e, count: t }, n, r, i) {
+async function Ja({ weights: e, count: t }, n, r, i) {
 	if (!e) return /* @__PURE__ */ new Float32Array();
-	if ("type" in e) return vi(e, r.views, i);
+	if ("type" in e) return Mi(e, r.views, i);
 	let { view: a, codec: o, where: s } = e;
-	return Ia(o.decode(new Uint8Array(await i(a)), s), n, t, s);
+	return Ya(o.decode(new Uint8Array(await i(a)), s), n, t, s);
 }
-function Ia({ cameras: e, components: t, values: n }, r, i, a) {
-	if (e === r && t === i) return yi(n, a);
-	throw N(a, `${e} x ${t} weights, and ${r} encoded cameras x ${i} textures`);
+function Ya({ cameras: e, components: t, values: n }, r, i, a) {
+	if (e === r && t === i) return Ni(n, a);
+	throw M(a, `${e} x ${t} weights, and ${r} encoded cameras x ${i} textures`);
 }
 function J(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
 }
-function La(e) {
+function Xa(e) {
 	return Math.max(0, ...J(e).map(({ count: e }) => e));
 }
-function Ra(e, t) {
+function Za(e, t) {
 	let n = [...t.slice(0, e.planes.length), ...J(e).map(({ grid: e }) => e)];
 	return [Math.max(...n.map(([e]) => e)), Math.max(...n.map(([, e]) => e))];
 }
-async function za(e, t) {
+async function Qa(e, t) {
 	if (!e.triangles) return /* @__PURE__ */ new Uint32Array();
-	let { where: n } = e.triangles, r = await Ba(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
+	let { where: n } = e.triangles, r = await $a(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
-		if (Math.max(t, a, o) >= i) throw N(n, `no encoded camera ${Math.max(t, a, o)}`);
-		if (t === a || a === o || o === t) throw N(n, "a triangle with one camera twice");
+		if (Math.max(t, a, o) >= i) throw M(n, `no encoded camera ${Math.max(t, a, o)}`);
+		if (t === a || a === o || o === t) throw M(n, "a triangle with one camera twice");
 	}
 	return r;
 }
-async function Ba(e, t, n) {
-	return "type" in e ? Uint32Array.from(await vi(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
+async function $a(e, t, n) {
+	return "type" in e ? Uint32Array.from(await Mi(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
 }
-function Va(e, t, n, r, i, a) {
-	let { right: o, up: s } = e, c = Ga(o, s), l = [
+function eo(e, t, n, r, i, a) {
+	let { right: o, up: s } = e, c = io(o, s), l = [
 		0,
 		0,
 		0
@@ -2437,8 +2513,8 @@ function Va(e, t, n, r, i, a) {
 		settings: e.settings,
 		scores: e.scores,
 		metresPerUnit: typeof u == "number" && u > 0 && u <= 1e30 ? u : null,
-		bytes: Ha(e, i),
-		size: Ra(e, n),
+		bytes: to(e, i),
+		size: Za(e, n),
 		planes: e.planes.map(({ channels: e, bases: t }, r) => ({
 			channels: e,
 			mean: n[r] ?? [1, 1],
@@ -2454,8 +2530,8 @@ function Va(e, t, n, r, i, a) {
 		facesPlane: Math.abs(Y(l, c)) > .7
 	};
 }
-function Ha(e, t) {
-	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(La(e)).fill(0);
+function to(e, t) {
+	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(Xa(e)).fill(0);
 	for (let { pictures: t } of J(e)) {
 		let e = 0;
 		for (let { view: n, textures: i } of t) {
@@ -2478,7 +2554,7 @@ function Ha(e, t) {
 		textures: s
 	};
 }
-function Ua(e, t) {
+function no(e, t) {
 	let { origin: n, extent: r } = e, i = [
 		t[0] - n[0],
 		t[1] - n[1],
@@ -2486,7 +2562,7 @@ function Ua(e, t) {
 	];
 	return [r[0] > 0 ? Y(i, e.right) / r[0] : 0, r[1] > 0 ? Y(i, e.up) / r[1] : 0];
 }
-function Wa(e, t) {
+function ro(e, t) {
 	let n = (n) => -(e[0][n] * t[0] + e[1][n] * t[1] + e[2][n] * t[2]);
 	return [
 		n(0),
@@ -2497,7 +2573,7 @@ function Wa(e, t) {
 function Y(e, t) {
 	return e[0] * t[0] + e[1] * t[1] + e[2] * t[2];
 }
-function Ga(e, t) {
+function io(e, t) {
 	return [
 		e[1] * t[2] - e[2] * t[1],
 		e[2] * t[0] - e[0] * t[2],
@@ -2505,7 +2581,7 @@ function Ga(e, t) {
 	];
 }
 // eigenfield-three/src/cameras.ts
-function Ka(e, t, n) {
+function ao(e, t, n) {
 	let { info: r } = e, i = r.cameras.filter((e, t) => !r.heldOut[t]), a = r.cameras[r.reference];
 	if (!a) throw RangeError(`no camera ${r.reference}`);
 	let { width: o, height: s } = a, c = [
@@ -2544,7 +2620,7 @@ function Ka(e, t, n) {
 	e.viewWeights(t, n, "delaunay").forEach((e, t) => {
 		let n = i[t];
 		if (!e || !n) return;
-		let r = qa(n, o, s);
+		let r = oo(n, o, s);
 		for (let t of [
 			0,
 			1,
@@ -2555,7 +2631,7 @@ function Ka(e, t, n) {
 			2
 		]) t < 2 && (c[t][i] += e * r[t][i]), l[t][i] += e * n.R[t][i];
 	});
-	let u = Ya(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Ja(t) * m[0], Ja(n) * m[1]], _ = [
+	let u = co(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [so(t) * m[0], so(n) * m[1]], _ = [
 		0,
 		1,
 		2
@@ -2572,7 +2648,7 @@ function Ka(e, t, n) {
 		offset: null
 	};
 }
-function qa({ K: e, width: t, height: n }, r, i) {
+function oo({ K: e, width: t, height: n }, r, i) {
 	let a = Math.max(r / t, i / n), [o, s] = [(r - a * t) / 2, (i - a * n) / 2];
 	return [
 		[
@@ -2592,16 +2668,16 @@ function qa({ K: e, width: t, height: n }, r, i) {
 		]
 	];
 }
-function Ja(e) {
+function so(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Ya(e) {
+function co(e) {
 	let t = e;
 	for (let e = 0; e < 50; e++) {
 		let e = [
-			Ga(t[1], t[2]),
-			Ga(t[2], t[0]),
-			Ga(t[0], t[1])
+			io(t[1], t[2]),
+			io(t[2], t[0]),
+			io(t[0], t[1])
 		], n = Y(t[0], e[0]);
 		if (!(n > 1e-12)) break;
 		let r = t.map((t, r) => t.map((t, i) => (t + e[r][i] / n) / 2)), i = Math.max(...r.flatMap((e, n) => e.map((e, r) => Math.abs(e - t[n][r]))));
@@ -2609,34 +2685,34 @@ function Ya(e) {
 	}
 	return t;
 }
-function Xa(e, t, n, r, i = 1) {
+function lo(e, t, n, r, i = 1) {
 	let a = n.width / n.height, o = i * Math.min(1, a / r), s = i * Math.min(1, r / a), c = {
 		left: (1 - o) / 2,
 		top: (1 - s) / 2,
 		width: o,
 		height: s
 	};
-	return Za(e, t, n), Qa(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
+	return uo(e, t, n), fo(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
 }
-function Za(e, t, n) {
+function uo(e, t, n) {
 	let { R: r, centre: i } = n, a = new x().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
-	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new j()), t.updateMatrixWorld(!0);
+	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new A()), t.updateMatrixWorld(!0);
 }
-function Qa(e, t, n, r) {
-	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = $a(e, n);
+function fo(e, t, n, r) {
+	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = po(e, n);
 	t.near = d, t.far = f, t.projectionMatrix.set(l * i, -l * a, -(2 * r.left - 1 + l * o), 0, 0, u * s, -(1 - 2 * r.top - u * c), 0, 0, 0, -(f + d) / (f - d), -2 * f * d / (f - d), 0, 0, -1, 0), t.projectionMatrixInverse.copy(t.projectionMatrix).invert();
 }
-function $a(e, t) {
+function po(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
-		center: new j(),
+		center: new A(),
 		radius: 1
-	}, o = r.getMaxScaleOnAxis(), s = i.distanceTo(new j(...t.centre)) * o, c = 1.01 * (s + a * o);
+	}, o = r.getMaxScaleOnAxis(), s = i.distanceTo(new A(...t.centre)) * o, c = 1.01 * (s + a * o);
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
 // eigenfield-three/src/exposure.ts
-function eo(e) {
+function mo(e) {
 	let [t, n] = [[
 		1,
 		1,
@@ -2656,46 +2732,46 @@ function eo(e) {
 	};
 }
 // eigenfield-three/src/memory.ts
-var to = 4 / 3, no = lo({
+var ho = 4 / 3, go = Co({
 	components: 4,
 	halves: !0
-}), ro = {
+}), _o = {
 	components: 4,
 	halves: !1
-}, io = {
+}, vo = {
 	components: 2,
 	halves: !1
-}, ao = {
+}, yo = {
 	components: 2,
 	halves: !0
-}, oo = 2 ** 20, so = 1 / 64, co = 34;
-function lo({ components: e, halves: t }) {
+}, bo = 2 ** 20, xo = 1 / 64, So = 34;
+function Co({ components: e, halves: t }) {
 	return (e > 2 ? 4 : e) * (t ? 2 : 1);
 }
-function uo() {
+function wo() {
 	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
-	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && fo(e) ? Math.min(t ?? 4, 6) * 128 * oo : Math.min(t ?? 8, 8) * 256 * oo;
+	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && To(e) ? Math.min(t ?? 4, 6) * 128 * bo : Math.min(t ?? 8, 8) * 256 * bo;
 }
-function fo(e) {
+function To(e) {
 	return (e?.maxTouchPoints ?? 0) > 1;
 }
 function X([e, t], n) {
 	return [Math.ceil(e / n), Math.ceil(t / n)];
 }
-function po(e, t) {
+function Eo(e, t) {
 	let [n, r] = X(e, t);
 	return n * r;
 }
-function mo(e) {
+function Do(e) {
 	return Math.ceil(e / 4);
 }
-function ho(e, t) {
-	return t * go(e);
+function Oo(e, t) {
+	return t * ko(e);
 }
-function go(e) {
+function ko(e) {
 	return Math.max(1, Math.ceil(e / 4));
 }
-function _o(e) {
+function Ao(e) {
 	let { atlas: t, means: n, bases: r } = e, i = [
 		t,
 		...n.map(({ size: e }) => e),
@@ -2703,7 +2779,7 @@ function _o(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-var vo = [{
+var jo = [{
 	meanDown: 1,
 	scaleDown: 1,
 	halves: !0
@@ -2726,14 +2802,14 @@ var vo = [{
 	scaleDown: t * e,
 	halves: !1
 })))];
-function yo(e, t) {
-	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => bo(e, t.meanDown) + e.geometry + xo(e, t, n), o = (n, r) => a(n, r) + wo(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = vo.filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
+function Mo(e, t) {
+	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => No(e, t.meanDown) + e.geometry + Po(e, t, n), o = (n, r) => a(n, r) + Lo(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = jo.filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
 	for (; !u && l > 0; l--) u = c.find((e) => o(e, l - 1));
-	u ??= vo.at(-1);
-	let d = To({
+	u ??= jo.at(-1);
+	let d = Ro({
 		...u,
 		usable: l
-	}, e), f = Eo(d, e, t);
+	}, e), f = zo(d, e, t);
 	return {
 		...u,
 		usable: l,
@@ -2742,58 +2818,58 @@ function yo(e, t) {
 		limitation: f
 	};
 }
-function bo(e, t) {
+function No(e, t) {
 	let n = e.means.map(({ size: e, channels: n, tenBits: r, opacity: i }) => {
-		let a = i ? no : 0;
-		return (lo({
+		let a = i ? go : 0;
+		return (Co({
 			components: n,
 			halves: r
-		}) * mo(n) + a) * po(e, t);
-	}), r = _o({
+		}) * Do(n) + a) * Eo(e, t);
+	}), r = Ao({
 		...e,
 		means: e.means.filter(({ opacity: e }) => !e)
 	}).map((n) => {
-		let r = n.join() === e.atlas.join() ? to : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
-		return no * po(n, t) * (r + +!!i);
+		let r = n.join() === e.atlas.join() ? ho : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
+		return go * Eo(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function xo({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
+function Po({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
 	return e.reduce((e, a) => {
 		let o = Math.min(i, a.count);
 		if (!o) return e;
-		let s = t ? go(o) * 129 * 129 * no : 0;
-		return e + lo({
+		let s = t ? ko(o) * 129 * 129 * go : 0;
+		return e + Co({
 			components: o,
 			halves: r && a.tenBits
-		}) * ho(o, a.channels) * po(a.size, n) + s;
+		}) * Oo(o, a.channels) * Eo(a.size, n) + s;
 	}, 0);
 }
-function So({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
-	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = Co([...a, ...o].map(({ size: e }) => e)), l = Math.floor(so * i / (lo(ro) * s)), u = [s, Math.min(c, Math.max(co, l))], d = [...n > 1 ? a.map((e) => X(e.size, n)) : [], ...r > 1 ? o.map((e) => X(e.size, r)) : []];
+function Fo({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
+	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = Io([...a, ...o].map(({ size: e }) => e)), l = Math.floor(xo * i / (Co(_o) * s)), u = [s, Math.min(c, Math.max(So, l))], d = [...n > 1 ? a.map((e) => X(e.size, n)) : [], ...r > 1 ? o.map((e) => X(e.size, r)) : []];
 	return {
 		picture: {
 			size: u,
-			format: ro
+			format: _o
 		},
 		codes: [...a, ...o].some(({ tenBits: e }) => e) ? {
 			size: u,
-			format: io
+			format: vo
 		} : null,
 		smaller: d.length ? {
-			size: Co(d),
-			format: ao
+			size: Io(d),
+			format: yo
 		} : null
 	};
 }
-function Co(e) {
+function Io(e) {
 	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
 }
-function wo(e, t, n) {
-	let r = Object.values(So(e, t, n)).map((e) => e ? lo(e.format) * po(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(..._o(e).map((e) => po(e, 1))) : 0;
+function Lo(e, t, n) {
+	let r = Object.values(Fo(e, t, n)).map((e) => e ? Co(e.format) * Eo(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(...Ao(e).map((e) => Eo(e, 1))) : 0;
 	return [...r, i].reduce((e, t) => e + t, 0);
 }
-function To({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
+function Ro({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 	let a = Math.max(0, ...i.bases.map(({ count: e }) => e)), o = [];
 	return e < a && o.push({
 		kind: "count",
@@ -2807,28 +2883,28 @@ function To({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 		percent: Math.round(100 / t)
 	}), o;
 }
-function Eo(e, t, n) {
+function zo(e, t, n) {
 	if (!e.length) return null;
 	let r = e.map((e) => e.kind === "count" ? `${e.part} of ${e.whole} eigen textures are drawn` : e.kind === "bits" ? "eigen textures have 8 bits" : `${e.kind === "mean" ? "the mean texture has" : "eigen textures have"} ${e.percent} % of ${e.kind === "mean" ? "its" : "their"} width and height`), i = {
 		meanDown: 1,
 		scaleDown: 1,
 		halves: !0
-	}, a = bo(t, 1) + xo(t, i, Infinity) + wo(t, i, n.memory) + t.geometry, o = a > n.memory ? `the scene needs ${Do(a)} MB of graphics memory and ${Do(n.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${Oo(r.join(", "))}: ${o}.`;
+	}, a = No(t, 1) + Po(t, i, Infinity) + Lo(t, i, n.memory) + t.geometry, o = a > n.memory ? `the scene needs ${Bo(a)} MB of graphics memory and ${Bo(n.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${Vo(r.join(", "))}: ${o}.`;
 }
-function Do(e) {
+function Bo(e) {
 	return (e / 1e6).toFixed(+(e < 1e7));
 }
-function Oo(e) {
+function Vo(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var ko = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\n#define REACH 2\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec2 beside;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nfloat codeOf(vec2 shift) { return shift.x + float(REACH) + float(2 * REACH + 1) * (shift.y + float(REACH)); }\nvec2 shiftOf(vec4 place) {\n  int code = int(place.w + 0.5) - 1;\n  return code < 0 ? vec2(0.0) : vec2(code % (2 * REACH + 1) - REACH, code / (2 * REACH + 1) - REACH);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec4 place = rayWeights || beside.x > 0.0 ? texelFetch(places, ivec2(gl_FragCoord.xy), 0) : vec4(0.0);\n  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);\n  own -= beside * shiftOf(place);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Ao = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", jo = 2, Mo = `
+var Ho = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\n#define REACH 2\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec2 beside;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nfloat codeOf(vec2 shift) { return shift.x + float(REACH) + float(2 * REACH + 1) * (shift.y + float(REACH)); }\nvec2 shiftOf(vec4 place) {\n  int code = int(place.w + 0.5) - 1;\n  return code < 0 ? vec2(0.0) : vec2(code % (2 * REACH + 1) - REACH, code / (2 * REACH + 1) - REACH);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec4 place = rayWeights || beside.x > 0.0 ? texelFetch(places, ivec2(gl_FragCoord.xy), 0) : vec4(0.0);\n  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);\n  own -= beside * shiftOf(place);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Uo = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", Wo = 2, Go = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${Ao}${ko}`, No = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", Po = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nflat out vec2 shift;\nvoid main() {\n  point = onPlane;\n  shift = shifts[gl_InstanceID];\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shift, 0.0, 1.0);\n}\n", Fo = `${Mo}
+${Uo}${Ho}`, Ko = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", qo = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nflat out vec2 shift;\nvoid main() {\n  point = onPlane;\n  shift = shifts[gl_InstanceID];\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shift, 0.0, 1.0);\n}\n", Jo = `${Go}
 in vec3 point;
 flat in vec2 shift;
 out vec4 place;
@@ -2836,14 +2912,14 @@ void main() {
   place = placeOf(point);
   place.w += codeOf(shift);
 }
-`, Io = "sumTextures", Lo = "finerValue", Ro = "finerOpacity";
-function zo(n, r, i) {
-	let o = new k({
+`, Yo = "sumTextures", Xo = "finerValue", Zo = "finerOpacity";
+function Qo(n, r, i) {
+	let o = new O({
 		glslVersion: h,
-		vertexShader: No,
-		fragmentShader: `${Mo}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
+		vertexShader: Ko,
+		fragmentShader: `${Go}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
 		uniforms: {
-			rectangle: { value: new ie(...r) },
+			rectangle: { value: new ae(...r) },
 			...i
 		},
 		side: u,
@@ -2873,12 +2949,12 @@ function zo(n, r, i) {
 		2,
 		1,
 		3
-	]), s.boundingSphere = new ee();
+	]), s.boundingSphere = new te();
 	let c = new S(s, o);
 	return c.frustumCulled = !1, c;
 }
-function Bo([e, t], n) {
-	return new ae(e, t, {
+function $o([e, t], n) {
+	return new oe(e, t, {
 		type: g,
 		depthBuffer: !1,
 		generateMipmaps: n,
@@ -2886,31 +2962,31 @@ function Bo([e, t], n) {
 		magFilter: n ? y : w
 	});
 }
-function Vo(e, t) {
-	let n = Ga(e.right, e.up), r = [
+function es(e, t) {
+	let n = io(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
 		t[2] - e.origin[2]
 	];
-	return [...Ua(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
+	return [...no(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
 }
-function Ho(t, n, r) {
+function ts(t, n, r) {
 	let { index: i } = t, a = t.getAttribute("position"), o = t.getAttribute("uv"), s = new Float32Array(3 * a.count), c = new Float32Array(2 * a.count);
-	for (let e = 0; e < a.count; e++) s.set(Vo(n, [
+	for (let e = 0; e < a.count; e++) s.set(es(n, [
 		a.getX(e),
 		a.getY(e),
 		a.getZ(e)
 	]), 3 * e), c.set([o.getX(e), o.getY(e)], 2 * e);
-	let l = Array.from({ length: 5 }, (e, t) => t - jo), d = l.flatMap((e) => l.map((t) => new re(t, e)));
+	let l = Array.from({ length: 5 }, (e, t) => t - Wo), d = l.flatMap((e) => l.map((t) => new ie(t, e)));
 	d.sort((e, t) => t.lengthSq() - e.lengthSq());
 	let f = new v();
-	f.setAttribute("position", new e(c, 2)), f.setAttribute("onPlane", new e(s, 3)), f.setIndex(i && new e(i.array, 1)), f.instanceCount = d.length, f.boundingSphere = new ee();
-	let p = new k({
+	f.setAttribute("position", new e(c, 2)), f.setAttribute("onPlane", new e(s, 3)), f.setIndex(i && new e(i.array, 1)), f.instanceCount = d.length, f.boundingSphere = new te();
+	let p = new O({
 		glslVersion: h,
-		vertexShader: Po.replace("SHIFTS", String(d.length)),
-		fragmentShader: Fo,
+		vertexShader: qo.replace("SHIFTS", String(d.length)),
+		fragmentShader: Jo,
 		uniforms: {
-			texel: { value: new re(2 / r.width, 2 / r.height) },
+			texel: { value: new ie(2 / r.width, 2 / r.height) },
 			shifts: { value: d }
 		},
 		side: u,
@@ -2919,7 +2995,7 @@ function Ho(t, n, r) {
 		depthWrite: !1
 	}), m = new S(f, p);
 	m.frustumCulled = !1;
-	let g = new A();
+	let g = new k();
 	return g.add(m), {
 		scene: g,
 		free: () => {
@@ -2927,19 +3003,19 @@ function Ho(t, n, r) {
 		}
 	};
 }
-var Uo = new i(0), Wo = new i();
-function Go(e, t, n) {
+var ns = new i(0), rs = new i();
+function is(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(Wo), e.setClearColor(Uo, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(Wo, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(rs), e.setClearColor(ns, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(rs, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/composer.ts
-var Ko = {
+var as = {
 	version: 0,
 	mean: !0,
 	opacity: 0,
@@ -2949,7 +3025,7 @@ var Ko = {
 	eye: null,
 	places: 0,
 	maps: null
-}, qo = class {
+}, os = class {
 	snaps;
 	surface;
 	plane;
@@ -2960,14 +3036,14 @@ var Ko = {
 	camera = new n();
 	constructor(e, t, n, r, i, a, o) {
 		this.snaps = i, this.surface = a, this.plane = o;
-		let [s, ...c] = _o({
+		let [s, ...c] = Ao({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), l = (e, n) => {
-			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => Xo(t, i ? X(e, r) : null)), o = new A();
+			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => ls(t, i ? X(e, r) : null)), o = new k();
 			return a.forEach(({ quad: e }, t) => o.add(Object.assign(e, { renderOrder: t }))), {
-				target: Bo(X(e, r), n),
+				target: $o(X(e, r), n),
 				scene: o,
 				steps: a,
 				places: null
@@ -2975,7 +3051,7 @@ var Ko = {
 		}, u = l(s ?? e, !0);
 		this.grids = c.map((e) => l(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = zo(Lo, [
+			let t = Qo(Xo, [
 				0,
 				0,
 				1,
@@ -2983,24 +3059,24 @@ var Ko = {
 			], { coarse: { value: e.texture } });
 			u.scene.add(Object.assign(t, { renderOrder: u.scene.children.length }));
 		}
-		this.grids.push(u), this.opacity = n && Jo(n, r);
+		this.grids.push(u), this.opacity = n && ss(n, r);
 	}
 	get texture() {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && $o(this.composed, n) || (this.composed = n, Go(e, t, () => {
+		this.composed && fs(this.composed, n) || (this.composed = n, is(e, t, () => {
 			n.opacity > this.opacityDrawn && this.drawOpacity(e, n.opacity);
 			for (let t of this.grids) {
 				(n.eye !== null && t.steps.some(({ part: e }) => e.basis) || this.snaps) && this.findPlaces(e, t, n.places);
-				for (let e of t.steps) Zo(e, t.places?.target.texture ?? null, n);
+				for (let e of t.steps) us(e, t.places?.target.texture ?? null, n);
 				this.draw(e, t.scene, t.target, this.opacityDrawn > 0 && t === this.grids.at(-1));
 			}
 		}));
 	}
 	dispose() {
-		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), Yo(n);
-		this.opacity?.target.dispose(), this.opacity && [this.opacity.sum, this.opacity.finer].forEach(Yo);
+		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), cs(n);
+		this.opacity?.target.dispose(), this.opacity && [this.opacity.sum, this.opacity.finer].forEach(cs);
 	}
 	drawOpacity(e, t) {
 		let [n, r] = [this.grids.at(-1), this.opacity];
@@ -3008,7 +3084,7 @@ var Ko = {
 	}
 	findPlaces(e, t, n) {
 		if (t.places?.version === n) return;
-		let r = t.places?.target ?? Bo([t.target.width, t.target.height], !1), { scene: i, free: a } = Ho(this.surface.geometry, this.plane, r);
+		let r = t.places?.target ?? $o([t.target.width, t.target.height], !1), { scene: i, free: a } = ts(this.surface.geometry, this.plane, r);
 		this.draw(e, i, r), a(), t.places = {
 			target: r,
 			version: n
@@ -3020,11 +3096,11 @@ var Ko = {
 		r && i.colorMask(!0, !0, !0, !1), e.clear(!0, !1, !1), r && i.colorMask(!0, !0, !0, !0), e.render(t, this.camera);
 	}
 };
-function Jo(e, t) {
-	let n = Bo(X(e.grid, t), !1), r = Xo(e, null);
-	for (let e of r) Zo(e, null, Ko);
-	let [i, a] = [new A(), new A()];
-	return i.add(...r.map(({ quad: e }) => e)), a.add(zo(Ro, [
+function ss(e, t) {
+	let n = $o(X(e.grid, t), !1), r = ls(e, null);
+	for (let e of r) us(e, null, as);
+	let [i, a] = [new k(), new k()];
+	return i.add(...r.map(({ quad: e }) => e)), a.add(Qo(Zo, [
 		0,
 		0,
 		1,
@@ -3035,17 +3111,17 @@ function Jo(e, t) {
 		finer: a
 	};
 }
-function Yo(e) {
+function cs(e) {
 	for (let { geometry: t, material: n } of e.children) t.dispose(), n.dispose();
 }
-function Xo(e, t) {
-	let [n, r, i, a] = e.rectangle, o = t && new re(1 / ((i - n) * t[0]), 1 / ((a - r) * t[1])), s = e.colours.length, [c, l] = [e.scale.length / (4 * s), Math.floor(64 / s)], u = [];
+function ls(e, t) {
+	let [n, r, i, a] = e.rectangle, o = t && new ie(1 / ((i - n) * t[0]), 1 / ((a - r) * t[1])), s = e.colours.length, [c, l] = [e.scale.length / (4 * s), Math.floor(64 / s)], u = [];
 	for (let t = 0; t < c; t += l) {
-		let n = Array.from({ length: 64 }, (t, n) => new j(...e.colours[n] ?? [
+		let n = Array.from({ length: 64 }, (t, n) => new A(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), r = e.basis ? 1 : 4, i = zo(Io, e.rectangle, {
+		])), r = e.basis ? 1 : 4, i = Qo(Yo, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(t * s / r) },
 			sharing: { value: r },
@@ -3058,8 +3134,8 @@ function Xo(e, t) {
 			weightMaps: { value: null },
 			firstGroup: { value: (e.basis?.group ?? 0) + t },
 			places: { value: null },
-			beside: { value: o ?? new re() },
-			eye: { value: new j() }
+			beside: { value: o ?? new ie() },
+			eye: { value: new A() }
 		});
 		u.push({
 			part: e,
@@ -3070,31 +3146,31 @@ function Xo(e, t) {
 	}
 	return u;
 }
-function Zo({ part: e, first: t, groups: n, quad: r }, i, a) {
+function us({ part: e, first: t, groups: n, quad: r }, i, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Qo(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => ds(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
 	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", i), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function Qo(e, t, n, r) {
+function ds(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function $o(e, t) {
+function fs(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
 // eigenfield-three/src/maps.ts
-function es(e, t, n, i, a) {
+function ps(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? go(t) : 0;
+		u += e, d += t ? ko(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -3110,10 +3186,10 @@ function es(e, t, n, i, a) {
 		}
 	}
 	let p = new o(f, 129, 129, Math.max(1, d));
-	return p.format = O, p.type = g, p.minFilter = p.magFilter = y, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
+	return p.format = D, p.type = g, p.minFilter = p.magFilter = y, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
 }
 // eigenfield-three/src/eigen-weights.ts
-var ts = class {
+var ms = class {
 	info;
 	counts;
 	omega;
@@ -3145,12 +3221,12 @@ var ts = class {
 		if (n >= 0) return Float64Array.from(this.omega.subarray(n * this.total, (n + 1) * this.total));
 		let r = this.info.cameras[e];
 		if (!r) throw RangeError(`no camera ${e}`);
-		return this.at(...Ua(this.info.viewPlane, r.centre), t);
+		return this.at(...no(this.info.viewPlane, r.centre), t);
 	}
 	maps(e, t) {
 		if (this.made?.mixing === e && this.made.usable === t) return this.made.texture;
 		this.dispose();
-		let n = es(this.views, e, this.omega, this.counts, t);
+		let n = ps(this.views, e, this.omega, this.counts, t);
 		return this.made = {
 			texture: n,
 			mixing: e,
@@ -3160,20 +3236,20 @@ var ts = class {
 	dispose() {
 		this.made?.texture.dispose();
 	}
-}, ns = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", rs = {
+}, hs = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", gs = {
 	bilinear: 0,
 	bicubic: 1
-}, is = {
+}, _s = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, as = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", os = as.replace("void main", "invariant gl_Position;\nvoid main"), ss = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", cs = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", ls = `${ss}
-${Ao}${ns}
+}, vs = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", ys = vs.replace("void main", "invariant gl_Position;\nvoid main"), bs = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", xs = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", Ss = `${bs}
+${Uo}${hs}
 uniform float shownGain;       // of the eigen texture around mid grey
 in vec2 surfaceUv;
 vec3 eigenColour(vec3 value) { return clamp(0.5 + shownGain * value, 0.0, 1.0); }
-`, us = `${ls}${cs}
+`, Cs = `${Ss}${xs}
 in vec3 surfacePlace;
 out vec4 fragment;
 void main() {
@@ -3183,7 +3259,7 @@ void main() {
   if (shown == 3) colour = errorColour(colour, surfacePlace);
   fragment = vec4(colour, 1.0);
 }
-`, ds = `${ls}
+`, ws = `${Ss}
 layout(location = 0) out vec4 fragment;
 layout(location = 1) out vec4 solid;
 vec3 threeBytes(float depth) {
@@ -3197,131 +3273,76 @@ void main() {
   float depth = (gl_FragCoord.z - gl_DepthRange.near) / gl_DepthRange.diff;
   solid = colour.a < 0.5 ? vec4(0.0) : vec4(threeBytes(depth), 1.0);
 }
-`, fs = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", ps = {
+`, Ts = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", Es = {
 	blending: a,
 	blendSrc: E,
-	blendDst: D
-}, ms = {
+	blendDst: ee
+}, Ds = {
 	depthWrite: !1,
 	stencilWrite: !0,
 	stencilFunc: d,
 	stencilZPass: _
 };
-function hs(e, t) {
+function Os(e, t) {
 	let n = {
 		composed: { value: null },
 		finest: { value: 1 },
-		exposureScale: { value: new j(1, 1, 1) },
-		exposureBias: { value: new j() },
-		shown: { value: is.picture },
+		exposureScale: { value: new A(1, 1, 1) },
+		exposureBias: { value: new A() },
+		shown: { value: _s.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new x() }
-	}, r = new k({
+	}, r = new O({
 		glslVersion: h,
-		vertexShader: t ? os : as,
-		fragmentShader: t ? ds : us,
+		vertexShader: t ? ys : vs,
+		fragmentShader: t ? ws : Cs,
 		uniforms: n,
-		defines: { BICUBIC: rs.bicubic },
+		defines: { BICUBIC: gs.bicubic },
 		side: e ? u : m,
 		...t ? {
-			...ps,
-			...ms
+			...Es,
+			...Ds
 		} : {}
 	});
 	return r.name = "eigen textures", r;
 }
-function gs(e) {
+function ks(e) {
 	let { side: t } = e;
-	return new k({
+	return new O({
 		name: "depth of sheets",
 		glslVersion: h,
-		vertexShader: os,
-		fragmentShader: fs,
+		vertexShader: ys,
+		fragmentShader: Ts,
 		colorWrite: !1,
 		side: t,
 		stencilWrite: !0,
-		stencilZPass: oe
+		stencilZPass: se
 	});
 }
-function _s(e, t, n) {
-	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !vs(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
+function As(e, t, n) {
+	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !js(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
 	u && (d.elements[13] = 1), e.toPhotograph.value.multiplyMatrices(d, l.multiply(c)), e.photograph.value = n;
 }
-function vs(e) {
+function js(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
-// eigenfield-three/src/film-codes.ts
-var ys = /* @__PURE__ */ new Set([
-	"I420P10",
-	"I422P10",
-	"I444P10"
-]), bs = /* @__PURE__ */ new Set([
-	"I420",
-	"I420A",
-	"I422",
-	"I444",
-	"NV12"
-]), xs = /* @__PURE__ */ new Set([
-	"RGBA",
-	"RGBX",
-	"BGRA",
-	"BGRX"
-]), Ss = 1, Cs = Uint16Array.from({ length: 256 }, (e, t) => Math.round(t * 1023 / 255)), ws = Uint16Array.from({ length: 256 }, (e, t) => Cs[16 + Math.round(t * 219 / 255)]), Ts = ws.map((e, t) => t === 0 ? 0 : t === 255 ? 1023 : e);
-async function Es(e, t, n = !1) {
-	let r = e.format ?? "", { width: i, height: a } = e.visibleRect ?? {
-		width: 0,
-		height: 0
-	};
-	if (!ys.has(r) && !bs.has(r) && !xs.has(r)) throw new M("unsupported", `This browser does not hand out its frames (${r || "no format"}).`, "");
-	let o = e.allocationSize(), s = t && t.length >= o ? t : new Uint8Array(o), [c] = await e.copyTo(s), { offset: l, stride: u } = c ?? {
-		offset: 0,
-		stride: 0
-	};
-	if (ys.has(r)) return {
-		data: s.subarray(l),
-		width: i,
-		height: a,
-		stride: u,
-		room: s
-	};
-	let d = xs.has(r), [f, p] = d ? [4, l + Ss] : [1, l], m = d && e.colorSpace?.fullRange === !1 ? n ? Ts : ws : Cs;
-	return Ds(s.subarray(p), u, f, [i, a], m);
-}
-function Ds(e, t, n, [r, i], a = Cs) {
-	let o = new Uint16Array(r * i);
-	for (let s = 0; s < i; s++) for (let i = 0; i < r; i++) o[s * r + i] = a[e[s * t + n * i]];
-	return {
-		data: new Uint8Array(o.buffer),
-		width: r,
-		height: i,
-		stride: 2 * r
-	};
-}
-function Os({ data: e, stride: t }, { size: [n, r], at: i }) {
-	return i.map(([i, a]) => ({
-		data: e.subarray(a * t + 2 * i),
-		width: n,
-		height: r,
-		stride: t
-	}));
-}
 // eigenfield-three/src/pieces.ts
-function ks(e) {
+function Ms(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
 // eigenfield-three/src/strength.ts
-var As = 128, js = .98;
-async function Ms(e, t, n, r) {
+var Ns = 128, Ps = .98;
+async function Fs(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = Ni(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(As, As).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = qi(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Ns, Ns).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	return u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, As, As);
-		let { data: u } = d.getImageData(0, 0, As, As);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, Ns, Ns);
+		let { data: u } = d.getImageData(0, 0, Ns, Ns);
 		(l ? [
 			0,
 			1,
@@ -3330,15 +3351,15 @@ async function Ms(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), ks(u), Ns(f);
+	}), Ms(u), Is(f);
 }
-function Ns(e) {
+function Is(e) {
 	e.sort((e, t) => e - t);
-	let t = e[Math.floor(js * e.length)] ?? 0;
+	let t = e[Math.floor(Ps * e.length)] ?? 0;
 	return t > 0 ? .45 / t : 1;
 }
 // eigenfield-three/src/film-textures.ts
-var Ps = class {
+var Ls = class {
 	scene;
 	films;
 	filling = null;
@@ -3364,17 +3385,18 @@ var Ps = class {
 	}
 	put(e) {
 		e.together(() => {
-			ua(this.scene).forEach(({ mean: t }, n) => e.putMean(n, {
+			Ca(this.scene).forEach(({ mean: t }, n) => e.putMean(n, {
 				pieces: this.piecesOf(t),
 				precision: null
 			})), J(this.scene).forEach(({ pictures: [t] }, n) => {
-				t && e.putTextures(n, 0, this.piecesOf(t), t);
+				let r = t ? this.piecesOf(t) : [];
+				t && r.length && e.putTextures(n, 0, r, t);
 			});
 		});
 	}
 	piecesOf({ part: e }) {
 		let t = e && this.films[e.film];
-		return t ? Os(t, e).map((e) => ({
+		return t ? Gt(t, e).map((e) => ({
 			picture: e,
 			row: 0,
 			rows: e.height
@@ -3382,69 +3404,69 @@ var Ps = class {
 	}
 	gainOf({ part: e, pieces: t, scale: n, zero: r }, i, a) {
 		let o = e && this.films[e.film];
-		return o ? Ns(Os(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
+		return o ? Is(Gt(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
 			let s = t * i + o, c = Math.max(...(a[o] ?? [0]).map(Math.abs)) * (n[s] ?? 0);
-			return Is(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
+			return zs(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
 		})) : 1;
 	}
-}, Fs = 8;
-function Is({ data: e, width: t, height: n, stride: r }) {
+}, Rs = 8;
+function zs({ data: e, width: t, height: n, stride: r }) {
 	let i = [];
-	for (let a = 0; a < n; a += Fs) for (let n = 0; n < t; n += Fs) {
+	for (let a = 0; a < n; a += Rs) for (let n = 0; n < t; n += Rs) {
 		let t = a * r + 2 * n;
 		i.push(e[t] + 256 * e[t + 1]);
 	}
 	return i;
 }
 // eigenfield-three/src/container.ts
-var Ls = 1179937895, Rs = 1313821514, zs = 5130562, Bs = 1280591429;
-async function Vs(e) {
+var Bs = 1179937895, Vs = 1313821514, Hs = 5130562, Us = 1280591429;
+async function Ws(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof M && t.code === "truncated" ? Ks(e.received === 0) : t;
+		throw t instanceof j && t.code === "truncated" ? Ys(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== Ls) throw Ks(!1);
+	if (new DataView(t).getUint32(0, !0) !== Bs) throw Ys(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
-	if (r !== 2) throw new M("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
-	if (i < 20) throw N("8", "a length of no file");
+	if (r !== 2) throw new j("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
+	if (i < 20) throw M("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== Rs) throw N("16", "it does not begin with JSON");
-	if (o > xe) throw N("12", `${o} bytes of JSON`);
-	if (20 + o > i) throw N("12", "a chunk longer than the file");
-	let s = Us(await e.read(20, 20 + o)), c = (t, n) => () => Hs(e, 20 + o, i, t, n);
+	if (a.getUint32(4, !0) !== Vs) throw M("16", "it does not begin with JSON");
+	if (o > Ce) throw M("12", `${o} bytes of JSON`);
+	if (20 + o > i) throw M("12", "a chunk longer than the file");
+	let s = Ks(await e.read(20, 20 + o)), c = (t, n) => () => Gs(e, 20 + o, i, t, n);
 	return {
 		length: i,
 		text: s,
-		json: Ws(s, "20"),
-		binary: c(zs, "binary chunk"),
-		groups: c(Bs, "chunk of groups")
+		json: qs(s, "20"),
+		binary: c(Hs, "binary chunk"),
+		groups: c(Us, "chunk of groups")
 	};
 }
-async function Hs(e, t, n, r, i) {
+async function Gs(e, t, n, r, i) {
 	let a = t;
 	for (let t = 1; t < 64 && a + 8 <= n; t++) {
 		let t = new DataView(await e.read(a, a + 8)), i = t.getUint32(0, !0);
-		if (a + 8 + i > n) throw N(String(a), "a chunk longer than the file");
+		if (a + 8 + i > n) throw M(String(a), "a chunk longer than the file");
 		if (t.getUint32(4, !0) === r) return a + 8;
 		a += 8 + i;
 	}
-	throw N(String(t), `no ${i}`);
+	throw M(String(t), `no ${i}`);
 }
-function Us(e) {
+function Ks(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
-		throw N("20", "its JSON is not UTF-8");
+		throw M("20", "its JSON is not UTF-8");
 	}
 }
-function Ws(e, t) {
-	if (Gs(e) > 64) throw N(t, "its JSON is nested too deep");
+function qs(e, t) {
+	if (Js(e) > 64) throw M(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
-		throw N(t, "its JSON cannot be read");
+		throw M(t, "its JSON cannot be read");
 	}
 }
-function Gs(e) {
+function Js(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3455,11 +3477,11 @@ function Gs(e) {
 	}
 	return n;
 }
-function Ks(e) {
-	return new M("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
+function Ys(e) {
+	return new j("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/groups.ts
-var qs = 3, Js = 4, Ys = class {
+var Xs = 3, Zs = 4, Qs = class {
 	scene;
 	timeline;
 	mesh;
@@ -3471,16 +3493,16 @@ var qs = 3, Js = 4, Ys = class {
 	open(e) {
 		let t = this.kept.get(e) ?? this.opened(e);
 		t.catch(() => this.kept.get(e) === t && this.kept.delete(e)), this.kept.delete(e), this.kept.set(e, t);
-		for (let [e] of this.kept) this.kept.size > qs && this.kept.delete(e);
+		for (let [e] of this.kept) this.kept.size > Xs && this.kept.delete(e);
 		return t;
 	}
 	async begin() {
-		let e = this.placeOf(0), t = async (t) => new Uint8Array(await this.read(e.offset, Math.min(t, e.length))), { head: n, at: r } = await ec(await t(Js + Qs(await t(Js), e)), e), i = [
+		let e = this.placeOf(0), t = async (t) => new Uint8Array(await this.read(e.offset, Math.min(t, e.length))), { head: n, at: r } = await rc(await t(Zs + tc(await t(Zs), e)), e), i = [
 			n.key("weights"),
 			n.key("mesh"),
 			n.key("motion"),
 			n.key("frames").at(0)
-		].reduce((e, { raw: t }) => e + $s(t), r);
+		].reduce((e, { raw: t }) => e + nc(t), r);
 		return this.build(0, await t(i), n, r, 1);
 	}
 	placeOf(e) {
@@ -3490,12 +3512,12 @@ var qs = 3, Js = 4, Ys = class {
 	}
 	async opened(e) {
 		let t = this.placeOf(e), n = new Uint8Array(await this.read(t.offset, t.length));
-		await Zs(n, t);
-		let { head: r, at: i } = await ec(n, t);
+		await ec(n, t);
+		let { head: r, at: i } = await rc(n, t);
 		return this.build(e, n, r, i, t.frames);
 	}
 	build(e, t, n, r, i) {
-		let a = this.placeOf(e), o = tc(t, r, a), s = this.weightsOf(n, o), c = this.meshOf(n, o), l = nc(n, o, c, a), { first: u, frames: d } = a, f = rc(n, a, this.timeline.films.length, o, i);
+		let a = this.placeOf(e), o = ic(t, r, a), s = this.weightsOf(n, o), c = this.meshOf(n, o), l = ac(n, o, c, a), { first: u, frames: d } = a, f = oc(n, a, this.timeline.films.length, o, i);
 		return {
 			index: e,
 			first: u,
@@ -3512,56 +3534,56 @@ var qs = 3, Js = 4, Ys = class {
 		if (!n.exists) return this.mesh;
 		if (this.scene.sheets) throw n.wrong("a mesh of its own, in a clip with sheets");
 		let r = W["mesh-2"].decode(t(n), n.where);
-		if (!r.indices.length) throw N(n.where, "a mesh without faces");
+		if (!r.indices.length) throw M(n.where, "a mesh without faces");
 		return r;
 	}
 	weightsOf(e, t) {
-		let n = this.scene.heldOut.filter((e) => !e).length, r = ac(e.key("weights"), this.scene.planes.length);
-		return Pa(n, this.scene.planes.flatMap(({ bases: e }, i) => {
-			let a = r[i] && ac(r[i], e.length);
+		let n = this.scene.heldOut.filter((e) => !e).length, r = cc(e.key("weights"), this.scene.planes.length);
+		return qa(n, this.scene.planes.flatMap(({ bases: e }, i) => {
+			let a = r[i] && cc(r[i], e.length);
 			return e.map(({ count: e }, r) => {
 				let i = a[r];
-				return Ia(W["weights-1"].decode(t(i), i.where), n, e, i.where);
+				return Ya(W["weights-1"].decode(t(i), i.where), n, e, i.where);
 			});
 		}));
 	}
 	scalesOf(e) {
 		let { planes: t } = this.scene;
 		return {
-			means: ac(e.key("means"), t.length).map((e, n) => ic(e, t[n].mean)),
-			bases: ac(e.key("bases"), t.length).flatMap((e, n) => {
+			means: cc(e.key("means"), t.length).map((e, n) => sc(e, t[n].mean)),
+			bases: cc(e.key("bases"), t.length).flatMap((e, n) => {
 				let { bases: r } = t[n];
-				return ac(e, r.length).map((e, t) => ic(e, r[t].pictures[0]));
+				return cc(e, r.length).map((e, t) => sc(e, r[t].pictures[0]));
 			})
 		};
 	}
 };
-function Xs(e, { means: t, bases: n }) {
+function $s(e, { means: t, bases: n }) {
 	e.planes.forEach(({ mean: e }, n) => Object.assign(e, t[n])), J(e).forEach(({ pictures: [e] }, t) => e && Object.assign(e, n[t]));
 }
-async function Zs(e, { sha256: t, where: n }) {
+async function ec(e, { sha256: t, where: n }) {
 	let r = globalThis.crypto?.subtle;
 	if (!r) return;
 	let i = new Uint8Array(await r.digest("SHA-256", e));
-	if (Array.from(i, (e) => e.toString(16).padStart(2, "0")).join("") !== t) throw N(n, "other bytes than its SHA-256 says");
+	if (Array.from(i, (e) => e.toString(16).padStart(2, "0")).join("") !== t) throw M(n, "other bytes than its SHA-256 says");
 }
-function Qs(e, { where: t }) {
-	if (e.length < Js) throw N(t, "no head");
+function tc(e, { where: t }) {
+	if (e.length < Zs) throw M(t, "no head");
 	return new DataView(e.buffer).getUint32(0, !0);
 }
-function $s(e) {
-	return typeof e == "number" ? e : Array.isArray(e) ? e.reduce((e, t) => e + $s(t), 0) : 0;
+function nc(e) {
+	return typeof e == "number" ? e : Array.isArray(e) ? e.reduce((e, t) => e + nc(t), 0) : 0;
 }
-async function ec(e, { where: t }) {
-	let n = Js + Qs(e, { where: t });
-	if (n > e.length) throw N(t, "a head longer than the group");
-	let r = await ye(e.subarray(Js, n), "deflate-raw", Ve, t);
+async function rc(e, { where: t }) {
+	let n = Zs + tc(e, { where: t });
+	if (n > e.length) throw M(t, "a head longer than the group");
+	let r = await xe(e.subarray(Zs, n), "deflate-raw", Ve, t);
 	return {
-		head: new G(Ws(new TextDecoder("utf-8").decode(r), t), t),
+		head: new G(qs(new TextDecoder("utf-8").decode(r), t), t),
 		at: n
 	};
 }
-function tc(e, t, n) {
+function ic(e, t, n) {
 	let r = t;
 	return (t) => {
 		let i = r;
@@ -3569,29 +3591,29 @@ function tc(e, t, n) {
 		return e.subarray(i, r);
 	};
 }
-function nc(e, t, n, { frames: r }) {
+function ac(e, t, n, { frames: r }) {
 	let i = e.key("motion");
 	if (!i.exists) return null;
 	let a = W["motion-1"].decode(t(i), n, i.where);
 	if (a.frames !== r) throw i.wrong(`${a.frames} frames of ${r}`);
 	return a;
 }
-function rc(e, t, n, r, i) {
-	return ac(e.key("frames"), t.frames).slice(0, i).map((e) => ac(e, n).map((e) => r(e)));
+function oc(e, t, n, r, i) {
+	return cc(e.key("frames"), t.frames).slice(0, i).map((e) => cc(e, n).map((e) => r(e)));
 }
-function ic(e, { pieces: t, textures: n }) {
+function sc(e, { pieces: t, textures: n }) {
 	let r = e;
 	return {
-		scale: Fi(r.key("scale"), t, n),
-		zero: Fi(r.key("zero"), t, n)
+		scale: Yi(r.key("scale"), t, n),
+		zero: Yi(r.key("zero"), t, n)
 	};
 }
-function ac(e, t) {
+function cc(e, t) {
 	let n = e.items(t);
 	if (n.length !== t) throw e.wrong(`${t} entries are needed`);
 	return n;
 }
-var oc = 3, sc = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", cc = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform int first; // row of the picture with which the texture begins\nout vec4 stored;\nvoid main() {\n  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));\n}\n", lc = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", uc = `#version 300 es
+var lc = 3, uc = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", dc = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform int first; // row of the picture with which the texture begins\nout vec4 stored;\nvoid main() {\n  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));\n}\n", fc = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", pc = `#version 300 es
 precision highp float;
 precision highp int;
 uniform highp sampler2D picture; // values, and whether they are of a chart
@@ -3601,7 +3623,7 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec2 own = texelFetch(picture, at, 0).rg;
   vec2 sum = vec2(own.r * own.g, own.g);
-  for (int far = 1; far <= ${oc} && sum.y == 0.0; far++) {
+  for (int far = 1; far <= ${lc} && sum.y == 0.0; far++) {
     for (int y = -far; y <= far; y++) {
       for (int x = -far; x <= far; x++) {
         vec2 near = texelFetch(picture, clamp(at + ivec2(x, y), ivec2(0), size - 1), 0).rg;
@@ -3611,9 +3633,9 @@ void main() {
   }
   stored = vec4(sum.y > 0.0 ? sum.x / sum.y : own.r);
 }
-`, dc = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
+`, mc = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
 // eigenfield-three/src/parts.ts
-function fc(e, t, n) {
+function hc(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -3623,7 +3645,7 @@ function fc(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = hc(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = vc(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -3651,7 +3673,7 @@ function fc(e, t, n) {
 						a + e[1] / i[1]
 					],
 					colours: f,
-					...gc(l, u, h, n.halves && Mi(l)),
+					...yc(l, u, h, n.halves && Ki(l)),
 					basis: {
 						ready: m,
 						column: o,
@@ -3659,17 +3681,17 @@ function fc(e, t, n) {
 					}
 				});
 			}
-			o += p, s += h ? go(h) : 0;
+			o += p, s += h ? ko(h) : 0;
 		}
 	}), r;
 }
-function pc(e, t, n, r) {
-	fc(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
+function gc(e, t, n, r) {
+	hc(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
 		scale: t,
 		bias: n
 	}));
 }
-function mc({ planes: e, sheets: t }, { means: n, needs: r }) {
+function _c({ planes: e, sheets: t }, { means: n, needs: r }) {
 	let i = n[e.length], a = r.means[e.length]?.size;
 	return !t || !i || !a ? null : {
 		stored: i,
@@ -3685,12 +3707,12 @@ function mc({ planes: e, sheets: t }, { means: n, needs: r }) {
 			0,
 			0
 		]],
-		...hc(t.opacity),
+		...vc(t.opacity),
 		basis: null
 	};
 }
-function hc({ mean: e, channels: t, precision: n }) {
-	let { scale: r, zero: i } = e, a = n ? 4 : 1 / Pi(e, Mi([e])), o = {
+function vc({ mean: e, channels: t, precision: n }) {
+	let { scale: r, zero: i } = e, a = n ? 4 : 1 / Ji(e, Ki([e])), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
 	};
@@ -3700,8 +3722,8 @@ function hc({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function gc(e, t, n, r) {
-	let i = e.flatMap((e) => Array(e.textures).fill(Pi(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * go(n), c = {
+function yc(e, t, n, r) {
+	let i = e.flatMap((e) => Array(e.textures).fill(Ji(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * ko(n), c = {
 		scale: new Float32Array(s),
 		bias: new Float32Array(s)
 	};
@@ -3712,7 +3734,7 @@ function gc(e, t, n, r) {
 	return c;
 }
 // eigenfield-three/src/player.ts
-var _c = .25, vc = class extends f {
+var bc = .25, xc = 100, Sc = 2, Cc = .25, wc = .1, Tc = class extends f {
 	timeline;
 	user;
 	first;
@@ -3731,14 +3753,21 @@ var _c = .25, vc = class extends f {
 	waiters = [];
 	asked = null;
 	disposed = !1;
+	lacking = [];
+	watched = {
+		seconds: 0,
+		due: 0,
+		short: 0
+	};
 	constructor(e, t, n, r = null) {
 		super(), this.timeline = e, this.user = n, this.rate = e.rate, this.frames = e.frames, this.first = e.first, this.duration = e.frames / e.rate, this.shown = {
 			position: 0,
 			number: 0
 		}, this.clock = 0, this.ring = t({
 			ready: () => this.wake(),
-			failed: (e, t) => this.fail(e, t)
-		}), this.sound = r && r(() => void this.dispatchEvent({ type: "change" }));
+			failed: (e, t) => this.fail(e, t),
+			thinned: () => this.thin()
+		}), this.sound = r && r(() => void this.dispatchEvent({ type: "change" })), globalThis.document?.addEventListener("visibilitychange", this.hide);
 	}
 	get playing() {
 		return this.plays;
@@ -3747,7 +3776,7 @@ var _c = .25, vc = class extends f {
 		return this.shown.number;
 	}
 	get time() {
-		return $i(this.timeline, this.shown.number);
+		return pa(this.timeline, this.shown.number);
 	}
 	get sought() {
 		return (this.following ?? this.goal ?? this.shown.position) % this.frames;
@@ -3756,7 +3785,7 @@ var _c = .25, vc = class extends f {
 		return this.goal !== null;
 	}
 	get group() {
-		let { groups: e } = this.timeline, t = ea(this.timeline, this.shown.number);
+		let { groups: e } = this.timeline, t = q(this.timeline, this.shown.number);
 		return {
 			index: t,
 			count: e.length,
@@ -3769,6 +3798,9 @@ var _c = .25, vc = class extends f {
 	get open() {
 		return this.ring.open;
 	}
+	get fallbacks() {
+		return this.lacking;
+	}
 	get loop() {
 		return this.ring.loop;
 	}
@@ -3780,35 +3812,35 @@ var _c = .25, vc = class extends f {
 	}
 	set speed(e) {
 		if (!(e > 0 && e < Infinity)) throw RangeError("A speed is above 0.");
-		this.pace = e, this.dispatchEvent({ type: "change" });
+		this.pace = e, this.watch(), this.dispatchEvent({ type: "change" });
 	}
 	play() {
-		this.plays || this.disposed || (this.plays = !0, this.last = null, this.ring.retry(), !this.loop && (this.following ?? this.goal ?? this.shown.position) >= this.end && this.toFrame(0), this.dispatchEvent({ type: "change" }), this.wake());
+		this.plays || this.disposed || (this.plays = !0, this.last = null, this.watch(), this.ring.retry(), !this.loop && (this.following ?? this.goal ?? this.shown.position) >= this.end && this.toFrame(0), this.dispatchEvent({ type: "change" }), this.wake());
 	}
 	pause() {
-		this.plays && (this.plays = !1, this.clock = this.shown.position, this.sound?.rest(), this.dispatchEvent({ type: "change" }));
+		this.plays && (this.plays = !1, this.clock = this.shown.position, this.sound?.rest(), this.ring.plain && this.begin(this.shown.position), this.dispatchEvent({ type: "change" }));
 	}
 	seek(e) {
-		return this.toFrame(Qi(this.timeline, e));
+		return this.toFrame(fa(this.timeline, e));
 	}
 	toFrame(e) {
 		return this.toPosition(this.lap + Math.min(Math.max(Math.round(e), 0), this.frames - 1));
 	}
 	step(e) {
 		this.pause();
-		let t = (this.following ?? this.goal ?? this.shown.position) + Math.round(e);
+		let t = this.ring.stepped(this.following ?? this.goal ?? this.shown.position, Math.round(e));
 		return this.loop ? this.toPosition(t < 0 ? t + this.frames : t) : this.toPosition(Math.min(Math.max(t, this.lap), this.end));
 	}
 	update(e = performance.now()) {
 		if (this.disposed) return;
-		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, _c);
+		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, bc);
 		if (this.last = this.plays && this.goal === null ? e : null, this.goal === null && !this.plays) return;
-		this.goal === null ? (this.clock = this.advanced(t), this.sound?.follow(this.first + this.clock % this.frames / this.rate, this.pace)) : this.sound?.rest();
+		this.goal === null ? (this.advance(t), this.sound?.follow(this.first + this.clock % this.frames / this.rate, this.pace)) : this.sound?.rest();
 		let n = this.ring.take(this.goal ?? Math.floor(this.clock));
 		n && this.show(n), this.goal === null && !this.loop && this.clock >= this.end && this.ring.isOver(this.end) && this.pause();
 	}
 	dispose() {
-		this.disposed = !0, this.plays = !1, this.ring.dispose(), this.sound?.dispose(), this.settle();
+		this.disposed = !0, this.plays = !1, globalThis.document?.removeEventListener("visibilitychange", this.hide), this.ring.dispose(), this.sound?.dispose(), this.settle();
 	}
 	get lap() {
 		return this.shown.position - this.shown.number;
@@ -3816,17 +3848,30 @@ var _c = .25, vc = class extends f {
 	get end() {
 		return this.lap + this.frames - 1;
 	}
-	advanced(e) {
-		let t = this.clock + e * this.pace * this.rate, n = this.loop ? this.ring.reach : Math.min(this.ring.reach, this.end);
-		return Math.max(this.clock, Math.min(t, n));
+	advance(e) {
+		let [t, n] = [this.clock, e * this.pace * this.rate], r = this.loop ? this.ring.reach : Math.min(this.ring.reach, this.end);
+		if (this.clock = Math.max(t, Math.min(t + n, r)), e > wc) return;
+		let { watched: i } = this;
+		i.seconds += e, i.due += n, this.ring.busy && (i.short += n - (this.clock - t)), i.seconds < Sc || (i.short > Cc * i.due && this.ring.leaveOut(), this.watch());
 	}
+	watch() {
+		this.watched = {
+			seconds: 0,
+			due: 0,
+			short: 0
+		};
+	}
+	hide = () => {
+		document.hidden && this.sound?.rest();
+	};
 	toPosition(e) {
 		let t = new Promise((e) => void this.waiters.push(e));
 		return this.goal === null ? this.begin(e) : this.following = e, t;
 	}
 	begin(e) {
-		if (this.following = null, e === this.shown.position) return this.goal = null, this.clock = e, this.settle();
-		if (this.goal = this.ring.seek(e) ? e : null, this.goal === null) return this.settle();
+		let t = this.ring.standIn(e);
+		if (this.following = null, this.watch(), t === this.shown.position && this.ring.follows(t)) return this.goal = null, this.clock = t, this.settle();
+		if (this.goal = this.ring.seek(t) ? t : null, this.preview(), this.goal === null) return this.settle();
 		this.dispatchEvent({ type: "change" }), this.wake();
 	}
 	show(e) {
@@ -3834,7 +3879,18 @@ var _c = .25, vc = class extends f {
 		this.shown = {
 			position: t,
 			number: n
-		}, this.user.show(e), t === this.goal && (this.goal = null, this.clock = t, this.following === null ? this.settle() : this.begin(this.following)), this.dispatchEvent({ type: "frame" });
+		}, this.user.show(e), this.note(e), this.goal !== null && t !== this.goal && this.following === null ? this.preview() : this.goal !== null && (this.goal = null, this.clock = t, this.following === null ? this.settle() : this.begin(this.following)), this.dispatchEvent({ type: "frame" });
+	}
+	preview() {
+		this.ring.previewsFrom = this.goal === null ? Infinity : performance.now() + xc;
+	}
+	note({ films: e }) {
+		let t = [];
+		this.ring.sparse && t.push("keys"), e.some((e) => e?.grown) && t.push("bits"), e.includes(null) && t.push("textures"), t.join() !== this.lacking.join() && (this.lacking = t, this.dispatchEvent({ type: "change" }));
+	}
+	thin() {
+		let e = this.following ?? this.goal;
+		this.lacking = ["keys"], e !== null && this.begin(e), this.dispatchEvent({ type: "change" }), this.wake();
 	}
 	settle() {
 		for (let e of this.waiters.splice(0)) e();
@@ -3848,51 +3904,51 @@ var _c = .25, vc = class extends f {
 	fail(e, t) {
 		if (this.disposed) return;
 		this.user.failed(e), t === null && this.pause();
-		let n = this.goal !== null && ea(this.timeline, this.goal % this.frames);
-		n === !1 || t !== null && n !== t || (this.goal = this.following = null, this.settle());
+		let n = this.goal !== null && q(this.timeline, this.goal % this.frames);
+		n === !1 || t !== null && n !== t || (this.goal !== null && (this.clock = this.goal), this.goal = this.following = null, this.settle());
 	}
-}, yc = 65535;
-function bc(e, t) {
+}, Ec = 65535;
+function Dc(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
-	if (!i) throw new M("damaged", "The proxy mesh has no triangles; make or download the file again.");
-	if (r.count !== n.count) throw N(t.uv.where, `${r.count} for ${n.count} vertices`);
+	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
+	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
 	for (let e = 0; e < n.count; e++) {
-		if (!(Math.max(Math.abs(n.getX(e)), Math.abs(n.getY(e)), Math.abs(n.getZ(e))) <= 1e30)) throw N(t.position.where, `vertex ${e} is not finite`);
-		if (!(Math.max(Math.abs(r.getX(e)), Math.abs(r.getY(e))) <= 1e30)) throw N(t.uv.where, `texture coordinates of vertex ${e} are not finite`);
+		if (!(Math.max(Math.abs(n.getX(e)), Math.abs(n.getY(e)), Math.abs(n.getZ(e))) <= 1e30)) throw M(t.position.where, `vertex ${e} is not finite`);
+		if (!(Math.max(Math.abs(r.getX(e)), Math.abs(r.getY(e))) <= 1e30)) throw M(t.uv.where, `texture coordinates of vertex ${e} are not finite`);
 	}
-	for (let e of i.array) if (e >= n.count) throw N(t.indices.where, `no vertex ${e}`);
+	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
 }
-async function xc({ view: e, codec: t, where: n }, r) {
+async function Oc({ view: e, codec: t, where: n }, r) {
 	let i = t.decode(new Uint8Array(await r(e)), n);
-	if (!i.indices.length) throw N(n, "a mesh without faces");
+	if (!i.indices.length) throw M(n, "a mesh without faces");
 	return i;
 }
-function Sc({ positions: n, uv: r, indices: i }) {
+function kc({ positions: n, uv: r, indices: i }) {
 	let a = new t();
 	a.setAttribute("position", new e(n.slice(), 3)), a.setAttribute("uv", new e(r, 2));
-	let o = n.length / 3 <= yc;
+	let o = n.length / 3 <= Ec;
 	return a.setIndex(new e(o ? Uint16Array.from(i) : i, 1)), a;
 }
-function Cc(e) {
+function Ac(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/footprint.ts
-var wc = 256;
-function Tc(e, t, n) {
+var jc = 256;
+function Mc(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / wc)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / jc)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Ec(t, i.getX(e), i.getY(e), i.getZ(e))), l = Dc(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Nc(t, i.getX(e), i.getY(e), i.getZ(e))), l = Pc(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = Dc(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = Pc(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -3902,7 +3958,7 @@ function Tc(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function Ec({ K: e, R: t, t: n }, r, i, a) {
+function Nc({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -3910,12 +3966,12 @@ function Ec({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function Dc(e) {
+function Pc(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/sheet-stack.ts
-var Oc = "sheets", kc = 16, Ac = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", jc = `${ss}${cs}
+var Fc = "sheets", Ic = 16, Lc = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Rc = `${bs}${xs}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -3940,9 +3996,9 @@ void main() {
   gl_FragDepth = depth;
   fragment = colour;
 }
-`, Mc = new ie(), Nc = class {
+`, zc = new ae(), Bc = class {
 	material;
-	scene = new A();
+	scene = new k();
 	camera = new n();
 	sheets = new S();
 	depth;
@@ -3950,16 +4006,16 @@ void main() {
 	everywhere = new t();
 	target = null;
 	constructor(t) {
-		this.material = t, this.depth = gs(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
+		this.material = t, this.depth = ks(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
 			let { materialIndex: o = 0 } = a, s = this.sheets.material.length / 2, c = s - 1 - (o >> 1);
 			e.getContext().depthRange(c / s, (c + 1) / s);
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
 		let { shown: n, photograph: r, toPhotograph: i } = t.uniforms;
-		this.screen = new k({
-			name: Oc,
+		this.screen = new O({
+			name: Fc,
 			glslVersion: h,
-			vertexShader: Ac,
-			fragmentShader: jc,
+			vertexShader: Lc,
+			fragmentShader: Rc,
 			uniforms: {
 				shown: n,
 				photograph: r,
@@ -3968,12 +4024,12 @@ void main() {
 				solid: { value: null },
 				nearest: { value: null },
 				slices: { value: 1 },
-				corner: { value: new re() },
-				size: { value: new re() },
+				corner: { value: new ie() },
+				size: { value: new ie() },
 				toPlace: { value: new x() }
 			},
 			transparent: !0,
-			...ps
+			...Es
 		});
 		let a = new Float32Array([
 			-1,
@@ -3989,7 +4045,7 @@ void main() {
 		this.everywhere.setAttribute("position", new e(a, 3));
 	}
 	get bytes() {
-		return this.target ? kc * this.target.width * this.target.height : 0;
+		return this.target ? Ic * this.target.width * this.target.height : 0;
 	}
 	setGeometry(e, t) {
 		e.clearGroups();
@@ -4007,7 +4063,7 @@ void main() {
 	attach(e, t) {
 		for (let t of [e.material].flat()) t.visible = !1;
 		let n = new S(this.everywhere, this.screen);
-		n.name = Oc, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
+		n.name = Fc, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
 			t(n, i), this.draw(n, i, e);
 		}, e.add(n);
 	}
@@ -4018,21 +4074,21 @@ void main() {
 		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
 	}
 	draw(e, t, n) {
-		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Mc);
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(zc);
 		if (!a || !o) return;
-		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Pc(a, o));
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Vc(a, o));
 		let { target: s } = this;
-		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), Go(e, t, () => {
+		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), is(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
 		}), e.getContext().depthRange(0, 1);
 		let { uniforms: c } = this.screen;
 		this.set("sheets", s.textures[0]), this.set("solid", s.textures[1]), this.set("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
 	}
 };
-function Pc(e, t) {
-	let n = new l(e, t, ne);
+function Vc(e, t) {
+	let n = new l(e, t, re);
 	n.format = c;
-	let r = new ae(e, t, {
+	let r = new oe(e, t, {
 		count: 2,
 		type: g,
 		stencilBuffer: !0,
@@ -4040,10 +4096,10 @@ function Pc(e, t) {
 		minFilter: w,
 		magFilter: w
 	}), [, i] = r.textures;
-	return i && (i.type = te), r;
+	return i && (i.type = ne), r;
 }
 // eigenfield-three/src/surface.ts
-var Fc = class {
+var Hc = class {
 	meshes;
 	faces;
 	reference;
@@ -4058,7 +4114,7 @@ var Fc = class {
 		if (!i) throw Error("a field needs a mesh");
 		this.mesh = i;
 		let a = [i.material].flat().some((e) => e.side !== m);
-		this.material = hs(a, t !== null), this.stack = t && new Nc(this.material);
+		this.material = Os(a, t !== null), this.stack = t && new Bc(this.material);
 		for (let t of e) {
 			let e = (e, n) => r(e, n, t);
 			this.stack ? this.stack.attach(t, e) : (t.material = this.material, t.onBeforeRender = (t, n, r) => e(t, r));
@@ -4076,7 +4132,7 @@ var Fc = class {
 		if (n !== e) {
 			let { index: r, attributes: i } = e;
 			if (!r || !i.position || !i.uv) throw TypeError("A surface needs position, uv and an index.");
-			this.stack && t && Hi({
+			this.stack && t && na({
 				faces: t,
 				where: "the geometry"
 			}, e), n.dispose();
@@ -4085,52 +4141,52 @@ var Fc = class {
 		e.boundingBox = e.boundingSphere = null, this.faces = t, this.version += 1, this.show(t);
 	}
 	show(e) {
-		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? Tc(this.geometry, this.reference, [1, 1]) : 0;
+		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? Mc(this.geometry, this.reference, [1, 1]) : 0;
 	}
 	dispose() {
 		this.stack?.dispose(), this.material.dispose(), this.geometry.dispose();
 	}
 };
 // eigenfield-three/src/gpu.ts
-function Ic(e) {
+function Uc(e) {
 	let t = e.getContext();
-	if (!(t instanceof WebGL2RenderingContext)) throw new M("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
+	if (!(t instanceof WebGL2RenderingContext)) throw new j("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
 	if ((t.getExtension("EXT_color_buffer_float") ?? t.getExtension("EXT_color_buffer_half_float")) || t.isContextLost()) return t;
-	throw new M("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
+	throw new j("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
 }
-function Lc(e, t) {
+function Wc(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function Rc(e, { components: t, halves: n }) {
+function Gc(e, { components: t, halves: n }) {
 	return t > 2 ? n ? e.RGBA16F : e.RGBA8 : t > 1 ? n ? e.RG16F : e.RG8 : n ? e.R16F : e.R8;
 }
-function zc(e, [t, n], r, i, a) {
-	return Hc(e, e.TEXTURE_2D_ARRAY, () => {
-		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, Rc(e, a), t, n, r);
+function Kc(e, [t, n], r, i, a) {
+	return Yc(e, e.TEXTURE_2D_ARRAY, () => {
+		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, Gc(e, a), t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function Bc(e, t, n, r) {
+function qc(e, t, n, r) {
 	let { width: i, height: a } = n, o = r > 2 ? e.RGBA : r > 1 ? e.RG : e.RED;
-	Uc(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
+	Xc(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
 }
-function Vc(e, [t, n], r) {
-	return Hc(e, e.TEXTURE_2D, () => {
-		e.texStorage2D(e.TEXTURE_2D, 1, Rc(e, r), t, n);
+function Jc(e, [t, n], r) {
+	return Yc(e, e.TEXTURE_2D, () => {
+		e.texStorage2D(e.TEXTURE_2D, 1, Gc(e, r), t, n);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D, t, e.NEAREST);
 	});
 }
-function Hc(e, t, n) {
+function Yc(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return Uc(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return Xc(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function Uc(e, t, n, r) {
+function Xc(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -4144,7 +4200,7 @@ function Uc(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-function Wc(e, t, n) {
+function Zc(e, t, n) {
 	let r = e.createProgram();
 	for (let [i, a] of [[e.VERTEX_SHADER, t], [e.FRAGMENT_SHADER, n]]) {
 		let t = e.createShader(i);
@@ -4152,7 +4208,7 @@ function Wc(e, t, n) {
 	}
 	return e.linkProgram(r), r;
 }
-function Gc(e, t, n, r) {
+function Qc(e, t, n, r) {
 	if (!n) {
 		r();
 		return;
@@ -4160,9 +4216,9 @@ function Gc(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), Uc(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), Xc(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function Kc(e, t) {
+function $c(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -4177,13 +4233,13 @@ function Kc(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r && e.isProgram(r) ? r : null), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/charts.ts
-function qc(e, t) {
-	let n = Wc(e, ...dc), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
+function el(e, t) {
+	let n = Zc(e, ...mc), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
 		let { index: o } = t, s = t.getAttribute("uv"), c = Float32Array.from({ length: 2 * (o?.count ?? 0) }, (e, t) => {
 			let n = o?.getX(t >> 1) ?? 0;
 			return t % 2 ? s.getY(n) : s.getX(n);
 		}), [l, u] = [e.createVertexArray(), e.createBuffer()], d = e.getParameter(e.ARRAY_BUFFER_BINDING);
-		Kc(e, () => {
+		$c(e, () => {
 			e.useProgram(n), e.bindVertexArray(l), e.bindBuffer(e.ARRAY_BUFFER, u), e.bufferData(e.ARRAY_BUFFER, c, e.STREAM_DRAW);
 			let t = e.getAttribLocation(n, "uv");
 			e.enableVertexAttribArray(t), e.vertexAttribPointer(t, 2, e.FLOAT, !1, 0, 0), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, a, 0), e.viewport(0, 0, ...i), e.colorMask(!0, !0, !0, !0), e.drawArrays(e.TRIANGLES, 0, c.length / 2);
@@ -4194,7 +4250,7 @@ function qc(e, t) {
 			let { geometry: r } = t;
 			if (i?.grid.join() !== n.join() || i.geometry !== r) {
 				e.deleteTexture(i?.texture ?? null);
-				let t = Vc(e, n, {
+				let t = Jc(e, n, {
 					components: 1,
 					halves: !1
 				});
@@ -4212,7 +4268,7 @@ function qc(e, t) {
 	};
 }
 // eigenfield-three/src/packing.ts
-var Jc = [
+var tl = [
 	"precisions",
 	"covered",
 	"factors",
@@ -4223,14 +4279,14 @@ var Jc = [
 	"nodes",
 	"zero"
 ];
-function Yc(e, t, n, r) {
+function nl(e, t, n, r) {
 	let [i, a, o] = [
-		Wc(e, sc, cc),
-		Wc(e, sc, lc),
-		Wc(e, sc, uc)
-	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && qc(e, r), u = !1, d = (t) => Object.fromEntries(Jc.map((n) => [n, e.getUniformLocation(t, n)])), [f, p] = [d(i), d(a)], m = (t, n, r, i, a, o, s) => {
+		Zc(e, uc, dc),
+		Zc(e, uc, fc),
+		Zc(e, uc, pc)
+	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && el(e, r), u = !1, d = (t) => Object.fromEntries(tl.map((n) => [n, e.getUniformLocation(t, n)])), [f, p] = [d(i), d(a)], m = (t, n, r, i, a, o, s) => {
 		let { picture: c, rows: l } = n, { size: u, corner: d, unit: f, codes: p } = i;
-		Xc(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
+		rl(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
 			0,
 			1,
 			2,
@@ -4241,34 +4297,34 @@ function Yc(e, t, n, r) {
 	}, g = (t, { layer: n, component: r }) => {
 		h(t, n), e.colorMask(r === 0, r === 1, r === 2, r === 3);
 	}, _ = (r, s, d, _, v, y) => {
-		let { picture: b, row: x, rows: S } = r, [C, w] = v.size, T = C < b.width || w < S ? t.smaller : null, E = Math.max(1, Math.floor((T ? n - 2 : n) * w / S)), D = u && s === t.codes, O = (T && l?.covered(v.grid)) ?? null;
-		Gc(e, 0, D ? null : s, () => {
+		let { picture: b, row: x, rows: S } = r, [C, w] = v.size, T = C < b.width || w < S ? t.smaller : null, E = Math.max(1, Math.floor((T ? n - 2 : n) * w / S)), ee = u && s === t.codes, D = (T && l?.covered(v.grid)) ?? null;
+		Qc(e, 0, ee ? null : s, () => {
 			for (let t = 0; t < w; t += E) {
 				let n = Math.min(E, w - t), o = Math.floor(t * S / w), s = Math.ceil((t + n) * S / w);
-				Xc(b) ? Qc(e, b, x + o, s - o) : Zc(e, b, x + o, s - o);
+				rl(b) ? al(e, b, x + o, s - o) : il(e, b, x + o, s - o);
 				let l = () => {
 					let s = T || y ? p : f;
 					e.useProgram(T || y ? a : i), e.bindVertexArray(c), e.uniform1i(s.precisions, +!!y), e.uniform1i(s.covered, T ? 2 : 0), e.uniform2i(s.nodes, y?.precision.width ?? 0, y?.precision.height ?? 0), e.uniform1f(s.zero, y?.zero ?? 0), T ? (h(T, null), e.colorMask(!0, !0, !0, !0)) : g(d, _), m(s, r, _.channel, v, o, t, n);
 				};
-				Gc(e, 2, O, () => {
-					D ? l() : Kc(e, l);
+				Qc(e, 2, D, () => {
+					ee ? l() : $c(e, l);
 				});
 			}
-		}), T && Gc(e, 0, T, () => Kc(e, () => {
+		}), T && Qc(e, 0, T, () => $c(e, () => {
 			e.useProgram(o), e.bindVertexArray(c), e.uniform2i(e.getUniformLocation(o, "size"), C, w), g(d, _), e.viewport(0, 0, C, w), e.drawArrays(e.TRIANGLES, 0, 3);
 		}));
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let s = Xc(n.picture) ? t.codes : t.picture;
+			let s = rl(n.picture) ? t.codes : t.picture;
 			if (!s) return;
 			let c = () => i.forEach((e) => _(n, s, r, e, a, o));
-			o ? Gc(e, 1, t.precision, () => {
-				Zc(e, o.precision, 0, o.precision.height), c();
+			o ? Qc(e, 1, t.precision, () => {
+				il(e, o.precision, 0, o.precision.height), c();
 			}) : c();
 		},
 		together(n) {
-			Gc(e, 0, t.codes, () => Kc(e, () => {
+			Qc(e, 0, t.codes, () => $c(e, () => {
 				u = !0;
 				try {
 					n();
@@ -4288,17 +4344,17 @@ function Yc(e, t, n, r) {
 		}
 	};
 }
-function Xc(e) {
+function rl(e) {
 	return "data" in e;
 }
-function Zc(e, t, n, r) {
+function il(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function Qc(e, { data: t, width: n, stride: r }, i, a) {
+function al(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
 // eigenfield-three/src/textures.ts
-var $c = class {
+var ol = class {
 	parts;
 	source;
 	surface;
@@ -4324,16 +4380,16 @@ var $c = class {
 		let { scene: i, info: a, meanSizes: o } = e, s = i.planes.flatMap(({ channels: e, bases: t }) => t.map((t) => ({
 			...t,
 			channels: e,
-			tenBits: Mi(t.pictures)
+			tenBits: Ki(t.pictures)
 		})));
 		this.layout = s;
-		let c = ua(i).map(({ channels: e, mean: t }, n) => {
+		let c = Ca(i).map(({ channels: e, mean: t }, n) => {
 			let r = n === i.planes.length;
 			return {
 				size: o[n] ?? [1, 1],
 				channels: e,
 				pieces: t.pieces,
-				tenBits: Mi([t]),
+				tenBits: Ki([t]),
 				opacity: r
 			};
 		});
@@ -4342,7 +4398,7 @@ var $c = class {
 			means: c,
 			bases: s,
 			rays: a.facesPlane,
-			geometry: el(n.geometry)
+			geometry: sl(n.geometry)
 		}, this.means = c.map(() => new p()), this.bases = s.map(() => new p()), this.ready = s.map(({ count: e }) => Array(e).fill(!1)), this.stillVersions = c.map(() => 0);
 	}
 	get hasMeans() {
@@ -4356,7 +4412,7 @@ var $c = class {
 		return Math.min(t, ...e);
 	}
 	get bytes() {
-		return this.plan ? this.plan.bytes - this.needs.geometry + el(this.surface.geometry) : 0;
+		return this.plan ? this.plan.bytes - this.needs.geometry + sl(this.surface.geometry) : 0;
 	}
 	get attached() {
 		return this.renderer !== null || this.disposed;
@@ -4386,7 +4442,7 @@ var $c = class {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		let n = Ic(e);
+		let n = Uc(e);
 		if (n.isContextLost()) return;
 		let { packer: r, plan: i } = this.makeRoom(n);
 		this.plan = i, this.packer = r, this.onPlan(i), await this.source.fill(this.filling(n, i, t)), t.aborted || this.onComplete();
@@ -4419,12 +4475,12 @@ var $c = class {
 			this.layout[t]
 		];
 		if (!(c instanceof WebGLTexture) || !l || !u) return;
-		let { size: d, grid: f, corner: p, channels: m, tenBits: h } = u, g = Pi(i, s && h), _ = {
+		let { size: d, grid: f, corner: p, channels: m, tenBits: h } = u, g = Ji(i, s && h), _ = {
 			size: X(d, o),
 			grid: f,
 			corner: p,
 			unit: g,
-			codes: 255 * Ni(i)
+			codes: 255 * qi(i)
 		};
 		for (let e = n; e < Math.min(n + i.textures, a); e++) {
 			let t = r.slice((e - n) * i.pieces, (e - n + 1) * i.pieces), a = m * Math.floor(e / 4);
@@ -4436,20 +4492,20 @@ var $c = class {
 		this.version += 1;
 	}
 	putMean(e, t, n, { pieces: r, precision: i }) {
-		let [a, o] = [this.means[n]?.sourceTexture, ua(this.parts.scene)[n]], { size: s, tenBits: c } = this.needs.means[n] ?? {};
+		let [a, o] = [this.means[n]?.sourceTexture, Ca(this.parts.scene)[n]], { size: s, tenBits: c } = this.needs.means[n] ?? {};
 		if (!(a instanceof WebGLTexture) || !o || !s) return;
 		this.stillVersions[n] = this.version += 1;
 		let { mean: l, channels: u } = o, d = X(s, t.meanDown), [f] = r;
 		if (f && r.length === 1 && "close" in f.picture && !c && d.join() === s.join()) {
-			Bc(e, a, f.picture, u);
+			qc(e, a, f.picture, u);
 			return;
 		}
 		let p = {
 			size: d,
 			grid: s,
 			corner: [0, 0],
-			unit: Pi(l, c === !0),
-			codes: 255 * Ni(l)
+			unit: Ji(l, c === !0),
+			codes: 255 * qi(l)
 		};
 		this.put(r, a, u, p, (e) => ({
 			layer: Math.floor(e / 4),
@@ -4475,25 +4531,25 @@ var $c = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs;
-		this.needs.geometry = el(this.surface.geometry);
+		this.needs.geometry = sl(this.surface.geometry);
 		let r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
-		for (let i = this.options.memory ?? uo();; i /= 2) {
-			let a = yo(this.needs, Lc(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => zc(e, X(t, o), mo(n), !1, {
+		for (let i = this.options.memory ?? wo();; i /= 2) {
+			let a = Mo(this.needs, Wc(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => Kc(e, X(t, o), Do(n), !1, {
 				components: n,
 				halves: r
 			})), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return zc(e, a ? X(t, s) : [1, 1], a ? ho(a, n) : 1, u, {
+				return Kc(e, a ? X(t, s) : [1, 1], a ? Oo(a, n) : 1, u, {
 					components: Math.max(1, a),
 					halves: l && i
 				});
-			})], f = So(this.needs, a, i), [p, m, h] = [
+			})], f = Fo(this.needs, a, i), [p, m, h] = [
 				f.picture,
 				f.codes,
 				f.smaller
-			].map((t) => t ? Vc(e, t.size, t.format) : null), g = Vc(e, Co(r), ro);
+			].map((t) => t ? Jc(e, t.size, t.format) : null), g = Jc(e, Io(r), _o);
 			if (p && g && (m || !f.codes) && (h || !f.smaller) && !d.includes(null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = d[t] ?? null), {
-				packer: Yc(e, {
+				packer: nl(e, {
 					picture: p,
 					codes: m ?? null,
 					precision: g,
@@ -4508,15 +4564,15 @@ var $c = class {
 				h,
 				g
 			]) e.deleteTexture(t ?? null);
-			if (!c) throw new M("unsupported", "The graphics memory is full; close other pages and try again.");
+			if (!c) throw new j("unsupported", "The graphics memory is full; close other pages and try again.");
 		}
 	}
 };
-function el({ attributes: e, index: t }) {
+function sl({ attributes: e, index: t }) {
 	return Object.values(e).reduce((e, t) => e + t.array.byteLength, 0) + (t?.array.byteLength ?? 0);
 }
 // eigenfield-three/src/field.ts
-var tl = 1.5, nl = .001, rl = class extends f {
+var cl = 1.5, ll = .001, ul = class extends f {
 	parts;
 	source;
 	mesh;
@@ -4540,6 +4596,7 @@ var tl = 1.5, nl = .001, rl = class extends f {
 	textures;
 	weights;
 	group;
+	plain = !1;
 	moved;
 	summed = {
 		parts: [],
@@ -4552,7 +4609,7 @@ var tl = 1.5, nl = .001, rl = class extends f {
 	constructor(e, t, n = {}) {
 		super(), this.parts = e, this.source = t;
 		let { scene: r, info: i } = e, a = r.sheets?.faces ?? null;
-		this.surface = new Fc(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = La(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip && this.shape(e.clip.group, 0, e.clip.mesh, !1), this.textures = new $c(e, t, this.surface, n), this.complete = new Promise((e, t) => {
+		this.surface = new Hc(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = Xa(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip && this.shape(e.clip.group, 0, e.clip.mesh, !1), this.textures = new ol(e, t, this.surface, n), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0), this.listen(), n.renderer && this.textures.attach(n.renderer);
 	}
@@ -4596,44 +4653,44 @@ var tl = 1.5, nl = .001, rl = class extends f {
 		this.textures.onPlan = (e) => {
 			let { scene: t } = this.parts;
 			this.freeComposers(), this.summed = {
-				parts: fc(t, this.textures, e),
-				opacity: mc(t, this.textures)
+				parts: hc(t, this.textures, e),
+				opacity: _c(t, this.textures)
 			}, e.limitation && queueMicrotask(() => this.dispatchEvent({ type: "limited" }));
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return tl * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
+		return cl * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
 	}
 	weightsOf(e) {
 		let { scene: t, info: n, weights: r } = this.parts;
-		return new ts(n, J(t).map(({ count: e }) => e), e, r);
+		return new ms(n, J(t).map(({ count: e }) => e), e, r);
 	}
 	makePlayer({ timeline: e, ring: t, sound: n }) {
-		return new vc(e, t, {
+		return new Tc(e, t, {
 			show: (e) => this.showFrame(e),
 			failed: (e) => this.dispatchEvent({
 				type: "error",
-				error: ue(e)
+				error: de(e)
 			})
 		}, n);
 	}
 	showFrame({ number: e, group: t, films: n }) {
-		this.group && this.shape(t, e - t.first, this.group.mesh, this.group.motion !== null), t !== this.group && this.enter(t), this.source instanceof Ps && this.source.show(n);
+		this.group && this.shape(t, e - t.first, this.group.mesh, this.group.motion !== null), t !== this.group && this.enter(t), this.plain = n.includes(null), this.source instanceof Ls && this.source.show(n);
 	}
 	shape({ mesh: e, motion: t }, n, r, i) {
 		if (this.surface.geometry !== this.moved || e === r && !t && !i) return;
-		let a = e === r ? this.moved : Sc(e), o = a.getAttribute("position");
+		let a = e === r ? this.moved : kc(e), o = a.getAttribute("position");
 		t ? t.place(n, o.array) : o.copyArray(e.positions), o.needsUpdate = !0, this.moved = a, this.surface.setGeometry(a);
 	}
 	enter(e) {
 		let { scene: t } = this.parts, { plan: n } = this.textures;
-		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), Xs(t, e), n && pc(this.summed.parts, t, this.textures, n);
+		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), $s(t, e), n && gc(this.summed.parts, t, this.textures, n);
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = ol(t, n), [i, a] = Ua(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
+		let r = pl(t, n), [i, a] = no(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
 		this.setView(), this.setExposure(o, [i, a]);
-		let u = rs[this.filter];
+		let u = gs[this.filter];
 		l.defines.BICUBIC !== u && (l.defines.BICUBIC = u, l.needsUpdate = !0), l.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
@@ -4642,7 +4699,7 @@ var tl = 1.5, nl = .001, rl = class extends f {
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
 		if (!s) {
 			let { parts: e, opacity: t } = this.summed;
-			s = new qo(i, e, t, o, this.coarser > 1, this.surface, a), this.composers.set(o, s);
+			s = new os(i, e, t, o, this.coarser > 1, this.surface, a), this.composers.set(o, s);
 		}
 		s.compose(e, t, n);
 		let { composed: c, finest: l } = this.surface.material.uniforms;
@@ -4653,15 +4710,15 @@ var tl = 1.5, nl = .001, rl = class extends f {
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.surface.material.uniforms.shown.value, r = n === is.eigen ? this.shownEigen : null;
+		let n = this.surface.material.uniforms.shown.value, r = n === _s.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			opacity: this.textures.opacityVersion,
 			only: r,
-			count: n === is.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === _s.mean || this.plain ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && Vo(this.info.viewPlane, t),
+			eye: t && es(this.info.viewPlane, t),
 			places: t || this.coarser > 1 ? this.surface.version : 0,
 			maps: t && this.weights.maps(this.mixing, this.usable)
 		};
@@ -4669,7 +4726,7 @@ var tl = 1.5, nl = .001, rl = class extends f {
 	setExposure(e, t) {
 		let { cameras: n, heldOut: r, mixedColours: i, viewPlane: a } = this.info, o = this.exposure ?? (i || this.showsErrors ? e : null), s = o === null ? void 0 : n[o], c = [[s, 1]];
 		if (i && (o === null || r[o])) {
-			let e = s ? Ua(a, s.centre) : t, { camera: n, weight: r } = this.parts.weights.at(...e, this.mixing);
+			let e = s ? no(a, s.centre) : t, { camera: n, weight: r } = this.parts.weights.at(...e, this.mixing);
 			c = [
 				0,
 				1,
@@ -4677,7 +4734,7 @@ var tl = 1.5, nl = .001, rl = class extends f {
 				3
 			].map((e) => [this.encoded[n[e] ?? 0], r[e] ?? 0]);
 		}
-		let { scale: l, bias: u } = eo(c), { exposureScale: d, exposureBias: f } = this.surface.material.uniforms;
+		let { scale: l, bias: u } = mo(c), { exposureScale: d, exposureBias: f } = this.surface.material.uniforms;
 		d.value.fromArray(l), f.value.fromArray(u);
 	}
 	get showsErrors() {
@@ -4685,9 +4742,9 @@ var tl = 1.5, nl = .001, rl = class extends f {
 	}
 	setView() {
 		let { uniforms: e } = this.surface.material, t = this.showsErrors, n = this.view === "error" && !t ? "picture" : this.view, r = this.shownEigen;
-		e.shown.value = is[n === "eigen" && r >= this.loaded ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
+		e.shown.value = _s[n === "eigen" && (this.plain || r >= this.loaded) ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
 		let i = t && this.info.cameras[this.camera ?? 0];
-		i && this.photograph && _s(e, i, this.photograph);
+		i && this.photograph && As(e, i, this.photograph);
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -4700,29 +4757,29 @@ var tl = 1.5, nl = .001, rl = class extends f {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= nl * Math.max(...r);
+		return Math.abs(i) <= ll * Math.max(...r);
 	}
 	fail(e) {
-		if (sl(e)) return;
-		let t = ue(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
+		if (ml(e)) return;
+		let t = de(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
 		this.dispatchEvent({
 			type: "error",
-			error: new M(t.code, r, t.where)
+			error: new j(t.code, r, t.where)
 		});
 	}
-}, il = new x(), al = new j();
-function ol(e, t) {
-	return al.setFromMatrixPosition(e.matrixWorld).applyMatrix4(il.copy(t.matrixWorld).invert()), [
-		al.x,
-		al.y,
-		al.z
+}, dl = new x(), fl = new A();
+function pl(e, t) {
+	return fl.setFromMatrixPosition(e.matrixWorld).applyMatrix4(dl.copy(t.matrixWorld).invert()), [
+		fl.x,
+		fl.y,
+		fl.z
 	];
 }
-function sl(e) {
+function ml(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var cl = class {
+var hl = class {
 	received = 0;
 	onPush = () => void 0;
 	chunks = [];
@@ -4754,7 +4811,7 @@ var cl = class {
 	}
 	settle() {
 		let e = [];
-		for (let t of this.waiters) t.to <= this.received ? t.resolve(this.copy(t.from, t.to)) : this.broken ? t.reject(this.broken.reason) : this.ended ? t.reject(ce(this.received, t.to)) : e.push(t);
+		for (let t of this.waiters) t.to <= this.received ? t.resolve(this.copy(t.from, t.to)) : this.broken ? t.reject(this.broken.reason) : this.ended ? t.reject(le(this.received, t.to)) : e.push(t);
 		this.waiters = e;
 	}
 	copy(e, t) {
@@ -4766,17 +4823,73 @@ var cl = class {
 		}
 		return n.buffer;
 	}
-}, ll = 8, ul = 2 / 3, dl = /* @__PURE__ */ new Set([
+}, gl = {
+	mimeType: "video/AV1",
+	bits: 10
+};
+async function _l(e, t, n) {
+	let r = {
+		view: -1,
+		codec: gl,
+		textures: 1,
+		pieces: 1,
+		where: n
+	}, i = await ci(ve(e.slice().buffer, n), r, t), a = i[0].picture;
+	if ("data" in a) return a;
+	let o = new OffscreenCanvas(...t).getContext("2d");
+	return o.drawImage(a, 0, 0), Ms(i), Wt(o.getImageData(0, 0, ...t).data, 4 * t[0], 4, t);
+}
+var vl = class {
+	size;
+	where;
+	user;
+	decoding = /* @__PURE__ */ new Set();
+	turn = 0;
+	constructor(e, t, n) {
+		this.size = e, this.where = t, this.user = n;
+	}
+	open = 0;
+	get busy() {
+		return this.decoding.size > 0;
+	}
+	get ready() {
+		return this.decoding.size === 0;
+	}
+	start() {
+		return Promise.resolve();
+	}
+	decode(e, t, n) {
+		if (!n) return;
+		let { turn: r } = this, i = _l(e, this.size, this.where).then((e) => r === this.turn ? this.user.take(t, () => Promise.resolve(e)) : void 0).catch((e) => {
+			r === this.turn && this.user.failed(e);
+		}).finally(() => {
+			this.decoding.delete(i), this.user.closed();
+		});
+		this.decoding.add(i);
+	}
+	async flush() {
+		await Promise.all(this.decoding);
+	}
+	reset() {
+		this.turn += 1;
+	}
+	dispose() {
+		this.reset();
+	}
+}, yl = 8, bl = 2, xl = 2 / 3, Sl = /* @__PURE__ */ new Set([
 	"damaged",
 	"truncated",
 	"network"
-]), fl = class {
+]), Cl = class {
 	timeline;
 	groups;
 	user;
 	loop = !0;
 	late = 0;
+	previewsFrom = Infinity;
 	decoders;
+	keysAlone = null;
+	meansAlone = !1;
 	slots = /* @__PURE__ */ new Map();
 	skipped = /* @__PURE__ */ new Set();
 	rooms;
@@ -4786,51 +4899,68 @@ var cl = class {
 	next = 0;
 	given = null;
 	fed = 0;
+	tried = /* @__PURE__ */ new Set();
 	broken = /* @__PURE__ */ new Set();
 	newest = -1;
 	turn = 0;
 	feeding = !1;
 	hopeless = !1;
 	constructor(e, t, n) {
-		this.timeline = e, this.groups = t, this.user = n, this.rooms = e.films.map(() => []), this.decoders = e.films.map(({ codec: e, size: t, where: n }, r) => e.decode(t, n, {
-			take: (e, t) => this.receive(r, e, t),
-			closed: () => this.feed(),
-			failed: (e) => this.fail(e),
-			lost: () => this.rest()
-		}));
+		this.timeline = e, this.groups = t, this.user = n, this.rooms = e.films.map(() => []), this.decoders = this.makeDecoders();
 	}
 	get open() {
 		return this.decoders.reduce((e, t) => e + t.open, 0);
 	}
 	get reach() {
-		return Math.max(this.newest, this.from) + ll / 2;
+		return Math.max(this.newestEnd, this.from) + yl / 2;
+	}
+	get busy() {
+		return this.decoders.some(({ busy: e }) => e);
+	}
+	get sparse() {
+		return this.keysAlone !== null;
+	}
+	get plain() {
+		return this.meansAlone;
+	}
+	follows(e) {
+		return !this.meansAlone && this.from <= e + 1;
+	}
+	leaveOut() {
+		this.meansAlone || this.keysAlone || this.timeline.films.every(({ detail: e }) => !e) || (this.meansAlone = !0, this.decoders.forEach((e, t) => this.needs(t) || e.reset()), this.user.ready(), this.feed());
 	}
 	isOver(e) {
-		return this.newest >= e && ![...this.slots.keys()].some((t) => t <= e);
+		return this.newestEnd >= e && ![...this.slots.keys()].some((t) => t <= e);
+	}
+	standIn(e) {
+		return this.keysAlone ? this.startOf(e) : e;
+	}
+	stepped(e, t) {
+		if (!this.keysAlone) return e + t;
+		let { groups: n, frames: r } = this.timeline, i = q(this.timeline, this.numberOf(e)) + t, a = Math.floor(i / n.length);
+		return e - this.numberOf(e) + a * r + n[i - a * n.length].first;
 	}
 	seek(e) {
-		let t = ea(this.timeline, this.numberOf(e));
-		if (this.broken.has(t)) return !1;
-		let n = e - this.numberOf(e) + (this.timeline.groups[t]?.first ?? 0), r = this.slots.has(e) && ![...this.skipped].some((t) => t > e);
-		(this.given === null || this.next <= n || e < this.next && !r) && (this.stop(), this.next = n), this.wanted = this.from = e;
+		if (this.broken.has(q(this.timeline, this.numberOf(e)))) return !1;
+		let t = this.startOf(e), n = e >= this.from && this.slots.has(e) && ![...this.skipped].some((t) => t > e);
+		(this.meansAlone || this.given === null || this.next <= t || e < this.next && !n) && (this.meansAlone = !1, this.stop(), this.next = t), this.wanted = this.from = e;
 		for (let [t, n] of this.slots) t < e && this.forget(t, n);
 		return this.feed(), !0;
 	}
 	retry() {
-		this.hopeless = !1, this.next === Infinity && this.seek(this.from);
+		this.hopeless && this.keysAlone && (this.keysAlone = null, this.decoders = this.makeDecoders()), this.hopeless = !1, this.next === Infinity && this.seek(this.from);
 	}
 	take(e) {
-		this.next === Infinity && !this.hopeless && this.seek(this.from), this.wanted = e;
-		let t = [...this.slots.keys()].filter((t) => t <= e && !this.slots.get(t)?.films.includes(null)), n = Math.max(...t), r = this.slots.get(n);
+		this.next === Infinity && !this.hopeless && !this.seek(this.from) && this.pass(q(this.timeline, this.numberOf(this.from)), this.from), this.wanted = e;
+		let t = [...this.slots].filter(([t, { films: n }]) => t <= e && this.isWhole(n)), n = Math.max(...t.map(([e]) => e)), r = this.slots.get(n);
 		if (!r) return this.feed(), null;
-		for (let [e, t] of this.slots) e >= n || (this.late += 1, this.forget(e, t));
+		for (let [e, t] of this.slots) e >= n || (e >= this.from && (this.late += 1), this.forget(e, t));
 		this.slots.delete(n);
 		for (let e of this.skipped) e < n && this.skipped.delete(e);
-		return this.reuse(this.shown?.films ?? []), this.from = n + 1, this.shown = {
+		return this.reuse(this.shown?.films ?? []), this.from = Math.max(this.from, n + 1), this.shown = {
 			position: n,
 			number: this.numberOf(n),
-			group: r.group,
-			films: r.films
+			...r
 		}, this.feed(), this.shown;
 	}
 	feed() {
@@ -4850,9 +4980,36 @@ var cl = class {
 	numberOf(e) {
 		return e % this.timeline.frames;
 	}
+	startOf(e) {
+		let t = this.numberOf(e);
+		return e - t + this.timeline.groups[q(this.timeline, t)].first;
+	}
+	get newestEnd() {
+		if (!this.keysAlone || this.newest < 0) return this.newest;
+		let e = this.timeline.groups[q(this.timeline, this.numberOf(this.newest))];
+		return this.startOf(this.newest) + e.frames - 1;
+	}
+	makeDecoders() {
+		return this.timeline.films.map(({ codec: e, size: t, where: n }, r) => e.decode(t, n, this.userOf(r)));
+	}
+	userOf(e) {
+		let { opacity: t } = this.timeline.films[e];
+		return {
+			take: (n, r) => this.receive(e, n, (e) => r(e, t)),
+			closed: () => this.feed(),
+			failed: (e) => this.fail(e),
+			lost: () => this.rest()
+		};
+	}
+	needs(e) {
+		return !this.meansAlone || !this.timeline.films[e].detail;
+	}
+	isWhole(e) {
+		return e.every((e, t) => e !== null || !this.needs(t));
+	}
 	get hasRoom() {
-		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = Math.max(this.from, this.wanted) + ll;
-		return this.next < Math.min(n, t) && this.decoders.every(({ ready: e }) => e);
+		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = this.keysAlone ? this.slots.size < bl ? Infinity : 0 : Math.max(this.from, this.wanted) + yl;
+		return this.next < Math.min(n, t) && this.decoders.every(({ ready: e }, t) => e || !this.needs(t));
 	}
 	async feedAll() {
 		for (; this.hasRoom;) {
@@ -4860,14 +5017,19 @@ var cl = class {
 				this,
 				this.next,
 				this.numberOf(this.next)
-			], r = ea(this.timeline, n);
+			], r = q(this.timeline, n);
 			if (this.broken.has(r)) {
 				this.pass(r, t);
 				continue;
 			}
 			this.fed = r;
 			let i = this.given?.index === r ? this.given : await this.groups.open(r), a = n - i.first, o = i.units[a] ?? [];
-			if (a >= i.frames * ul && this.prepare((r + 1) % this.timeline.groups.length), i.motion?.read(a), a === 0 && await Promise.all(this.decoders.map((e, t) => e.start(o[t]))), e !== this.turn || (this.given = i, this.next = t + 1, this.decoders.forEach((e, n) => e.decode(o[n], t, a === 0)), a === i.frames - 1 && await Promise.all(this.decoders.map((e) => e.flush())), e !== this.turn)) return;
+			a >= i.frames * xl && this.prepare((r + 1) % this.timeline.groups.length), i.motion?.read(a);
+			let s = () => this.decoders.map((e, t) => [e, o[t]]).filter((e, t) => this.needs(t));
+			if (a === 0 && await Promise.all(s().map(([e, t]) => e.start(t))), e !== this.turn) return;
+			this.given = i, this.next = this.keysAlone ? t + i.frames : t + 1;
+			for (let [e, n] of s()) e.decode(n, t, a === 0);
+			if (a === i.frames - 1 && await Promise.all(this.decoders.map((e) => e.flush())), e !== this.turn) return;
 		}
 	}
 	prepare(e) {
@@ -4876,26 +5038,35 @@ var cl = class {
 	async receive(e, t, n) {
 		let [{ turn: r }, i] = [this, this.slotOf(t)];
 		if (!i) return;
-		let a = await Es(n, this.rooms[e]?.pop() ?? null, this.timeline.films[e]?.opacity);
+		let a = await n(this.rooms[e]?.pop());
 		if (r !== this.turn || this.slots.get(t) !== i) return this.reuseOne(e, a);
-		i.films[e] = a, i.films.includes(null) || this.user.ready();
+		i.films[e] = a, this.isWhole(i.films) && this.user.ready();
 	}
 	slotOf(e) {
 		let t = this.slots.get(e);
 		if (t || this.skipped.has(e)) return t ?? null;
-		if (this.newest = Math.max(this.newest, e), e < this.from || !this.given) return null;
-		if (e < this.wanted && this.slots.size > 0) return this.late += 1, this.skipped.add(e), null;
-		let n = {
+		this.newest = Math.max(this.newest, e);
+		let n = e < this.from;
+		if (!this.given || n && performance.now() < this.previewsFrom) return null;
+		if (!n && e < this.wanted && this.slots.size > 0) return this.late += 1, this.skipped.add(e), null;
+		let r = {
 			group: this.given,
 			films: this.decoders.map(() => null)
 		};
-		return this.slots.set(e, n), n;
+		return this.slots.set(e, r), r;
 	}
 	fail(e) {
-		if (!(e instanceof M) || !dl.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(e, null);
+		let t = e instanceof j && e.code === "codec" ? e : null;
+		if (t && !this.keysAlone) return this.thin(t);
+		if (!(e instanceof j) || !Sl.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(t ? this.keysAlone : e, null);
+		let n = e.code === "damaged" && this.given?.index === this.fed && !this.tried.has(this.fed), r = this.startOf(Math.max(this.next - 1, 0));
 		this.halt();
-		for (let [e, t] of this.slots) t.films.includes(null) && this.forget(e, t);
-		this.broken.add(this.fed), this.user.failed(e, this.fed), this.feed();
+		for (let [e, t] of this.slots) this.isWhole(t.films) || this.forget(e, t);
+		n ? (this.tried.add(this.fed), this.next = r) : (this.broken.add(this.fed), this.user.failed(e, this.fed)), this.feed();
+	}
+	thin(e) {
+		for (let e of this.decoders) e.dispose();
+		this.keysAlone = e, this.meansAlone = !1, this.decoders = this.timeline.films.map(({ size: e, where: t }, n) => new vl(e, t, this.userOf(n))), this.stop(), this.next = this.startOf(this.from), this.user.thinned(), this.feed();
 	}
 	rest() {
 		this.stop(), this.next = Infinity;
@@ -4921,7 +5092,7 @@ var cl = class {
 	reuseOne(e, { room: t }) {
 		t && this.rooms[e]?.push(t);
 	}
-}, pl = .3, ml = .2, hl = 2, gl = class {
+}, wl = .3, Tl = .2, El = 2, Dl = class {
 	place;
 	read;
 	changed;
@@ -4952,7 +5123,7 @@ var cl = class {
 		let r = e - this.place.first;
 		if (r < 0 || r >= n.duration) return n.pause();
 		let i = r - n.currentTime;
-		Math.abs(i) > pl * Math.max(t, 1) ? n.seeking || (n.currentTime = r) : n.playbackRate = t * (1 + Math.min(Math.max(hl * i, -.2), ml)), n.paused && !this.starting && this.start(n);
+		Math.abs(i) > wl * Math.max(t, 1) ? n.seeking || (n.currentTime = r) : n.playbackRate = t * (1 + Math.min(Math.max(El * i, -.2), Tl)), n.paused && !this.starting && this.start(n);
 	}
 	rest() {
 		this.audio?.pause();
@@ -4975,78 +5146,64 @@ var cl = class {
 	fail() {
 		this.silent = !0, this.audio = null, this.changed();
 	}
-}, _l = {
-	mimeType: "video/AV1",
-	bits: 10
 };
-async function vl(e, t, n, r) {
-	let i = new Ys(e, t, n, r), a = await i.begin();
-	a.motion?.read(0), Xs(e, a);
-	let o = await Promise.all(t.films.map((e, t) => yl(a.units[0][t], e))), { sound: s } = t;
+// eigenfield-three/src/clip.ts
+async function Ol(e, t, n, r) {
+	let i = new Qs(e, t, n, r), a = await i.begin();
+	a.motion?.read(0), $s(e, a);
+	let o = await Promise.all(t.films.map(({ size: e, where: t }, n) => _l(a.units[0][n], e, t))), { sound: s } = t;
 	return {
 		timeline: t,
 		group: a,
 		films: o,
 		mesh: n,
-		ring: (e) => new fl(t, i, e),
-		sound: s && ((e) => new gl(s, () => r(s.offset, s.length), e))
+		ring: (e) => new Cl(t, i, e),
+		sound: s && ((e) => new Dl(s, () => r(s.offset, s.length), e))
 	};
 }
-async function yl(e, { size: t, where: n }) {
-	let r = {
-		view: -1,
-		codec: _l,
-		textures: 1,
-		pieces: 1,
-		where: n
-	}, i = await Yr(_e(e.slice().buffer, n), r, t), a = i[0].picture;
-	if ("data" in a) return a;
-	let o = new OffscreenCanvas(...t).getContext("2d");
-	return o.drawImage(a, 0, 0), ks(i), Ds(o.getImageData(0, 0, ...t).data, 4 * t[0], 4, t);
-}
 // eigenfield-three/src/means.ts
-async function bl(e, t) {
-	let { mean: n, meanSize: r } = e, i = e.precision && await xl(await t(e.precision.view), e.precision);
+async function kl(e, t) {
+	let { mean: n, meanSize: r } = e, i = e.precision && await Al(await t(e.precision.view), e.precision);
 	return {
 		pieces: await n.codec.decode(await t(n.view), n, r),
 		precision: i
 	};
 }
-async function xl(e, t) {
-	let { type: n } = Ir(e) ?? {}, { mimeType: r } = t.codec;
-	if (n && n !== r) throw N(t.where, `${n}, not ${r}`);
+async function Al(e, t) {
+	let { type: n } = Yr(e) ?? {}, { mimeType: r } = t.codec;
+	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
-	if (!i) throw N(t.where, "no picture");
+	if (!i) throw M(t.where, "no picture");
 	return i.picture;
 }
-function Sl({ pieces: e, precision: t }) {
-	ks(e), t?.close();
+function jl({ pieces: e, precision: t }) {
+	Ms(e), t?.close();
 }
 // eigenfield-three/src/packed.ts
-var Cl = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", wl = 4;
-async function Tl(e, t) {
-	let n = new G(e, ""), r = n.key("extensions").key(be), i = r.key("packed");
+var Ml = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Nl = 4;
+async function Pl(e, t) {
+	let n = new G(e, ""), r = n.key("extensions").key(Se), i = r.key("packed");
 	if (!i.exists) return e;
-	da(r);
-	let a = mi(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < wl) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, wl)).getUint32(0, !0);
-	if (wl + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new G(Ws(await Dl(await t(o.offset + wl, s), i.where), i.where), i.where).object(), u = El(new G(c, `${i.where}/lengths`), o, wl + s), { packed: d, ...f } = r.object();
+	wa(r);
+	let a = Oi(n), o = a[i.integer(a.length - 1, a.length - 1)];
+	if (!o || o.length < Nl) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, Nl)).getUint32(0, !0);
+	if (Nl + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new G(qs(await Il(await t(o.offset + Nl, s), i.where), i.where), i.where).object(), u = Fl(new G(c, `${i.where}/lengths`), o, Nl + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
-		bufferViews: [...n.key("bufferViews").items(Se).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
+		bufferViews: [...n.key("bufferViews").items(F).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
 		extensions: {
 			...n.key("extensions").object(),
-			[be]: {
+			[Se]: {
 				...f,
 				...l
 			}
 		}
 	};
 }
-function El(e, t, n) {
-	let r = n, i = e.items(Se).map((e) => {
+function Fl(e, t, n) {
+	let r = n, i = e.items(F).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
 			buffer: 0,
@@ -5057,8 +5214,8 @@ function El(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function Dl(e, t) {
-	let n = new TextEncoder().encode(Cl), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function Il(e, t) {
+	let n = new TextEncoder().encode(Ml), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -5066,19 +5223,19 @@ async function Dl(e, t) {
 		~r,
 		~i
 	]), a.set(n, 5), a.set(new Uint8Array(e), 5 + n.length);
-	let o = await ye(a, "deflate-raw", n.length + xe, t);
+	let o = await xe(a, "deflate-raw", n.length + Ce, t);
 	try {
 		return new TextDecoder("utf-8", {
 			fatal: !0,
 			ignoreBOM: !0
 		}).decode(o.subarray(n.length));
 	} catch {
-		throw N(t, "its JSON is not UTF-8");
+		throw M(t, "its JSON is not UTF-8");
 	}
 }
 // eigenfield-three/src/still-textures.ts
-var Ol = 3;
-function kl(e) {
+var Ll = 3;
+function Rl(e) {
 	return J(e).flatMap((e, t) => {
 		let n = 0;
 		return e.pictures.map((r) => {
@@ -5092,27 +5249,27 @@ function kl(e) {
 		});
 	}).sort((e, t) => e.first - t.first || e.number - t.number);
 }
-function Al(e, t, n) {
-	let r = kl(e), i = n, a = ({ basis: e, picture: n }) => {
+function zl(e, t, n) {
+	let r = Rl(e), i = n, a = ({ basis: e, picture: n }) => {
 		let r = t(n.view).then((t) => n.codec.decode(t, n, e.size));
 		return r.catch(() => void 0), r;
 	};
 	return {
 		async fill(n) {
-			let { plan: o, signal: s } = n, c = i ?? await Promise.all(ua(e).map((e) => bl(e, t)));
+			let { plan: o, signal: s } = n, c = i ?? await Promise.all(Ca(e).map((e) => kl(e, t)));
 			i = null, c.forEach((e, t) => {
-				n.putMean(t, e), Sl(e);
+				n.putMean(t, e), jl(e);
 			});
 			let l = r.filter(({ first: e }) => e < o.usable), u = [], d = 0;
 			try {
 				for (let { number: e, first: t, picture: r } of l) {
 					if (s.aborted) return;
-					for (let e of l.slice(d, d + Ol - u.length)) u.push(a(e)), d += 1;
+					for (let e of l.slice(d, d + Ll - u.length)) u.push(a(e)), d += 1;
 					let i = await u[0] ?? [];
-					u.shift(), n.putTextures(e, t, i, r), ks(i), n.announce();
+					u.shift(), n.putTextures(e, t, i, r), Ms(i), n.announce();
 				}
 			} finally {
-				for (let e of u) e.then(ks).catch(() => void 0);
+				for (let e of u) e.then(Ms).catch(() => void 0);
 			}
 			n.end();
 		},
@@ -5120,41 +5277,41 @@ function Al(e, t, n) {
 			let r = 0;
 			for (let { channels: i, bases: a } of e.planes) {
 				let o = e.colours.slice(r, r += i), s = a.find(({ count: e }) => e > n);
-				if (s) return Ms(s, n, o, t);
+				if (s) return Fs(s, n, o, t);
 			}
 			return Promise.resolve(1);
 		},
 		dispose() {
-			i?.forEach(Sl), i = null;
+			i?.forEach(jl), i = null;
 		}
 	};
 }
 // eigenfield-three/src/grid.ts
-function jl(e) {
+function Bl(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = Ml(e, n, r) ?? (n === r ? null : Ml(e, r, n));
+		let r = t / n, i = Vl(e, n, r) ?? (n === r ? null : Vl(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function Ml(e, t, n) {
-	let [r, i] = [Pl(e, 0), Pl(e, 1)];
-	if (t === 1 && Fl(i) > 0 || n === 1 && Fl(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => Il(i, e) - Il(i, t));
+function Vl(e, t, n) {
+	let [r, i] = [Ul(e, 0), Ul(e, 1)];
+	if (t === 1 && Wl(i) > 0 || n === 1 && Wl(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => Gl(i, e) - Gl(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Il(r, e) - Il(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Gl(r, e) - Gl(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return Nl(n, t, (e, t) => Il(r, o(t, e))) && Nl(t, n, (e, t) => Il(i, o(e, t))) ? {
+	return Hl(n, t, (e, t) => Gl(r, o(t, e))) && Hl(t, n, (e, t) => Gl(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function Nl(e, t, n) {
+function Hl(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -5164,33 +5321,33 @@ function Nl(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function Pl(e, t) {
+function Ul(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function Fl(e) {
+function Wl(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var Il = (e, t) => e[t] ?? 0, Ll = 1e-6, Rl = 32, zl = class {
+var Gl = (e, t) => e[t] ?? 0, Kl = 1e-6, ql = 32, Jl = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = jl(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = Bl(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(Bl(e), this.isLine ? 0 : Bl(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(Yl(e), this.isLine ? 0 : Yl(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => Xl(e, t, this.places) : e === "bilinear" && this.grid ? Ql(this.places, this.grid) : Ul(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => au(e, t, this.places) : e === "bilinear" && this.grid ? su(this.places, this.grid) : Ql(this.places, this.triangles);
 	}
 };
-function Bl(e) {
+function Yl(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Vl(e) {
+function Xl(e) {
 	let t = {
 		camera: [
 			0,
@@ -5210,7 +5367,7 @@ function Vl(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function Hl(e, t, n, r, i, a) {
+function Zl(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -5218,49 +5375,49 @@ function Hl(e, t, n, r, i, a) {
 		m
 	];
 }
-function Ul(e, t) {
+function Ql(e, t) {
 	if (!t.length) {
-		let t = Yl(e, Jl(e));
-		return (n, r) => ql(n, r, e, t);
+		let t = iu(e, ru(e));
+		return (n, r) => nu(n, r, e, t);
 	}
-	let n = Gl(e, t, 3), r = Kl(t);
+	let n = eu(e, t, 3), r = tu(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * Rl + $(i)] ?? []) {
+		for (let r of n[$(a) * ql + $(i)] ?? []) {
 			let [n, l, u] = [
-				Wl(t, r, 0),
-				Wl(t, r, 1),
-				Wl(t, r, 2)
-			], d = Hl(i, a, e, n, l, u), f = Math.min(...d);
+				$l(t, r, 0),
+				$l(t, r, 1),
+				$l(t, r, 2)
+			], d = Zl(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? ql(i, a, e, r) : Vl(c.map((e, n) => [Wl(t, o, n), e]));
+		return s < -1e-9 ? nu(i, a, e, r) : Xl(c.map((e, n) => [$l(t, o, n), e]));
 	};
 }
-var Wl = (e, t, n) => e[3 * t + n] ?? 0;
+var $l = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * Rl)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * ql)));
 }
-function Gl(e, t, n) {
+function eu(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * Rl + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * ql + t]?.push(i);
 	}
 	return r;
 }
-function Kl(e) {
+function tu(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [Wl(e, n, r), Wl(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [$l(e, n, r), $l(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -5269,7 +5426,7 @@ function Kl(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function ql(e, t, n, r) {
+function nu(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -5284,12 +5441,12 @@ function ql(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return Vl([[o, 1 - c], [s, c]]);
+	return Xl([[o, 1 - c], [s, c]]);
 }
-function Jl(e) {
+function ru(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function Yl(e, t) {
+function iu(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -5310,7 +5467,7 @@ function Yl(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function Xl(e, t, n) {
+function au(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -5324,12 +5481,12 @@ function Xl(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || Zl(n, r, i, a) <= Ll) return ql(e, t, n, Yl(n, [
+	if (a < 0 || ou(n, r, i, a) <= Kl) return nu(e, t, n, iu(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = Hl(e, t, n, r, i, a);
+	let [l, u, d] = Zl(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -5345,15 +5502,15 @@ function Xl(e, t, n) {
 		]
 	};
 }
-function Zl(e, t, n, r) {
+function ou(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function Ql(e, t) {
+function su(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = Yl(e, Jl(e));
-		return (n, r) => ql(n, r, e, t);
+		let t = iu(e, ru(e));
+		return (n, r) => nu(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -5362,7 +5519,7 @@ function Ql(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = Gl(e, o.flat(), 4), c = [];
+	let s = eu(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -5370,12 +5527,12 @@ function Ql(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * Rl + $(t)] ?? []) {
-			let s = o[a], c = s ? $l(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * ql + $(t)] ?? []) {
+			let s = o[a], c = s ? cu(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return ql(t, n, e, l);
-		let [a, c] = eu(t, n, e, r);
+		if (!r || i < -1e-9) return nu(t, n, e, l);
+		let [a, c] = lu(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -5387,7 +5544,7 @@ function Ql(e, t) {
 		};
 	};
 }
-function $l(e, t, n, r) {
+function cu(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -5395,7 +5552,7 @@ function $l(e, t, n, r) {
 	}
 	return i;
 }
-function eu(e, t, n, r) {
+function lu(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -5413,34 +5570,36 @@ function eu(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = tu(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [tu(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = uu(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [uu(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function tu(e) {
+function uu(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var nu = class {
+var du = class {
 	parser;
 	options;
-	name = be;
+	name = Se;
 	scene = null;
+	views = [];
+	lacks = null;
 	ours;
 	constructor(e, t = {}) {
-		this.parser = e, this.options = t, this.ours = sa(e.json);
+		this.parser = e, this.options = t, this.ours = ba(e.json);
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
-		this.options.renderer && Ic(this.options.renderer);
+		this.options.renderer && Uc(this.options.renderer);
 		let { json: e } = this.parser;
-		pe(e), Object.assign(e, await Tl(e, (e, t) => this.read(e, t)));
-		let t = ca(e);
-		(!t.timeline || this.options.stream?.readGroups) && (this.scene = t, this.scene.shown || ru(e));
+		me(e), Object.assign(e, await Pl(e, (e, t) => this.read(e, t)));
+		let t = xa(e);
+		(!t.timeline || this.options.stream?.readGroups) && (this.views = t.views, t.timeline && t.shown && !await ai("image/avif") ? this.lacks = new j("codec", "This browser decodes no AV1; use a newer browser. The first frame is shown.", "") : (this.scene = t, this.scene.shown || fu(e)));
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
 		let n = (await this.parser.getDependency("buffer", 0)).slice(e, e + t);
-		if (n.byteLength < t) throw le("/buffers/0");
+		if (n.byteLength < t) throw ue("/buffers/0");
 		return n;
 	}
 	loadMaterial(e) {
@@ -5450,44 +5609,44 @@ var nu = class {
 		return r.side = n === !0 ? 2 : 0, Promise.resolve(r);
 	}
 	loadBufferView(e) {
-		let t = this.scene?.views[e];
+		let t = this.views[e];
 		return t && this.options.stream ? this.options.stream.read(t.offset, t.length) : null;
 	}
 	async afterRoot(e) {
 		let { scene: t } = this;
-		if (!t) return;
-		let n = iu(e, this.parser), [r] = n;
-		if (!r) throw N("/meshes/0", "no node shows it");
-		t.shown && bc(r.geometry, t.shown);
+		if (this.lacks && (e.userData.eigenfieldError = this.lacks), !t) return;
+		let n = pu(e, this.parser), [r] = n;
+		if (!r) throw M("/meshes/0", "no node shows it");
+		t.shown && Dc(r.geometry, t.shown);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
-			if (n.byteLength < (t.views[e]?.length ?? 0)) throw le(`/bufferViews/${e}`);
+			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ue(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await xc(t.mesh, i), o = t.timeline && a && await this.openClip(t, t.timeline, a);
+		}, a = t.mesh && await Oc(t.mesh, i), o = t.timeline && a && await this.openClip(t, t.timeline, a);
 		if (a) {
-			let e = Sc(a);
+			let e = kc(a);
 			r.geometry.dispose();
 			for (let t of n) t.geometry = e;
 		}
-		t.sheets && Hi(t.sheets, r.geometry);
+		t.sheets && na(t.sheets, r.geometry);
 		let [s, c, l, u] = await Promise.all([
-			Promise.all(o ? [] : ua(t).map((e) => bl(e, i))),
-			Ta(t, i),
-			o ? o.group.omega : Na(t, i),
-			za(t, i)
-		]), d = c.filter((e, n) => !t.heldOut[n]), f = new zl(Float64Array.from(d.flatMap((e) => Ua(t, e.centre))), u, t.extent[1] === 0), p = o ? ua(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
+			Promise.all(o ? [] : Ca(t).map((e) => kl(e, i))),
+			Ra(t, i),
+			o ? o.group.omega : Ka(t, i),
+			Qa(t, i)
+		]), d = c.filter((e, n) => !t.heldOut[n]), f = new Jl(Float64Array.from(d.flatMap((e) => no(t, e.centre))), u, t.extent[1] === 0), p = o ? Ca(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
 			scene: t,
-			info: Va(t, c, p, f.grid, this.fileBytes(), Cc(r.geometry)),
+			info: eo(t, c, p, f.grid, this.fileBytes(), Ac(r.geometry)),
 			meshes: n,
 			meanSizes: p,
 			omega: l,
 			weights: f,
 			clip: o
-		}, h = o ? new Ps(t, o.films) : Al(t, i, s);
-		e.userData.eigenfield = new rl(m, h, this.options);
+		}, h = o ? new Ls(t, o.films) : zl(t, i, s);
+		e.userData.eigenfield = new ul(m, h, this.options);
 	}
 	openClip(e, t, n) {
-		return vl(e, t, n, (...e) => this.options.stream.readGroups(...e));
+		return Ol(e, t, n, (...e) => this.options.stream.readGroups(...e));
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -5495,25 +5654,25 @@ var nu = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function ru(e) {
+function fu(e) {
 	let [t] = e.nodes;
 	t && (t.mesh = 0), e.meshes = [{ primitives: [{
 		attributes: {},
 		material: 0
 	}] }], e.materials = [{ doubleSided: !0 }];
 }
-function iu(e, t) {
+function pu(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		au(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		mu(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function au(e) {
+function mu(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/ranges.ts
-var ou = 2 ** 20, su = 2 ** 25, cu = 3, lu = 500, uu = class {
+var hu = 2 ** 20, gu = 2 ** 25, _u = 3, vu = 500, yu = class {
 	source;
 	arrival;
 	length;
@@ -5527,9 +5686,9 @@ var ou = 2 ** 20, su = 2 ** 25, cu = 3, lu = 500, uu = class {
 	}
 	async read(e, t) {
 		let { arrival: n } = this;
-		if (t <= n.received || !this.begun || !this.parted && e <= n.received + ou) {
+		if (t <= n.received || !this.begun || !this.parted && e <= n.received + hu) {
 			let r = await n.read(e, t).catch((e) => {
-				if (this.signal.aborted || !(this.parted || this.begun && du(e))) throw e;
+				if (this.signal.aborted || !(this.parted || this.begun && bu(e))) throw e;
 			});
 			if (this.begun || this.limit(), r) return r;
 		}
@@ -5537,14 +5696,14 @@ var ou = 2 ** 20, su = 2 ** 25, cu = 3, lu = 500, uu = class {
 		for (let n = 1;; n++) try {
 			return await (this.whole?.read(e, t) ?? this.fetch(this.source, e, t));
 		} catch (e) {
-			if (this.signal.throwIfAborted(), n === cu || this.whole || !du(e)) throw e;
-			await new Promise((e) => setTimeout(e, lu * 2 ** (n - 1))), this.signal.throwIfAborted();
+			if (this.signal.throwIfAborted(), n === _u || this.whole || !bu(e)) throw e;
+			await new Promise((e) => setTimeout(e, vu * 2 ** (n - 1))), this.signal.throwIfAborted();
 		}
 	}
 	limit() {
 		let { arrival: e } = this;
 		this.begun = !0, e.onPush = () => {
-			e.received >= su && e.received < this.length && this.giveUp();
+			e.received >= gu && e.received < this.length && this.giveUp();
 		}, e.onPush();
 	}
 	giveUp() {
@@ -5552,7 +5711,7 @@ var ou = 2 ** 20, su = 2 ** 25, cu = 3, lu = 500, uu = class {
 	}
 	async slice(e, t, n) {
 		let r = await e.slice(t, n).arrayBuffer();
-		if (r.byteLength < n - t) throw ce(t + r.byteLength, n);
+		if (r.byteLength < n - t) throw le(t + r.byteLength, n);
 		return r;
 	}
 	async fetch(e, t, n) {
@@ -5571,7 +5730,7 @@ var ou = 2 ** 20, su = 2 ** 25, cu = 3, lu = 500, uu = class {
 		return a;
 	}
 	receive(e) {
-		let t = this.whole = new cl(), n = e.getReader();
+		let t = this.whole = new hl(), n = e.getReader();
 		return this.signal.addEventListener("abort", () => void n.cancel().catch(() => void 0)), (async () => {
 			for (;;) {
 				let { done: e, value: r } = await n.read();
@@ -5581,40 +5740,42 @@ var ou = 2 ** 20, su = 2 ** 25, cu = 3, lu = 500, uu = class {
 		})().catch((e) => t.fail(this.signal.aborted ? e : this.broken(t.received, e))), t;
 	}
 	broken(e, t) {
-		return new M("network", `The connection broke at byte ${e} of ${this.length} of the clip; it is tried again when it plays on.`, String(e), { cause: t });
+		return new j("network", `The connection broke at byte ${e} of ${this.length} of the clip; it is tried again when it plays on.`, String(e), { cause: t });
 	}
 };
-function du(e) {
-	return e instanceof M && e.code === "network";
+function bu(e) {
+	return e instanceof j && e.code === "network";
 }
 // eigenfield-three/src/load.ts
-async function fu(e, t = {}) {
+async function xu(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new cl(), [i, a] = [new AbortController(), new AbortController()], o = () => {
+	let r = new hl(), [i, a] = [new AbortController(), new AbortController()], o = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", o), i.signal.addEventListener("abort", () => a.abort());
-	let s = hu(e, r, a.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", o));
+	let s = wu(e, r, a.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", o));
 	try {
-		let o = await Vs(r);
-		if (!sa(o.json)) return {
-			gltf: await mu(r, o, s),
-			field: null
+		let o = await Ws(r);
+		if (!ba(o.json)) return {
+			gltf: await Cu(r, o, s),
+			field: null,
+			error: null
 		};
-		let c = await pu(r, o, e instanceof ArrayBuffer ? r : ((e) => new uu(e, r, o.length, () => a.abort(), i.signal))(e), t);
+		let c = await Su(r, o, e instanceof ArrayBuffer ? r : ((e) => new yu(e, r, o.length, () => a.abort(), i.signal))(e), t);
 		n?.throwIfAborted();
-		let l = c.userData.eigenfield;
+		let { eigenfield: l, eigenfieldError: u } = c.userData;
 		return {
 			gltf: c,
-			field: l instanceof rl ? l : null
+			field: l instanceof ul ? l : null,
+			error: u instanceof j ? u : null
 		};
 	} catch (e) {
-		throw i.abort(), n?.throwIfAborted(), ue(e);
+		throw i.abort(), n?.throwIfAborted(), de(e);
 	}
 }
-async function pu(e, t, n, r) {
-	let i = new se(), a = (e, t = n) => async (n, r) => {
+async function Su(e, t, n, r) {
+	let i = new ce(), a = (e, t = n) => async (n, r) => {
 		let i = await e + n;
 		return t.read(i, i + r);
 	}, o = t.binary();
@@ -5624,53 +5785,53 @@ async function pu(e, t, n, r) {
 		read: a(o, e),
 		readGroups: (...e) => a(t.groups())(...e)
 	};
-	return i.register((e) => new nu(e, {
+	return i.register((e) => new du(e, {
 		...r,
 		stream: s
 	})), i.parseAsync(t.text, "");
 }
-async function mu(e, t, n) {
+async function Cu(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
-		let e = new se();
-		return e.register(fe), await e.parseAsync(r, "");
+		let e = new ce();
+		return e.register(pe), await e.parseAsync(r, "");
 	} catch (e) {
-		if (e instanceof M) throw e;
-		let t = ue(e).message;
-		throw new M("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
+		if (e instanceof j) throw e;
+		let t = de(e).message;
+		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function hu(e, t, n, r) {
+async function wu(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? gu(e) : await _u(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? Tu(e) : await Eu(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : vu(t.received, e);
+			throw n.aborted ? e : Du(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function gu(e) {
+function Tu(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function _u(e, t) {
+async function Eu(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
-		throw t.aborted ? n : new M("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
+		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
-	if (!n.ok || !n.body) throw await n.body?.cancel(), new M("network", `The server answered ${n.status} for the scene; check its address.`, e);
+	if (!n.ok || !n.body) throw await n.body?.cancel(), new j("network", `The server answered ${n.status} for the scene; check its address.`, e);
 	let r = n.headers.get("Content-Encoding") ? null : n.headers.get("Content-Length");
 	return {
 		body: n.body,
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function vu(e, t) {
-	return new M("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
+function Du(e, t) {
+	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { rl as EigenField, nu as EigenfieldPlugin, vc as Player, Oc as SHEETS, M as SceneError, uo as defaultMemory, fu as loadEigenfield, Ka as novelCamera, Xa as placeCamera, fe as refuseAddresses };
+export { ul as EigenField, du as EigenfieldPlugin, Tc as Player, Fc as SHEETS, j as SceneError, wo as defaultMemory, xu as loadEigenfield, ao as novelCamera, lo as placeCamera, pe as refuseAddresses };
