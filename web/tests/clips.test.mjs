@@ -153,6 +153,15 @@ test("the sound is in step with the frames at any speed, rests while they stand,
     return [player.sound.time, player.sound.playable, player.sound.muted];
   });
   assert.deepEqual(rested, [null, true, false]);
+  const hidden = await page.evaluate(async () => {
+    const { player } = window.field;
+    player.play();
+    while (player.sound.time === null) await new Promise((resolve) => setTimeout(resolve, 25));
+    Object.defineProperty(document, "hidden", { get: () => true });
+    document.dispatchEvent(new Event("visibilitychange"));
+    return player.sound.time;
+  });
+  assert.equal(hidden, null, "nobody hears a page that is not seen");
   await close();
 });
 

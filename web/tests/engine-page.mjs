@@ -63,7 +63,7 @@ export function testEngine(start) {
   }
 
   for (const name of ["clip.glb", "clip-sheets.glb"]) {
-    test(`${name} plays, each frame as Chromium draws it, or the first one of each group; the panel says what is shown`, async () => {
+    test(`${name} plays, each frame as Chromium draws it, or the first one of each group; the panel says what is shown`, async (context) => {
       const options = { ...SIZE, hash: PLACE, config: { ui: "full" }, routes: { "/frame": FRAME } };
       const { page, server, close } = await openViewer(browser, name, options);
       await engine.open(`${server.url}/frame`);
@@ -100,7 +100,7 @@ export function testEngine(start) {
       for (const [kind, text] of Object.entries({ keys: "key pictures", bits: "8 of 10 bits", textures: "no eigen textures" })) {
         assert.equal(said.includes(text), fallbacks.includes(kind), `${kind}: ${said}`);
       }
-      console.log(`${name}: ${fallbacks.join() || "all"}`);
+      context.diagnostic(`${name}: ${fallbacks.join() || "all"}`);
       assert.deepEqual(await engine.evaluate(() => window.errors), []);
       await close();
     });

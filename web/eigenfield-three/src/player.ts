@@ -321,7 +321,10 @@ export class Player extends EventDispatcher<PlayerEvents> {
   private fail(reason: unknown, group: number | null): void {
     if (this.disposed) return;
     this.user.failed(reason);
-    if (group === null) this.pause();
+    if (group === null) {
+      this.lacking = [];
+      this.pause();
+    }
     const sought = this.goal !== null && groupOf(this.timeline, this.goal % this.frames);
     if (sought === false || (group !== null && sought !== group)) return;
     if (this.goal !== null) this.clock = this.goal; // what comes behind it is shown when it is due

@@ -3903,7 +3903,7 @@ var bc = .25, xc = 100, Sc = 2, Cc = .25, wc = .1, Tc = class extends f {
 	}
 	fail(e, t) {
 		if (this.disposed) return;
-		this.user.failed(e), t === null && this.pause();
+		this.user.failed(e), t === null && (this.lacking = [], this.pause());
 		let n = this.goal !== null && q(this.timeline, this.goal % this.frames);
 		n === !1 || t !== null && n !== t || (this.goal !== null && (this.clock = this.goal), this.goal = this.following = null, this.settle());
 	}
