@@ -213,7 +213,7 @@ function makePlayer() {
   const scene = changed();
   const groups = new built.Groups(scene, scene.timeline, mesh, placed(chunk));
   const [shown, failed] = [[], []];
-  const numbers = ({ data }) => [...new Uint32Array(data.slice(0, 8).buffer)];
+  const numbers = (codes) => codes && [...new Uint32Array(codes.data.slice(0, 8).buffer)];
   const player = new built.Player(scene.timeline, (user) => new built.FrameRing(scene.timeline, groups, user), {
     show: ({ position, number, group, films }) => shown.push({ position, number, group, films: films.map(numbers) }),
     failed: (reason) => failed.push(reason),
@@ -288,6 +288,72 @@ test("the clock goes as fast as the speed says where decoders keep up", async ()
   await until(() => clock.now > begun + 3000);
   const frames = ((clock.now - begun) / 1000) * timeline.rate;
   assert.ok(Math.abs(shown.at(-1).position - position - frames) < 6, `${shown.at(-1).position - position} of ${frames}`);
+  player.dispose();
+});
+
+test("decoders that are too slow bring means alone, until it is paused or sought, or they are quick again", async () => {
+  const { player, shown, failed, timeline } = makePlayer();
+  assert.deepEqual(timeline.films.map(({ detail }) => detail), [false, true]);
+  manner.slow = 80;
+  player.play();
+  await until(() => player.fallbacks.includes("textures"));
+  await until(() => shown.at(-1).position > timeline.frames + 2);
+  const plain = shown.filter(({ films }) => films.includes(null));
+  assert.ok(plain.length > 4);
+  for (const { position, films } of plain) assert.deepEqual(films, [[position, timeline.films[0].size[0]], null]);
+  assertWhole(shown.filter(({ films }) => !films.includes(null)), timeline);
+  manner.slow = 0;
+  const at = player.frame;
+  player.pause();
+  await until(() => !player.waiting);
+  assert.deepEqual([player.frame, player.fallbacks], [at, []]);
+  assertWhole(shown.slice(-1), timeline);
+  await player.toFrame(20);
+  const { length } = shown;
+  player.play();
+  await until(() => shown.length > length + 12);
+  assertWhole(shown.slice(length), timeline);
+  assert.deepEqual(failed, []);
+  player.dispose();
+});
+
+test("a seek that takes long shows frames on the way, and plays on from where it ended", async () => {
+  const { player, shown, failed, timeline } = makePlayer();
+  manner.slow = 80;
+  const late = [];
+  for (const [from, wanted] of [[14, 24], [6, 11], [13, 23]]) {
+    await player.toFrame(from);
+    shown.length = 0;
+    await player.toFrame(wanted);
+    late.push(shown.length);
+    assert.equal(shown.at(-1).number, wanted);
+    assertWhole(shown, timeline);
+  }
+  assert.ok(Math.max(...late) > 1, `${late}`);
+  assert.equal(player.late, 0, "what is on the way is not late");
+  await player.toFrame(14);
+  const [first, last] = [player.toFrame(24), player.toFrame(18)];
+  await Promise.all([first, last]);
+  assert.equal(player.frame, 18);
+  manner.slow = 0;
+  shown.length = 0;
+  player.play();
+  await until(() => shown.length > 3);
+  assertWhole(shown, timeline);
+  assert.ok(shown[0].number > 18 && shown[0].number < 24, `${shown[0].number}`);
+  assert.deepEqual(failed, []);
+  player.dispose();
+});
+
+test("a decoder that fails once has its group again", async () => {
+  const { player, shown, failed, timeline } = makePlayer();
+  let times = 0;
+  manner.fails = (timestamp) => timestamp === 8 && times++ === 0;
+  player.play();
+  await until(() => shown.at(-1)?.position > timeline.frames);
+  assertWhole(shown, timeline);
+  assert.deepEqual([failed, times > 0], [[], true]);
+  assert.ok(shown.some(({ number }) => number > 8 && number < 12), "frames behind it");
   player.dispose();
 });
 

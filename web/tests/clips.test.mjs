@@ -6,12 +6,9 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, before, test } from "node:test";
 import { canvasPixels, decodePng, difference, sceneBytes, scenePath, startLab } from "./harness.mjs";
+import { assertSame, facts, FRAMES, groupOf, openNumbered, playThrough, STARTS } from "./numbered-clip.mjs";
 
-const facts = JSON.parse(readFileSync(scenePath("clip.json"), "utf8"));
-const { groups, strengths, places, held, rate, bits, textures, front } = facts;
-const FRAMES = groups.reduce((a, b) => a + b);
-const STARTS = groups.map((_, i) => groups.slice(0, i).reduce((a, b) => a + b, 0));
-const groupOf = (frame) => STARTS.findLastIndex((start) => start <= frame);
+const { groups, places, held, rate, textures } = facts;
 const DURATION = (1000 * FRAMES * rate[1]) / rate[0]; // milliseconds
 const SLOW = 400; // milliseconds between two pieces of a slow file
 const bytes = sceneBytes("clip.glb");
@@ -95,67 +92,7 @@ let lab;
 before(async () => (lab = await startLab(ROUTES)));
 after(() => lab?.close());
 
-/** Loads the clip as `window.field`; `window.read` draws and tells the number of the player, that of the mean, that of the
- * textures, the strength of theirs, and where there are sheets the number of the opacity; `window.played` collects that of each frame, `window.errors` what the field says. */
-async function openClip(name = "clip.glb", { memory, ...options } = {}) {
-  const opened = await lab.open(options);
-  await opened.page.evaluate(
-    async ([url, bits, textures, front, memory]) => {
-      const { gltf, field } = await window.lab.loadEigenfield(url, { memory });
-      const { lab } = window;
-      lab.show(gltf);
-      field.camera = field.info.cameras.length - 1;
-      const view = () => lab.drawView(field, field.info.cameras[field.camera]);
-      view();
-      await field.complete;
-      const places = [
-        ...Array.from({ length: bits }, (_, bit) => [(bit + 0.5) / bits, 0.25]),
-        ...Array.from({ length: textures }, (_, index) => [(index + 0.5) / textures, 0.75]),
-        ...Array.from({ length: field.info.sheets ? bits : 0 }, (_, bit) => [(bit + 0.5) / bits, front]),
-      ];
-      const numberOf = (shades) => shades.reduce((sum, shade, bit) => sum + (shade > 128 ? 2 ** bit : 0), 0);
-      window.field = field;
-      window.read = () => {
-        view();
-        const shades = lab.greens(lab.pixelsOf(field, places));
-        const strengths = shades.slice(bits, bits + textures).map((shade) => (shade - 128) / 127);
-        const byMean = numberOf(shades.slice(0, bits));
-        const byOpacity = field.info.sheets ? numberOf(shades.slice(bits + textures)) : null;
-        const strongest = strengths.reduce((best, own) => (Math.abs(own) > Math.abs(best) ? own : best));
-        return [field.player.frame, byMean, strengths.indexOf(strongest), strongest, shades.join(), byOpacity];
-      };
-      window.errors = [];
-      field.addEventListener("error", ({ error }) => window.errors.push(error.code));
-      window.played = [];
-      field.player.addEventListener("frame", () => window.played.push(window.read()));
-    },
-    [name, bits, textures, front, memory],
-  );
-  return opened;
-}
-
-function assertSame([frame, byMean, texture, strength, shades, byOpacity]) {
-  const shown = `frame ${frame} shows ${byMean}, ${texture}, ${strength}, ${byOpacity}: ${shades}`;
-  assert.deepEqual([byMean, texture, byOpacity ?? frame], [frame, frame % textures, frame], shown);
-  const nearest = strengths.toSorted((a, b) => Math.abs(a - strength) - Math.abs(b - strength))[0];
-  assert.equal(nearest, strengths[groupOf(frame)], shown);
-}
-
-/** Plays until so many frames were shown and the first followed the last; what was shown. */
-async function playThrough(page, pace, frames) {
-  await page.evaluate((pace) => {
-    window.field.player.speed = pace;
-    window.field.player.play();
-  }, pace);
-  const turned = (frames) => {
-    const { played } = window;
-    return played.length >= frames && played.some(([frame], i) => i && frame < played[i - 1][0]);
-  };
-  await page.waitForFunction(turned, frames, { timeout: 60_000 });
-  await page.evaluate(() => window.field.player.pause());
-  await page.waitForFunction(() => window.field.player.open === 0);
-  return page.evaluate(() => ({ played: window.played, errors: window.errors }));
-}
+const openClip = (name = "clip.glb", options = {}) => openNumbered(lab, name, options);
 
 test("the first frame is there before anything plays", async () => {
   const { page, close } = await openClip();
@@ -325,6 +262,15 @@ test("the sound is in step with the frames at any speed, rests while they stand,
     return [player.sound.time, player.sound.playable, player.sound.muted];
   });
   assert.deepEqual(rested, [null, true, false]);
+  const hidden = await page.evaluate(async () => {
+    const { player } = window.field;
+    player.play();
+    while (player.sound.time === null) await new Promise((resolve) => setTimeout(resolve, 25));
+    Object.defineProperty(document, "hidden", { get: () => true });
+    document.dispatchEvent(new Event("visibilitychange"));
+    return player.sound.time;
+  });
+  assert.equal(hidden, null, "nobody hears a page that is not seen");
   await close();
 });
 
@@ -556,6 +502,7 @@ for (const name of ["clip.glb", "clip-sheets.glb"]) {
 
 test("the opacity of sheets after a lost context, and where frames have eight bits in the range of videos", async () => {
   const { page, close } = await openClip("clip-sheets.glb", { allowed: /Context (Lost|Restored)/, init: ofEightBits });
+  assert.deepEqual(await page.evaluate(() => window.field.player.fallbacks), []);
   const found = await page.evaluate(async () => {
     await window.field.player.toFrame(14);
     const before = window.read();
@@ -565,6 +512,7 @@ test("the opacity of sheets after a lost context, and where frames have eight bi
   found.forEach(assertSame);
   assert.deepEqual(found.map(([frame]) => frame), [14, 14]);
   const brightest = found.map((one) => Math.max(...one[4].split(",")));
+  assert.deepEqual(await page.evaluate(() => window.field.player.fallbacks), ["bits"]);
   assert.ok(brightest.every((shade) => shade > 228), `white of ${brightest}: nothing behind what is opaque is seen`); // 232
   const { played, errors } = await playThrough(page, 2, FRAMES);
   played.forEach(assertSame);

@@ -145,7 +145,7 @@ async function started(program, args, says, env = process.env) {
 async function makeScreen() {
   if (process.env.DISPLAY) return { env: process.env, close: async () => undefined };
   const size = ["-screen", "0", "1280x1024x24"];
-  const { child, found } = await started("Xvfb", ["-displayfd", "1", ...size, "-nolisten", "tcp"], /^(\d+)\n/);
+  const { child, found } = await started("Xvfb", ["-displayfd", "1", ...size, "-nolisten", "tcp"], /^(\d+)\n/m);
   return { env: { ...process.env, DISPLAY: `:${found}` }, close: () => ended(child) };
 }
 

@@ -32,7 +32,7 @@ const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647;
 const later = () => new Promise((resolve) => setTimeout(resolve, 4 * random()));
 
 /** `manner`: delayed, how many units are kept before the first becomes a frame; shuffled, whether frames come in another
- * order; fails, (timestamp) => whether a unit is damaged. */
+ * order; fails, (timestamp) => whether a unit is damaged; slow, milliseconds that each unit takes. */
 export function installFakes(manner) {
   globalThis.EncodedVideoChunk = class {
     constructor(given) {
@@ -68,6 +68,7 @@ export function installFakes(manner) {
     async run(left) {
       const { turn } = this;
       await later();
+      if (manner.slow) await new Promise((resolve) => setTimeout(resolve, manner.slow));
       if (turn !== this.turn || this.queue.length <= left) return;
       const at = manner.shuffled ? Math.floor(random() * this.queue.length) : 0;
       const [timestamp] = this.queue.splice(at, 1);

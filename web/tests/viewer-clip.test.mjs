@@ -6,7 +6,7 @@ import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { eigenfield } from "./command.mjs";
 import { launch, openPage, scenePath } from "./harness.mjs";
-import { openViewer, settled } from "./viewer-page.mjs";
+import { openViewer, picture, settled } from "./viewer-page.mjs";
 
 const CLIP = "clip.glb";
 const FRAMES = 25;
@@ -97,24 +97,112 @@ test("a still scene has no bar, and its keys do what they did", async () => {
   await close();
 });
 
+const noVideos = () => delete globalThis.VideoDecoder;
 const LACKS = {
-  "without a decoder of videos": () => delete globalThis.VideoDecoder,
+  "without a decoder of videos": noVideos,
   "with a decoder that refuses AV1": () => (globalThis.VideoDecoder.isConfigSupported = async () => ({ supported: false })),
 };
 for (const [name, init] of Object.entries(LACKS)) {
-  test(`${name} the first frame is shown in full, and a line says why it does not play`, async () => {
-    const { page, close } = await openViewer(browser, CLIP, { init, width: 800 });
+  test(`${name} key pictures are shown in full, and the panel says why`, async () => {
+    const { page, close } = await openViewer(browser, CLIP, { init, width: 800, height: 600, config: { ui: "full" } });
     await opened(page);
     assert.equal(await page.evaluate(() => window.eigenfield.field.loaded), 4);
     await page.keyboard.press(" ");
-    await until(page, () => window.eigenfield.state().message !== null);
+    await until(page, () => window.eigenfield.field.player.frame === 5);
+    await until(page, () => window.eigenfield.field.player.frame === 13);
+    await page.getByRole("row", { name: /shown here key pictures: this browser decodes no AV1/ }).waitFor();
     const { message, playing, status } = await state(page);
-    assert.equal(message.code, "codec");
-    assert.match(message.text, /decodes no AV1 of 10 bits.*The first frame is shown/);
-    assert.deepEqual([playing, status], [false, "ready"]);
+    assert.deepEqual([message, playing, status], [null, true, "ready"]);
     await close();
   });
 }
+
+test("without a secure context key pictures are shown, and the panel says where the clip plays", async () => {
+  const elsewhere = await launch({ args: ["--host-resolver-rules=MAP clip.test 127.0.0.1"] });
+  const { server, close } = await openViewer(browser, CLIP, { config: { ui: "full" } });
+  const { page, ...opening } = await openPage(elsewhere, server.url.replace("127.0.0.1", "clip.test"), { width: 800, height: 600 });
+  await until(page, () => window.eigenfield?.state().status === "ready");
+  assert.deepEqual(await page.evaluate(() => [isSecureContext, typeof VideoDecoder]), [false, "undefined"]);
+  await page.evaluate(() => window.eigenfield.field.player.play());
+  await until(page, () => window.eigenfield.field.player.frame === 13);
+  await page.getByRole("row", { name: /shown here key pictures: browsers play clips from https and localhost alone/ }).waitFor();
+  await opening.close();
+  await elsewhere.close();
+  await close();
+});
+
+test("where pictures of AV1 are not decoded either, the file's own picture is shown, and a line says why", async () => {
+  const init = () => {
+    delete globalThis.VideoDecoder;
+    delete globalThis.ImageDecoder;
+    const { createImageBitmap } = window;
+    window.createImageBitmap = (from, ...how) =>
+      from instanceof Blob && /avif/.test(from.type) ? Promise.reject(new DOMException("no", "InvalidStateError")) : createImageBitmap(from, ...how);
+  };
+  const { page, close } = await openViewer(browser, CLIP, { init, width: 800, height: 600, config: { ui: "full" } });
+  await opened(page);
+  const { message, time } = await state(page);
+  assert.deepEqual([message.code, time], ["codec", null]);
+  assert.match(message.text, /decodes no AV1.*The first frame is shown/);
+  assert.match(await page.locator(".panel header").textContent(), /The first frame is shown/);
+  assert.ok((await picture(page)).data.some((value) => value > 100), "the picture");
+  await close();
+});
+
+test("a finger on the bar: the clip rests while it is dragged, shows where it is, and plays on", async () => {
+  const { page, close } = await openViewer(browser, CLIP, { glide: true, context: { hasTouch: true }, width: 800, height: 600 });
+  await until(page, () => window.eigenfield.field?.player.frame > 1);
+  const place = page.getByRole("slider", { name: "Time" });
+  const { x, y, width, height } = await place.boundingBox();
+  const session = await page.context().newCDPSession(page);
+  const touch = (type, part) => {
+    const touchPoints = part === undefined ? [] : [{ x: x + part * width, y: y + height / 2 }];
+    return session.send("Input.dispatchTouchEvent", { type, touchPoints });
+  };
+  await touch("touchStart", 0.1);
+  for (const part of [0.2, 0.4, 0.6, 0.8]) {
+    await touch("touchMove", part);
+    await until(page, (near) => Math.abs(window.eigenfield.field.player.frame - near) < 2, part * (FRAMES - 1));
+    assert.equal((await state(page)).playing, false);
+    assert.ok(Math.abs((await place.inputValue()) - part * (FRAMES - 1)) < 2);
+  }
+  await touch("touchEnd");
+  await until(page, () => window.eigenfield.state().playing);
+  await close();
+});
+
+test("a gamepad plays a clip: A, the cross and the triggers", async () => {
+  const init = () => {
+    const pad = { axes: [0, 0, 0, 0], buttons: Array.from({ length: 16 }, () => ({ pressed: false })) };
+    window.pad = pad;
+    navigator.getGamepads = () => [pad];
+  };
+  const { page, close } = await openViewer(browser, CLIP, { init });
+  await opened(page);
+  await page.evaluate(() => window.dispatchEvent(new Event("gamepadconnected")));
+  const press = (button) =>
+    page.evaluate(async (button) => {
+      for (const pressed of [true, false]) {
+        window.pad.buttons[button].pressed = pressed;
+        for (let i = 0; i < 3; i++) await new Promise(requestAnimationFrame);
+      }
+    }, button);
+  const shows = (number) => until(page, (number) => window.eigenfield.field.player.frame === number, number);
+  await press(15);
+  await shows(1);
+  await press(7); // a second of ten frames
+  await shows(11);
+  await press(14);
+  await shows(10);
+  await press(6);
+  await shows(0);
+  await press(0);
+  await until(page, () => window.eigenfield.field.player.frame > 1);
+  assert.equal((await page.evaluate(() => window.eigenfield.state())).playing, true);
+  await press(0);
+  await until(page, () => !window.eigenfield.state().playing);
+  await close();
+});
 
 test("a page that `export` wrote plays from the disk", async () => {
   const file = scenePath("clip-page.html");

@@ -146,3 +146,26 @@ test("a thumbstick moves the eyes on the plane, and no further than its edge", a
   near(moved.y, 0, 1e-3);
   await close();
 });
+
+test("hands play a clip in a headset: the trigger, and the grips a second back and on", async () => {
+  const { page, close } = await present("clip.glb");
+  const press = (hand, button) =>
+    page.evaluate(async ([hand, button]) => {
+      for (const value of [1, 0]) {
+        headset.controllers[hand].updateButtonValue(button, value);
+        for (let i = 0; i < 3; i++) await new Promise((done) => headset.activeSession.requestAnimationFrame(done));
+      }
+    }, [hand, button]);
+  const until = (check, given) => page.waitForFunction(check, given, { timeout: 60_000 });
+  await page.evaluate(() => window.eigenfield.field.player.pause());
+  await page.evaluate(() => window.eigenfield.field.player.toFrame(2));
+  await press("right", "squeeze");
+  await until(() => window.eigenfield.field.player.frame === 12);
+  await press("left", "squeeze");
+  await until(() => window.eigenfield.field.player.frame === 2);
+  await press("right", "trigger");
+  await until(() => window.eigenfield.field.player.frame > 3);
+  await press("left", "trigger");
+  await until(() => !window.eigenfield.field.player.playing);
+  await close();
+});

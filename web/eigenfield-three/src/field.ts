@@ -84,6 +84,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
   private readonly textures: Textures;
   private weights: EigenWeights;
   private group: Group | null; // of the frame that is shown
+  private plain = false; // that frame has no eigen textures
   private moved: BufferGeometry | null; // of a clip, whose groups may have another mesh, and frames their own vertices
   private summed: { parts: Part[]; opacity: Part | null } = { parts: [], opacity: null };
   private readonly composers = new Map<number, Composer>(); // by `coarser`, each when it is first asked for
@@ -221,6 +222,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
   private showFrame({ number, group, films }: ClipFrame): void {
     if (this.group) this.shape(group, number - group.first, this.group.mesh, this.group.motion !== null);
     if (group !== this.group) this.enter(group);
+    this.plain = films.includes(null);
     if (this.source instanceof FilmTextures) this.source.show(films);
   }
 
@@ -303,7 +305,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
       mean: this.textures.hasMeans && one === null,
       opacity: this.textures.opacityVersion,
       only: one,
-      count: shown === VIEWS.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+      count: shown === VIEWS.mean || this.plain ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
       weights,
       eye: eye && onPlane(this.info.viewPlane, eye),
       places: eye || this.coarser > 1 ? this.surface.version : 0,
@@ -337,7 +339,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     const errors = this.showsErrors;
     const shown = this.view === "error" && !errors ? "picture" : this.view;
     const one = this.shownEigen;
-    uniforms.shown.value = VIEWS[shown === "eigen" && one >= this.loaded ? "mean" : shown];
+    uniforms.shown.value = VIEWS[shown === "eigen" && (this.plain || one >= this.loaded) ? "mean" : shown];
     if (shown === "eigen") uniforms.shownGain.value = this.gainOf(one);
     const camera = errors && this.info.cameras[this.camera ?? 0];
     if (camera && this.photograph) compareWith(uniforms, camera, this.photograph);

@@ -2,12 +2,19 @@
 
 import { SceneError } from "./errors.js";
 import type { Codes } from "./pieces.js";
-import type { FilmPart } from "./planes.js";
 
 const TEN_BITS = new Set(["I420P10", "I422P10", "I444P10"]);
 const LUMA_FIRST = new Set(["I420", "I420A", "I422", "I444", "NV12"]);
 const COLOURED = new Set(["RGBA", "RGBX", "BGRA", "BGRX"]); // grey: all three are the luma
 const GREEN = 1; // of a texel's bytes
+
+/** Where the textures of a picture lie in a film: column and row of each channel of each, which have one size. */
+export interface FilmPart {
+  film: number;
+  size: [number, number];
+  at: [number, number][];
+  where: string;
+}
 
 /** Codes of ten bits that stand for those of eight: 85 is 341 exactly. */
 const GROWN = Uint16Array.from({ length: 256 }, (_, code) => Math.round((code * 1023) / 255));
@@ -16,16 +23,18 @@ const STRETCHED = Uint16Array.from({ length: 256 }, (_, grey) => GROWN[16 + Math
 /** The same of an opacity: what was cut off at either end is taken for that end. */
 const CUT = STRETCHED.map((code, grey) => (grey === 0 ? 0 : grey === 255 ? 1023 : code));
 
-/** The codes of a frame. `room`: of a frame that is needed no more; `opacity`: it is of the film of an opacity. Raises
- * SceneError `unsupported`. */
+/** The codes of a frame. `room`: of a frame that is needed no more; `opacity`: it is of the film of an opacity. Frames that
+ * a browser does not hand out, as those of some hardware, are read where they are drawn. Raises SceneError `unsupported`. */
 export async function codesOf(
   frame: VideoFrame,
-  room: Uint8Array<ArrayBuffer> | null,
+  room?: Uint8Array<ArrayBuffer> | null,
   opacity = false,
 ): Promise<Codes> {
   const format = frame.format ?? "";
   const { width, height } = frame.visibleRect ?? { width: 0, height: 0 };
   if (!TEN_BITS.has(format) && !LUMA_FIRST.has(format) && !COLOURED.has(format)) {
+    const drawn = drawnOf(frame, [width, height]);
+    if (drawn) return grownCodes(drawn, 4 * width, 4, [width, height], tableOf(frame, opacity));
     throw new SceneError("unsupported", `This browser does not hand out its frames (${format || "no format"}).`, "");
   }
   const size = frame.allocationSize();
@@ -35,12 +44,25 @@ export async function codesOf(
   if (TEN_BITS.has(format)) return { data: data.subarray(offset), width, height, stride, room: data };
   const coloured = COLOURED.has(format);
   const [step, from] = coloured ? [4, offset + GREEN] : [1, offset];
-  const limited = coloured && frame.colorSpace?.fullRange === false; // films are full, whatever it says
-  const table = limited ? (opacity ? CUT : STRETCHED) : GROWN;
+  const table = coloured ? tableOf(frame, opacity) : GROWN;
   return grownCodes(data.subarray(from), stride, step, [width, height], table);
 }
 
-/** Every `step`-th byte of rows of `stride` bytes as a code of ten bits. */
+/** What the greys of a frame stand for. Films are full, whatever it says. */
+function tableOf(frame: VideoFrame, opacity: boolean): typeof GROWN {
+  if (frame.colorSpace?.fullRange !== false) return GROWN;
+  return opacity ? CUT : STRETCHED;
+}
+
+/** The colours of a frame, four bytes a texel; null where there is no canvas. */
+function drawnOf(frame: VideoFrame, size: [number, number]): Uint8ClampedArray | null {
+  if (typeof OffscreenCanvas === "undefined" || !size[0]) return null;
+  const context = new OffscreenCanvas(...size).getContext("2d", { willReadFrequently: true });
+  context?.drawImage(frame, 0, 0);
+  return context?.getImageData(0, 0, ...size).data ?? null;
+}
+
+/** Every `step`-th byte of rows of `stride` bytes as a code of ten bits, which are `grown`. */
 export function grownCodes(
   data: Uint8Array | Uint8ClampedArray,
   stride: number,
@@ -54,7 +76,7 @@ export function grownCodes(
       codes[row * width + column] = table[data[row * stride + step * column]!]!;
     }
   }
-  return { data: new Uint8Array(codes.buffer), width, height, stride: 2 * width };
+  return { data: new Uint8Array(codes.buffer), width, height, stride: 2 * width, grown: true };
 }
 
 /** The codes of each texture of a part, which stay where they are. */

@@ -2,13 +2,35 @@
 
 import { readSequenceHeader } from "./av1-picture.js";
 import { SceneError, damaged } from "./errors.js";
+import { codesOf } from "./film-codes.js";
+import type { Codes } from "./pieces.js";
 
 const MOST_OPEN = 4; // frames that are on their way: decoders have few, and wait for them
 const LADDER: HardwareAcceleration[] = ["prefer-software", "no-preference"]; // what hardware decodes is slow to read back
 
+/** What makes frames of the units of a film. */
+export interface FilmSource {
+  /** Frames of the browser that are not closed. */
+  readonly open: number;
+  /** Units that were given are to become frames. */
+  readonly busy: boolean;
+  /** Whether there is room for another unit, or the decoder is gone, which `decode` says. */
+  readonly ready: boolean;
+  /** Makes it what the first unit of a group needs. Raises SceneError: `codec`, `damaged`. */
+  start(unit: Uint8Array): Promise<void>;
+  /** Only after `start`, and while `ready`. `key`: the first unit of a group. */
+  decode(unit: Uint8Array, position: number, key: boolean): void;
+  /** All units have become frames. */
+  flush(): Promise<void>;
+  /** What was given is needed no more. */
+  reset(): void;
+  dispose(): void;
+}
+
 export interface FilmUser {
-  /** What becomes of a frame, which is closed behind it. */
-  take(position: number, frame: VideoFrame): Promise<void>;
+  /** What becomes of a frame. Until that is settled `read` gives its codes, in a room that they may have; `opacity`: of
+   * sheets. */
+  take(position: number, read: (room: Codes["room"], opacity: boolean) => Promise<Codes>): Promise<void>;
   /** A frame is closed: there may be room for another unit. */
   closed(): void;
   /** A unit could not be decoded; what was given is thrown away. */
@@ -17,7 +39,7 @@ export interface FilmUser {
   lost(): void;
 }
 
-export class FilmDecoder {
+export class FilmDecoder implements FilmSource {
   private decoder: VideoDecoder | null = null;
   private config: VideoDecoderConfig | null = null;
   private turn = 0; // of decoding: what belongs to one before is thrown away
@@ -31,17 +53,18 @@ export class FilmDecoder {
     private readonly user: FilmUser,
   ) {}
 
-  /** Frames that are not closed. */
   get open(): number {
     return this.opened;
   }
 
-  /** Whether there is room for another unit, or the decoder is gone, which `decode` says. */
+  get busy(): boolean {
+    return this.onTheWay > 0;
+  }
+
   get ready(): boolean {
     return this.onTheWay < MOST_OPEN || this.decoder?.state === "closed";
   }
 
-  /** Makes the decoder what the first unit of a group needs. Raises SceneError: `codec`, `damaged`. */
   async start(unit: Uint8Array): Promise<void> {
     const { level, tier, width, height } = readSequenceHeader(unit, this.where);
     if (width !== this.size[0] || height !== this.size[1]) throw damaged(this.where, `frames of ${width} x ${height}`);
@@ -56,19 +79,16 @@ export class FilmDecoder {
     this.decoder.configure(config);
   }
 
-  /** Only after `start`, and while `ready`. `key`: the first unit of a group. */
   decode(unit: Uint8Array, position: number, key: boolean): void {
     if (this.decoder?.state === "closed") return this.user.lost();
     this.onTheWay += 1;
     this.decoder?.decode(new EncodedVideoChunk({ type: key ? "key" : "delta", timestamp: position, data: unit }));
   }
 
-  /** All units have become frames. */
   async flush(): Promise<void> {
     await this.decoder?.flush().catch(() => undefined); // stopped, or `failed` has heard of it
   }
 
-  /** What was given is needed no more. */
   reset(): void {
     this.turn += 1;
     this.onTheWay = 0;
@@ -87,6 +107,7 @@ export class FilmDecoder {
       error: (reason) => {
         if (this.decoder !== made) return;
         if (reason.name === "QuotaExceededError") this.user.lost();
+        else if (reason.name === "NotSupportedError") this.fail(this.turn, noDecoder(this.where));
         else this.fail(this.turn, damaged(this.where, reason.message));
       },
     });
@@ -97,7 +118,7 @@ export class FilmDecoder {
     const { turn } = this;
     this.opened += 1;
     try {
-      await this.user.take(frame.timestamp, frame);
+      await this.user.take(frame.timestamp, (...how) => codesOf(frame, ...how));
     } catch (reason) {
       this.fail(turn, reason);
     } finally {
@@ -119,10 +140,14 @@ async function supported(codec: string, [width, height]: [number, number], where
   for (const hardwareAcceleration of typeof VideoDecoder === "undefined" ? [] : LADDER) {
     const size = { codedWidth: width, codedHeight: height };
     const config = { codec, ...size, hardwareAcceleration, optimizeForLatency: true };
-    const { supported } = await VideoDecoder.isConfigSupported(config);
-    if (supported) return config;
+    const answer = await VideoDecoder.isConfigSupported(config).catch(() => null); // a browser that knows no such codec
+    if (answer?.supported) return config;
   }
+  throw noDecoder(where);
+}
+
+function noDecoder(where: string): SceneError {
   const why = globalThis.isSecureContext ? "decodes no AV1 of 10 bits" : "plays clips from https and localhost only";
   const remedy = globalThis.isSecureContext ? "use a newer browser" : "open the page from there";
-  throw new SceneError("codec", `This browser ${why}; ${remedy}. The first frame is shown.`, where);
+  return new SceneError("codec", `This browser ${why}; ${remedy}. The first frame is shown.`, where);
 }

@@ -14,7 +14,7 @@ export class FilmTextures implements TextureSource {
   /** `films`: of the first frame. */
   constructor(
     private readonly scene: SceneDocument,
-    private films: Codes[],
+    private films: (Codes | null)[],
   ) {}
 
   fill(filling: Filling): Promise<void> {
@@ -24,8 +24,9 @@ export class FilmTextures implements TextureSource {
     return Promise.resolve();
   }
 
-  /** Puts another frame. Its codes have to stay as they are until the next is put. */
-  show(films: Codes[]): void {
+  /** Puts another frame, of which films of eigen textures may be left out. Its codes have to stay as they are until the
+   * next is put. */
+  show(films: (Codes | null)[]): void {
     this.films = films;
     if (this.filling) this.put(this.filling);
   }
@@ -48,7 +49,8 @@ export class FilmTextures implements TextureSource {
     filling.together(() => {
       stillsOf(this.scene).forEach(({ mean }, i) => filling.putMean(i, { pieces: this.piecesOf(mean), precision: null }));
       basesOf(this.scene).forEach(({ pictures: [picture] }, i) => {
-        if (picture) filling.putTextures(i, 0, this.piecesOf(picture), picture);
+        const pieces = picture ? this.piecesOf(picture) : [];
+        if (picture && pieces.length) filling.putTextures(i, 0, pieces, picture);
       });
     });
   }

@@ -14,7 +14,7 @@ export { loadEigenfield, type Loaded, type LoadOptions } from "./load.js";
 export type { Filter } from "./material.js";
 export { defaultMemory, type Reduction } from "./memory.js";
 export type { ByteStream, EigenfieldOptions } from "./options.js";
-export { Player, type PlayerEvents } from "./player.js";
+export { Player, type Fallback, type PlayerEvents } from "./player.js";
 export { EigenfieldPlugin } from "./plugin.js";
 export type { Sound } from "./sound.js";
 export { SHEETS } from "./sheet-stack.js";

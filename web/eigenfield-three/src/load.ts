@@ -17,7 +17,8 @@ export interface LoadOptions extends EigenfieldOptions {
 
 export interface Loaded {
   gltf: GLTF;
-  field: EigenField | null; // null: a glTF file without eigen textures
+  field: EigenField | null; // null: a glTF file without eigen textures, or one with an `error`
+  error: SceneError | null; // why a clip is shown as other viewers show it
 }
 
 /**
@@ -40,15 +41,17 @@ export async function loadEigenfield(source: string | Blob | ArrayBuffer, option
     .finally(() => signal?.removeEventListener("abort", onAbort));
   try {
     const container = await openContainer(arrival);
-    if (!isScene(container.json)) return { gltf: await parsePlain(arrival, container, fetching), field: null };
+    if (!isScene(container.json)) {
+      return { gltf: await parsePlain(arrival, container, fetching), field: null, error: null };
+    }
     const ranges = (file: string | Blob): Ranges =>
       new Ranges(file, arrival, container.length, () => first.abort(), stop.signal);
     const far = source instanceof ArrayBuffer ? arrival : ranges(source);
     const beside = typeof source === "string" ? new Beside(source, stop.signal) : null;
     const gltf = await parseScene(arrival, container, far, beside, options);
     signal?.throwIfAborted();
-    const field: unknown = gltf.userData["eigenfield"];
-    return { gltf, field: field instanceof EigenField ? field : null };
+    const { eigenfield: field, eigenfieldError: error }: Record<string, unknown> = gltf.userData;
+    return { gltf, field: field instanceof EigenField ? field : null, error: error instanceof SceneError ? error : null };
   } catch (reason) {
     stop.abort();
     signal?.throwIfAborted();

@@ -58,7 +58,8 @@ export const decodeBitmaps: PictureDecoder<ImageBitmap> = async (bytes, picture,
   return Array.from({ length: count }, (_, i) => ({ picture: bitmap, row: i * height, rows: height }));
 };
 
-async function canDecode(type: string): Promise<boolean> {
+/** Whether this browser decodes pictures of a type: a picture that it does not decode may also be damaged. */
+export async function canDecode(type: string): Promise<boolean> {
   const probe = PROBES[type];
   if (!probe) return true;
   const bytes = Uint8Array.from(atob(probe), (letter) => letter.charCodeAt(0));

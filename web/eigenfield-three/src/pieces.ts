@@ -21,6 +21,7 @@ export interface Codes {
   width: number;
   height: number;
   stride: number;
+  grown?: boolean; // made of eight bits
   room?: Uint8Array<ArrayBuffer>; // that holds them, and may take others when they are needed no more
 }
 

@@ -3,6 +3,7 @@
 import { FLOAT, streamOf, type Accessor, type AccessorReader, type Stream, type ViewReader } from "./accessors.js";
 import { CODECS, codecOf, pictureCodec, type Codec } from "./codecs.js";
 import { SceneError } from "./errors.js";
+import type { FilmPart } from "./film-codes.js";
 import { Value } from "./json.js";
 import * as limits from "./limits.js";
 import type { PictureFile } from "./pieces.js";
@@ -18,14 +19,6 @@ export interface Picture extends PictureFile {
   scale: number[]; // of each channel of each texture; of a clip those of the group that is shown
   zero: number[];
   part: FilmPart | null; // null: a picture of its own in the file; else `view` is none
-}
-
-/** Where the textures of a picture lie in a film: column and row of each channel of each, which have one size. */
-export interface FilmPart {
-  film: number;
-  size: [number, number];
-  at: [number, number][];
-  where: string;
 }
 
 /** A small grey picture over all of a mean: value = (code - zero) * scale / p, p = (its own code + 1) / 256. */

@@ -6,6 +6,10 @@ import type { Sound } from "./sound.js";
 import { frameAt, groupOf, timeOf, type Timeline } from "./timeline.js";
 
 const LONGEST = 0.25; // seconds: after a pause of the page the clock goes on by no more
+const PREVIEW = 100; // milliseconds after which something on the way to what is sought is shown
+const WATCHED = 2; // seconds of playing over which decoders are found too slow
+const SLOW = 0.25; // of what was due, which decoders did not bring in that time
+const SMOOTH = 0.1; // seconds: a page that has its own frames less often says nothing of its decoders
 
 export interface PlayerEvents {
   /** Another frame is shown; who draws on demand draws. */
@@ -13,6 +17,10 @@ export interface PlayerEvents {
   /** It plays, or stands still, or waits, or plays otherwise, or is heard or not. */
   change: {};
 }
+
+/** What a browser shows less of than a clip has: codes of 8 bits, no eigen textures while it plays, as its decoders are too
+ * slow for them, or the first frame of each group alone, as it decodes pictures of AV1 and no videos. */
+export type Fallback = "bits" | "textures" | "keys";
 
 /** What the clock tells. */
 export interface PlayerUser {
@@ -40,6 +48,8 @@ export class Player extends EventDispatcher<PlayerEvents> {
   private waiters: (() => void)[] = [];
   private asked: number | null = null; // for a frame of the page
   private disposed = false;
+  private lacking: readonly Fallback[] = [];
+  private watched = { seconds: 0, due: 0, short: 0 }; // while it plays: frames that were due, and that decoders did not bring
 
   /** Made with a field. `makeRing`: of the clip's frames. `makeSound`: null, it is silent. */
   constructor(
@@ -55,8 +65,13 @@ export class Player extends EventDispatcher<PlayerEvents> {
     this.duration = timeline.frames / timeline.rate;
     this.shown = { position: 0, number: 0 };
     this.clock = 0;
-    this.ring = makeRing({ ready: () => this.wake(), failed: (reason, group) => this.fail(reason, group) });
+    this.ring = makeRing({
+      ready: () => this.wake(),
+      failed: (reason, group) => this.fail(reason, group),
+      thinned: () => this.thin(),
+    });
     this.sound = makeSound && makeSound(() => void this.dispatchEvent({ type: "change" }));
+    globalThis.document?.addEventListener("visibilitychange", this.hide);
   }
 
   get playing(): boolean {
@@ -100,6 +115,11 @@ export class Player extends EventDispatcher<PlayerEvents> {
     return this.ring.open;
   }
 
+  /** What of the clip is not shown here, as far as is known: more is when it plays. */
+  get fallbacks(): readonly Fallback[] {
+    return this.lacking;
+  }
+
   /** After the last frame the first follows; else the clip ends there. */
   get loop(): boolean {
     return this.ring.loop;
@@ -119,6 +139,7 @@ export class Player extends EventDispatcher<PlayerEvents> {
   set speed(pace: number) {
     if (!(pace > 0 && pace < Infinity)) throw new RangeError("A speed is above 0.");
     this.pace = pace;
+    this.watch();
     this.dispatchEvent({ type: "change" });
   }
 
@@ -126,6 +147,7 @@ export class Player extends EventDispatcher<PlayerEvents> {
     if (this.plays || this.disposed) return;
     this.plays = true;
     this.last = null;
+    this.watch();
     this.ring.retry();
     if (!this.loop && (this.following ?? this.goal ?? this.shown.position) >= this.end) void this.toFrame(0);
     this.dispatchEvent({ type: "change" });
@@ -137,6 +159,7 @@ export class Player extends EventDispatcher<PlayerEvents> {
     this.plays = false;
     this.clock = this.shown.position;
     this.sound?.rest();
+    if (this.ring.plain) this.begin(this.shown.position); // what stands still has its eigen textures
     this.dispatchEvent({ type: "change" });
   }
 
@@ -145,7 +168,7 @@ export class Player extends EventDispatcher<PlayerEvents> {
     return this.toFrame(frameAt(this.timeline, seconds));
   }
 
-  /** To a frame by its number, as `seek`. */
+  /** To a frame by its number, as `seek`. Where that takes longer than a moment, frames on the way to it are shown. */
   toFrame(number: number): Promise<void> {
     return this.toPosition(this.lap + Math.min(Math.max(Math.round(number), 0), this.frames - 1));
   }
@@ -153,7 +176,7 @@ export class Player extends EventDispatcher<PlayerEvents> {
   /** So many frames on, or back, and stands there. In a loop the first follows the last. */
   step(frames: number): Promise<void> {
     this.pause();
-    const position = (this.following ?? this.goal ?? this.shown.position) + Math.round(frames);
+    const position = this.ring.stepped(this.following ?? this.goal ?? this.shown.position, Math.round(frames));
     if (this.loop) return this.toPosition(position < 0 ? position + this.frames : position);
     return this.toPosition(Math.min(Math.max(position, this.lap), this.end));
   }
@@ -166,7 +189,7 @@ export class Player extends EventDispatcher<PlayerEvents> {
     this.last = this.plays && this.goal === null ? now : null;
     if (this.goal === null && !this.plays) return;
     if (this.goal === null) {
-      this.clock = this.advanced(seconds);
+      this.advance(seconds);
       this.sound?.follow(this.first + (this.clock % this.frames) / this.rate, this.pace);
     } else this.sound?.rest();
     const frame = this.ring.take(this.goal ?? Math.floor(this.clock));
@@ -177,6 +200,7 @@ export class Player extends EventDispatcher<PlayerEvents> {
   dispose(): void {
     this.disposed = true;
     this.plays = false;
+    globalThis.document?.removeEventListener("visibilitychange", this.hide);
     this.ring.dispose();
     this.sound?.dispose();
     this.settle();
@@ -191,11 +215,29 @@ export class Player extends EventDispatcher<PlayerEvents> {
     return this.lap + this.frames - 1;
   }
 
-  private advanced(seconds: number): number {
-    const next = this.clock + seconds * this.pace * this.rate;
+  private advance(seconds: number): void {
+    const [before, due] = [this.clock, seconds * this.pace * this.rate];
     const most = this.loop ? this.ring.reach : Math.min(this.ring.reach, this.end);
-    return Math.max(this.clock, Math.min(next, most));
+    this.clock = Math.max(before, Math.min(before + due, most));
+    if (seconds > SMOOTH) return;
+    const { watched } = this;
+    watched.seconds += seconds;
+    watched.due += due;
+    if (this.ring.busy) watched.short += due - (this.clock - before);
+    if (watched.seconds < WATCHED) return;
+    if (watched.short > SLOW * watched.due) this.ring.leaveOut();
+    this.watch();
   }
+
+  /** Watches decoders from now on. */
+  private watch(): void {
+    this.watched = { seconds: 0, due: 0, short: 0 };
+  }
+
+  /** Nobody hears what a page that is not seen plays on without its frames. */
+  private readonly hide = (): void => {
+    if (document.hidden) this.sound?.rest();
+  };
 
   private toPosition(position: number): Promise<void> {
     const shown = new Promise<void>((resolve) => void this.waiters.push(resolve));
@@ -204,14 +246,17 @@ export class Player extends EventDispatcher<PlayerEvents> {
     return shown;
   }
 
-  private begin(position: number): void {
+  private begin(wanted: number): void {
+    const position = this.ring.standIn(wanted);
     this.following = null;
-    if (position === this.shown.position) {
+    this.watch();
+    if (position === this.shown.position && this.ring.follows(position)) {
       this.goal = null;
       this.clock = position;
       return this.settle();
     }
     this.goal = this.ring.seek(position) ? position : null;
+    this.preview();
     if (this.goal === null) return this.settle(); // it cannot be decoded, which has been said
     this.dispatchEvent({ type: "change" });
     this.wake();
@@ -221,13 +266,40 @@ export class Player extends EventDispatcher<PlayerEvents> {
     const { position, number } = frame;
     this.shown = { position, number };
     this.user.show(frame);
-    if (position === this.goal) {
+    this.note(frame);
+    if (this.goal !== null && position !== this.goal && this.following === null) this.preview();
+    else if (this.goal !== null) {
       this.goal = null;
       this.clock = position;
       if (this.following !== null) this.begin(this.following);
       else this.settle();
     }
     this.dispatchEvent({ type: "frame" });
+  }
+
+  /** If what is sought is not there in a moment, something on the way is shown. */
+  private preview(): void {
+    this.ring.previewsFrom = this.goal === null ? Infinity : performance.now() + PREVIEW;
+  }
+
+  /** Sees what of the clip is left out. */
+  private note({ films }: ClipFrame): void {
+    const found: Fallback[] = [];
+    if (this.ring.sparse) found.push("keys");
+    if (films.some((codes) => codes?.grown)) found.push("bits");
+    if (films.includes(null)) found.push("textures");
+    if (found.join() === this.lacking.join()) return;
+    this.lacking = found;
+    this.dispatchEvent({ type: "change" });
+  }
+
+  /** Frames that are sought may not come any more: those that stand for them do. */
+  private thin(): void {
+    const sought = this.following ?? this.goal;
+    this.lacking = ["keys"];
+    if (sought !== null) this.begin(sought);
+    this.dispatchEvent({ type: "change" });
+    this.wake();
   }
 
   /** Nothing is sought any more. */
@@ -249,9 +321,13 @@ export class Player extends EventDispatcher<PlayerEvents> {
   private fail(reason: unknown, group: number | null): void {
     if (this.disposed) return;
     this.user.failed(reason);
-    if (group === null) this.pause();
+    if (group === null) {
+      this.lacking = [];
+      this.pause();
+    }
     const sought = this.goal !== null && groupOf(this.timeline, this.goal % this.frames);
     if (sought === false || (group !== null && sought !== group)) return;
+    if (this.goal !== null) this.clock = this.goal; // what comes behind it is shown when it is due
     this.goal = this.following = null;
     this.settle();
   }

@@ -4,7 +4,7 @@ import { checkAddresses } from "./addresses.js";
 import type { ViewBytes } from "./accessors.js";
 import { openClip, type Clip } from "./clip.js";
 import { isScene, readDocument, stillsOf, type SceneDocument } from "./document.js";
-import { cutOff, damaged } from "./errors.js";
+import { SceneError, cutOff, damaged } from "./errors.js";
 import { EigenField } from "./field.js";
 import { FilmTextures } from "./film-textures.js";
 import { contextOf } from "./gpu.js";
@@ -16,6 +16,7 @@ import type { Size } from "./memory.js";
 import type { EigenfieldOptions } from "./options.js";
 import { unpacked } from "./packed.js";
 import type { DecodedMesh } from "./mesh-decoder.js";
+import { canDecode } from "./pictures-8bit.js";
 import { checkGeometry, countsOf, geometryOf, readCodedMesh } from "./proxy.js";
 import { checkSheets } from "./sheets.js";
 import { stillTextures } from "./still-textures.js";
@@ -27,11 +28,14 @@ import { ViewWeights } from "./weights.js";
  *
  *     loader.register((parser) => new EigenfieldPlugin(parser));
  *
- * The loaded scene draws itself; `gltf.userData.eigenfield` is its EigenField. Other glTF files load as ever.
+ * The loaded scene draws itself; `gltf.userData.eigenfield` is its EigenField. Other glTF files load as ever. A clip that
+ * this browser cannot decode is shown as other viewers show it, and `gltf.userData.eigenfieldError` says why.
  */
 export class EigenfieldPlugin implements GLTFLoaderPlugin {
   readonly name = EXTENSION;
   private scene: SceneDocument | null = null;
+  private views: SceneDocument["views"] = []; // of our own file
+  private lacks: SceneError | null = null; // why a scene is shown as other viewers show it
   private readonly ours: boolean;
 
   constructor(
@@ -51,6 +55,12 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
     const { stream } = this.options;
     const read = scene.timeline?.groups[0]?.file ? stream?.readFile : stream?.readGroups;
     if (scene.timeline && !read) return; // shown as other viewers show it
+    this.views = scene.views;
+    if (scene.timeline && scene.shown && !(await canDecode("image/avif"))) {
+      const message = "This browser decodes no AV1; use a newer browser. The first frame is shown.";
+      this.lacks = new SceneError("codec", message, "");
+      return;
+    }
     this.scene = scene;
     if (!this.scene.shown) showEmptyMesh(json);
   }
@@ -73,12 +83,13 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
   }
 
   loadBufferView(index: number): Promise<ArrayBuffer> | null {
-    const view = this.scene?.views[index];
+    const view = this.views[index];
     return view && this.options.stream ? this.options.stream.read(view.offset, view.length) : null;
   }
 
   async afterRoot(gltf: GLTF): Promise<void> {
     const { scene } = this;
+    if (this.lacks) gltf.userData["eigenfieldError"] = this.lacks;
     if (!scene) return;
     const meshes = proxiesOf(gltf, this.parser);
     const [mesh] = meshes;

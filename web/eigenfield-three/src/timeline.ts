@@ -18,6 +18,7 @@ export interface Film {
   codec: Codec<"film">;
   size: [number, number];
   opacity: boolean; // of sheets: codes 0 and 1023 are nothing and all; of others only 64 to 940 are used
+  detail: boolean; // it holds eigen textures alone, without which there is something to show
   where: string;
 }
 
@@ -75,7 +76,11 @@ export function readTimeline(
   const films = value.key("films").items(limits.MAX_FILMS).map(readFilm);
   const frames = value.key("frames").integer(1, limits.MAX_FRAMES);
   checkPlaces(pictures, films);
-  for (const film of films) film.opacity = film === films[opacity?.part?.film ?? -1];
+  const needed = new Set([...planes.map(({ mean }) => mean), opacity].map((one) => films[one?.part?.film ?? -1]));
+  for (const film of films) {
+    film.opacity = film === films[opacity?.part?.film ?? -1];
+    film.detail = !needed.has(film);
+  }
   const groups = readGroups(value, frames);
   return { rate, first: first.exists ? first.number() : 0, frames, films, groups, sound: readSound(value, groups) };
 }
@@ -98,7 +103,7 @@ function readFilm(value: Value<FilmJson>): Film {
   if (width % FILM_STEP || height % FILM_STEP || width * height > limits.MAX_FILM_PIXELS) {
     throw value.key("size").wrong(`a film of ${width} x ${height}`);
   }
-  return { codec, size: [width, height], opacity: false, where: value.where };
+  return { codec, size: [width, height], opacity: false, detail: false, where: value.where };
 }
 
 function offsetOf(value: Value<number>, least: number): number {

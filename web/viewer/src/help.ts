@@ -32,6 +32,8 @@ const CONTROLS: readonly (readonly [keys: string, does: string, touch?: string])
   ["I", words("doesPanel")],
   ["H · ?", words("doesHelp")],
   [words("byGamepad"), words("doesGamepad")],
+  [words("byGamepad"), words("doesGamepadClip")],
+  [words("byHeadset"), words("doesHeadset")],
 ];
 
 export interface Help {

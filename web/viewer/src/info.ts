@@ -1,6 +1,6 @@
 // The information panel: what the file is, what it says of itself, and what it costs here.
 
-import type { EigenField, Player, SceneInfo } from "eigenfield-three";
+import type { EigenField, Fallback, Player, SceneInfo } from "eigenfield-three";
 import { element } from "./dom";
 import { limitationWords, words } from "./language";
 import { bytes, figure, shown, whole } from "./text";
@@ -23,7 +23,7 @@ export function createInfo(viewer: Viewer): Info {
       if (!scene) return root.replaceChildren();
       if (!field) {
         return root.replaceChildren(
-          element("p", {}, `${words("plainGltf")} ${words("plainGltfShown")}`),
+          element("p", {}, scene.lacks ?? `${words("plainGltf")} ${words("plainGltfShown")}`),
         );
       }
       const limitation = limitationWords(field);
@@ -47,12 +47,20 @@ export function briefly({ info, gpuBytes, player }: EigenField): HTMLElement {
   return rowsOf([...imageQuality(info), [words("gpuMemory"), bytes(gpuBytes)], ...(player ? whereIn(player) : [])]);
 }
 
-function whereIn({ frame, frames, rate, group, late }: Player): Rows {
+/** Why a clip is shown without some of it. */
+function fallbackWords(kind: Fallback): string {
+  if (kind === "bits") return words("shownBits");
+  if (kind === "textures") return words("shownMeans");
+  return words(globalThis.isSecureContext ? "shownKeys" : "shownInsecure");
+}
+
+function whereIn({ frame, frames, rate, group, late, fallbacks }: Player): Rows {
   const outOf = (part: number, count: number): string => words("outOf", { part: part + 1, whole: count });
   return [
     [words("frame"), `${outOf(frame, frames)}\u00a0· ${shown(rate, Number.isInteger(rate) ? 0 : 2)}\u00a0Hz`],
     [words("group"), `${outOf(group.index, group.count)}\u00a0· ${bytes(group.bytes)}`],
     [words("leftOut"), whole(late)],
+    ...(fallbacks.length ? [[words("shownHere"), fallbacks.map(fallbackWords).join("; ")] as [string, string]] : []),
   ];
 }
 

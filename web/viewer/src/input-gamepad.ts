@@ -1,6 +1,8 @@
-// A gamepad: sticks move, bumpers change the camera. It is asked only while one is there.
+// A gamepad: sticks move, bumpers change the camera, and a clip is played with what else is at hand. It is asked only
+// while one is there.
 
 import type { Push } from "./mode";
+import { SKIP } from "./playback";
 import type { Viewer } from "./viewer";
 
 const DEAD = 0.14; // a resting stick is never quite at rest
@@ -8,6 +10,8 @@ const A = 0;
 const B = 1;
 const LEFT = 4;
 const RIGHT = 5;
+const [LEFT_TRIGGER, RIGHT_TRIGGER] = [6, 7];
+const [CROSS_LEFT, CROSS_RIGHT] = [14, 15];
 
 export interface Gamepads {
   wish(): Push | null;
@@ -37,8 +41,14 @@ export function listenToGamepads(viewer: Viewer): Gamepads {
     const fresh = (index: number): boolean => now.has(index) && !pressed.has(index);
     if (fresh(LEFT)) viewer.nextCamera(-1);
     if (fresh(RIGHT)) viewer.nextCamera(1);
-    if (fresh(A)) viewer.showPhotograph(!viewer.photographShown());
     if (fresh(B)) viewer.home();
+    if (viewer.player()) {
+      if (fresh(A)) viewer.playOrPause();
+      if (fresh(CROSS_LEFT)) viewer.step(-1);
+      if (fresh(CROSS_RIGHT)) viewer.step(1);
+      if (fresh(LEFT_TRIGGER)) viewer.skip(-SKIP);
+      if (fresh(RIGHT_TRIGGER)) viewer.skip(SKIP);
+    } else if (fresh(A)) viewer.showPhotograph(!viewer.photographShown());
     pressed = now;
     requestAnimationFrame(ask); // looks at the sticks; nothing is drawn
   };

@@ -2,7 +2,7 @@
 
 import { Vector2, Vector3 } from "three";
 import type { GLTF } from "three/addons/loaders/GLTFLoader.js";
-import { type EigenField, loadEigenfield, SceneError } from "eigenfield-three";
+import { type EigenField, type Loaded, loadEigenfield, SceneError } from "eigenfield-three";
 import type { Config } from "./config";
 import { confine } from "./confine";
 import { pluginWords, words } from "./language";
@@ -39,18 +39,20 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
     stage.clear();
     Object.assign(session, { scene: null, captured: null, photographShown: false });
   };
-  const put = (source: Source, gltf: GLTF, field: EigenField | null): void => {
+  const put = (source: Source, { gltf, field, error }: Loaded): void => {
     close();
     stage.put(gltf.scene, field !== null);
     gltf.scene.updateWorldMatrix(true, true);
     const around = field ? surroundingsOf(field) : plainSurroundings(gltf);
+    const said = error && described(error, null);
     const scene: Scene = {
-      source, gltf, field, around,
+      source, gltf, field, around, lacks: said?.text ?? null,
       plane: field?.info.facesPlane ? createPlaneMode(field) : null,
       orbit: createOrbitMode(field?.mesh ?? gltf.scene, around),
     };
     if (field && config.metresPerUnit !== null && source.own) field.info.metresPerUnit = config.metresPerUnit;
     Object.assign(session, { scene, status: "ready", mode: scene.plane ? "plane" : "orbit" });
+    session.message = said;
     Object.assign(session.options, { eigen: 0, count: Infinity, view: "picture", divider: null });
     events.opened();
     scene.plane?.step(10);
@@ -79,7 +81,7 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
     session.progress = { loaded: 0, total: source.bytes };
     changed();
     try {
-      const { gltf, field } = await loadEigenfield(source.from, {
+      const loaded = await loadEigenfield(source.from, {
         renderer: stage.renderer,
         signal: mine.signal,
         memory: config.memory ?? undefined,
@@ -90,12 +92,13 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
           changed();
         },
       });
+      const { field } = loaded;
       if (stale()) {
         field?.dispose();
         return;
       }
       while (openings[0] !== mine) openings.shift()?.abort();
-      put(source, gltf, field);
+      put(source, loaded);
       if (!field) return;
       await follow(field);
       if (session.scene?.field !== field) return;

@@ -116,7 +116,7 @@ export function createPanel(viewer: Viewer): Panel {
     own.hidden = field === null;
     for (const control of [weights, mixing, filter]) control.root.hidden = field === null;
     if (!field) {
-      summary.textContent = words("plainGltf");
+      summary.textContent = scene.lacks ?? words("plainGltf");
       brief.replaceChildren();
       return;
     }

@@ -4,6 +4,7 @@ import type { Player } from "eigenfield-three";
 import { reducedMotion } from "./mode";
 import type { Session } from "./session";
 
+export const SKIP = 1; // seconds on or back at a press of a trigger
 const SPEEDS = [0.25, 0.5, 1, 2, 4];
 
 export interface Playback {
@@ -11,6 +12,11 @@ export interface Playback {
   player(): Player | null;
   playOrPause(): void;
   toFrame(number: number): void;
+  /** The same while somebody drags: it rests until `letGo`. */
+  scrub(number: number): void;
+  letGo(): void;
+  /** So many seconds on, or back. */
+  skip(seconds: number): void;
   /** Frames on, or back, and stands there. */
   step(frames: number): void;
   /** The next speed, or the one before; behind the last the first follows if `around`. */
@@ -29,6 +35,7 @@ export interface Clips extends Playback {
 /** request: asks for a frame of the page. */
 export function createPlayback(session: Session, request: () => void, changed: () => void): Clips {
   const player = (): Player | null => session.scene?.field?.player ?? null;
+  let goesOn: Player | null = null; // played when somebody began to drag
   return {
     player,
     playOrPause: () => {
@@ -37,6 +44,20 @@ export function createPlayback(session: Session, request: () => void, changed: (
       else own?.play();
     },
     toFrame: (number) => void player()?.toFrame(number),
+    scrub: (number) => {
+      const own = player();
+      if (own?.playing) goesOn = own;
+      own?.pause();
+      void own?.toFrame(number);
+    },
+    letGo: () => {
+      if (goesOn === player()) goesOn?.play();
+      goesOn = null;
+    },
+    skip: (seconds) => {
+      const own = player();
+      void own?.toFrame(own.sought + seconds * own.rate);
+    },
     step: (frames) => void player()?.step(frames),
     changeSpeed: (step, around = false) => {
       const own = player();

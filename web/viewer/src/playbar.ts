@@ -15,7 +15,17 @@ export interface Playbar {
 export function createPlaybar(viewer: Viewer): Playbar {
   const play = button(words("play"), ICONS.play, viewer.playOrPause);
   const place = element("input", { type: "range", min: "0", max: "0", step: "1", "aria-label": words("time") });
-  place.addEventListener("input", () => viewer.toFrame(Number(place.value)));
+  let held = false; // the knob is where the hand has it
+  place.addEventListener("input", () => {
+    held = true;
+    viewer.scrub(Number(place.value));
+  });
+  for (const end of ["change", "pointerup", "pointercancel", "blur"]) { // no change where it ends as it began
+    place.addEventListener(end, () => {
+      held = false;
+      viewer.letGo();
+    });
+  }
   const time = element("output", { class: "figures", "aria-hidden": "true" });
   const speed = element("button", { type: "button", class: "speed figures" });
   speed.addEventListener("click", () => viewer.changeSpeed(1, true));
@@ -26,9 +36,10 @@ export function createPlaybar(viewer: Viewer): Playbar {
   const tick = (): void => {
     const player = viewer.player();
     if (!player) return;
-    const now = shown(player.time, 2, "\u00a0s");
-    place.value = String(player.frame);
-    place.style.setProperty("--part", `${(100 * player.frame) / Math.max(player.frames - 1, 1)}%`);
+    const at = held ? player.sought : player.frame;
+    const now = shown(player.first + at / player.rate, 2, "\u00a0s");
+    place.value = String(at);
+    place.style.setProperty("--part", `${(100 * at) / Math.max(player.frames - 1, 1)}%`);
     place.setAttribute("aria-valuetext", now);
     time.textContent = now;
   };

@@ -13,7 +13,8 @@ export type Status = "empty" | "loading" | "ready" | "failed" | "lost";
 export interface Scene {
   source: Source;
   gltf: GLTF;
-  field: EigenField | null; // null: a plain glTF file
+  field: EigenField | null; // null: a plain glTF file, or a clip that this browser cannot decode
+  lacks: string | null; // why it is none
   plane: PlaneMode | null; // null: its cameras do not face a plane
   orbit: OrbitMode;
   around: Surroundings;

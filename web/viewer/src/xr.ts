@@ -5,6 +5,7 @@ import { Matrix4, Quaternion, Vector3 } from "three";
 import { button, ICONS } from "./dom";
 import { scaled, add } from "./geometry";
 import { words } from "./language";
+import { SKIP } from "./playback";
 import { extentOf } from "./surroundings";
 import type { Viewer } from "./viewer";
 
@@ -12,6 +13,7 @@ const HALF_WIDTH = 0.25; // metres of an array whose size nobody knows
 const PACE = 0.6; // view-plane units a second under a full stick
 const DEAD = 0.15;
 const NEAR = 0.03; // metres
+const [TRIGGER, SQUEEZE, FIRST] = [0, 1, 4]; // buttons; the last is A, X
 
 export interface Headset {
   readonly root: HTMLButtonElement;
@@ -27,6 +29,7 @@ export function createHeadset(viewer: Viewer, entered: (inside: boolean) => void
   let session: XRSession | null = null;
   const shift = { x: 0, y: 0 }; // where sticks have moved the eye, view-plane units
   let base: Matrix4 | null = null; // scene to room, before `shift`; null until the head is known
+  let pressed = new Set<string>(); // buttons, each with its hand
   let last = 0;
 
   const showIfPossible = async (): Promise<void> => {
@@ -63,18 +66,27 @@ export function createHeadset(viewer: Viewer, entered: (inside: boolean) => void
       .multiply(new Matrix4().makeScale(metres(), metres(), metres()))
       .multiply(new Matrix4().makeTranslation(-eye.x, -eye.y, -eye.z));
   };
-  const moveByStick = (seconds: number): void => {
+  const followHands = (seconds: number): void => {
     let reset = false;
-    for (const source of session?.inputSources ?? []) {
-      const axes = source.gamepad?.axes ?? [];
+    const now = new Set<string>();
+    for (const { handedness, gamepad } of session?.inputSources ?? []) {
+      const axes = gamepad?.axes ?? [];
       const stick = (index: number): number => {
         const value = axes[index] ?? 0;
         return Math.abs(value) < DEAD ? 0 : value;
       };
       shift.x += stick(2) * PACE * seconds;
       shift.y -= stick(3) * PACE * seconds;
-      reset ||= source.gamepad?.buttons[4]?.pressed === true; // A, X
+      reset ||= gamepad?.buttons[FIRST]?.pressed === true;
+      const fresh = (index: number): boolean => {
+        const name = `${handedness} ${index}`;
+        if (gamepad?.buttons[index]?.pressed === true) now.add(name);
+        return now.has(name) && !pressed.has(name);
+      };
+      if (fresh(TRIGGER)) viewer.playOrPause();
+      if (fresh(SQUEEZE)) viewer.skip(handedness === "left" ? -SKIP : SKIP);
     }
+    pressed = now;
     shift.x = Math.min(Math.max(shift.x, -1), 1);
     shift.y = Math.min(Math.max(shift.y, -1), 1);
     if (!reset) return;
@@ -87,7 +99,7 @@ export function createHeadset(viewer: Viewer, entered: (inside: boolean) => void
     const head = xr && space ? xr.getViewerPose(space) : undefined;
     if (!field || !head) return;
     field.player?.update(now); // the page itself has no frames now
-    moveByStick(Math.min((now - last) / 1000, 0.1));
+    followHands(Math.min((now - last) / 1000, 0.1));
     last = now;
     base ??= place(head.transform);
     const { right, up, extent } = field.info.viewPlane;

@@ -1,7 +1,7 @@
-import { BufferAttribute as e, BufferGeometry as t, Camera as n, ClampToEdgeWrapping as r, Color as i, CustomBlending as a, DataArrayTexture as o, DataUtils as s, DepthStencilFormat as c, DepthTexture as l, DoubleSide as u, EqualStencilFunc as d, EventDispatcher as f, ExternalTexture as p, FrontSide as m, GLSL3 as h, HalfFloatType as g, IncrementStencilOp as _, InstancedBufferGeometry as v, LinearFilter as y, LinearMipmapLinearFilter as b, Matrix4 as x, Mesh as S, MeshBasicMaterial as C, NearestFilter as w, NoBlending as T, OneFactor as E, OneMinusSrcAlphaFactor as D, RGBAFormat as O, RawShaderMaterial as k, Scene as A, Sphere as ee, UnsignedByteType as te, UnsignedInt248Type as ne, Vector2 as re, Vector3 as j, Vector4 as ie, WebGLRenderTarget as ae, ZeroStencilOp as oe } from "three";
-import { GLTFLoader as se } from "three/addons/loaders/GLTFLoader.js";
+import { BufferAttribute as e, BufferGeometry as t, Camera as n, ClampToEdgeWrapping as r, Color as i, CustomBlending as a, DataArrayTexture as o, DataUtils as s, DepthStencilFormat as c, DepthTexture as l, DoubleSide as u, EqualStencilFunc as d, EventDispatcher as f, ExternalTexture as p, FrontSide as m, GLSL3 as h, HalfFloatType as g, IncrementStencilOp as _, InstancedBufferGeometry as v, LinearFilter as y, LinearMipmapLinearFilter as b, Matrix4 as x, Mesh as S, MeshBasicMaterial as C, NearestFilter as w, NoBlending as T, OneFactor as E, OneMinusSrcAlphaFactor as ee, RGBAFormat as D, RawShaderMaterial as O, Scene as k, Sphere as te, UnsignedByteType as ne, UnsignedInt248Type as re, Vector2 as ie, Vector3 as A, Vector4 as ae, WebGLRenderTarget as oe, ZeroStencilOp as se } from "three";
+import { GLTFLoader as ce } from "three/addons/loaders/GLTFLoader.js";
 // eigenfield-three/src/errors.ts
-var M = class extends Error {
+var j = class extends Error {
 	code;
 	where;
 	name = "SceneError";
@@ -9,65 +9,65 @@ var M = class extends Error {
 		super(t, r), this.code = e, this.where = n;
 	}
 };
-function N(e, t) {
-	return new M("damaged", `The file is damaged (${e}: ${t}); make or download it again.`, e);
+function M(e, t) {
+	return new j("damaged", `The file is damaged (${e}: ${t}); make or download it again.`, e);
 }
-function ce(e, t) {
-	return new M("truncated", `The file is cut off after ${e} of ${t} bytes; download or copy it again.`, String(e));
+function le(e, t) {
+	return new j("truncated", `The file is cut off after ${e} of ${t} bytes; download or copy it again.`, String(e));
 }
-function le(e) {
-	return new M("truncated", `The file is cut off (${e}); download or copy it again.`, e);
+function ue(e) {
+	return new j("truncated", `The file is cut off (${e}); download or copy it again.`, e);
 }
-function ue(e, t = "") {
-	return e instanceof M ? e : new M("damaged", `The file cannot be read (${(e instanceof Error ? e.message : String(e)).replace(/^THREE\.GLTFLoader: /, "")}); make or download it again.`, t, { cause: e });
+function de(e, t = "") {
+	return e instanceof j ? e : new j("damaged", `The file cannot be read (${(e instanceof Error ? e.message : String(e)).replace(/^THREE\.GLTFLoader: /, "")}); make or download it again.`, t, { cause: e });
 }
 // eigenfield-three/src/addresses.ts
-var de = 60;
-function fe(e) {
+var fe = 60;
+function pe(e) {
 	return {
 		name: "EIGENFIELD_addresses",
-		beforeRoot: async () => pe(e.json)
+		beforeRoot: async () => me(e.json)
 	};
 }
-function pe(e) {
+function me(e) {
 	let t = [["", e]];
 	for (let e = t.pop(); e; e = t.pop()) {
 		let [n, r] = e;
 		if (typeof r == "object" && r) for (let [e, i] of Object.entries(r)) {
 			if (e === "extras" && !Array.isArray(r)) continue;
 			let a = `${n}/${e}`;
-			if (e === "uri" && !(typeof i == "string" && /^data:/i.test(i))) throw me(a, JSON.stringify(i));
+			if (e === "uri" && !(typeof i == "string" && /^data:/i.test(i))) throw he(a, JSON.stringify(i));
 			t.push([a, i]);
 		}
 	}
 }
-function me(e, t) {
-	return new M("address", `The file names another one (${e}: ${t.length > de ? `${t.slice(0, de)}…` : t}), which is not fetched; export all of it as one .glb.`, e);
+function he(e, t) {
+	return new j("address", `The file names another one (${e}: ${t.length > fe ? `${t.slice(0, fe)}…` : t}), which is not fetched; export all of it as one .glb.`, e);
 }
 // eigenfield-three/src/av1-picture.ts
-var he = 1, ge = 7;
-function _e(e, t) {
-	let { level: n, tier: r, width: i, height: a } = ve(new Uint8Array(e), t), o = r << 7 | 76, s = P("ipco", [
-		...P("ispe", [
-			...F(0),
-			...F(i),
-			...F(a)
+var ge = 1, _e = 7;
+function ve(e, t) {
+	let { level: n, tier: r, width: i, height: a } = ye(new Uint8Array(e), t), o = r << 7 | 76, s = N("ipco", [
+		...N("ispe", [
+			...P(0),
+			...P(i),
+			...P(a)
 		]),
-		...P("pixi", [
-			...F(0),
+		...N("pixi", [
+			...P(0),
 			3,
 			10,
 			10,
 			10
 		]),
-		...P("av1C", [
+		...N("av1C", [
 			129,
 			n,
 			o,
 			0
 		]),
-		...P("colr", [
-			...I("nclx"),
+		...N("colr", [
+			...be("nclx"),
 			0,
 			2,
 			0,
@@ -76,25 +76,25 @@ function _e(e, t) {
 			2,
 			128
 		])
-	]), c = P("ftyp", [
-		...I("avif"),
-		...F(0),
-		...I("avifmif1miafMA1B")
-	]), l = (t) => P("meta", [
-		...F(0),
-		...P("hdlr", [
-			...F(0),
-			...F(0),
-			...I("pict"),
+	]), c = N("ftyp", [
+		...be("avif"),
+		...P(0),
+		...be("avifmif1miafMA1B")
+	]), l = (t) => N("meta", [
+		...P(0),
+		...N("hdlr", [
+			...P(0),
+			...P(0),
+			...be("pict"),
 			...Array(13).fill(0)
 		]),
-		...P("pitm", [
-			...F(0),
+		...N("pitm", [
+			...P(0),
 			0,
 			1
 		]),
-		...P("iloc", [
-			...F(0),
+		...N("iloc", [
+			...P(0),
 			68,
 			0,
 			0,
@@ -105,14 +105,14 @@ function _e(e, t) {
 			0,
 			0,
 			1,
-			...F(t),
-			...F(e.byteLength)
+			...P(t),
+			...P(e.byteLength)
 		]),
-		...P("iinf", [
-			...F(0),
+		...N("iinf", [
+			...P(0),
 			0,
 			1,
-			...P("infe", [
+			...N("infe", [
 				2,
 				0,
 				0,
@@ -121,13 +121,13 @@ function _e(e, t) {
 				1,
 				0,
 				0,
-				...I("av01"),
+				...be("av01"),
 				0
 			])
 		]),
-		...P("iprp", [...s, ...P("ipma", [
-			...F(0),
-			...F(1),
+		...N("iprp", [...s, ...N("ipma", [
+			...P(0),
+			...P(1),
 			0,
 			1,
 			4,
@@ -139,12 +139,12 @@ function _e(e, t) {
 	]), u = c.length + l(0).length + 8, d = [
 		...c,
 		...l(u),
-		...F(8 + e.byteLength),
-		...I("mdat")
+		...P(8 + e.byteLength),
+		...be("mdat")
 	], f = new Uint8Array(u + e.byteLength);
 	return f.set(d), f.set(new Uint8Array(e), u), f.buffer;
 }
-function ve(e, t) {
+function ye(e, t) {
 	let n = e[0] ?? 0, r = 8 * (1 + (n >> 2 & 1) + (n >> 1 & 1)), i = (t) => {
 		let n = 0;
 		for (let i = r + t; r < i; r++) n = 2 * n + ((e[r >> 3] ?? 0) >> 7 - (r & 7) & 1);
@@ -153,8 +153,8 @@ function ve(e, t) {
 	i(4);
 	let a = i(1) === 1, o = !a && i(7) !== 0;
 	a || i(12);
-	let s = i(5), c = !a && s > ge ? i(1) : 0, [l, u] = [i(4) + 1, i(4) + 1], [d, f] = [i(l) + 1, i(u) + 1];
-	if (n >> 3 !== he || o || r > 8 * e.length) throw N(t, "no AV1 sequence header");
+	let s = i(5), c = !a && s > _e ? i(1) : 0, [l, u] = [i(4) + 1, i(4) + 1], [d, f] = [i(l) + 1, i(u) + 1];
+	if (n >> 3 !== ge || o || r > 8 * e.length) throw M(t, "no AV1 sequence header");
 	return {
 		level: s,
 		tier: c,
@@ -162,14 +162,14 @@ function ve(e, t) {
 		height: f
 	};
 }
-function P(e, t) {
+function N(e, t) {
 	return [
-		...F(8 + t.length),
-		...I(e),
+		...P(8 + t.length),
+		...be(e),
 		...t
 	];
 }
-function F(e) {
+function P(e) {
 	return [
 		24,
 		16,
@@ -177,28 +177,28 @@ function F(e) {
 		0
 	].map((t) => e >>> t & 255);
 }
-function I(e) {
+function be(e) {
 	return Array.from(e, (e) => e.charCodeAt(0));
 }
 // eigenfield-three/src/inflate.ts
-async function ye(e, t, n, r) {
+async function xe(e, t, n, r) {
 	let i = [], a = 0, o = new Blob([e]).stream().pipeThrough(new DecompressionStream(t)).getReader();
 	try {
 		for (let e = await o.read(); !e.done && a <= n; e = await o.read()) i.push(e.value), a += e.value.length;
 	} catch {
-		throw N(r, "it does not inflate");
+		throw M(r, "it does not inflate");
 	}
-	if (a > n) throw await o.cancel(), N(r, `more than ${n} bytes`);
+	if (a > n) throw await o.cancel(), M(r, `more than ${n} bytes`);
 	let s = new Uint8Array(a), c = 0;
 	for (let e of i) s.set(e, c), c += e.length;
 	return s;
 }
 // eigenfield-three/src/limits.ts
-var be = "EIGENFIELD_eigen_textures", xe = 64 * 2 ** 20, Se = 16384, Ce = 16384, we = 1024, Te = 2 ** 27, Ee = 4096, De = 8 * 2 ** 30, Oe = 1e5, ke = 65535, Ae = 2 ** 29, L = 1024, je = 2 ** 25, Me = 2 ** 26, Ne = 2 ** 27, Pe = 8192, Fe = 2 ** 24, Ie = 2 ** 25, Le = 2 ** 20, Re = 2 ** 16, ze = 2 ** 30, Be = 1024, Ve = 2 ** 22, He = 2 ** 28, Ue = 2 ** 31 - 1, We = 2 ** 28, Ge = 1e30, R = 65536, Ke = 126, qe = 64, Je = 0, Ye = 1, Xe = 2, Ze = 24, Qe = 44, $e = 21, et = 26214, tt = 4, nt = Float64Array.from({ length: 4095 }, (e, t) => Math.round(R / (1 + Math.exp((2047 - t) / 256)))), rt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), it = Float64Array.from({ length: 127 }, (e, t) => Math.round(R / (t + 1.5)));
-function z(e) {
-	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + z(Math.floor(e / 4294967296));
+var Se = "EIGENFIELD_eigen_textures", Ce = 64 * 2 ** 20, we = 16384, Te = 16384, Ee = 1024, De = 2 ** 27, Oe = 4096, ke = 8 * 2 ** 30, F = 1e5, Ae = 65535, je = 2 ** 29, I = 1024, Me = 2 ** 25, Ne = 2 ** 26, Pe = 2 ** 27, Fe = 8192, Ie = 2 ** 24, Le = 2 ** 25, Re = 2 ** 20, ze = 2 ** 16, Be = 2 ** 30, Ve = 1024, He = 2 ** 22, Ue = 2 ** 28, We = 2 ** 31 - 1, Ge = 2 ** 28, Ke = 1e30, L = 65536, qe = 126, Je = 64, Ye = 0, Xe = 1, Ze = 2, Qe = 24, $e = 44, et = 21, tt = 26214, nt = 4, rt = Float64Array.from({ length: 4095 }, (e, t) => Math.round(L / (1 + Math.exp((2047 - t) / 256)))), it = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), at = Float64Array.from({ length: 127 }, (e, t) => Math.round(L / (t + 1.5)));
+function R(e) {
+	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + R(Math.floor(e / 4294967296));
 }
-var at = class {
+var ot = class {
 	bytes;
 	low = 0;
 	high = 4294967295;
@@ -208,49 +208,49 @@ var at = class {
 	seen;
 	weights;
 	constructor(e, t, n) {
-		this.bytes = e, this.probability = new Uint16Array(t * qe).fill(R / 2), this.seen = new Uint8Array(t * qe), this.weights = new Float64Array(n * qe * 3).fill(et);
-		for (let e = 0; e < tt; e++) this.code = this.code * 256 + this.next();
+		this.bytes = e, this.probability = new Uint16Array(t * Je).fill(L / 2), this.seen = new Uint8Array(t * Je), this.weights = new Float64Array(n * Je * 3).fill(tt);
+		for (let e = 0; e < nt; e++) this.code = this.code * 256 + this.next();
 	}
 	checkEnd(e) {
-		if (this.at > this.bytes.length + tt) throw le(e);
+		if (this.at > this.bytes.length + nt) throw ue(e);
 	}
 	flag(e, t, n, r) {
 		return this.node(e, t, n, r, 0) === 1;
 	}
 	raw(e) {
 		let t = 0;
-		for (let n = 0; n < e; n++) t = t * 2 + this.split(R / 2);
+		for (let n = 0; n < e; n++) t = t * 2 + this.split(L / 2);
 		return t;
 	}
 	integer(e, t, n, r) {
 		let i = this.magnitude(e, t, n, r);
-		return i === 0 ? 0 : this.node(e, t, n, r, Ye) ? -i : i;
+		return i === 0 ? 0 : this.node(e, t, n, r, Xe) ? -i : i;
 	}
 	magnitude(e, t, n, r) {
-		if (!this.node(e, t, n, r, Je)) return 0;
+		if (!this.node(e, t, n, r, Ye)) return 0;
 		let i = 0;
-		for (; i < $e && this.node(e, t, n, r, Xe + i);) i += 1;
+		for (; i < et && this.node(e, t, n, r, Ze + i);) i += 1;
 		if (i < 2) return i + 1;
 		let a = 1;
 		for (let o = i - 2; o >= 0; o--) {
 			let s;
-			s = o === i - 2 ? this.node(e, t, n, r, Ze + i) : o === i - 3 ? this.node(e, t, n, r, Qe + 2 * Math.min(i, 9) + (a & 1)) : this.split(R / 2), a = a * 2 + s;
+			s = o === i - 2 ? this.node(e, t, n, r, Qe + i) : o === i - 3 ? this.node(e, t, n, r, $e + 2 * Math.min(i, 9) + (a & 1)) : this.split(L / 2), a = a * 2 + s;
 		}
 		return a + 1;
 	}
 	node(e, t, n, r, i) {
-		return this.bit(e * qe + i, t * qe + i, n * qe + i, (r * qe + i) * 3);
+		return this.bit(e * Je + i, t * Je + i, n * Je + i, (r * Je + i) * 3);
 	}
 	bit(e, t, n, r) {
-		let { probability: i, weights: a } = this, o = rt[i[e] >> 4], s = rt[i[t] >> 4], c = rt[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / R), u = nt[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? R - u : -u;
+		let { probability: i, weights: a } = this, o = it[i[e] >> 4], s = it[i[t] >> 4], c = it[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / L), u = rt[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? L - u : -u;
 		return a[r] += o * f >> 14, a[r + 1] += s * f >> 14, a[r + 2] += c * f >> 14, this.learn(e, d), this.learn(t, d), this.learn(n, d), d;
 	}
 	learn(e, t) {
 		let [n, r] = [this.probability[e], this.seen[e]];
-		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * it[r] / R), r < Ke && (this.seen[e] = r + 1);
+		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * at[r] / L), r < qe && (this.seen[e] = r + 1);
 	}
 	split(e) {
-		let t = this.low + Math.floor((this.high - this.low) * e / R), n = +(this.code <= t);
+		let t = this.low + Math.floor((this.high - this.low) * e / L), n = +(this.code <= t);
 		for (n ? this.high = t : this.low = t + 1; !((this.low ^ this.high) >>> 24);) this.low = this.low << 8 >>> 0, this.high = (this.high << 8 | 255) >>> 0, this.code = (this.code << 8 | this.next()) >>> 0;
 		return n;
 	}
@@ -258,26 +258,26 @@ var at = class {
 		return this.bytes[this.at++] ?? 0;
 	}
 };
-function B(e, t, n, r = 1) {
-	if (e.length < t) throw le(n);
-	if (e[0] !== r) throw N(n, `coded numbers of version ${e[0]}`);
+function z(e, t, n, r = 1) {
+	if (e.length < t) throw ue(n);
+	if (e[0] !== r) throw M(n, `coded numbers of version ${e[0]}`);
 	return new DataView(e.buffer, e.byteOffset, e.byteLength);
 }
-function ot(e, t, n, r) {
-	if (t > n || t > 16 * e.length + 1024) throw N(r, `${t} numbers announced`);
+function st(e, t, n, r) {
+	if (t > n || t > 16 * e.length + 1024) throw M(r, `${t} numbers announced`);
 }
 // eigenfield-three/src/table-decoder.ts
-var st = 12, ct = 1, lt = 3, ut = 312, dt = lt * ut, ft = 938, pt = 24, mt = 16, ht = 1722, gt = 1726, _t = 4, vt = 5;
-function yt(e) {
-	return new at(e, gt, 21);
-}
+var ct = 12, lt = 1, ut = 3, dt = 312, ft = ut * dt, pt = 938, mt = 24, ht = 16, gt = 1722, _t = 1726, vt = 4, yt = 5;
 function bt(e) {
-	return e.flag(dt, dt, dt, lt) ? 2 : e.flag(937, 937, 937, lt) ? ct : 0;
+	return new ot(e, _t, 21);
 }
 function xt(e) {
-	return Math.min(z(e), 11);
+	return e.flag(ft, ft, ft, ut) ? 2 : e.flag(937, 937, 937, ut) ? lt : 0;
 }
-function St(e, t, n, r) {
+function St(e) {
+	return Math.min(R(e), 11);
+}
+function Ct(e, t, n, r) {
 	let i = new Float64Array(n.length), a = n.length / t, o = (e, n, r) => n < 0 || r < 0 || r >= t ? 0 : e[n * t + r], s = 0;
 	for (let c = 0; c < a; c++) for (let a = 0; a < t; a++) {
 		let [l, u] = [o(i, c, a - 1), o(i, c - 1, a)], [d, f] = [o(i, c - 1, a - 1), o(i, c - 1, a + 1)], [p, m, h] = [
@@ -285,53 +285,53 @@ function St(e, t, n, r) {
 			0,
 			s
 		];
-		r === ct ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
-		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * ut, y = e.integer(v + xt(m) * st + xt(g), v + 144 + xt(m + h), v + 144 + 24 + _ * st + xt(g + Math.abs(l)), r);
+		r === lt ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
+		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * dt, y = e.integer(v + St(m) * ct + St(g), v + 144 + St(m + h), v + 144 + 24 + _ * ct + St(g + Math.abs(l)), r);
 		i[c * t + a] = p + y, s = Math.abs(y);
 	}
 	return i;
 }
-function Ct(e, t, n, r) {
+function wt(e, t, n, r) {
 	let i = new Float64Array(t * n), a = new Float64Array(n);
 	for (let o = 0; o < t; o++) {
 		let t = 0;
 		for (let s = 0; s < n; s++) {
-			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(z(a[s]), 23), d = Math.min(z(t), 23), f = e.integer(ft + l * pt + u, ft + (mt + l) * pt + d, 1706 + l, vt + l);
+			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(R(a[s]), 23), d = Math.min(R(t), 23), f = e.integer(pt + l * mt + u, pt + (ht + l) * mt + d, 1706 + l, yt + l);
 			i[o * n + s] = c + f, t = Math.abs(f), a[s] = Math.floor((a[s] + t + 1) / 2);
 		}
 	}
 	return i;
 }
-function wt(e, t, n, r) {
+function Tt(e, t, n, r) {
 	let i = new Float64Array(t).fill(-1), a = new Uint8Array(n), [o, s, c] = [
 		0,
 		1,
 		0
 	];
 	for (let l = 0; l < t; l++) {
-		if (s = +!!e.flag(ht + s, ht + s, 1724, _t), !s) continue;
-		let t = o + e.integer(1725, 1725, 1725, _t);
-		if (!(t >= 0 && t < n) || a[t]) throw N(r, "a grid with a camera out of place");
+		if (s = +!!e.flag(gt + s, gt + s, 1724, vt), !s) continue;
+		let t = o + e.integer(1725, 1725, 1725, vt);
+		if (!(t >= 0 && t < n) || a[t]) throw M(r, "a grid with a camera out of place");
 		a[t] = 1, i[l] = t, o = t + 1, c += 1;
 	}
-	if (c !== n) throw N(r, "a grid without all cameras");
+	if (c !== n) throw M(r, "a grid without all cameras");
 	return i;
 }
 // eigenfield-three/src/camera-decoder.ts
-var Tt = 130, V = 11, Et = 1, Dt = 2, Ot = 2, kt = 44 * Oe + 1024;
-async function At(e, t) {
-	if (e[0] !== Ot) throw N(t, `version ${e[0]}`);
-	let n = await ye(Uint8Array.from(e.subarray(1)), "deflate-raw", kt, t);
-	return jt(Uint8Array.from([1, ...n]), t);
+var Et = 130, Dt = 11, Ot = 1, kt = 2, At = 2, jt = 44 * F + 1024;
+async function Mt(e, t) {
+	if (e[0] !== At) throw M(t, `version ${e[0]}`);
+	let n = await xe(Uint8Array.from(e.subarray(1)), "deflate-raw", jt, t);
+	return Nt(Uint8Array.from([1, ...n]), t);
 }
-function jt(e, t) {
-	let n = B(e, Tt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Et) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
-	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw N(t, "cameras that cannot be");
-	if (i > 1e5 || a && o * s < i) throw N(t, `${i} cameras`);
-	ot(e, Math.max(V * i, o * s), V * Oe, t);
-	let l = Tt + (a ? 132 : 0);
-	B(e, l, t);
-	let u = (e, t) => a ? n.getFloat32(Tt + 4 * (e * V + t), !0) : 0, d = yt(e.subarray(l)), f = a ? wt(d, o * s, i, t) : null, p = Ct(d, i, V, (r & Dt) !== 0);
+function Nt(e, t) {
+	let n = z(e, Et, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Ot) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
+	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw M(t, "cameras that cannot be");
+	if (i > 1e5 || a && o * s < i) throw M(t, `${i} cameras`);
+	st(e, Math.max(Dt * i, o * s), Dt * F, t);
+	let l = Et + (a ? 132 : 0);
+	z(e, l, t);
+	let u = (e, t) => a ? n.getFloat32(Et + 4 * (e * Dt + t), !0) : 0, d = bt(e.subarray(l)), f = a ? Tt(d, o * s, i, t) : null, p = wt(d, i, Dt, (r & kt) !== 0);
 	d.checkEnd(t);
 	let m = {
 		intrinsics: new Float32Array(5 * i),
@@ -342,27 +342,27 @@ function jt(e, t) {
 		0,
 		0,
 		...c.subarray(12)
-	], g = Nt(c[3], c[4], c[5], c[6]), _ = new Float64Array(V), v = 0;
+	], g = Ft(c[3], c[4], c[5], c[6]), _ = new Float64Array(Dt), v = 0;
 	for (let e = 0; e < (f ? f.length : i); e++) {
 		let t = f ? f[e] : e;
 		if (t < 0) continue;
 		let [n, r] = f ? [Math.floor(e / s), e % s] : [0, 0];
-		for (let e = 0; e < V; e++) {
+		for (let e = 0; e < Dt; e++) {
 			let t = c[e < 5 ? 0 : e < 8 ? 1 : 2], i = u(0, e) + u(1, e) * n + u(2, e) * r;
-			_[e] = p[v * V + e] * t + h[e] + i;
+			_[e] = p[v * Dt + e] * t + h[e] + i;
 		}
-		Mt(_, g, m, t), v += 1;
+		Pt(_, g, m, t), v += 1;
 	}
-	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw N(t, "cameras that are not finite");
+	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw M(t, "cameras that are not finite");
 	return m;
 }
-function Mt(e, t, n, r) {
+function Pt(e, t, n, r) {
 	n.intrinsics.set(e.subarray(0, 5), 5 * r);
 	let [i, a, o] = [
 		e[5],
 		e[6],
 		e[7]
-	], s = i * i + a * a + o * o, c = 1 + s, l = Nt(2 * i / c, 2 * a / c, 2 * o / c, (1 - s) / c);
+	], s = i * i + a * a + o * o, c = 1 + s, l = Ft(2 * i / c, 2 * a / c, 2 * o / c, (1 - s) / c);
 	for (let i = 0; i < 3; i++) {
 		let a = 0;
 		for (let o = 0; o < 3; o++) {
@@ -373,7 +373,7 @@ function Mt(e, t, n, r) {
 		n.poses[12 * r + 4 * i + 3] = a;
 	}
 }
-function Nt(e, t, n, r) {
+function Ft(e, t, n, r) {
 	return [
 		[
 			1 - 2 * (t * t + n * n),
@@ -392,8 +392,76 @@ function Nt(e, t, n, r) {
 		]
 	].flat();
 }
+// eigenfield-three/src/film-codes.ts
+var It = /* @__PURE__ */ new Set([
+	"I420P10",
+	"I422P10",
+	"I444P10"
+]), Lt = /* @__PURE__ */ new Set([
+	"I420",
+	"I420A",
+	"I422",
+	"I444",
+	"NV12"
+]), Rt = /* @__PURE__ */ new Set([
+	"RGBA",
+	"RGBX",
+	"BGRA",
+	"BGRX"
+]), zt = 1, Bt = Uint16Array.from({ length: 256 }, (e, t) => Math.round(t * 1023 / 255)), Vt = Uint16Array.from({ length: 256 }, (e, t) => Bt[16 + Math.round(t * 219 / 255)]), Ht = Vt.map((e, t) => t === 0 ? 0 : t === 255 ? 1023 : e);
+async function Ut(e, t, n = !1) {
+	let r = e.format ?? "", { width: i, height: a } = e.visibleRect ?? {
+		width: 0,
+		height: 0
+	};
+	if (!It.has(r) && !Lt.has(r) && !Rt.has(r)) {
+		let t = Gt(e, [i, a]);
+		if (t) return Kt(t, 4 * i, 4, [i, a], Wt(e, n));
+		throw new j("unsupported", `This browser does not hand out its frames (${r || "no format"}).`, "");
+	}
+	let o = e.allocationSize(), s = t && t.length >= o ? t : new Uint8Array(o), [c] = await e.copyTo(s), { offset: l, stride: u } = c ?? {
+		offset: 0,
+		stride: 0
+	};
+	if (It.has(r)) return {
+		data: s.subarray(l),
+		width: i,
+		height: a,
+		stride: u,
+		room: s
+	};
+	let d = Rt.has(r), [f, p] = d ? [4, l + zt] : [1, l], m = d ? Wt(e, n) : Bt;
+	return Kt(s.subarray(p), u, f, [i, a], m);
+}
+function Wt(e, t) {
+	return e.colorSpace?.fullRange === !1 ? t ? Ht : Vt : Bt;
+}
+function Gt(e, t) {
+	if (typeof OffscreenCanvas > "u" || !t[0]) return null;
+	let n = new OffscreenCanvas(...t).getContext("2d", { willReadFrequently: !0 });
+	return n?.drawImage(e, 0, 0), n?.getImageData(0, 0, ...t).data ?? null;
+}
+function Kt(e, t, n, [r, i], a = Bt) {
+	let o = new Uint16Array(r * i);
+	for (let s = 0; s < i; s++) for (let i = 0; i < r; i++) o[s * r + i] = a[e[s * t + n * i]];
+	return {
+		data: new Uint8Array(o.buffer),
+		width: r,
+		height: i,
+		stride: 2 * r,
+		grown: !0
+	};
+}
+function qt({ data: e, stride: t }, { size: [n, r], at: i }) {
+	return i.map(([i, a]) => ({
+		data: e.subarray(a * t + 2 * i),
+		width: n,
+		height: r,
+		stride: t
+	}));
+}
 // eigenfield-three/src/film-decoder.ts
-var Pt = 4, Ft = ["prefer-software", "no-preference"], It = class {
+var Jt = 4, Yt = ["prefer-software", "no-preference"], Xt = class {
 	size;
 	where;
 	user;
@@ -408,13 +476,16 @@ var Pt = 4, Ft = ["prefer-software", "no-preference"], It = class {
 	get open() {
 		return this.opened;
 	}
+	get busy() {
+		return this.onTheWay > 0;
+	}
 	get ready() {
-		return this.onTheWay < Pt || this.decoder?.state === "closed";
+		return this.onTheWay < Jt || this.decoder?.state === "closed";
 	}
 	async start(e) {
-		let { level: t, tier: n, width: r, height: i } = ve(e, this.where);
-		if (r !== this.size[0] || i !== this.size[1]) throw N(this.where, `frames of ${r} x ${i}`);
-		let a = `av01.0.${String(t).padStart(2, "0")}${n ? "H" : "M"}.10`, { turn: o } = this, s = this.config?.codec === a, c = s ? this.config : await Lt(a, this.size, this.where);
+		let { level: t, tier: n, width: r, height: i } = ye(e, this.where);
+		if (r !== this.size[0] || i !== this.size[1]) throw M(this.where, `frames of ${r} x ${i}`);
+		let a = `av01.0.${String(t).padStart(2, "0")}${n ? "H" : "M"}.10`, { turn: o } = this, s = this.config?.codec === a, c = s ? this.config : await Zt(a, this.size, this.where);
 		o === this.turn && c && (s && this.decoder?.state === "configured" || (this.config = c, this.decoder && this.decoder.state !== "closed" || (this.decoder = this.made()), this.decoder.configure(c)));
 	}
 	decode(e, t, n) {
@@ -438,7 +509,7 @@ var Pt = 4, Ft = ["prefer-software", "no-preference"], It = class {
 		let e = new VideoDecoder({
 			output: (e) => void this.receive(e),
 			error: (t) => {
-				this.decoder === e && (t.name === "QuotaExceededError" ? this.user.lost() : this.fail(this.turn, N(this.where, t.message)));
+				this.decoder === e && (t.name === "QuotaExceededError" ? this.user.lost() : t.name === "NotSupportedError" ? this.fail(this.turn, Qt(this.where)) : this.fail(this.turn, M(this.where, t.message)));
 			}
 		});
 		return e;
@@ -447,7 +518,7 @@ var Pt = 4, Ft = ["prefer-software", "no-preference"], It = class {
 		let { turn: t } = this;
 		this.opened += 1;
 		try {
-			await this.user.take(e.timestamp, e);
+			await this.user.take(e.timestamp, (...t) => Ut(e, ...t));
 		} catch (e) {
 			this.fail(t, e);
 		} finally {
@@ -458,21 +529,24 @@ var Pt = 4, Ft = ["prefer-software", "no-preference"], It = class {
 		e === this.turn && (this.reset(), this.user.failed(t));
 	}
 };
-async function Lt(e, [t, n], r) {
-	for (let r of typeof VideoDecoder > "u" ? [] : Ft) {
+async function Zt(e, [t, n], r) {
+	for (let r of typeof VideoDecoder > "u" ? [] : Yt) {
 		let i = {
 			codec: e,
 			codedWidth: t,
 			codedHeight: n,
 			hardwareAcceleration: r,
 			optimizeForLatency: !0
-		}, { supported: a } = await VideoDecoder.isConfigSupported(i);
-		if (a) return i;
+		};
+		if ((await VideoDecoder.isConfigSupported(i).catch(() => null))?.supported) return i;
 	}
-	throw new M("codec", `This browser ${globalThis.isSecureContext ? "decodes no AV1 of 10 bits" : "plays clips from https and localhost only"}; ${globalThis.isSecureContext ? "use a newer browser" : "open the page from there"}. The first frame is shown.`, r);
+	throw Qt(r);
+}
+function Qt(e) {
+	return new j("codec", `This browser ${globalThis.isSecureContext ? "decodes no AV1 of 10 bits" : "plays clips from https and localhost only"}; ${globalThis.isSecureContext ? "use a newer browser" : "open the page from there"}. The first frame is shown.`, e);
 }
 // eigenfield-three/src/mesh-front.ts
-var Rt = 0, zt = 2 ** 24, Bt = class {
+var $t = 0, en = 2 ** 24, tn = class {
 	points;
 	start;
 	end;
@@ -510,8 +584,8 @@ var Rt = 0, zt = 2 ** 24, Bt = class {
 	}
 	closeLeft(e) {
 		let [t, n] = [this.before[e], this.after[e]], r = this.start[t];
-		if (this.status[e] = this.status[t] = Rt, this.status[n] === 1 && this.end[n] === r && n !== t) {
-			this.status[n] = Rt, this.link(this.before[t], this.after[n]);
+		if (this.status[e] = this.status[t] = $t, this.status[n] === 1 && this.end[n] === r && n !== t) {
+			this.status[n] = $t, this.link(this.before[t], this.after[n]);
 			return;
 		}
 		let i = this.before[t], a = this.add(r, this.end[e], this.start[e]);
@@ -519,7 +593,7 @@ var Rt = 0, zt = 2 ** 24, Bt = class {
 	}
 	closeRight(e) {
 		let [t, n] = [this.before[e], this.after[e]];
-		this.status[e] = this.status[n] = Rt;
+		this.status[e] = this.status[n] = $t;
 		let r = this.after[n], i = this.add(this.start[e], this.end[n], this.end[e]);
 		this.link(t, i), this.link(i, r);
 	}
@@ -529,9 +603,9 @@ var Rt = 0, zt = 2 ** 24, Bt = class {
 			this.after[e],
 			this.into[t]
 		];
-		this.status[e] = Rt;
+		this.status[e] = $t;
 		let a = this.add(this.start[e], t, this.end[e]), o = this.add(t, this.end[e], this.start[e]);
-		i >= 0 && this.status[i] !== Rt ? (this.link(a, this.after[i]), this.link(i, o)) : this.link(a, o), this.link(n, a), this.link(o, r), this.into[t] = a;
+		i >= 0 && this.status[i] !== $t ? (this.link(a, this.after[i]), this.link(i, o)) : this.link(a, o), this.link(n, a), this.link(o, r), this.into[t] = a;
 	}
 	link(e, t) {
 		this.after[e] = t, this.before[t] = e;
@@ -539,7 +613,7 @@ var Rt = 0, zt = 2 ** 24, Bt = class {
 	add(e, t, n) {
 		let { heap: r, key: i, points: a } = this, o = this.gates++;
 		this.start[o] = e, this.end[o] = t, this.opposite[o] = n, this.status[o] = 1, this.into[t] = o;
-		let s = (a[3 * e] + a[3 * t]) * zt + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
+		let s = (a[3 * e] + a[3 * t]) * en + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
 		for (; c > 0;) {
 			let e = c - 1 >> 1;
 			if (i[e] <= s) break;
@@ -547,57 +621,57 @@ var Rt = 0, zt = 2 ** 24, Bt = class {
 		}
 		return r[c] = o, i[c] = s, o;
 	}
-}, Vt = 2 ** 20, Ht = .8, Ut = 44, Wt = 385, Gt = 897, Kt = 1086, qt = 1095, [Jt, Yt, Xt, Zt, Qt] = [
+}, nn = 2 ** 20, rn = .8, an = 44, on = 385, sn = 897, cn = 1086, ln = 1095, [un, dn, fn, pn, mn] = [
 	0,
 	1,
 	2,
 	3,
 	15
 ];
-function $t(e) {
-	return Math.floor(Math.min(Math.max(e, -Vt), Vt) + .5);
+function hn(e) {
+	return Math.floor(Math.min(Math.max(e, -nn), nn) + .5);
 }
-function en(e, t, n) {
+function gn(e, t, n) {
 	let r = Math.max((1 << n) - 1, 1);
 	return (e[3 * t] & r ? 1 : 0) + (e[3 * t + 1] & r ? 2 : 0);
 }
-function tn(e, t, n, r, i) {
-	i.flat ? nn(e, t, n, r, i.fine) : rn(e, t, n, r);
+function _n(e, t, n, r, i) {
+	i.flat ? vn(e, t, n, r, i.fine) : yn(e, t, n, r);
 }
-function nn(e, t, n, r, i) {
+function vn(e, t, n, r, i) {
 	let { a, b: o, o: s, pair: c } = r, [l, u, d, f] = [
 		t[3 * a],
 		t[3 * a + 1],
 		t[3 * o],
 		t[3 * o + 1]
-	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? Ht : -.8, _ = 1 << i >> 1, v = $t((l + d) * .5 + g * m) + _ >> i, y = $t((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(z(Math.floor((p * p + m * m) / b)), 23), S = Math.min(z(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, Jt), T = Math.min(z(Math.abs(w)), 7), [E, D] = [577, 705], O = T * 2 + +(w > 0), k = e.integer(Wt + x * 8 + C, E + O * 8 + C, D + S * 8 + T, Yt);
-	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + k << i, i === 0) return;
-	let A = en(t, a, i) + 4 * en(t, o, i);
-	if (e.flag(Gt + A, 913 + en(t, s, i), 917 + c, Qt)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
+	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? rn : -.8, _ = 1 << i >> 1, v = hn((l + d) * .5 + g * m) + _ >> i, y = hn((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(R(Math.floor((p * p + m * m) / b)), 23), S = Math.min(R(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, un), T = Math.min(R(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(on + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, dn);
+	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + O << i, i === 0) return;
+	let k = gn(t, a, i) + 4 * gn(t, o, i);
+	if (e.flag(sn + k, 913 + gn(t, s, i), 917 + c, mn)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
 }
-function rn(e, t, n, { a: r, b: i, o: a }) {
+function yn(e, t, n, { a: r, b: i, o: a }) {
 	let o = 0;
 	for (let e = 0; e < 3; e++) o += (t[3 * i + e] - t[3 * r + e]) ** 2;
-	let s = Math.min(z(o), 43), c = 0;
+	let s = Math.min(R(o), 43), c = 0;
 	for (let o = 0; o < 3; o++) {
-		let l = $t(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, Ut + o * 24 + c, 116 + o * Ut + s, Xt);
-		t[3 * n + o] = l + u, c = Math.min(z(Math.abs(u)), 23);
+		let l = hn(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, an + o * 24 + c, 116 + o * an + s, fn);
+		t[3 * n + o] = l + u, c = Math.min(R(Math.abs(u)), 23);
 	}
 }
-function an(e, t, n, r, i) {
+function bn(e, t, n, r, i) {
 	for (let a = 0; a < (i ? 2 : 3); a++) {
-		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -Vt), Vt) : 0, o = Kt + a;
-		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, Zt);
+		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -nn), nn) : 0, o = cn + a;
+		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, pn);
 	}
 }
 // eigenfield-three/src/mesh-faces.ts
-var on = 13, sn = 11, cn = 12, H = 169, ln = 8, un = qt, dn = un + H + 104 + 26, fn = dn + H + 104 + on, pn = fn + 64 + 64 + H, mn = pn + H + 4 + 1, hn = mn + 6, [gn, _n, vn, yn, bn] = [
+var xn = 13, Sn = 11, Cn = 12, B = 169, wn = 8, Tn = ln, En = Tn + B + 104 + 26, Dn = En + B + 104 + xn, On = Dn + 64 + 64 + B, kn = On + B + 4 + 1, An = kn + 6, [jn, Mn, Nn, Pn, Fn] = [
 	4,
 	5,
 	6,
 	7,
 	8
-], xn = [
+], In = [
 	-1,
 	-.4,
 	0,
@@ -608,12 +682,12 @@ var on = 13, sn = 11, cn = 12, H = 169, ln = 8, un = qt, dn = un + H + 104 + 26,
 	2,
 	4
 ];
-function Sn(e, t, n, r, i) {
+function Ln(e, t, n, r, i) {
 	let a = new Int32Array(3 * t), o = {
 		points: a,
 		faces: new Int32Array(3 * n),
 		parents: new Int32Array(3 * t).fill(-1)
-	}, s = new Int32Array(t), c = new Bt(a, n), [l, u] = [0, 0], d = (e, t, n) => {
+	}, s = new Int32Array(t), c = new tn(a, n), [l, u] = [0, 0], d = (e, t, n) => {
 		o.faces.set([
 			e,
 			t,
@@ -625,11 +699,11 @@ function Sn(e, t, n, r, i) {
 			n
 		]) s[r] += 1;
 	}, f = () => {
-		if (l >= t) throw N(i, "more places than announced");
+		if (l >= t) throw M(i, "more places than announced");
 		return l++;
 	}, p = () => {
-		let t = e.raw(z(l - 1));
-		if (t >= l) throw N(i, "a place that is not there yet");
+		let t = e.raw(R(l - 1));
+		if (t >= l) throw M(i, "a place that is not there yet");
 		return t;
 	}, m = () => {
 		let t = [
@@ -637,56 +711,56 @@ function Sn(e, t, n, r, i) {
 			-1,
 			-1
 		];
-		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(mn + n, mn + 3 + n, mn + n, bn)) t[n] = p();
+		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(kn + n, kn + 3 + n, kn + n, Fn)) t[n] = p();
 		else {
 			let i = t[n] = f();
-			an(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
+			bn(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
 		}
 		let [n, o, s] = t;
-		if (n === o || o === s || s === n) throw N(i, "a face of two corners");
+		if (n === o || o === s || s === n) throw M(i, "a face of two corners");
 		d(n, o, s), c.seed(t);
-	}, h = (e, t, n, i) => c.status[t] === 2 ? cn : c.status[t] !== 1 || n === i || t === e ? sn : Cn(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
+	}, h = (e, t, n, i) => c.status[t] === 2 ? Cn : c.status[t] !== 1 || n === i || t === e ? Sn : Rn(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
 	for (; u < n;) {
 		let t = c.next();
 		if (t < 0) {
 			m();
 			continue;
 		}
-		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * on + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = un + H + 104 + 2 * y + +(_ === v);
-		if (y < sn && e.flag(un + x, un + H + y * ln + S, w, gn)) {
+		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * xn + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = Tn + B + 104 + 2 * y + +(_ === v);
+		if (y < Sn && e.flag(Tn + x, Tn + B + y * wn + S, w, jn)) {
 			d(l, n, _), c.closeLeft(t);
 			continue;
 		}
-		if (b < sn && (v !== _ || y >= sn) && e.flag(dn + x, dn + H + b * ln + C, dn + H + 104 + b, _n)) {
+		if (b < Sn && (v !== _ || y >= Sn) && e.flag(En + x, En + B + b * wn + C, En + B + 104 + b, Mn)) {
 			d(l, n, v), c.closeRight(t);
 			continue;
 		}
-		let T = +(y === cn) + (b === cn ? 2 : 0), E = en(a, n, r.fine) + 4 * en(a, l, r.fine), D = fn + 64 + S * ln + C;
-		if (e.flag(fn + T * 16 + E, D, fn + 64 + 64 + x, vn)) {
+		let T = +(y === Cn) + (b === Cn ? 2 : 0), E = gn(a, n, r.fine) + 4 * gn(a, l, r.fine), ee = Dn + 64 + S * wn + C;
+		if (e.flag(Dn + T * 16 + E, ee, Dn + 64 + 64 + x, Nn)) {
 			c.status[t] = 2;
 			continue;
 		}
-		let O;
-		if (e.flag(pn + x, pn + H + T, pn + H + 4, yn)) {
-			O = f();
+		let D;
+		if (e.flag(On + x, On + B + T, On + B + 4, Pn)) {
+			D = f();
 			let i = c.opposite[t];
 			o.parents.set([
 				n,
 				l,
 				i
-			], 3 * O), tn(e, a, O, {
+			], 3 * D), _n(e, a, D, {
 				a: n,
 				b: l,
 				o: i,
 				pair: x
 			}, r);
-		} else if (O = p(), O === n || O === l) throw N(i, "a face of two corners");
-		d(l, n, O), c.openOut(t, O);
+		} else if (D = p(), D === n || D === l) throw M(i, "a face of two corners");
+		d(l, n, D), c.openOut(t, D);
 	}
-	if (l !== t) throw N(i, "fewer places than announced");
+	if (l !== t) throw M(i, "fewer places than announced");
 	return o;
 }
-function Cn(e, t, n, r, i, a) {
+function Rn(e, t, n, r, i, a) {
 	let o = (n, r) => a && r === 2 ? 0 : e[3 * n + r] - e[3 * t + r], [s, c, l] = [
 		o(n, 0),
 		o(n, 1),
@@ -709,21 +783,21 @@ function Cn(e, t, n, r, i, a) {
 		s * m - c * p
 	], S = Math.sqrt(g * g + _ * _ + v * v);
 	if (S === 0 || g * y + _ * b + v * x > 0) return 0;
-	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = xn.findIndex((e) => C < e);
+	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = In.findIndex((e) => C < e);
 	return w < 0 ? 10 : w + 1;
 }
 // eigenfield-three/src/mesh-corners.ts
-var wn = 32, Tn = 4, [En, Dn, On, kn] = [
+var zn = 32, Bn = 4, [Vn, Hn, Un, Wn] = [
 	0,
 	1,
 	2,
 	3
-], An = hn, jn = An + 64 + 12 + 16, U = jn + Tn + 1, Mn = U + 4, [Nn, Pn, Fn] = [
+], Gn = An, Kn = Gn + 64 + 12 + 16, V = Kn + Bn + 1, qn = V + 4, [Jn, Yn, Xn] = [
 	9,
 	10,
 	11
 ];
-function In(e, t) {
+function Zn(e, t) {
 	let n = new Int32Array(t + 1);
 	for (let t of e) n[t + 1] += 1;
 	for (let e = 0; e < t; e++) n[e + 1] += n[e];
@@ -733,7 +807,7 @@ function In(e, t) {
 		corners: i
 	};
 }
-function Ln(e, t, n, r, i, a, o) {
+function Qn(e, t, n, r, i, a, o) {
 	let s = t.faces.length / 3, c = Math.min(s, Math.floor(n / 3)), l = {
 		faces: new Int32Array(3 * s),
 		place: new Int32Array(n),
@@ -748,7 +822,7 @@ function Ln(e, t, n, r, i, a, o) {
 		0,
 		0,
 		0
-	], m = new Int32Array(Tn), h = /* @__PURE__ */ new Int32Array(8), [g, _, v] = [
+	], m = new Int32Array(Bn), h = /* @__PURE__ */ new Int32Array(8), [g, _, v] = [
 		0,
 		0,
 		-1
@@ -757,7 +831,7 @@ function Ln(e, t, n, r, i, a, o) {
 		return -1;
 	}, b = (e, n) => {
 		let [a, o] = [t.faces[3 * e + n], t.faces[3 * e + (n + 1) % 3]];
-		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + wn); t++) {
+		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + zn); t++) {
 			let n = Math.floor(i[t] / 3);
 			if (n >= e) break;
 			if (y(n, o) >= 0) return n;
@@ -766,48 +840,48 @@ function Ln(e, t, n, r, i, a, o) {
 	}, x = (e, t) => l.faces[3 * e + y(e, t)], S = (n, r) => {
 		let i = t.faces[3 * n + r], a = u[i];
 		if (a < 0) return -1;
-		h.fill(kn);
+		h.fill(Wn);
 		let s = 0;
 		for (let e of [r, (r + 2) % 3]) {
 			if (f[e] < 0) continue;
 			let t = x(f[e], i);
 			s === 1 && m[0] === t ? h[1] = p[e] : (m[s] = t, h[2 * s] = p[e], s += 1);
 		}
-		for (let e = 0; e < wn && s < Tn && a >= 0; e++) (s < 1 || a !== m[0]) && (s < 2 || a !== m[1]) && (m[s++] = a), a = d[a];
+		for (let e = 0; e < zn && s < Bn && a >= 0; e++) (s < 1 || a !== m[0]) && (s < 2 || a !== m[1]) && (m[s++] = a), a = d[a];
 		let c = -1;
 		for (let t = 0; t < s && c < 0; t++) {
-			let [n, i] = [h[2 * t], h[2 * t + 1]], a = An + 76 + Math.min(s, 3) * 4 + n;
-			e.flag(An + t * 16 + n * 4 + i, An + 64 + t * 3 + r, a, Nn) && (c = m[t]);
+			let [n, i] = [h[2 * t], h[2 * t + 1]], a = Gn + 76 + Math.min(s, 3) * 4 + n;
+			e.flag(Gn + t * 16 + n * 4 + i, Gn + 64 + t * 3 + r, a, Jn) && (c = m[t]);
 		}
 		if (c < 0) {
-			if (e.flag(jn + s, jn + s, jn + Tn, Pn)) return -1;
-			if (c = e.raw(z(g - 1)), c >= g || l.place[c] !== i) throw N(o, "a corner that is elsewhere");
+			if (e.flag(Kn + s, Kn + s, Kn + Bn, Yn)) return -1;
+			if (c = e.raw(R(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
 		}
-		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? Dn : On);
+		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? Hn : Un);
 		return c;
 	}, C = () => {
 		let t = _++;
-		if (!e.flag(U, U, U, Fn)) return l.kinds[t] = e.flag(U + 1, U + 1, U + 1, Fn) ? 2 : 0, t;
+		if (!e.flag(V, V, V, Xn)) return l.kinds[t] = e.flag(V + 1, V + 1, V + 1, Xn) ? 2 : 0, t;
 		l.kinds[t] = 1;
 		let n = v;
-		if (v = t, n >= 0 && e.flag(U + 2, U + 2, U + 2, Fn)) {
-			let n = e.raw(z(t - 1));
-			if (n >= t || l.kinds[n] !== 1) throw N(o, "a map that is not there");
+		if (v = t, n >= 0 && e.flag(V + 2, V + 2, V + 2, Xn)) {
+			let n = e.raw(R(t - 1));
+			if (n >= t || l.kinds[n] !== 1) throw M(o, "a map that is not there");
 			return l.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
 		}
-		let r = n >= 0 && e.flag(U + 3, U + 3, U + 3, Fn);
+		let r = n >= 0 && e.flag(V + 3, V + 3, V + 3, Xn);
 		for (let i = 0; i < 4; i++) l.maps[6 * t + i] = r ? l.maps[6 * n + i] : e.raw(32);
 		for (let n = 4; n < 6; n++) l.maps[6 * t + n] = e.raw(a);
 		return t;
 	};
 	for (let e = 0; e < s; e++) {
-		for (let t = 0; t < 3; t++) f[t] = b(e, t), p[t] = En;
+		for (let t = 0; t < 3; t++) f[t] = b(e, t), p[t] = Vn;
 		let r = -1, i = [];
 		for (let a = 0; a < 3; a++) {
 			let s = S(e, a);
 			if (s >= 0) r = l.chart[s];
 			else {
-				if (g >= n) throw N(o, "more vertices than announced");
+				if (g >= n) throw M(o, "more vertices than announced");
 				s = g++;
 				let r = t.faces[3 * e + a];
 				l.place[s] = r, d[s] = u[r], u[r] = s, i.push(s);
@@ -817,11 +891,11 @@ function Ln(e, t, n, r, i, a, o) {
 		r < 0 && (r = C());
 		for (let e of i) l.chart[e] = r;
 	}
-	if (g !== n) throw N(o, "fewer vertices than announced");
+	if (g !== n) throw M(o, "fewer vertices than announced");
 	return l;
 }
 // eigenfield-three/src/mesh-values.ts
-var Rn = 16, zn = 6, Bn = 13, Vn = 14, Hn = 20, Un = Mn, Wn = Un + 169 + 280 + 182, Gn = Wn + 144 + 576 + 48, [Kn, qn] = [12, 13], Jn = [
+var $n = 16, er = 6, tr = 13, nr = 14, rr = 20, ir = qn, ar = ir + 169 + 280 + 182, or = ar + 144 + 576 + 48, [sr, cr] = [12, 13], lr = [
 	.5,
 	1.5,
 	3,
@@ -829,14 +903,14 @@ var Rn = 16, zn = 6, Bn = 13, Vn = 14, Hn = 20, Un = Mn, Wn = Un + 169 + 280 + 1
 	12,
 	30
 ];
-function Yn(e, t) {
-	return $t(Number.isNaN(e) ? t : e);
+function ur(e, t) {
+	return hn(Number.isNaN(e) ? t : e);
 }
-function Xn(e) {
-	let t = Jn.filter((t) => Math.abs(e) >= t).length;
-	return e < 0 ? zn - t : zn + t;
+function dr(e) {
+	let t = lr.filter((t) => Math.abs(e) >= t).length;
+	return e < 0 ? er - t : er + t;
 }
-function Zn(e, t, n, r) {
+function fr(e, t, n, r) {
 	let { points: i, faces: a, parents: o } = t, s = /* @__PURE__ */ new Float64Array(9), c = (e) => i[3 * e], l = (e) => i[3 * e + 1], u = (e) => i[3 * e + 2], d = (e, t) => {
 		let [n, r, i] = [
 			c(t) - c(e),
@@ -857,18 +931,18 @@ function Zn(e, t, n, r) {
 			Infinity,
 			-Infinity
 		];
-		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + Rn); e++) for (let i = 1; i < 3; i++) {
-			let o = Qn(a, r[e], i);
+		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + $n); e++) for (let i = 1; i < 3; i++) {
+			let o = pr(a, r[e], i);
 			if (o >= t) continue;
 			let s = d(t, o);
 			h += s * u(o), g += s, _ = Math.min(_, u(o)), v = Math.max(v, u(o));
-			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + Rn); e++) for (let n = 1; n < 3; n++) {
-				let i = Qn(a, r[e], n);
+			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + $n); e++) for (let n = 1; n < 3; n++) {
+				let i = pr(a, r[e], n);
 				i < t && d(t, i);
 			}
 		}
 		let y = 13, b = t > 0 ? u(t - 1) : 0, x = b;
-		g > 0 && (y = Math.min(z(v - _), 12), b = h / g, x = Math.min(Math.max($n(s), p), m));
+		g > 0 && (y = Math.min(R(v - _), 12), b = h / g, x = Math.min(Math.max(mr(s), p), m));
 		let S = b, [C, w, T] = [
 			o[3 * t],
 			o[3 * t + 1],
@@ -886,15 +960,15 @@ function Zn(e, t, n, r) {
 				S = Math.min(Math.max(u(C) + t * (u(w) - u(C)) + c * (u(T) - u(C)), p), m);
 			}
 		}
-		let E = Yn(x, b), [D, O] = [Xn(S - E), Xn(b - E)], k = e.integer(Un + D * Bn + O, Un + 169 + y * Hn + f, Un + 169 + 280 + D * Vn + y, Kn), A = E + k;
-		i[3 * t + 2] = A, f = Math.min(z(Math.abs(k)), 19), p = t === 0 ? A : Math.min(p, A), m = t === 0 ? A : Math.max(m, A);
+		let E = ur(x, b), [ee, D] = [dr(S - E), dr(b - E)], O = e.integer(ir + ee * tr + D, ir + 169 + y * rr + f, ir + 169 + 280 + ee * nr + y, sr), k = E + O;
+		i[3 * t + 2] = k, f = Math.min(R(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
 	}
 }
-function Qn(e, t, n) {
+function pr(e, t, n) {
 	let r = t % 3;
 	return e[t - r + (r + n) % 3];
 }
-function $n(e) {
+function mr(e) {
 	let [t, n, r] = [
 		e[0],
 		e[1],
@@ -914,7 +988,7 @@ function $n(e) {
 	];
 	return (s * u - c * d + l * f) / (t * u - n * d + r * f);
 }
-function er(e, t, n, r, i) {
+function hr(e, t, n, r, i) {
 	let { faces: a, chart: o, kinds: s, place: c } = t, l = new Int32Array(2 * c.length), u = [0, 0], d = -1;
 	for (let t = 0; t < c.length; t++) {
 		let f = s[o[t]];
@@ -926,25 +1000,25 @@ function er(e, t, n, r, i) {
 			-1,
 			0
 		];
-		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + Rn); e++) {
-			let [r, s] = [Qn(a, i[e], 1), Qn(a, i[e], 2)];
+		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + $n); e++) {
+			let [r, s] = [pr(a, i[e], 1), pr(a, i[e], 2)];
 			if (r < t && o[r] === o[t] && (g = Math.max(g, r)), s < t && o[s] === o[t] && (g = Math.max(g, s)), r >= t || s >= t) continue;
-			let [u, d] = tr(n, c, l, t, r, s, f === 2);
+			let [u, d] = gr(n, c, l, t, r, s, f === 2);
 			if (!Number.isFinite(u) || !Number.isFinite(d)) continue;
 			p += u, m += d, h += 1;
 			let v = Math.abs(l[2 * r] - l[2 * s]) + Math.abs(l[2 * r + 1] - l[2 * s + 1]);
-			_ = Math.max(_, z(v));
+			_ = Math.max(_, R(v));
 		}
 		g < 0 && (g = d), d = t;
-		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = Wn + 144;
+		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = ar + 144;
 		for (let n = 0; n < 2; n++) {
-			let r = e.integer(Wn + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], qn + n);
-			l[2 * t + n] = Yn(y[n], 0) + r, u[n] = Math.min(z(Math.abs(r)), 23);
+			let r = e.integer(ar + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], cr + n);
+			l[2 * t + n] = ur(y[n], 0) + r, u[n] = Math.min(R(Math.abs(r)), 23);
 		}
 	}
 	return l;
 }
-function tr(e, t, n, r, i, a, o) {
+function gr(e, t, n, r, i, a, o) {
 	let [s, c, l] = [
 		0,
 		0,
@@ -958,15 +1032,15 @@ function tr(e, t, n, r, i, a, o) {
 	return [n[2 * i] + f * u - m * d, n[2 * i + 1] + f * d + m * u];
 }
 // eigenfield-three/src/mesh-decoder.ts
-var nr = 144, rr = 2, ir = 3, ar = 18, or = 8;
-function sr(e, t) {
-	return lr(e, t, 1);
+var _r = 144, vr = 2, yr = 3, br = 18, xr = 8;
+function Sr(e, t) {
+	return wr(e, t, 1);
 }
-function cr(e, t) {
-	return lr(e, t, rr);
+function Cr(e, t) {
+	return wr(e, t, vr);
 }
-function lr(e, t, n) {
-	let r = B(e, nr, t, n), [i, a, o] = [
+function wr(e, t, n) {
+	let r = z(e, _r, t, n), [i, a, o] = [
 		r.getUint8(1),
 		r.getUint8(2),
 		r.getUint8(3)
@@ -975,24 +1049,24 @@ function lr(e, t, n) {
 		8,
 		12
 	].map((e) => r.getUint32(e, !0)), u = Float64Array.from({ length: 16 }, (e, t) => r.getFloat64(16 + 8 * t, !0));
-	if (s > Me || l > Me || c > Ne) throw N(t, `${l} vertices and ${c} faces`);
-	if (ot(e, Math.max(s, c, l), Ne, t), i > 1 || o > or * i || a < 1 || a > ar || !u.every(Number.isFinite)) throw N(t, "a lattice that cannot be");
-	let d = new at(e.subarray(nr), Gn, 16), f = Sn(d, s, c, {
+	if (s > Ne || l > Ne || c > Pe) throw M(t, `${l} vertices and ${c} faces`);
+	if (st(e, Math.max(s, c, l), Pe, t), i > 1 || o > xr * i || a < 1 || a > br || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
+	let d = new ot(e.subarray(_r), or, 16), f = Ln(d, s, c, {
 		flat: i === 1,
 		fine: o
 	}, t);
 	d.checkEnd(t);
-	let p = In(f.faces, s);
-	i && Zn(d, f, p.first, p.corners);
-	let m = n === rr ? a + ir : 32, h = Ln(d, f, l, p.first, p.corners, m, t), g = ur(f.points, u), _ = In(h.faces, l), v = er(d, h, g, _.first, _.corners);
+	let p = Zn(f.faces, s);
+	i && fr(d, f, p.first, p.corners);
+	let m = n === vr ? a + yr : 32, h = Qn(d, f, l, p.first, p.corners, m, t), g = Tr(f.points, u), _ = Zn(h.faces, l), v = hr(d, h, g, _.first, _.corners);
 	d.checkEnd(t);
 	let y = new Float32Array(h.maps.buffer);
-	return fr({
-		...dr(f, h, g, v, 2 ** a, (e) => n === rr ? h.maps[e] / 2 ** (a + 1) - 2 : y[e]),
+	return Dr({
+		...Er(f, h, g, v, 2 ** a, (e) => n === vr ? h.maps[e] / 2 ** (a + 1) - 2 : y[e]),
 		matrix: u
 	}, t);
 }
-function ur(e, t) {
+function Tr(e, t) {
 	let n = new Float64Array(e.length);
 	for (let r = 0; r < e.length; r += 3) {
 		let i = (n) => t[4 * n] * e[r] + t[4 * n + 1] * e[r + 1] + t[4 * n + 2] * e[r + 2] + t[4 * n + 3], a = i(3);
@@ -1000,7 +1074,7 @@ function ur(e, t) {
 	}
 	return n;
 }
-function dr(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) {
+function Er(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) {
 	let u = new Float32Array(3 * n.length), d = new Int32Array(3 * n.length), f = new Float32Array(2 * n.length), p = new Float32Array(a.buffer);
 	return n.forEach((t, n) => {
 		u.set(o.subarray(3 * t, 3 * t + 3), 3 * n), d.set(e.points.subarray(3 * t, 3 * t + 3), 3 * n);
@@ -1016,18 +1090,18 @@ function dr(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) 
 		places: d
 	};
 }
-function fr(e, t) {
-	let n = (e) => Math.abs(e) <= Ge;
-	if (!e.positions.every(n) || !e.uv.every(n)) throw N(t, "positions or texture coordinates that are not finite");
+function Dr(e, t) {
+	let n = (e) => Math.abs(e) <= Ke;
+	if (!e.positions.every(n) || !e.uv.every(n)) throw M(t, "positions or texture coordinates that are not finite");
 	return e;
 }
 // eigenfield-three/src/mesh-motion.ts
-var pr = 11, mr = 2 ** 20, hr = 8, [gr, _r] = [7, 8], vr = 12, [yr, br, xr, Sr] = [
+var Or = 11, kr = 2 ** 20, Ar = 8, [jr, Mr] = [7, 8], Nr = 12, [Pr, Fr, Ir, Lr] = [
 	0,
 	1,
 	2,
 	3
-], Cr = 576, wr = 720, Tr = 1152, Er = 1159, Dr = 3, Or = 4, kr = class {
+], Rr = 576, zr = 720, Br = 1152, Vr = 1159, Hr = 3, Ur = 4, Wr = class {
 	mesh;
 	where;
 	frames;
@@ -1040,16 +1114,16 @@ var pr = 11, mr = 2 ** 20, hr = 8, [gr, _r] = [7, 8], vr = 12, [yr, br, xr, Sr] 
 	decoded = 0;
 	constructor(e, t, n) {
 		this.mesh = t, this.where = n;
-		let r = B(e, pr, n), i = t.places.length / 3, a = r.getUint32(5, !0);
+		let r = z(e, Or, n), i = t.places.length / 3, a = r.getUint32(5, !0);
 		this.frames = r.getUint16(9, !0);
-		let o = pr + this.frames;
-		if (r.getUint32(1, !0) !== i || a > i) throw N(n, `${a} vertices that move, of another mesh`);
-		if (this.frames < 1 || this.frames > 1024 || this.frames * a > Ie) throw N(n, `${a} vertices that move in ${this.frames} frames`);
-		if (B(e, o, n), this.flags = e.slice(pr, o), this.flags.some((e) => e > gr + _r)) throw N(n, "frames that cannot be");
-		if (ot(e, this.flags.reduce((e, t) => e + (t & 1) + (t >> 1 & 1) + (t >> 2 & 1), 0) * a, 3 * Ie, n), this.moving = new Int32Array(a), this.steps = new Int32Array(a && 3 * a * (2 + this.frames)), this.off = new Int32Array(3 * a), this.around = Nr(t.places, t.indices), !a) return;
-		this.decoder = new at(e.subarray(o), Er, Or);
-		let s = Mr(this.decoder, i, this.around);
-		if (s.reduce((e, t) => e + t, 0) !== a) throw N(n, "other vertices that move");
+		let o = Or + this.frames;
+		if (r.getUint32(1, !0) !== i || a > i) throw M(n, `${a} vertices that move, of another mesh`);
+		if (this.frames < 1 || this.frames > 1024 || this.frames * a > Le) throw M(n, `${a} vertices that move in ${this.frames} frames`);
+		if (z(e, o, n), this.flags = e.slice(Or, o), this.flags.some((e) => e > jr + Mr)) throw M(n, "frames that cannot be");
+		if (st(e, this.flags.reduce((e, t) => e + (t & 1) + (t >> 1 & 1) + (t >> 2 & 1), 0) * a, 3 * Le, n), this.moving = new Int32Array(a), this.steps = new Int32Array(a && 3 * a * (2 + this.frames)), this.off = new Int32Array(3 * a), this.around = Jr(t.places, t.indices), !a) return;
+		this.decoder = new ot(e.subarray(o), Vr, Ur);
+		let s = qr(this.decoder, i, this.around);
+		if (s.reduce((e, t) => e + t, 0) !== a) throw M(n, "other vertices that move");
 		this.around = this.start(s);
 	}
 	read(e) {
@@ -1061,7 +1135,7 @@ var pr = 11, mr = 2 ** 20, hr = 8, [gr, _r] = [7, 8], vr = 12, [yr, br, xr, Sr] 
 		let r = this.moving.length;
 		if (!r) return;
 		let i = this.steps.subarray(3 * r * (2 + e), 3 * r * (3 + e));
-		this.moving.forEach((e, r) => t.set(Ar(i, 3 * r, n), 3 * e));
+		this.moving.forEach((e, r) => t.set(Gr(i, 3 * r, n), 3 * e));
 	}
 	start(e) {
 		let { places: t, indices: n } = this.mesh, r = new Int32Array(e.length).fill(-1), i = 0;
@@ -1069,7 +1143,7 @@ var pr = 11, mr = 2 ** 20, hr = 8, [gr, _r] = [7, 8], vr = 12, [yr, br, xr, Sr] 
 			e && (this.moving[i] = t, r[t] = i++);
 		});
 		let a = new Int32Array(3 * i);
-		return this.moving.forEach((e, n) => a.set(t.subarray(3 * e, 3 * e + 3), 3 * n)), this.steps.set(a), this.steps.set(a, a.length), Nr(a, Int32Array.from(n, (e) => r[e]));
+		return this.moving.forEach((e, n) => a.set(t.subarray(3 * e, 3 * e + 3), 3 * n)), this.steps.set(a), this.steps.set(a, a.length), Jr(a, Int32Array.from(n, (e) => r[e]));
 	}
 	readFrame(e, t) {
 		let { steps: n, around: r, off: i } = this, { near: a, starts: o, twins: s } = r, c = 3 * this.moving.length, [l, u, d, f] = [
@@ -1077,9 +1151,9 @@ var pr = 11, mr = 2 ** 20, hr = 8, [gr, _r] = [7, 8], vr = 12, [yr, br, xr, Sr] 
 			c * (2 + t),
 			c * (1 + t),
 			c * t
-		], p = (l & _r) !== 0, m = new Int32Array(c);
+		], p = (l & Mr) !== 0, m = new Int32Array(c);
 		for (let t = 0; t < this.moving.length; t++) {
-			let [r, c] = [o[t], o[t + 1]], h = c - r, g = s[t] ? yr : h === 0 ? Sr : h === 1 ? xr : br;
+			let [r, c] = [o[t], o[t + 1]], h = c - r, g = s[t] ? Pr : h === 0 ? Lr : h === 1 ? Ir : Fr;
 			for (let o = 0; o < 3; o++) {
 				let s = 3 * t + o;
 				if (!(l >> o & 1)) {
@@ -1097,18 +1171,18 @@ var pr = 11, mr = 2 ** 20, hr = 8, [gr, _r] = [7, 8], vr = 12, [yr, br, xr, Sr] 
 					p && (r -= n[d + t] - n[f + t]), _ = Math.min(_, r), v = Math.max(v, r), y += r, b += Math.abs(m[t]);
 				}
 				let x = n[d + s];
-				p && (x += x - n[f + s]), h && (x += Math.floor((2 * y + h) / (2 * h))), x = Math.min(Math.max(x, -mr), mr);
-				let S = jr(h && Math.floor(4 * b / h)), C = jr(4 * Math.abs(i[s])), w = jr(h && v - _);
-				m[s] = e.integer((g * vr + S) * vr + C, Cr + (o * 4 + g) * vr + w, wr + (o * vr + w) * vr + S, o), n[u + s] = x + m[s];
+				p && (x += x - n[f + s]), h && (x += Math.floor((2 * y + h) / (2 * h))), x = Math.min(Math.max(x, -kr), kr);
+				let S = Kr(h && Math.floor(4 * b / h)), C = Kr(4 * Math.abs(i[s])), w = Kr(h && v - _);
+				m[s] = e.integer((g * Nr + S) * Nr + C, Rr + (o * 4 + g) * Nr + w, zr + (o * Nr + w) * Nr + S, o), n[u + s] = x + m[s];
 			}
 		}
 		this.off = m, e.checkEnd(this.where), this.check(u, c);
 	}
 	check(e, t) {
-		for (let n = e; n < e + t; n += 3) if (!Ar(this.steps, n, this.mesh.matrix).every((e) => Math.abs(e) <= 1e30)) throw N(this.where, "positions that are not finite");
+		for (let n = e; n < e + t; n += 3) if (!Gr(this.steps, n, this.mesh.matrix).every((e) => Math.abs(e) <= 1e30)) throw M(this.where, "positions that are not finite");
 	}
 };
-function Ar(e, t, n) {
+function Gr(e, t, n) {
 	let [r, i, a] = [
 		e[t],
 		e[t + 1],
@@ -1120,20 +1194,20 @@ function Ar(e, t, n) {
 		o(2) / s
 	];
 }
-function jr(e) {
-	return Math.min(z(e), 11);
+function Kr(e) {
+	return Math.min(R(e), 11);
 }
-function Mr(e, t, { near: n, starts: r }) {
+function qr(e, t, { near: n, starts: r }) {
 	let i = new Uint8Array(t), a = 0;
 	for (let o = 0; o < t; o++) {
 		let [t, s] = [r[o], r[o + 1]], c = 0;
 		for (let e = t; e < s; e++) c += i[n[e]];
 		let l = s === t ? 3 : c === 0 ? 0 : c === s - t ? 2 : 1;
-		a = Number(e.flag(Tr + l, 1156 + a, 1158, Dr)), i[o] = a;
+		a = Number(e.flag(Br + l, 1156 + a, 1158, Hr)), i[o] = a;
 	}
 	return i;
 }
-function Nr(e, t) {
+function Jr(e, t) {
 	let n = e.length / 3, r = Array.from({ length: n }, () => []), i = new Uint8Array(n), a = /* @__PURE__ */ new Map();
 	for (let t = 0; t < n; t++) {
 		let n = `${e[3 * t]} ${e[3 * t + 1]} ${e[3 * t + 2]}`, o = a.get(n);
@@ -1145,7 +1219,7 @@ function Nr(e, t) {
 		let a = e - e % 3;
 		for (let i of [1, 2]) {
 			let o = t[a + (e + i) % 3];
-			o >= 0 && o < n && r[n].length < hr && r[n].push(o);
+			o >= 0 && o < n && r[n].length < Ar && r[n].push(o);
 		}
 	}
 	let o = new Int32Array(n + 1);
@@ -1156,10 +1230,10 @@ function Nr(e, t) {
 	};
 }
 // eigenfield-three/src/name-decoder.ts
-var Pr = 4 * L;
-async function Fr(e, t, n) {
-	let r = Math.min(je, Pr * t), i = await ye(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
-	if (a === 0 || !Number.isInteger(a)) throw N(n, `${i.length} bytes of ${t} names`);
+var Yr = 4 * I;
+async function Xr(e, t, n) {
+	let r = Math.min(Me, Yr * t), i = await xe(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
+	if (a === 0 || !Number.isInteger(a)) throw M(n, `${i.length} bytes of ${t} names`);
 	let o = new TextDecoder("utf-8", {
 		fatal: !0,
 		ignoreBOM: !0
@@ -1171,22 +1245,22 @@ async function Fr(e, t, n) {
 		try {
 			c.push(o.decode(s.subarray(0, r)));
 		} catch {
-			throw N(n, "names that are not UTF-8");
+			throw M(n, "names that are not UTF-8");
 		}
 	}
 	return c;
 }
 // eigenfield-three/src/headers.ts
-function Ir(e) {
+function Zr(e) {
 	let t = new DataView(e);
 	try {
-		return Rr(t) ?? zr(t) ?? Br(t) ?? Vr(t);
+		return $r(t) ?? ei(t) ?? ti(t) ?? ni(t);
 	} catch (e) {
 		if (e instanceof RangeError) return null;
 		throw e;
 	}
 }
-function Lr(e, t) {
+function Qr(e, t) {
 	return String.fromCharCode(...[
 		0,
 		1,
@@ -1194,15 +1268,15 @@ function Lr(e, t) {
 		3
 	].map((n) => e.getUint8(t + n)));
 }
-function Rr(e) {
-	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || Lr(e, 12) !== "IHDR" ? null : {
+function $r(e) {
+	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || Qr(e, 12) !== "IHDR" ? null : {
 		type: "image/png",
 		width: e.getUint32(16),
 		height: e.getUint32(20),
 		bits: null
 	};
 }
-function zr(e) {
+function ei(e) {
 	if (e.getUint16(0) !== 65496) return null;
 	for (let t = 2;;) {
 		let n = e.getUint16(t);
@@ -1225,12 +1299,12 @@ function zr(e) {
 		t += 2 + e.getUint16(t + 2);
 	}
 }
-function Br(e) {
-	if (Lr(e, 0) !== "RIFF" || Lr(e, 8) !== "WEBP") return null;
+function ti(e) {
+	if (Qr(e, 0) !== "RIFF" || Qr(e, 8) !== "WEBP") return null;
 	let t = {
 		type: "image/webp",
 		bits: null
-	}, n = Lr(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
+	}, n = Qr(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
 	if (n === "VP8X") return {
 		...t,
 		width: 1 + r(24),
@@ -1250,11 +1324,11 @@ function Br(e) {
 		height: e.getUint16(28, !0) & 16383
 	} : null;
 }
-function Vr(e) {
-	if (Lr(e, 4) !== "ftyp") return null;
+function ni(e) {
+	if (Qr(e, 4) !== "ftyp") return null;
 	let t = null, n = null, r = (i, a) => {
 		for (let o = i; o + 8 <= a;) {
-			let i = e.getUint32(o), s = Lr(e, o + 4), c = i === 0 ? a : o + i;
+			let i = e.getUint32(o), s = Qr(e, o + 4), c = i === 0 ? a : o + i;
 			if (i === 1 || c < o + 8 || c > a) return;
 			if (s === "meta" && r(o + 12, c), (s === "iprp" || s === "ipco") && r(o + 8, c), s === "ispe") {
 				let [n, r] = [e.getUint32(o + 12), e.getUint32(o + 16)];
@@ -1277,31 +1351,31 @@ function Vr(e) {
 	};
 }
 // eigenfield-three/src/pictures-8bit.ts
-var Hr = {
+var ri = {
 	colorSpaceConversion: "none",
 	premultiplyAlpha: "none"
-}, Ur = {
+}, ii = {
 	"image/avif": "AAAAHGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZgAAAOltZXRhAAAAAAAAACFoZGxyAAAAAAAAAABwaWN0AAAAAAAAAAAAAAAAAAAAAA5waXRtAAAAAAABAAAAHmlsb2MAAAAARAAAAQABAAAAAQAAAQ0AAAAZAAAAKGlpbmYAAAAAAAEAAAAaaW5mZQIAAAAAAQAAYXYwMUNvbG9yAAAAAGhpcHJwAAAASWlwY28AAAAUaXNwZQAAAAAAAAAIAAAACAAAAA5waXhpAAAAAAEIAAAADGF2MUOBABwAAAAAE2NvbHJuY2x4AAEADQAGgAAAABdpcG1hAAAAAAAAAAEAAQQBAoMEAAAAIW1kYXQSAAoIGAi/aYCGg1AyCxlGIYeeaACQQNmg",
 	"image/webp": "UklGRh4AAABXRUJQVlA4TBEAAAAvAAAAAAdQwAIWsP+BiOh/AAA="
 };
-function Wr(e, t, n) {
-	let r = Ir(e);
-	if (!r) throw N(t.where, "no picture");
+function ai(e, t, n) {
+	let r = Zr(e);
+	if (!r) throw M(t.where, "no picture");
 	let { width: i, height: a, bits: o } = r;
-	if (n && (i !== n[0] || a !== n[1])) throw N(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
-	if (t.codec.bits !== 8 && t.codec.bits !== o) throw N(t.where, `no picture of ${t.codec.bits} bits`);
+	if (n && (i !== n[0] || a !== n[1])) throw M(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
+	if (t.codec.bits !== 8 && t.codec.bits !== o) throw M(t.where, `no picture of ${t.codec.bits} bits`);
 	let s = i * a;
-	if (!s || i > 16384 || a > 32768 || s > Te) throw N(t.where, `a picture of ${i} x ${a}`);
+	if (!s || i > 16384 || a > 32768 || s > De) throw M(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
-var Gr = async (e, t, n) => {
-	let r = t.pieces * t.textures, [i, a] = Wr(e, t, n && [n[0], r * n[1]]), o = Ir(e)?.type ?? t.codec.mimeType, s;
+var oi = async (e, t, n) => {
+	let r = t.pieces * t.textures, [i, a] = ai(e, t, n && [n[0], r * n[1]]), o = Zr(e)?.type ?? t.codec.mimeType, s;
 	try {
-		s = await createImageBitmap(new Blob([e], { type: o }), Hr);
+		s = await createImageBitmap(new Blob([e], { type: o }), ri);
 	} catch (e) {
-		throw await Kr(o) ? N(t.where, "it cannot be decoded") : qr(o, t, e);
+		throw await si(o) ? M(t.where, "it cannot be decoded") : ci(o, t, e);
 	}
-	if (s.width !== i || s.height !== a) throw s.close(), N(t.where, `decoded to ${s.width} x ${s.height}, not to ${i} x ${a}`);
+	if (s.width !== i || s.height !== a) throw s.close(), M(t.where, `decoded to ${s.width} x ${s.height}, not to ${i} x ${a}`);
 	let c = a / r;
 	return Array.from({ length: r }, (e, t) => ({
 		picture: s,
@@ -1309,8 +1383,8 @@ var Gr = async (e, t, n) => {
 		rows: c
 	}));
 };
-async function Kr(e) {
-	let t = Ur[e];
+async function si(e) {
+	let t = ii[e];
 	if (!t) return !0;
 	let n = Uint8Array.from(atob(t), (e) => e.charCodeAt(0));
 	try {
@@ -1319,17 +1393,17 @@ async function Kr(e) {
 		return !1;
 	}
 }
-function qr(e, t, n) {
-	return new M("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
+function ci(e, t, n) {
+	return new j("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
 }
 // eigenfield-three/src/pictures-10bit.ts
-var Jr = /* @__PURE__ */ new Set([
+var li = /* @__PURE__ */ new Set([
 	"I420P10",
 	"I422P10",
 	"I444P10"
-]), Yr = async (e, t, n) => {
-	let r = t.pieces * t.textures, [i, a] = Wr(e, t, n && [n[0], r * n[1]]), o = await Xr(e, i, a);
-	if (!o) return Gr(e, t, n);
+]), ui = async (e, t, n) => {
+	let r = t.pieces * t.textures, [i, a] = ai(e, t, n && [n[0], r * n[1]]), o = await di(e, i, a);
+	if (!o) return oi(e, t, n);
 	let s = a / r;
 	return Array.from({ length: r }, (e, t) => ({
 		picture: o,
@@ -1337,7 +1411,7 @@ var Jr = /* @__PURE__ */ new Set([
 		rows: s
 	}));
 };
-async function Xr(e, t, n) {
+async function di(e, t, n) {
 	if (typeof ImageDecoder > "u") return null;
 	let r = null, i = null;
 	try {
@@ -1346,7 +1420,7 @@ async function Xr(e, t, n) {
 			type: "image/avif"
 		}), i = (await r.decode()).image;
 		let a = i.visibleRect;
-		if (!Jr.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
+		if (!li.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
 		let o = new Uint8Array(i.allocationSize()), [s] = await i.copyTo(o);
 		return s ? {
 			data: o.subarray(s.offset),
@@ -1361,57 +1435,57 @@ async function Xr(e, t, n) {
 	}
 }
 // eigenfield-three/src/triangle-decoder.ts
-var Zr = 5;
-function Qr(e, t) {
-	let n = B(e, Zr, t).getUint32(1, !0);
-	ot(e, 3 * n, 6 * Oe, t);
-	let r = yt(e.subarray(Zr)), i = Ct(r, n, 3, !0);
+var fi = 5;
+function pi(e, t) {
+	let n = z(e, fi, t).getUint32(1, !0);
+	st(e, 3 * n, 6 * F, t);
+	let r = bt(e.subarray(fi)), i = wt(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
-	if (!a.every((e) => e >= 0 && e < 1e5)) throw N(t, "triangles of cameras that there cannot be");
+	if (!a.every((e) => e >= 0 && e < 1e5)) throw M(t, "triangles of cameras that there cannot be");
 	return { corners: Uint32Array.from(a) };
 }
 // eigenfield-three/src/weight-decoder.ts
-var $r = 14, ei = 2 ** 20;
-function ti(e, t) {
-	let n = B(e, $r, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
-	if (n.getUint8(1) > 1 || i === 0) throw N(t, "weights of no camera, or of an unknown kind");
-	ot(e, o * s * Math.max(a, 1), We, t), B(e, $r + 4 * a, t);
+var mi = 14, hi = 2 ** 20;
+function gi(e, t) {
+	let n = z(e, mi, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
+	if (n.getUint8(1) > 1 || i === 0) throw M(t, "weights of no camera, or of an unknown kind");
+	st(e, o * s * Math.max(a, 1), Ge, t), z(e, mi + 4 * a, t);
 	let c = o * s;
-	if (c < i) throw N(t, "a grid with too few cells");
-	let l = yt(e.subarray($r + 4 * a)), u = r ? wt(l, c, i, t) : null, d = u !== null && i === c, f = [
+	if (c < i) throw M(t, "a grid with too few cells");
+	let l = bt(e.subarray(mi + 4 * a)), u = r ? Tt(l, c, i, t) : null, d = u !== null && i === c, f = [
 		0,
 		1,
 		2
-	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * ei * Math.max(o, s);
+	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * hi * Math.max(o, s);
 	for (let e = 0; e < a; e++) {
-		let r = n.getFloat32($r + 4 * e, !0);
-		if (!(r > 0 && r < Infinity)) throw N(t, "a step that is not positive");
-		let i = bt(l), h = St(l, s, f[i], i);
-		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw N(t, `numbers of component ${e} that cannot be`);
+		let r = n.getFloat32(mi + 4 * e, !0);
+		if (!(r > 0 && r < Infinity)) throw M(t, "a step that is not positive");
+		let i = xt(l), h = Ct(l, s, f[i], i);
+		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw M(t, `numbers of component ${e} that cannot be`);
 		f[i] = h;
-		let g = i === 2 ? ni(h, o, s) : h;
+		let g = i === 2 ? _i(h, o, s) : h;
 		for (let t = 0; t < c; t++) {
 			let n = u ? u[t] : t;
 			n >= 0 && (p[n * a + e] = g[t] * r);
 		}
 		l.checkEnd(t);
 	}
-	if (!p.every(Number.isFinite)) throw N(t, "weights that are not finite");
+	if (!p.every(Number.isFinite)) throw M(t, "weights that are not finite");
 	return {
 		cameras: i,
 		components: a,
 		values: p
 	};
 }
-function ni(e, t, n) {
-	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = ri(n);
+function _i(e, t, n) {
+	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = vi(n);
 	for (let i = 0; i < t; i++) for (let t = 0; t < n; t++) {
 		let o = 0;
 		for (let r = 0; r < n; r++) o += a(r, t) * e[i * n + r];
 		r[i * n + t] = o;
 	}
-	let o = ri(t);
+	let o = vi(t);
 	for (let e = 0; e < t; e++) for (let a = 0; a < n; a++) {
 		let s = 0;
 		for (let i = 0; i < t; i++) s += o(i, e) * r[i * n + a];
@@ -1419,13 +1493,13 @@ function ni(e, t, n) {
 	}
 	return i;
 }
-function ri(e) {
+function vi(e) {
 	let [t, n] = [Math.sqrt(1 / e), Math.sqrt(2 / e)], r = Float64Array.from({ length: 4 * e }, (t, r) => n * Math.cos(Math.PI * r / (2 * e)));
 	return (n, i) => n === 0 ? t : r[(2 * i + 1) * n % (4 * e)];
 }
 // eigenfield-three/src/codecs.ts
-function ii(e) {
-	let [t, n] = [Gr, Gr];
+function yi(e) {
+	let [t, n] = [oi, oi];
 	return {
 		kind: "picture",
 		decode: t,
@@ -1440,98 +1514,98 @@ function ii(e) {
 		bits: 8
 	};
 }
-var W = {
+var H = {
 	"mesh-1": {
 		kind: "mesh",
-		decode: sr,
+		decode: Sr,
 		needs: "codedMesh",
 		limits: ["MAX_VERTICES", "MAX_TRIANGLES"]
 	},
 	"mesh-2": {
 		kind: "mesh",
-		decode: cr,
+		decode: Cr,
 		needs: "mesh-2",
 		limits: ["MAX_VERTICES", "MAX_TRIANGLES"]
 	},
 	"cameras-1": {
 		kind: "cameras",
-		decode: jt,
+		decode: Nt,
 		needs: "codedCameras",
 		limits: ["MAX_CAMERAS"]
 	},
 	"cameras-2": {
 		kind: "cameras",
-		decode: At,
+		decode: Mt,
 		needs: "cameras-2",
 		limits: ["MAX_CAMERAS"]
 	},
 	"names-1": {
 		kind: "names",
-		decode: Fr,
+		decode: Xr,
 		needs: "codedNames",
 		limits: ["MAX_NAMES", "MAX_CAMERAS"]
 	},
 	"triangles-1": {
 		kind: "triangles",
-		decode: Qr,
+		decode: pi,
 		needs: "codedTriangles",
 		limits: ["MAX_CAMERAS"]
 	},
 	"weights-1": {
 		kind: "weights",
-		decode: ti,
+		decode: gi,
 		needs: "codedWeights",
 		limits: ["MAX_WEIGHTS"]
 	},
 	"film-1": {
 		kind: "film",
-		decode: (...e) => new It(...e),
+		decode: (...e) => new Xt(...e),
 		needs: "film-1",
 		limits: ["MAX_FILM_SIDE", "MAX_FILM_PIXELS"]
 	},
 	"motion-1": {
 		kind: "motion",
-		decode: (...e) => new kr(...e),
+		decode: (...e) => new Wr(...e),
 		needs: "motion-1",
 		limits: ["MAX_GROUP_FRAMES", "MAX_MOTION"]
 	},
-	png: ii("image/png"),
-	webp: ii("image/webp"),
-	avif: ii("image/avif"),
-	jpeg: ii("image/jpeg"),
+	png: yi("image/png"),
+	webp: yi("image/webp"),
+	avif: yi("image/avif"),
+	jpeg: yi("image/jpeg"),
 	"av1-10bit-1": {
-		...ii("image/avif"),
+		...yi("image/avif"),
 		bits: 10,
-		decode: Yr,
+		decode: ui,
 		needs: "bits"
 	},
 	"av1-10bit-2": {
-		...ii("video/AV1"),
+		...yi("video/AV1"),
 		bits: 10,
-		decode: (e, t, n) => Yr(_e(e, t.where), t, n),
-		bitmaps: (e, t, n) => Gr(_e(e, t.where), t, n),
+		decode: (e, t, n) => ui(ve(e, t.where), t, n),
+		bitmaps: (e, t, n) => oi(ve(e, t.where), t, n),
 		needs: "av1-10bit-2"
 	}
-}, ai = {
+}, bi = {
 	mesh: "mesh-1",
 	cameras: "cameras-1",
 	names: "names-1",
 	triangles: "triangles-1",
 	weights: "weights-1"
 };
-function oi(e, t, n) {
-	let r = t.exists ? t.text(L) : n, i = Object.hasOwn(W, r) ? W[r] : null;
+function xi(e, t, n) {
+	let r = t.exists ? t.text(I) : n, i = Object.hasOwn(H, r) ? H[r] : null;
 	if (i?.kind === e) return i;
-	throw new M("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
+	throw new j("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
 }
-function si(e, t) {
-	return Object.keys(W).find((n) => {
-		let r = W[n];
+function Si(e, t) {
+	return Object.keys(H).find((n) => {
+		let r = H[n];
 		return r.kind === "picture" && r.mimeType === e && (t ?? r.bits) === r.bits;
 	});
 }
 // eigenfield-three/src/json.ts
-var G = class e {
+var U = class e {
 	raw;
 	where;
 	constructor(e, t) {
@@ -1562,7 +1636,7 @@ var G = class e {
 		if (this.raw.length > e) throw this.wrong(`longer than ${e} characters`);
 		return this.raw;
 	}
-	number(e = -Ge, t = Ge) {
+	number(e = -Ke, t = Ke) {
 		if (typeof this.raw != "number") throw this.wrong("no number");
 		if (!(this.raw >= e && this.raw <= t)) throw this.wrong(`${this.raw} is not in ${e}..${t}`);
 		return this.raw;
@@ -1572,7 +1646,7 @@ var G = class e {
 		if (!Number.isInteger(n)) throw this.wrong(`${n} is no whole number`);
 		return n;
 	}
-	numbers(e, t = -Ge, n = Ge) {
+	numbers(e, t = -Ke, n = Ke) {
 		let r = this.items(e);
 		if (r.length !== e) throw this.wrong(`${e} numbers are needed`);
 		return r.map((e) => e.number(t, n));
@@ -1586,27 +1660,27 @@ var G = class e {
 		];
 	}
 	wrong(e) {
-		return N(this.where || "/", this.exists ? e : "missing");
+		return M(this.where || "/", this.exists ? e : "missing");
 	}
-}, ci = 5121, li = 5123, ui = 5125, K = 5126, di = {
-	[ci]: 1,
-	[li]: 2,
-	[ui]: 4,
-	[K]: 4
-}, fi = /* @__PURE__ */ new Set([
+}, Ci = 5121, wi = 5123, Ti = 5125, W = 5126, Ei = {
+	[Ci]: 1,
+	[wi]: 2,
+	[Ti]: 4,
+	[W]: 4
+}, Di = /* @__PURE__ */ new Set([
 	"cameras",
 	"triangles",
 	"weights"
-]), pi = {
+]), Oi = {
 	SCALAR: 1,
 	VEC2: 2,
 	VEC3: 3
 };
-function mi(e) {
+function ki(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
-	return e.key("bufferViews").items(Se).map((e) => {
+	return e.key("bufferViews").items(we).map((e) => {
 		let t = e.key("byteOffset"), r = e.key("byteStride");
 		e.key("buffer").integer(0, 0);
 		let i = {
@@ -1618,11 +1692,11 @@ function mi(e) {
 		return i;
 	});
 }
-function hi(e) {
+function Ai(e) {
 	return (t) => t.integer(0, e.length - 1);
 }
-function gi(e, t) {
-	let n = e.key("accessors"), r = n.exists ? n.items(Se) : [];
+function ji(e, t) {
+	let n = e.key("accessors"), r = n.exists ? n.items(we) : [];
 	return (e, n, i, a) => {
 		let o = r[e.integer(0, r.length - 1)];
 		if (!o) throw e.wrong("no such accessor");
@@ -1632,14 +1706,14 @@ function gi(e, t) {
 		if (o.key("sparse").exists) throw o.wrong("sparse");
 		let c = o.key("normalized");
 		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = pi[n] ?? 1, u = o.key("count").integer(1, We);
+		let l = Oi[n] ?? 1, u = o.key("count").integer(1, Ge);
 		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
 		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
 		if (!f) throw o.wrong("no such buffer view");
-		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = di[s] * l;
+		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = Ei[s] * l;
 		if (f.stride && (f.stride < h || n === "SCALAR")) throw o.wrong("a stride that cannot be");
 		if (m + (u - 1) * (f.stride || h) + h > f.length) throw o.wrong("outside its buffer view");
-		if ((m + f.offset) % di[s]) throw o.wrong("not aligned");
+		if ((m + f.offset) % Ei[s]) throw o.wrong("not aligned");
 		return {
 			view: d,
 			offset: m,
@@ -1650,40 +1724,40 @@ function gi(e, t) {
 		};
 	};
 }
-function _i(e, t, n) {
-	let r = typeof t.raw == "number" && fi.has(e), i = oi(e, r ? new G(void 0, t.where) : t.key("codec"), ai[e]);
+function Mi(e, t, n) {
+	let r = typeof t.raw == "number" && Di.has(e), i = xi(e, r ? new U(void 0, t.where) : t.key("codec"), bi[e]);
 	return {
 		view: n(r ? t : t.key("bufferView")),
 		codec: i,
 		where: t.where
 	};
 }
-async function vi(e, t, n) {
+async function Ni(e, t, n) {
 	let r = await n(e.view), i = t[e.view]?.length ?? Infinity;
-	if (r.byteLength < i) throw le(e.where);
-	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + di[c] * o * s);
-	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : yi(new Float32Array(l), e.where);
+	if (r.byteLength < i) throw ue(e.where);
+	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + Ei[c] * o * s);
+	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : Pi(new Float32Array(l), e.where);
 }
-function yi(e, t) {
-	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw N(t, `${n} among its numbers`);
+function Pi(e, t) {
+	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw M(t, `${n} among its numbers`);
 	return e;
 }
 // eigenfield-three/src/planes.ts
-var bi = 8, xi = 16, Si = "av1-10bit-2";
-function Ci(e, t) {
-	return new M("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
+var Fi = 8, Ii = 16, Li = "av1-10bit-2";
+function Ri(e, t) {
+	return new j("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function wi(e, t = Ce) {
+function zi(e, t = Te) {
 	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
 	if (!n || !r) throw e.wrong("two numbers are needed");
-	if (n * r > Te) throw e.wrong(`more than ${Te} texels`);
+	if (n * r > De) throw e.wrong(`more than ${De} texels`);
 	return [n, r];
 }
-function Ti(e, t, n, r, i) {
+function Bi(e, t, n, r, i) {
 	let a = e.key("planes").items(16);
 	if (!a.length) throw e.key("planes").wrong("no plane");
 	let o = a.map((e, a) => {
-		let o = e.key("channels").integer(1, 64), s = Ii(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => zi(e, o, t, r, i);
+		let o = e.key("channels").integer(1, 64), s = Zi(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => ea(e, o, t, r, i);
 		return {
 			channels: o,
 			...s,
@@ -1693,15 +1767,15 @@ function Ti(e, t, n, r, i) {
 	for (let { channels: e, meanSize: t, bases: n } of o) {
 		s += 4 * e * (t ? t[0] * t[1] : 0);
 		for (let { size: t, count: r, pictures: i } of n) {
-			let n = i.reduce((e, { textures: t, codec: n }) => e + t * (n.bits === bi ? 1 : 2), 0);
+			let n = i.reduce((e, { textures: t, codec: n }) => e + t * (n.bits === Fi ? 1 : 2), 0);
 			s += t[0] * t[1] * e * n, c += r;
 		}
 	}
-	if (c > 4096) throw e.key("planes").wrong(`more than ${Ee} textures`);
-	if (s > De) throw e.key("planes").wrong("too large when it is decoded");
+	if (c > 4096) throw e.key("planes").wrong(`more than ${Oe} textures`);
+	if (s > ke) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
-function Ei(e, t) {
+function Vi(e, t) {
 	let n = t.reduce((e, { channels: t }) => e + t, 0), r = e.key("toRGB");
 	if (r.exists) {
 		let e = r.numbers(3 * n), t = (t, r) => e[t * n + r] ?? 0;
@@ -1733,11 +1807,11 @@ function Ei(e, t) {
 			1
 		]
 	];
-	throw Ci(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
+	throw Ri(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
 }
-function Di(e, t, n, r, i, a = !1) {
-	let o = Oi(e), s = t === 3 && o.bits === bi ? 1 : t;
-	r && Bi(e, s * n, r);
+function Hi(e, t, n, r, i, a = !1) {
+	let o = Ui(e), s = t === 3 && o.bits === Fi ? 1 : t;
+	r && ta(e, s * n, r);
 	let [c, l] = [e.key("scale"), e.key("zero")], u = {
 		view: i(e.key("bufferView")),
 		codec: o,
@@ -1746,27 +1820,27 @@ function Di(e, t, n, r, i, a = !1) {
 		where: e.where,
 		part: null
 	};
-	return a && o.bits === bi && !c.exists && !l.exists ? {
+	return a && o.bits === Fi && !c.exists && !l.exists ? {
 		...u,
-		...ji(t)
+		...Ki(t)
 	} : {
 		...u,
-		scale: Fi(c, t, n),
-		zero: Fi(l, t, n)
+		scale: Xi(c, t, n),
+		zero: Xi(l, t, n)
 	};
 }
-function Oi(e) {
-	let t = e.key("mimeType").text(L);
-	if (!si(t)) throw e.key("mimeType").wrong("an unknown type");
-	let n = e.key("bits"), r = n.exists ? n.integer(1, xi) : bi, i = si(t, r);
+function Ui(e) {
+	let t = e.key("mimeType").text(I);
+	if (!Si(t)) throw e.key("mimeType").wrong("an unknown type");
+	let n = e.key("bits"), r = n.exists ? n.integer(1, Ii) : Fi, i = Si(t, r);
 	if (!i) throw n.wrong(`${r} bits of ${t}`);
-	let a = e.key("codec"), o = oi("picture", a, i);
+	let a = e.key("codec"), o = xi("picture", a, i);
 	if (o.mimeType !== t || o.bits !== r) throw a.wrong(`${r} bits of ${t}`);
 	return o;
 }
-function ki(e, t, n) {
-	let r = e.key("at").items(Ee * t).map((e) => {
-		let [t = 0, n = 0] = e.numbers(2, 0, Pe);
+function Wi(e, t, n) {
+	let r = e.key("at").items(Oe * t).map((e) => {
+		let [t = 0, n = 0] = e.numbers(2, 0, Fe);
 		if (!Number.isInteger(t) || !Number.isInteger(n)) throw e.wrong("no whole numbers");
 		return [t, n];
 	});
@@ -1782,7 +1856,7 @@ function ki(e, t, n) {
 	};
 	return {
 		view: -1,
-		codec: W[Si],
+		codec: H[Li],
 		textures: r.length / t,
 		pieces: t,
 		where: i,
@@ -1790,67 +1864,67 @@ function ki(e, t, n) {
 		...o
 	};
 }
-function Ai(e, t, n) {
-	let r = ki(e, t, n);
+function Gi(e, t, n) {
+	let r = Wi(e, t, n);
 	if (r.textures !== 1) throw e.key("at").wrong(`${t} places are needed`);
 	return r;
 }
-function ji(e) {
+function Ki(e) {
 	return {
 		scale: Array(e).fill(1 / 255),
 		zero: Array(e).fill(0)
 	};
 }
-function Mi(e) {
-	return e.some(({ codec: e }) => e.bits > bi);
+function qi(e) {
+	return e.some(({ codec: e }) => e.bits > Fi);
 }
-function Ni({ codec: e }) {
+function Ji({ codec: e }) {
 	return (2 ** e.bits - 1) / 255;
 }
-function Pi(e, t) {
-	return t ? 1 : 1 / (255 * Ni(e));
+function Yi(e, t) {
+	return t ? 1 : 1 / (255 * Ji(e));
 }
-function Fi(e, t, n) {
+function Xi(e, t, n) {
 	let r = e.items(t * n).map((e) => e.number());
 	if (r.length === t * n) return r;
 	if (r.length !== t) throw e.wrong(`${t} or ${t * n} numbers are needed`);
 	return Array(n).fill(r).flat();
 }
-function Ii(e, t, n, r) {
+function Zi(e, t, n, r) {
 	let i = e.key("mean");
 	if (!i.exists) {
 		if (n === null || t !== 1 && t !== 3) throw i.wrong("no mean");
 		return {
 			mean: {
 				view: n,
-				codec: W.png,
+				codec: H.png,
 				textures: 1,
 				pieces: 1,
 				where: "/images/0",
 				part: null,
-				...ji(t)
+				...Ki(t)
 			},
 			meanSize: null,
 			precision: null
 		};
 	}
-	let a = wi(i.key("size"));
+	let a = zi(i.key("size"));
 	if (i.key("film").exists) return {
-		mean: Ai(i, t, a),
+		mean: Gi(i, t, a),
 		meanSize: a,
 		precision: null
 	};
-	let o = Di(i, t, 1, a, r, !0);
+	let o = Hi(i, t, 1, a, r, !0);
 	return {
 		mean: o,
 		meanSize: a,
-		precision: Ri(i.key("precision"), o, r)
+		precision: $i(i.key("precision"), o, r)
 	};
 }
-function Li(e, t) {
-	let n = wi(e.key("size")), r = e.key("film").exists ? Ai(e, 1, n) : (() => {
-		let r = Oi(e);
-		return Bi(e, 1, n), {
+function Qi(e, t) {
+	let n = zi(e.key("size")), r = e.key("film").exists ? Gi(e, 1, n) : (() => {
+		let r = Ui(e);
+		return ta(e, 1, n), {
 			view: t(e.key("bufferView")),
 			codec: r,
 			textures: 1,
@@ -1870,11 +1944,11 @@ function Li(e, t) {
 		precision: null
 	};
 }
-function Ri(e, t, n) {
+function $i(e, t, n) {
 	if (!e.exists) return null;
-	if (t.codec.bits === bi) throw e.wrong(`of a mean of ${bi} bits`);
-	let r = wi(e.key("size"), we), i = oi("picture", e.key("codec"), "png");
-	if (i !== W.png) throw e.key("codec").wrong("no PNG");
+	if (t.codec.bits === Fi) throw e.wrong(`of a mean of ${Fi} bits`);
+	let r = zi(e.key("size"), Ee), i = xi("picture", e.key("codec"), "png");
+	if (i !== H.png) throw e.key("codec").wrong("no PNG");
 	return {
 		view: n(e.key("bufferView")),
 		codec: i,
@@ -1884,14 +1958,14 @@ function Ri(e, t, n) {
 		where: e.where
 	};
 }
-function zi(e, t, n, r, i) {
-	let a = wi(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? wi(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, Ce) : [];
+function ea(e, t, n, r, i) {
+	let a = zi(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? zi(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, Te) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
 	let d = e.where;
 	if (e.key("film").exists) {
-		let n = ki(e, t, a), { textures: r } = n;
-		if (r > 4096) throw e.wrong(`more than ${Ee} textures`);
+		let n = Wi(e, t, a), { textures: r } = n;
+		if (r > 4096) throw e.wrong(`more than ${Oe} textures`);
 		return {
 			size: a,
 			grid: c,
@@ -1902,15 +1976,15 @@ function zi(e, t, n, r, i) {
 			where: d
 		};
 	}
-	let f = 0, p = e.key("picture"), m = p.exists ? p.object() : {}, h = e.key("textures").items(Ee).map((e) => {
-		let n = new G({
+	let f = 0, p = e.key("picture"), m = p.exists ? p.object() : {}, h = e.key("textures").items(Oe).map((e) => {
+		let n = new U({
 			...m,
 			...e.object()
-		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, Ee) : 1;
-		return f += o, Di(n, t, o, a, i);
+		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, Oe) : 1;
+		return f += o, Hi(n, t, o, a, i);
 	});
-	if (f > 4096) throw e.wrong(`more than ${Ee} textures`);
-	let g = e.key("codedWeights"), _ = f ? g.exists ? _i("weights", g, i) : r(e.key("weights"), "SCALAR", [K], n * f) : null;
+	if (f > 4096) throw e.wrong(`more than ${Oe} textures`);
+	let g = e.key("codedWeights"), _ = f ? g.exists ? Mi("weights", g, i) : r(e.key("weights"), "SCALAR", [W], n * f) : null;
 	return {
 		size: a,
 		grid: c,
@@ -1921,92 +1995,94 @@ function zi(e, t, n, r, i) {
 		where: d
 	};
 }
-function Bi(e, t, [n, r]) {
+function ta(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
-	if (n * i > Te) throw e.wrong(`more than ${Te} texels`);
+	if (n * i > De) throw e.wrong(`more than ${De} texels`);
 }
 // eigenfield-three/src/sheets.ts
-function Vi(e, t) {
+function na(e, t) {
 	if (!e.exists) return null;
-	let n = e.key("faces").items(32).map((e) => e.integer(1, Ne));
+	let n = e.key("faces").items(32).map((e) => e.integer(1, Pe));
 	if (!n.length) throw e.key("faces").wrong("no sheet");
 	return {
 		faces: n,
-		opacity: Li(e.key("opacity"), t),
+		opacity: Qi(e.key("opacity"), t),
 		where: e.where
 	};
 }
-function Hi({ faces: e, where: t }, { index: n, attributes: r }) {
+function ra({ faces: e, where: t }, { index: n, attributes: r }) {
 	let i = e.reduce((e, t) => e + t, 0), a = (n?.count ?? 0) / 3;
-	if (i !== a) throw N(`${t}/faces`, `the sheets have ${i} triangles, the mesh has ${a}`);
+	if (i !== a) throw M(`${t}/faces`, `the sheets have ${i} triangles, the mesh has ${a}`);
 	let o = new Uint8Array(r.position?.count ?? 0), s = 0;
 	e.forEach((e, r) => {
 		for (let i = s + 3 * e; s < i; s++) {
 			let e = n?.getX(s) ?? 0, i = o[e] || r + 1, a = `sheets ${i - 1} and ${r} share vertex ${e}`;
-			if (i !== r + 1) throw N(`${t}/faces`, a);
+			if (i !== r + 1) throw M(`${t}/faces`, a);
 			o[e] = i;
 		}
 	});
 }
 // eigenfield-three/src/timeline.ts
-var Ui = 64, q = 16, Wi = "audio/ogg", Gi = "sound.opus", Ki = /^[0-9a-f]{64}$/;
-function qi(e, t, n) {
-	let r = [...Qi(t), ...n ? [n] : []];
+var ia = 64, G = 16, aa = "audio/ogg", oa = "sound.opus", sa = /^[0-9a-f]{64}$/;
+function ca(e, t, n) {
+	let r = [...pa(t), ...n ? [n] : []];
 	if (!e.exists) {
 		let e = r.find(({ part: e }) => e);
-		if (e) throw N(e.where, "a texture in a film, and no timeline");
+		if (e) throw M(e.where, "a texture in a film, and no timeline");
 		return null;
 	}
-	let [i = 1, a = 1] = e.key("rate").numbers(2, 1, Ue), o = i / a;
+	let [i = 1, a = 1] = e.key("rate").numbers(2, 1, We), o = i / a;
 	if (!(Number.isInteger(i) && Number.isInteger(a)) || o > 1e3 || o < 1 / 1e3) throw e.key("rate").wrong("no rate");
-	let s = e.key("first"), c = e.key("films").items(4).map(Yi), l = e.key("frames").integer(1, Le);
-	$i(r, c);
-	for (let e of c) e.opacity = e === c[n?.part?.film ?? -1];
-	let u = Zi(e, l);
+	let s = e.key("first"), c = e.key("films").items(4).map(ua), l = e.key("frames").integer(1, Re);
+	ma(r, c);
+	let u = new Set([...t.map(({ mean: e }) => e), n].map((e) => c[e?.part?.film ?? -1]));
+	for (let e of c) e.opacity = e === c[n?.part?.film ?? -1], e.detail = !u.has(e);
+	let d = fa(e, l);
 	return {
 		rate: o,
 		first: s.exists ? s.number() : 0,
 		frames: l,
 		films: c,
-		groups: u,
-		sound: Ji(e, u)
+		groups: d,
+		sound: la(e, d)
 	};
 }
-function Ji(e, t) {
+function la(e, t) {
 	let n = e.key("audio");
 	if (!n.exists) return null;
-	if (n.key("mimeType").text(64) !== Wi) throw n.key("mimeType").wrong(`no ${Wi}`);
-	let r = t.at(-1), i = r.file === null ? null : Gi, a = i ? 0 : Xi(n.key("offset"), r.offset + r.length), o = n.key("first"), s = n.key("length").integer(1, He);
+	if (n.key("mimeType").text(64) !== aa) throw n.key("mimeType").wrong(`no ${aa}`);
+	let r = t.at(-1), i = r.file === null ? null : oa, a = i ? 0 : da(n.key("offset"), r.offset + r.length), o = n.key("first"), s = n.key("length").integer(1, Ue);
 	return {
-		mimeType: Wi,
+		mimeType: aa,
 		first: o.exists ? o.number() : 0,
 		offset: a,
 		length: s,
 		file: i
 	};
 }
-function Yi(e) {
-	let t = oi("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, Ui, Pe);
-	if (n % Ui || r % Ui || n * r > Fe) throw e.key("size").wrong(`a film of ${n} x ${r}`);
+function ua(e) {
+	let t = xi("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, ia, Fe);
+	if (n % ia || r % ia || n * r > Ie) throw e.key("size").wrong(`a film of ${n} x ${r}`);
 	return {
 		codec: t,
 		size: [n, r],
 		opacity: !1,
+		detail: !1,
 		where: e.where
 	};
 }
-function Xi(e, t) {
+function da(e, t) {
 	let n = e.integer(t, 2 ** 53 - 1);
 	if (n % 4) throw e.wrong("no multiple of 4");
 	return n;
 }
-function Zi(e, t) {
+function fa(e, t) {
 	let [n, r] = [0, 0], i = e.key("groupFiles");
 	if (i.exists && i.raw !== !0) throw i.wrong("not true");
-	let a = e.key("groups").items(Re).map((e, t) => {
-		let a = i.exists ? `groups/${String(t).padStart(5, "0")}.eftg` : null, o = e.key("frames").integer(1, Be), s = e.key("length").integer(1, ze), c = a ? 0 : Xi(e.key("offset"), r), l = e.key("sha256").text(64);
-		if (!Ki.test(l)) throw e.key("sha256").wrong("no SHA-256");
+	let a = e.key("groups").items(ze).map((e, t) => {
+		let a = i.exists ? `groups/${String(t).padStart(5, "0")}.eftg` : null, o = e.key("frames").integer(1, Ve), s = e.key("length").integer(1, Be), c = a ? 0 : da(e.key("offset"), r), l = e.key("sha256").text(64);
+		if (!sa.test(l)) throw e.key("sha256").wrong("no SHA-256");
 		return [n, r] = [n + o, c + s], {
 			first: n - o,
 			frames: o,
@@ -2020,33 +2096,33 @@ function Zi(e, t) {
 	if (n !== t) throw e.key("groups").wrong(`${n} frames in groups, and ${t} in all`);
 	return a;
 }
-function Qi(e) {
+function pa(e) {
 	return e.flatMap(({ mean: e, bases: t }) => [e, ...t.flatMap((e) => e.pictures)]);
 }
-function $i(e, t) {
-	let n = t.map(({ size: e }) => new Uint8Array(e[0] * e[1] / q ** 2));
+function ma(e, t) {
+	let n = t.map(({ size: e }) => new Uint8Array(e[0] * e[1] / G ** 2));
 	for (let { part: r, where: i } of e) {
 		let e = r && t[r.film];
-		if (!r || !e) throw N(i, "it lies in no film");
-		let [a, o] = [e.size[0] / q, n[r.film]], [s, c] = r.size.map((e) => Math.ceil(e / q));
+		if (!r || !e) throw M(i, "it lies in no film");
+		let [a, o] = [e.size[0] / G, n[r.film]], [s, c] = r.size.map((e) => Math.ceil(e / G));
 		for (let [t, n] of r.at) {
 			let l = t + r.size[0] <= e.size[0] && n + r.size[1] <= e.size[1];
-			if (t % q || n % q || !l) throw N(i, `a texture at ${t}, ${n} of its film`);
-			for (let e = n / q; e < n / q + c; e++) {
-				let r = o.subarray(e * a + t / q, e * a + t / q + s);
-				if (r.includes(1)) throw N(i, `two textures at ${t}, ${n} of a film`);
+			if (t % G || n % G || !l) throw M(i, `a texture at ${t}, ${n} of its film`);
+			for (let e = n / G; e < n / G + c; e++) {
+				let r = o.subarray(e * a + t / G, e * a + t / G + s);
+				if (r.includes(1)) throw M(i, `two textures at ${t}, ${n} of a film`);
 				r.fill(1);
 			}
 		}
 	}
 }
-function ea({ rate: e, first: t, frames: n }, r) {
+function ha({ rate: e, first: t, frames: n }, r) {
 	return Math.min(Math.max(Math.floor((r - t) * e + .5), 0), n - 1);
 }
-function ta({ rate: e, first: t }, n) {
+function ga({ rate: e, first: t }, n) {
 	return t + n / e;
 }
-function na({ groups: e }, t) {
+function K({ groups: e }, t) {
 	let [n, r] = [0, e.length - 1];
 	for (; n < r;) {
 		let i = n + r + 1 >> 1;
@@ -2055,7 +2131,7 @@ function na({ groups: e }, t) {
 	return n;
 }
 // eigenfield-three/src/document.ts
-var ra = [
+var _a = [
 	"groupFiles",
 	"namePattern",
 	"noFallback",
@@ -2067,73 +2143,73 @@ var ra = [
 	"stacks",
 	"timeline",
 	"toRGB"
-], ia = Object.values(W).flatMap(({ needs: e }) => e ?? []), aa = /* @__PURE__ */ new Set([...ra, ...ia]), oa = 64, sa = 9, ca = 10 ** sa;
-function la(e) {
-	let t = new G(e, "");
+], va = Object.values(H).flatMap(({ needs: e }) => e ?? []), ya = /* @__PURE__ */ new Set([..._a, ...va]), ba = 64, xa = 9, Sa = 10 ** xa;
+function Ca(e) {
+	let t = new U(e, "");
 	try {
-		return t.key("extensions").key(be).exists;
+		return t.key("extensions").key(Se).exists;
 	} catch {
 		return !1;
 	}
 }
-function ua(e) {
-	let t = new G(e, ""), n = t.key("extensions").key(be), r = pa(n), i = mi(t), a = gi(t, i), o = hi(i);
-	ma(t);
-	let s = _a(t, o), c = n.key("cameras"), { count: l, names: u } = va(c, o), d = xa(c, l), f = d.filter((e) => !e).length, p = Ti(n, f, s, a, o), m = Ei(n, p), h = c.key("colour"), g = c.key("codedColour");
+function wa(e) {
+	let t = new U(e, ""), n = t.key("extensions").key(Se), r = Da(n), i = ki(t), a = ji(t, i), o = Ai(i);
+	Oa(t);
+	let s = ja(t, o), c = n.key("cameras"), { count: l, names: u } = Ma(c, o), d = Fa(c, l), f = d.filter((e) => !e).length, p = Bi(n, f, s, a, o), m = Vi(n, p), h = c.key("colour"), g = c.key("codedColour");
 	if ((h.exists || g.exists) && m.length < 3) throw h.wrong("needs three channels");
-	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), [x, S] = [n.key("mesh"), n.key("timeline")], C = Vi(n.key("sheets"), o);
+	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), [x, S] = [n.key("mesh"), n.key("timeline")], C = na(n.key("sheets"), o);
 	return {
 		version: r,
-		generator: b.exists ? b.text(L) : "",
+		generator: b.exists ? b.text(I) : "",
 		planes: p,
 		colours: m,
 		names: u,
 		heldOut: d,
 		reference: n.key("reference").integer(0, l - 1),
-		calibration: Sa(c, l, a, o),
-		sizes: Ca(c, l, a),
-		colour: g.exists ? _i("weights", g, o) : h.exists ? a(h, "SCALAR", [K], 6 * l) : null,
-		...wa(_),
-		triangles: y.exists ? _i("triangles", y, o) : v.exists ? ga(a(v, "SCALAR", [li, ui], null), 2 * Oe) : null,
-		settings: Ta(n.key("settings")),
-		scores: Ta(n.key("scores")),
+		calibration: Ia(c, l, a, o),
+		sizes: La(c, l, a),
+		colour: g.exists ? Mi("weights", g, o) : h.exists ? a(h, "SCALAR", [W], 6 * l) : null,
+		...Ra(_),
+		triangles: y.exists ? Mi("triangles", y, o) : v.exists ? Aa(a(v, "SCALAR", [wi, Ti], null), 2 * F) : null,
+		settings: za(n.key("settings")),
+		scores: za(n.key("scores")),
 		views: i,
-		mesh: x.exists || S.exists ? _i("mesh", x, o) : null,
+		mesh: x.exists || S.exists ? Mi("mesh", x, o) : null,
 		sheets: C,
-		shown: x.exists && !t.key("meshes").exists ? null : da(t, a),
+		shown: x.exists && !t.key("meshes").exists ? null : Ta(t, a),
 		preview: s,
-		timeline: qi(S, p, C && C.opacity.mean)
+		timeline: ca(S, p, C && C.opacity.mean)
 	};
 }
-function da(e, t) {
+function Ta(e, t) {
 	let n = e.key("meshes").at(0).key("primitives").at(0), r = n.key("mode");
 	if (r.exists && r.integer(0, 6) !== 4) throw r.wrong("no triangles");
 	let [i, a] = [n.key("attributes"), n.key("indices")];
 	return {
-		position: ha(t(i.key("POSITION"), "VEC3", [K], null), Me),
-		uv: ha(t(i.key("TEXCOORD_0"), "VEC2", [K], null), Me),
-		indices: ga(t(a, "SCALAR", [
-			ci,
-			li,
-			ui
-		], null), Ne)
+		position: ka(t(i.key("POSITION"), "VEC3", [W], null), Ne),
+		uv: ka(t(i.key("TEXCOORD_0"), "VEC2", [W], null), Ne),
+		indices: Aa(t(a, "SCALAR", [
+			Ci,
+			wi,
+			Ti
+		], null), Pe)
 	};
 }
-function fa({ planes: e, sheets: t }) {
+function Ea({ planes: e, sheets: t }) {
 	return t ? [...e, t.opacity] : e;
 }
-function pa(e) {
-	let t = e.key("version").text(L);
-	if (!/^1\.\d+$/.test(t)) throw new M("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
+function Da(e) {
+	let t = e.key("version").text(I);
+	if (!/^1\.\d+$/.test(t)) throw new j("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
-	for (let e of n.exists ? n.items(Se) : []) {
-		let t = e.text(L);
-		if (!aa.has(t)) throw new M("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
+	for (let e of n.exists ? n.items(we) : []) {
+		let t = e.text(I);
+		if (!ya.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
-function ma(e) {
-	let t = e.key("nodes").items(Se), n = Array(t.length).fill(!1);
+function Oa(e) {
+	let t = e.key("nodes").items(we), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
 		for (let e of r.exists ? r.items(t.length) : []) {
@@ -2142,64 +2218,64 @@ function ma(e) {
 			n[r] = !0;
 		}
 	}
-	for (let r of e.key("scenes").items(Se)) {
+	for (let r of e.key("scenes").items(we)) {
 		let e = r.key("nodes");
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
-function ha(e, t) {
-	if (e.count > t) throw N(e.where, `more than ${t}`);
+function ka(e, t) {
+	if (e.count > t) throw M(e.where, `more than ${t}`);
 	return e;
 }
-function ga(e, t) {
-	if (e.count % 3) throw N(e.where, "torn triangles");
-	return ha(e, 3 * t);
+function Aa(e, t) {
+	if (e.count % 3) throw M(e.where, "torn triangles");
+	return ka(e, 3 * t);
 }
-function _a(e, t) {
+function ja(e, t) {
 	let n = e.key("images");
 	if (!n.exists) return null;
 	let r = n.at(0).key("bufferView");
 	return r.exists ? t(r) : null;
 }
-function va(e, t) {
+function Ma(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
-		count: n.key("count").integer(1, Oe),
-		names: _i("names", n, t)
+		count: n.key("count").integer(1, F),
+		names: Mi("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? ba(r) : i.items(Oe).map((e) => e.text(L));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? Pa(r) : i.items(F).map((e) => e.text(I));
 	if (!a.length) throw i.wrong("no cameras");
-	let o = ya(a);
+	let o = Na(a);
 	if (o) throw i.wrong(o);
 	return {
 		count: a.length,
 		names: a
 	};
 }
-function ya(e) {
+function Na(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
-function ba(e) {
-	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, Oe));
+function Pa(e) {
+	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, F));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
-	let r = e.key("parts").items(oa).map((e) => {
-		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(L))];
+	let r = e.key("parts").items(ba).map((e) => {
+		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(I))];
 		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
 		if (a.exists) {
-			let e = a.items(i).map((e) => e.text(L));
+			let e = a.items(i).map((e) => e.text(I));
 			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
 			return [r, e];
 		}
-		let [o, s] = [e.key("first").integer(0, ca), e.key("step").integer(0, ca)], c = e.key("digits").integer(1, sa);
+		let [o, s] = [e.key("first").integer(0, Sa), e.key("step").integer(0, Sa)], c = e.key("digits").integer(1, xa);
 		return [r, Array.from({ length: i }, (e, t) => String(o + s * t).padStart(c, "0"))];
 	});
 	return Array.from({ length: t * n }, (t, i) => {
 		let a = [Math.floor(i / n), i % n], o = r.map(([e, t]) => t[a[e] ?? 0]).join("");
-		if (o.length > 1024) throw e.wrong(`names of more than ${L} characters`);
+		if (o.length > 1024) throw e.wrong(`names of more than ${I} characters`);
 		return o;
 	});
 }
-function xa(e, t) {
+function Fa(e, t) {
 	let n = Array(t).fill(!1), r = e.key("heldOut");
 	if (!r.exists) return n;
 	for (let e of r.items(t)) {
@@ -2210,21 +2286,21 @@ function xa(e, t) {
 	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
 	return n;
 }
-function Sa(e, t, n, r) {
+function Ia(e, t, n, r) {
 	let i = e.key("coded");
-	return i.exists ? _i("cameras", i, r) : {
-		intrinsics: n(e.key("intrinsics"), "SCALAR", [K], 5 * t),
-		poses: n(e.key("poses"), "SCALAR", [K], 12 * t)
+	return i.exists ? Mi("cameras", i, r) : {
+		intrinsics: n(e.key("intrinsics"), "SCALAR", [W], 5 * t),
+		poses: n(e.key("poses"), "SCALAR", [W], 12 * t)
 	};
 }
-function Ca(e, t, n) {
+function La(e, t, n) {
 	let r = e.key("size");
-	if (!r.exists) return n(e.key("sizes"), "SCALAR", [ui], 2 * t);
-	let [i = 0, a = 0] = r.numbers(2, 1, ke);
+	if (!r.exists) return n(e.key("sizes"), "SCALAR", [Ti], 2 * t);
+	let [i = 0, a = 0] = r.numbers(2, 1, Ae);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
-function wa(e) {
+function Ra(e) {
 	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
 	for (let i of [
 		r(t, t) - 1,
@@ -2239,23 +2315,23 @@ function wa(e) {
 		extent: [i, a]
 	};
 }
-function Ta(e) {
+function za(e) {
 	return e.exists ? e.object() : {};
 }
 // eigenfield-three/src/info.ts
-var Ea = 1e-6;
-async function Da(e, t) {
+var Ba = 1e-6;
+async function Va(e, t) {
 	let [n, { lenses: r, poses: i }, a, o] = await Promise.all([
-		ka(e, t),
-		ja(e, t),
-		Ma(e, t),
-		Oa(e, t)
+		Ua(e, t),
+		Ga(e, t),
+		Ka(e, t),
+		Ha(e, t)
 	]);
 	return n.map((t, n) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
-		if (!(s > Ea && c > Ea)) throw N(r.where, `focal lengths of "${t}"`);
-		let { R: f, t: p } = Na([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
-		if (!m || !h || Math.max(m, h) > 65535 || m * h > Ae) throw N(a.where, `"${t}" is ${m} x ${h} pixels`);
+		if (!(s > Ba && c > Ba)) throw M(r.where, `focal lengths of "${t}"`);
+		let { R: f, t: p } = qa([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
+		if (!m || !h || Math.max(m, h) > 65535 || m * h > je) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
 				s,
@@ -2272,13 +2348,13 @@ async function Da(e, t) {
 				0,
 				1
 			]
-		], [_, v] = o ? Pa([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
+		], [_, v] = o ? Ja([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
 		return {
 			name: t,
 			K: g,
 			R: f,
 			t: p,
-			centre: Ka(f, p),
+			centre: oo(f, p),
 			width: m,
 			height: h,
 			gain: _,
@@ -2286,10 +2362,10 @@ async function Da(e, t) {
 		};
 	});
 }
-async function Oa({ colour: e, heldOut: t, views: n }, r) {
-	if (!e || "type" in e) return e && vi(e, n, r);
+async function Ha({ colour: e, heldOut: t, views: n }, r) {
+	if (!e || "type" in e) return e && Ni(e, n, r);
 	let { cameras: i, components: a, values: o } = await e.codec.decode(new Uint8Array(await r(e.view)), e.where);
-	if (a !== 6 || i !== t.filter((e) => !e).length) throw N(e.where, `${i} x ${a} colours`);
+	if (a !== 6 || i !== t.filter((e) => !e).length) throw M(e.where, `${i} x ${a} colours`);
 	let s = 0;
 	return Float32Array.from(t.flatMap((e) => e ? [
 		1,
@@ -2300,31 +2376,31 @@ async function Oa({ colour: e, heldOut: t, views: n }, r) {
 		0
 	] : [...o.subarray(6 * s, 6 * ++s)]));
 }
-async function ka({ names: e, heldOut: t }, n) {
+async function Ua({ names: e, heldOut: t }, n) {
 	if (Array.isArray(e)) return e;
-	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : ya(r);
-	if (i) throw N(e.where, i);
+	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : Na(r);
+	if (i) throw M(e.where, i);
 	return r;
 }
-async function Aa(e, t, n) {
+async function Wa(e, t, n) {
 	return {
-		numbers: await vi(e, t.views, n),
+		numbers: await Ni(e, t.views, n),
 		where: e.where
 	};
 }
-async function ja(e, t) {
+async function Ga(e, t) {
 	let { calibration: n, heldOut: r } = e;
 	if ("intrinsics" in n) {
 		let { intrinsics: r, poses: i } = n;
 		return {
-			lenses: await Aa(r, e, t),
-			poses: await Aa(i, e, t)
+			lenses: await Wa(r, e, t),
+			poses: await Wa(i, e, t)
 		};
 	}
 	let { view: i, codec: a, where: o } = n, s = await a.decode(new Uint8Array(await t(i)), o), c = s.poses.length / 12;
-	if (c !== r.length) throw N(o, `${c} cameras in it, and ${r.length} names`);
+	if (c !== r.length) throw M(o, `${c} cameras in it, and ${r.length} names`);
 	let l = (e) => ({
-		numbers: yi(e, o),
+		numbers: Pi(e, o),
 		where: o
 	});
 	return {
@@ -2332,15 +2408,15 @@ async function ja(e, t) {
 		poses: l(s.poses)
 	};
 }
-async function Ma(e, t) {
-	if (!Array.isArray(e.sizes)) return Aa(e.sizes, e, t);
+async function Ka(e, t) {
+	if (!Array.isArray(e.sizes)) return Wa(e.sizes, e, t);
 	let [n, r] = e.sizes;
 	return {
 		numbers: Uint32Array.from({ length: 2 * e.heldOut.length }, (e, t) => t % 2 ? r : n),
 		where: "its cameras' size"
 	};
 }
-function Na(e, t, n) {
+function qa(e, t, n) {
 	let r = (t) => [
 		e[4 * t] ?? NaN,
 		e[4 * t + 1] ?? NaN,
@@ -2355,25 +2431,25 @@ function Na(e, t, n) {
 		e[11] ?? NaN
 	];
 	for (let e = 0; e < 3; e++) for (let r = e; r < 3; r++) {
-		let a = Y(i[e], i[r]) - +(e === r);
-		if (!(Math.abs(a) <= 2e-4)) throw N(t, `the pose of "${n}" is no rotation`);
+		let a = J(i[e], i[r]) - +(e === r);
+		if (!(Math.abs(a) <= 2e-4)) throw M(t, `the pose of "${n}" is no rotation`);
 	}
-	if (!(Y(qa(i[0], i[1]), i[2]) > 0)) throw N(t, `the pose of "${n}" is mirrored`);
+	if (!(J(so(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
 	return {
 		R: i,
 		t: a
 	};
 }
-function Pa(e, t, n) {
+function Ja(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
-	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw N(t.colour?.where ?? "", `gain or offset of "${n}"`);
+	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw M(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
-async function Fa(e, t) {
+async function Ya(e, t) {
 	let n = e.heldOut.filter((e) => !e).length;
-	return Ia(n, await Promise.all(J(e).map((r) => La(r, n, e, t))));
+	return Xa(n, await Promise.all(q(e).map((r) => Za(r, n, e, t))));
 }
-function Ia(e, t) {
+function Xa(e, t) {
 	let n = t.reduce((e, { length: t }) => e + t, 0) / e, r = new Float32Array(e * n), i = 0;
 	for (let a of t) {
 		let t = a.length / e;
@@ -2382,41 +2458,41 @@ function Ia(e, t) {
 	}
 	return r;
 }
-async function La({ weights: e, count: t }, n, r, i) {
+async function Za({ weights: e, count: t }, n, r, i) {
 	if (!e) return /* @__PURE__ */ new Float32Array();
-	if ("type" in e) return vi(e, r.views, i);
+	if ("type" in e) return Ni(e, r.views, i);
 	let { view: a, codec: o, where: s } = e;
-	return Ra(o.decode(new Uint8Array(await i(a)), s), n, t, s);
+	return Qa(o.decode(new Uint8Array(await i(a)), s), n, t, s);
 }
-function Ra({ cameras: e, components: t, values: n }, r, i, a) {
-	if (e === r && t === i) return yi(n, a);
-	throw N(a, `${e} x ${t} weights, and ${r} encoded cameras x ${i} textures`);
+function Qa({ cameras: e, components: t, values: n }, r, i, a) {
+	if (e === r && t === i) return Pi(n, a);
+	throw M(a, `${e} x ${t} weights, and ${r} encoded cameras x ${i} textures`);
 }
-function J(e) {
+function q(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
 }
-function za(e) {
-	return Math.max(0, ...J(e).map(({ count: e }) => e));
+function $a(e) {
+	return Math.max(0, ...q(e).map(({ count: e }) => e));
 }
-function Ba(e, t) {
-	let n = [...t.slice(0, e.planes.length), ...J(e).map(({ grid: e }) => e)];
+function eo(e, t) {
+	let n = [...t.slice(0, e.planes.length), ...q(e).map(({ grid: e }) => e)];
 	return [Math.max(...n.map(([e]) => e)), Math.max(...n.map(([, e]) => e))];
 }
-async function Va(e, t) {
+async function to(e, t) {
 	if (!e.triangles) return /* @__PURE__ */ new Uint32Array();
-	let { where: n } = e.triangles, r = await Ha(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
+	let { where: n } = e.triangles, r = await no(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
-		if (Math.max(t, a, o) >= i) throw N(n, `no encoded camera ${Math.max(t, a, o)}`);
-		if (t === a || a === o || o === t) throw N(n, "a triangle with one camera twice");
+		if (Math.max(t, a, o) >= i) throw M(n, `no encoded camera ${Math.max(t, a, o)}`);
+		if (t === a || a === o || o === t) throw M(n, "a triangle with one camera twice");
 	}
 	return r;
 }
-async function Ha(e, t, n) {
-	return "type" in e ? Uint32Array.from(await vi(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
+async function no(e, t, n) {
+	return "type" in e ? Uint32Array.from(await Ni(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
 }
-function Ua(e, t, n, r, i, a) {
-	let { right: o, up: s } = e, c = qa(o, s), l = [
+function ro(e, t, n, r, i, a) {
+	let { right: o, up: s } = e, c = so(o, s), l = [
 		0,
 		0,
 		0
@@ -2444,8 +2520,8 @@ function Ua(e, t, n, r, i, a) {
 		settings: e.settings,
 		scores: e.scores,
 		metresPerUnit: typeof u == "number" && u > 0 && u <= 1e30 ? u : null,
-		bytes: Wa(e, i),
-		size: Ba(e, n),
+		bytes: io(e, i),
+		size: eo(e, n),
 		planes: e.planes.map(({ channels: e, bases: t }, r) => ({
 			channels: e,
 			mean: n[r] ?? [1, 1],
@@ -2458,12 +2534,12 @@ function Ua(e, t, n, r, i, a) {
 		...a,
 		mixedColours: e.colour !== null && !("type" in e.colour),
 		sheets: e.sheets?.faces.length ?? 0,
-		facesPlane: Math.abs(Y(l, c)) > .7
+		facesPlane: Math.abs(J(l, c)) > .7
 	};
 }
-function Wa(e, t) {
-	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(za(e)).fill(0);
-	for (let { pictures: t } of J(e)) {
+function io(e, t) {
+	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array($a(e)).fill(0);
+	for (let { pictures: t } of q(e)) {
 		let e = 0;
 		for (let { view: n, textures: i } of t) {
 			let t = r(n);
@@ -2473,7 +2549,7 @@ function Wa(e, t) {
 			}
 		}
 	}
-	let c = i(J(e).flatMap((e) => e.weights ? [e.weights.view] : [])), l = i([...Object.values(e.shown ?? {}), ...e.mesh ? [e.mesh] : []].map(({ view: e }) => e)), u = e.sheets ? r(e.sheets.opacity.mean.view) : 0, d = e.timeline?.groups.reduce((e, { length: t }) => e + t, 0) ?? 0;
+	let c = i(q(e).flatMap((e) => e.weights ? [e.weights.view] : [])), l = i([...Object.values(e.shown ?? {}), ...e.mesh ? [e.mesh] : []].map(({ view: e }) => e)), u = e.sheets ? r(e.sheets.opacity.mean.view) : 0, d = e.timeline?.groups.reduce((e, { length: t }) => e + t, 0) ?? 0;
 	return {
 		total: t,
 		mesh: l,
@@ -2485,15 +2561,15 @@ function Wa(e, t) {
 		textures: s
 	};
 }
-function Ga(e, t) {
+function ao(e, t) {
 	let { origin: n, extent: r } = e, i = [
 		t[0] - n[0],
 		t[1] - n[1],
 		t[2] - n[2]
 	];
-	return [r[0] > 0 ? Y(i, e.right) / r[0] : 0, r[1] > 0 ? Y(i, e.up) / r[1] : 0];
+	return [r[0] > 0 ? J(i, e.right) / r[0] : 0, r[1] > 0 ? J(i, e.up) / r[1] : 0];
 }
-function Ka(e, t) {
+function oo(e, t) {
 	let n = (n) => -(e[0][n] * t[0] + e[1][n] * t[1] + e[2][n] * t[2]);
 	return [
 		n(0),
@@ -2501,10 +2577,10 @@ function Ka(e, t) {
 		n(2)
 	];
 }
-function Y(e, t) {
+function J(e, t) {
 	return e[0] * t[0] + e[1] * t[1] + e[2] * t[2];
 }
-function qa(e, t) {
+function so(e, t) {
 	return [
 		e[1] * t[2] - e[2] * t[1],
 		e[2] * t[0] - e[0] * t[2],
@@ -2512,7 +2588,7 @@ function qa(e, t) {
 	];
 }
 // eigenfield-three/src/cameras.ts
-function Ja(e, t, n) {
+function co(e, t, n) {
 	let { info: r } = e, i = r.cameras.filter((e, t) => !r.heldOut[t]), a = r.cameras[r.reference];
 	if (!a) throw RangeError(`no camera ${r.reference}`);
 	let { width: o, height: s } = a, c = [
@@ -2551,7 +2627,7 @@ function Ja(e, t, n) {
 	e.viewWeights(t, n, "delaunay").forEach((e, t) => {
 		let n = i[t];
 		if (!e || !n) return;
-		let r = Ya(n, o, s);
+		let r = lo(n, o, s);
 		for (let t of [
 			0,
 			1,
@@ -2562,11 +2638,11 @@ function Ja(e, t, n) {
 			2
 		]) t < 2 && (c[t][i] += e * r[t][i]), l[t][i] += e * n.R[t][i];
 	});
-	let u = Za(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Xa(t) * m[0], Xa(n) * m[1]], _ = [
+	let u = fo(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [uo(t) * m[0], uo(n) * m[1]], _ = [
 		0,
 		1,
 		2
-	].map((e) => d[e] + h * f[e] + g * p[e]), v = u.map((e) => -Y(e, _));
+	].map((e) => d[e] + h * f[e] + g * p[e]), v = u.map((e) => -J(e, _));
 	return {
 		name: `${t.toFixed(3)}, ${n.toFixed(3)}`,
 		K: c,
@@ -2579,7 +2655,7 @@ function Ja(e, t, n) {
 		offset: null
 	};
 }
-function Ya({ K: e, width: t, height: n }, r, i) {
+function lo({ K: e, width: t, height: n }, r, i) {
 	let a = Math.max(r / t, i / n), [o, s] = [(r - a * t) / 2, (i - a * n) / 2];
 	return [
 		[
@@ -2599,51 +2675,51 @@ function Ya({ K: e, width: t, height: n }, r, i) {
 		]
 	];
 }
-function Xa(e) {
+function uo(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Za(e) {
+function fo(e) {
 	let t = e;
 	for (let e = 0; e < 50; e++) {
 		let e = [
-			qa(t[1], t[2]),
-			qa(t[2], t[0]),
-			qa(t[0], t[1])
-		], n = Y(t[0], e[0]);
+			so(t[1], t[2]),
+			so(t[2], t[0]),
+			so(t[0], t[1])
+		], n = J(t[0], e[0]);
 		if (!(n > 1e-12)) break;
 		let r = t.map((t, r) => t.map((t, i) => (t + e[r][i] / n) / 2)), i = Math.max(...r.flatMap((e, n) => e.map((e, r) => Math.abs(e - t[n][r]))));
 		if (t = r, i < 1e-15) break;
 	}
 	return t;
 }
-function Qa(e, t, n, r, i = 1) {
+function po(e, t, n, r, i = 1) {
 	let a = n.width / n.height, o = i * Math.min(1, a / r), s = i * Math.min(1, r / a), c = {
 		left: (1 - o) / 2,
 		top: (1 - s) / 2,
 		width: o,
 		height: s
 	};
-	return $a(e, t, n), eo(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
+	return mo(e, t, n), ho(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
 }
-function $a(e, t, n) {
+function mo(e, t, n) {
 	let { R: r, centre: i } = n, a = new x().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
-	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new j()), t.updateMatrixWorld(!0);
+	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new A()), t.updateMatrixWorld(!0);
 }
-function eo(e, t, n, r) {
-	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = to(e, n);
+function ho(e, t, n, r) {
+	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = go(e, n);
 	t.near = d, t.far = f, t.projectionMatrix.set(l * i, -l * a, -(2 * r.left - 1 + l * o), 0, 0, u * s, -(1 - 2 * r.top - u * c), 0, 0, 0, -(f + d) / (f - d), -2 * f * d / (f - d), 0, 0, -1, 0), t.projectionMatrixInverse.copy(t.projectionMatrix).invert();
 }
-function to(e, t) {
+function go(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
-		center: new j(),
+		center: new A(),
 		radius: 1
-	}, o = r.getMaxScaleOnAxis(), s = i.distanceTo(new j(...t.centre)) * o, c = 1.01 * (s + a * o);
+	}, o = r.getMaxScaleOnAxis(), s = i.distanceTo(new A(...t.centre)) * o, c = 1.01 * (s + a * o);
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
 // eigenfield-three/src/exposure.ts
-function no(e) {
+function _o(e) {
 	let [t, n] = [[
 		1,
 		1,
@@ -2663,46 +2739,46 @@ function no(e) {
 	};
 }
 // eigenfield-three/src/memory.ts
-var ro = 4 / 3, io = fo({
+var vo = 4 / 3, yo = Eo({
 	components: 4,
 	halves: !0
-}), ao = {
+}), bo = {
 	components: 4,
 	halves: !1
-}, oo = {
+}, xo = {
 	components: 2,
 	halves: !1
-}, so = {
+}, So = {
 	components: 2,
 	halves: !0
-}, co = 2 ** 20, lo = 1 / 64, uo = 34;
-function fo({ components: e, halves: t }) {
+}, Co = 2 ** 20, wo = 1 / 64, To = 34;
+function Eo({ components: e, halves: t }) {
 	return (e > 2 ? 4 : e) * (t ? 2 : 1);
 }
-function po() {
+function Do() {
 	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
-	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && mo(e) ? Math.min(t ?? 4, 6) * 128 * co : Math.min(t ?? 8, 8) * 256 * co;
+	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && Oo(e) ? Math.min(t ?? 4, 6) * 128 * Co : Math.min(t ?? 8, 8) * 256 * Co;
 }
-function mo(e) {
+function Oo(e) {
 	return (e?.maxTouchPoints ?? 0) > 1;
 }
-function X([e, t], n) {
+function Y([e, t], n) {
 	return [Math.ceil(e / n), Math.ceil(t / n)];
 }
-function ho(e, t) {
-	let [n, r] = X(e, t);
+function ko(e, t) {
+	let [n, r] = Y(e, t);
 	return n * r;
 }
-function go(e) {
+function Ao(e) {
 	return Math.ceil(e / 4);
 }
-function _o(e, t) {
-	return t * vo(e);
+function jo(e, t) {
+	return t * Mo(e);
 }
-function vo(e) {
+function Mo(e) {
 	return Math.max(1, Math.ceil(e / 4));
 }
-function yo(e) {
+function No(e) {
 	let { atlas: t, means: n, bases: r } = e, i = [
 		t,
 		...n.map(({ size: e }) => e),
@@ -2710,7 +2786,7 @@ function yo(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-var bo = [{
+var Po = [{
 	meanDown: 1,
 	scaleDown: 1,
 	halves: !0
@@ -2733,14 +2809,14 @@ var bo = [{
 	scaleDown: t * e,
 	halves: !1
 })))];
-function xo(e, t) {
-	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => So(e, t.meanDown) + e.geometry + Co(e, t, n), o = (n, r) => a(n, r) + Eo(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = bo.filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
+function Fo(e, t) {
+	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => Io(e, t.meanDown) + e.geometry + Lo(e, t, n), o = (n, r) => a(n, r) + Bo(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = Po.filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
 	for (; !u && l > 0; l--) u = c.find((e) => o(e, l - 1));
-	u ??= bo.at(-1);
-	let d = Do({
+	u ??= Po.at(-1);
+	let d = Vo({
 		...u,
 		usable: l
-	}, e), f = Oo(d, e, t);
+	}, e), f = Ho(d, e, t);
 	return {
 		...u,
 		usable: l,
@@ -2749,58 +2825,58 @@ function xo(e, t) {
 		limitation: f
 	};
 }
-function So(e, t) {
+function Io(e, t) {
 	let n = e.means.map(({ size: e, channels: n, tenBits: r, opacity: i }) => {
-		let a = i ? io : 0;
-		return (fo({
+		let a = i ? yo : 0;
+		return (Eo({
 			components: n,
 			halves: r
-		}) * go(n) + a) * ho(e, t);
-	}), r = yo({
+		}) * Ao(n) + a) * ko(e, t);
+	}), r = No({
 		...e,
 		means: e.means.filter(({ opacity: e }) => !e)
 	}).map((n) => {
-		let r = n.join() === e.atlas.join() ? ro : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
-		return io * ho(n, t) * (r + +!!i);
+		let r = n.join() === e.atlas.join() ? vo : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
+		return yo * ko(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function Co({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
+function Lo({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
 	return e.reduce((e, a) => {
 		let o = Math.min(i, a.count);
 		if (!o) return e;
-		let s = t ? vo(o) * 129 * 129 * io : 0;
-		return e + fo({
+		let s = t ? Mo(o) * 129 * 129 * yo : 0;
+		return e + Eo({
 			components: o,
 			halves: r && a.tenBits
-		}) * _o(o, a.channels) * ho(a.size, n) + s;
+		}) * jo(o, a.channels) * ko(a.size, n) + s;
 	}, 0);
 }
-function wo({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
-	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = To([...a, ...o].map(({ size: e }) => e)), l = Math.floor(lo * i / (fo(ao) * s)), u = [s, Math.min(c, Math.max(uo, l))], d = [...n > 1 ? a.map((e) => X(e.size, n)) : [], ...r > 1 ? o.map((e) => X(e.size, r)) : []];
+function Ro({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
+	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = zo([...a, ...o].map(({ size: e }) => e)), l = Math.floor(wo * i / (Eo(bo) * s)), u = [s, Math.min(c, Math.max(To, l))], d = [...n > 1 ? a.map((e) => Y(e.size, n)) : [], ...r > 1 ? o.map((e) => Y(e.size, r)) : []];
 	return {
 		picture: {
 			size: u,
-			format: ao
+			format: bo
 		},
 		codes: [...a, ...o].some(({ tenBits: e }) => e) ? {
 			size: u,
-			format: oo
+			format: xo
 		} : null,
 		smaller: d.length ? {
-			size: To(d),
-			format: so
+			size: zo(d),
+			format: So
 		} : null
 	};
 }
-function To(e) {
+function zo(e) {
 	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
 }
-function Eo(e, t, n) {
-	let r = Object.values(wo(e, t, n)).map((e) => e ? fo(e.format) * ho(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(...yo(e).map((e) => ho(e, 1))) : 0;
+function Bo(e, t, n) {
+	let r = Object.values(Ro(e, t, n)).map((e) => e ? Eo(e.format) * ko(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(...No(e).map((e) => ko(e, 1))) : 0;
 	return [...r, i].reduce((e, t) => e + t, 0);
 }
-function Do({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
+function Vo({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 	let a = Math.max(0, ...i.bases.map(({ count: e }) => e)), o = [];
 	return e < a && o.push({
 		kind: "count",
@@ -2814,28 +2890,28 @@ function Do({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 		percent: Math.round(100 / t)
 	}), o;
 }
-function Oo(e, t, n) {
+function Ho(e, t, n) {
 	if (!e.length) return null;
 	let r = e.map((e) => e.kind === "count" ? `${e.part} of ${e.whole} eigen textures are drawn` : e.kind === "bits" ? "eigen textures have 8 bits" : `${e.kind === "mean" ? "the mean texture has" : "eigen textures have"} ${e.percent} % of ${e.kind === "mean" ? "its" : "their"} width and height`), i = {
 		meanDown: 1,
 		scaleDown: 1,
 		halves: !0
-	}, a = So(t, 1) + Co(t, i, Infinity) + Eo(t, i, n.memory) + t.geometry, o = a > n.memory ? `the scene needs ${ko(a)} MB of graphics memory and ${ko(n.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${Ao(r.join(", "))}: ${o}.`;
+	}, a = Io(t, 1) + Lo(t, i, Infinity) + Bo(t, i, n.memory) + t.geometry, o = a > n.memory ? `the scene needs ${Uo(a)} MB of graphics memory and ${Uo(n.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${Wo(r.join(", "))}: ${o}.`;
 }
-function ko(e) {
+function Uo(e) {
 	return (e / 1e6).toFixed(+(e < 1e7));
 }
-function Ao(e) {
+function Wo(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var jo = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\n#define REACH 2\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec2 beside;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nfloat codeOf(vec2 shift) { return shift.x + float(REACH) + float(2 * REACH + 1) * (shift.y + float(REACH)); }\nvec2 shiftOf(vec4 place) {\n  int code = int(place.w + 0.5) - 1;\n  return code < 0 ? vec2(0.0) : vec2(code % (2 * REACH + 1) - REACH, code / (2 * REACH + 1) - REACH);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec4 place = rayWeights || beside.x > 0.0 ? texelFetch(places, ivec2(gl_FragCoord.xy), 0) : vec4(0.0);\n  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);\n  own -= beside * shiftOf(place);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Mo = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", No = 2, Po = `
+var Go = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\n#define REACH 2\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec2 beside;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nfloat codeOf(vec2 shift) { return shift.x + float(REACH) + float(2 * REACH + 1) * (shift.y + float(REACH)); }\nvec2 shiftOf(vec4 place) {\n  int code = int(place.w + 0.5) - 1;\n  return code < 0 ? vec2(0.0) : vec2(code % (2 * REACH + 1) - REACH, code / (2 * REACH + 1) - REACH);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec4 place = rayWeights || beside.x > 0.0 ? texelFetch(places, ivec2(gl_FragCoord.xy), 0) : vec4(0.0);\n  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);\n  own -= beside * shiftOf(place);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Ko = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", qo = 2, Jo = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${Mo}${jo}`, Fo = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", Io = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nflat out vec2 shift;\nvoid main() {\n  point = onPlane;\n  shift = shifts[gl_InstanceID];\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shift, 0.0, 1.0);\n}\n", Lo = `${Po}
+${Ko}${Go}`, Yo = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", Xo = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nflat out vec2 shift;\nvoid main() {\n  point = onPlane;\n  shift = shifts[gl_InstanceID];\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shift, 0.0, 1.0);\n}\n", Zo = `${Jo}
 in vec3 point;
 flat in vec2 shift;
 out vec4 place;
@@ -2843,14 +2919,14 @@ void main() {
   place = placeOf(point);
   place.w += codeOf(shift);
 }
-`, Ro = "sumTextures", zo = "finerValue", Bo = "finerOpacity";
-function Vo(n, r, i) {
-	let o = new k({
+`, Qo = "sumTextures", $o = "finerValue", es = "finerOpacity";
+function ts(n, r, i) {
+	let o = new O({
 		glslVersion: h,
-		vertexShader: Fo,
-		fragmentShader: `${Po}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
+		vertexShader: Yo,
+		fragmentShader: `${Jo}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
 		uniforms: {
-			rectangle: { value: new ie(...r) },
+			rectangle: { value: new ae(...r) },
 			...i
 		},
 		side: u,
@@ -2880,12 +2956,12 @@ function Vo(n, r, i) {
 		2,
 		1,
 		3
-	]), s.boundingSphere = new ee();
+	]), s.boundingSphere = new te();
 	let c = new S(s, o);
 	return c.frustumCulled = !1, c;
 }
-function Ho([e, t], n) {
-	return new ae(e, t, {
+function ns([e, t], n) {
+	return new oe(e, t, {
 		type: g,
 		depthBuffer: !1,
 		generateMipmaps: n,
@@ -2893,31 +2969,31 @@ function Ho([e, t], n) {
 		magFilter: n ? y : w
 	});
 }
-function Uo(e, t) {
-	let n = qa(e.right, e.up), r = [
+function rs(e, t) {
+	let n = so(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
 		t[2] - e.origin[2]
 	];
-	return [...Ga(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
+	return [...ao(e, t), J(r, n) / (Math.max(...e.extent) || 1)];
 }
-function Wo(t, n, r) {
+function is(t, n, r) {
 	let { index: i } = t, a = t.getAttribute("position"), o = t.getAttribute("uv"), s = new Float32Array(3 * a.count), c = new Float32Array(2 * a.count);
-	for (let e = 0; e < a.count; e++) s.set(Uo(n, [
+	for (let e = 0; e < a.count; e++) s.set(rs(n, [
 		a.getX(e),
 		a.getY(e),
 		a.getZ(e)
 	]), 3 * e), c.set([o.getX(e), o.getY(e)], 2 * e);
-	let l = Array.from({ length: 5 }, (e, t) => t - No), d = l.flatMap((e) => l.map((t) => new re(t, e)));
+	let l = Array.from({ length: 5 }, (e, t) => t - qo), d = l.flatMap((e) => l.map((t) => new ie(t, e)));
 	d.sort((e, t) => t.lengthSq() - e.lengthSq());
 	let f = new v();
-	f.setAttribute("position", new e(c, 2)), f.setAttribute("onPlane", new e(s, 3)), f.setIndex(i && new e(i.array, 1)), f.instanceCount = d.length, f.boundingSphere = new ee();
-	let p = new k({
+	f.setAttribute("position", new e(c, 2)), f.setAttribute("onPlane", new e(s, 3)), f.setIndex(i && new e(i.array, 1)), f.instanceCount = d.length, f.boundingSphere = new te();
+	let p = new O({
 		glslVersion: h,
-		vertexShader: Io.replace("SHIFTS", String(d.length)),
-		fragmentShader: Lo,
+		vertexShader: Xo.replace("SHIFTS", String(d.length)),
+		fragmentShader: Zo,
 		uniforms: {
-			texel: { value: new re(2 / r.width, 2 / r.height) },
+			texel: { value: new ie(2 / r.width, 2 / r.height) },
 			shifts: { value: d }
 		},
 		side: u,
@@ -2926,7 +3002,7 @@ function Wo(t, n, r) {
 		depthWrite: !1
 	}), m = new S(f, p);
 	m.frustumCulled = !1;
-	let g = new A();
+	let g = new k();
 	return g.add(m), {
 		scene: g,
 		free: () => {
@@ -2934,19 +3010,19 @@ function Wo(t, n, r) {
 		}
 	};
 }
-var Go = new i(0), Ko = new i();
-function qo(e, t, n) {
+var as = new i(0), os = new i();
+function ss(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(Ko), e.setClearColor(Go, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(Ko, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(os), e.setClearColor(as, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(os, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/composer.ts
-var Jo = {
+var cs = {
 	version: 0,
 	mean: !0,
 	opacity: 0,
@@ -2956,7 +3032,7 @@ var Jo = {
 	eye: null,
 	places: 0,
 	maps: null
-}, Yo = class {
+}, ls = class {
 	snaps;
 	surface;
 	plane;
@@ -2967,14 +3043,14 @@ var Jo = {
 	camera = new n();
 	constructor(e, t, n, r, i, a, o) {
 		this.snaps = i, this.surface = a, this.plane = o;
-		let [s, ...c] = yo({
+		let [s, ...c] = No({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), l = (e, n) => {
-			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => Qo(t, i ? X(e, r) : null)), o = new A();
+			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => fs(t, i ? Y(e, r) : null)), o = new k();
 			return a.forEach(({ quad: e }, t) => o.add(Object.assign(e, { renderOrder: t }))), {
-				target: Ho(X(e, r), n),
+				target: ns(Y(e, r), n),
 				scene: o,
 				steps: a,
 				places: null
@@ -2982,7 +3058,7 @@ var Jo = {
 		}, u = l(s ?? e, !0);
 		this.grids = c.map((e) => l(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = Vo(zo, [
+			let t = ts($o, [
 				0,
 				0,
 				1,
@@ -2990,24 +3066,24 @@ var Jo = {
 			], { coarse: { value: e.texture } });
 			u.scene.add(Object.assign(t, { renderOrder: u.scene.children.length }));
 		}
-		this.grids.push(u), this.opacity = n && Xo(n, r);
+		this.grids.push(u), this.opacity = n && us(n, r);
 	}
 	get texture() {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && ts(this.composed, n) || (this.composed = n, qo(e, t, () => {
+		this.composed && hs(this.composed, n) || (this.composed = n, ss(e, t, () => {
 			n.opacity > this.opacityDrawn && this.drawOpacity(e, n.opacity);
 			for (let t of this.grids) {
 				(n.eye !== null && t.steps.some(({ part: e }) => e.basis) || this.snaps) && this.findPlaces(e, t, n.places);
-				for (let e of t.steps) $o(e, t.places?.target.texture ?? null, n);
+				for (let e of t.steps) ps(e, t.places?.target.texture ?? null, n);
 				this.draw(e, t.scene, t.target, this.opacityDrawn > 0 && t === this.grids.at(-1));
 			}
 		}));
 	}
 	dispose() {
-		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), Zo(n);
-		this.opacity?.target.dispose(), this.opacity && [this.opacity.sum, this.opacity.finer].forEach(Zo);
+		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), ds(n);
+		this.opacity?.target.dispose(), this.opacity && [this.opacity.sum, this.opacity.finer].forEach(ds);
 	}
 	drawOpacity(e, t) {
 		let [n, r] = [this.grids.at(-1), this.opacity];
@@ -3015,7 +3091,7 @@ var Jo = {
 	}
 	findPlaces(e, t, n) {
 		if (t.places?.version === n) return;
-		let r = t.places?.target ?? Ho([t.target.width, t.target.height], !1), { scene: i, free: a } = Wo(this.surface.geometry, this.plane, r);
+		let r = t.places?.target ?? ns([t.target.width, t.target.height], !1), { scene: i, free: a } = is(this.surface.geometry, this.plane, r);
 		this.draw(e, i, r), a(), t.places = {
 			target: r,
 			version: n
@@ -3027,11 +3103,11 @@ var Jo = {
 		r && i.colorMask(!0, !0, !0, !1), e.clear(!0, !1, !1), r && i.colorMask(!0, !0, !0, !0), e.render(t, this.camera);
 	}
 };
-function Xo(e, t) {
-	let n = Ho(X(e.grid, t), !1), r = Qo(e, null);
-	for (let e of r) $o(e, null, Jo);
-	let [i, a] = [new A(), new A()];
-	return i.add(...r.map(({ quad: e }) => e)), a.add(Vo(Bo, [
+function us(e, t) {
+	let n = ns(Y(e.grid, t), !1), r = fs(e, null);
+	for (let e of r) ps(e, null, cs);
+	let [i, a] = [new k(), new k()];
+	return i.add(...r.map(({ quad: e }) => e)), a.add(ts(es, [
 		0,
 		0,
 		1,
@@ -3042,17 +3118,17 @@ function Xo(e, t) {
 		finer: a
 	};
 }
-function Zo(e) {
+function ds(e) {
 	for (let { geometry: t, material: n } of e.children) t.dispose(), n.dispose();
 }
-function Qo(e, t) {
-	let [n, r, i, a] = e.rectangle, o = t && new re(1 / ((i - n) * t[0]), 1 / ((a - r) * t[1])), s = e.colours.length, [c, l] = [e.scale.length / (4 * s), Math.floor(64 / s)], u = [];
+function fs(e, t) {
+	let [n, r, i, a] = e.rectangle, o = t && new ie(1 / ((i - n) * t[0]), 1 / ((a - r) * t[1])), s = e.colours.length, [c, l] = [e.scale.length / (4 * s), Math.floor(64 / s)], u = [];
 	for (let t = 0; t < c; t += l) {
-		let n = Array.from({ length: 64 }, (t, n) => new j(...e.colours[n] ?? [
+		let n = Array.from({ length: 64 }, (t, n) => new A(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), r = e.basis ? 1 : 4, i = Vo(Ro, e.rectangle, {
+		])), r = e.basis ? 1 : 4, i = ts(Qo, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(t * s / r) },
 			sharing: { value: r },
@@ -3065,8 +3141,8 @@ function Qo(e, t) {
 			weightMaps: { value: null },
 			firstGroup: { value: (e.basis?.group ?? 0) + t },
 			places: { value: null },
-			beside: { value: o ?? new re() },
-			eye: { value: new j() }
+			beside: { value: o ?? new ie() },
+			eye: { value: new A() }
 		});
 		u.push({
 			part: e,
@@ -3077,31 +3153,31 @@ function Qo(e, t) {
 	}
 	return u;
 }
-function $o({ part: e, first: t, groups: n, quad: r }, i, a) {
+function ps({ part: e, first: t, groups: n, quad: r }, i, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => es(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => ms(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
 	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", i), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function es(e, t, n, r) {
+function ms(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function ts(e, t) {
+function hs(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
 // eigenfield-three/src/maps.ts
-function ns(e, t, n, i, a) {
+function gs(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? vo(t) : 0;
+		u += e, d += t ? Mo(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -3117,10 +3193,10 @@ function ns(e, t, n, i, a) {
 		}
 	}
 	let p = new o(f, 129, 129, Math.max(1, d));
-	return p.format = O, p.type = g, p.minFilter = p.magFilter = y, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
+	return p.format = D, p.type = g, p.minFilter = p.magFilter = y, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
 }
 // eigenfield-three/src/eigen-weights.ts
-var rs = class {
+var _s = class {
 	info;
 	counts;
 	omega;
@@ -3152,12 +3228,12 @@ var rs = class {
 		if (n >= 0) return Float64Array.from(this.omega.subarray(n * this.total, (n + 1) * this.total));
 		let r = this.info.cameras[e];
 		if (!r) throw RangeError(`no camera ${e}`);
-		return this.at(...Ga(this.info.viewPlane, r.centre), t);
+		return this.at(...ao(this.info.viewPlane, r.centre), t);
 	}
 	maps(e, t) {
 		if (this.made?.mixing === e && this.made.usable === t) return this.made.texture;
 		this.dispose();
-		let n = ns(this.views, e, this.omega, this.counts, t);
+		let n = gs(this.views, e, this.omega, this.counts, t);
 		return this.made = {
 			texture: n,
 			mixing: e,
@@ -3167,20 +3243,20 @@ var rs = class {
 	dispose() {
 		this.made?.texture.dispose();
 	}
-}, is = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", as = {
+}, vs = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", ys = {
 	bilinear: 0,
 	bicubic: 1
-}, os = {
+}, bs = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, ss = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", cs = ss.replace("void main", "invariant gl_Position;\nvoid main"), ls = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", us = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", ds = `${ls}
-${Mo}${is}
+}, xs = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Ss = xs.replace("void main", "invariant gl_Position;\nvoid main"), Cs = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", ws = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", Ts = `${Cs}
+${Ko}${vs}
 uniform float shownGain;       // of the eigen texture around mid grey
 in vec2 surfaceUv;
 vec3 eigenColour(vec3 value) { return clamp(0.5 + shownGain * value, 0.0, 1.0); }
-`, fs = `${ds}${us}
+`, Es = `${Ts}${ws}
 in vec3 surfacePlace;
 out vec4 fragment;
 void main() {
@@ -3190,7 +3266,7 @@ void main() {
   if (shown == 3) colour = errorColour(colour, surfacePlace);
   fragment = vec4(colour, 1.0);
 }
-`, ps = `${ds}
+`, Ds = `${Ts}
 layout(location = 0) out vec4 fragment;
 layout(location = 1) out vec4 solid;
 vec3 threeBytes(float depth) {
@@ -3204,131 +3280,76 @@ void main() {
   float depth = (gl_FragCoord.z - gl_DepthRange.near) / gl_DepthRange.diff;
   solid = colour.a < 0.5 ? vec4(0.0) : vec4(threeBytes(depth), 1.0);
 }
-`, ms = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", hs = {
+`, Os = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", ks = {
 	blending: a,
 	blendSrc: E,
-	blendDst: D
-}, gs = {
+	blendDst: ee
+}, As = {
 	depthWrite: !1,
 	stencilWrite: !0,
 	stencilFunc: d,
 	stencilZPass: _
 };
-function _s(e, t) {
+function js(e, t) {
 	let n = {
 		composed: { value: null },
 		finest: { value: 1 },
-		exposureScale: { value: new j(1, 1, 1) },
-		exposureBias: { value: new j() },
-		shown: { value: os.picture },
+		exposureScale: { value: new A(1, 1, 1) },
+		exposureBias: { value: new A() },
+		shown: { value: bs.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new x() }
-	}, r = new k({
+	}, r = new O({
 		glslVersion: h,
-		vertexShader: t ? cs : ss,
-		fragmentShader: t ? ps : fs,
+		vertexShader: t ? Ss : xs,
+		fragmentShader: t ? Ds : Es,
 		uniforms: n,
-		defines: { BICUBIC: as.bicubic },
+		defines: { BICUBIC: ys.bicubic },
 		side: e ? u : m,
 		...t ? {
-			...hs,
-			...gs
+			...ks,
+			...As
 		} : {}
 	});
 	return r.name = "eigen textures", r;
 }
-function vs(e) {
+function Ms(e) {
 	let { side: t } = e;
-	return new k({
+	return new O({
 		name: "depth of sheets",
 		glslVersion: h,
-		vertexShader: cs,
-		fragmentShader: ms,
+		vertexShader: Ss,
+		fragmentShader: Os,
 		colorWrite: !1,
 		side: t,
 		stencilWrite: !0,
-		stencilZPass: oe
+		stencilZPass: se
 	});
 }
-function ys(e, t, n) {
-	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !bs(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
+function Ns(e, t, n) {
+	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !Ps(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
 	u && (d.elements[13] = 1), e.toPhotograph.value.multiplyMatrices(d, l.multiply(c)), e.photograph.value = n;
 }
-function bs(e) {
+function Ps(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
-// eigenfield-three/src/film-codes.ts
-var xs = /* @__PURE__ */ new Set([
-	"I420P10",
-	"I422P10",
-	"I444P10"
-]), Ss = /* @__PURE__ */ new Set([
-	"I420",
-	"I420A",
-	"I422",
-	"I444",
-	"NV12"
-]), Cs = /* @__PURE__ */ new Set([
-	"RGBA",
-	"RGBX",
-	"BGRA",
-	"BGRX"
-]), ws = 1, Ts = Uint16Array.from({ length: 256 }, (e, t) => Math.round(t * 1023 / 255)), Es = Uint16Array.from({ length: 256 }, (e, t) => Ts[16 + Math.round(t * 219 / 255)]), Ds = Es.map((e, t) => t === 0 ? 0 : t === 255 ? 1023 : e);
-async function Os(e, t, n = !1) {
-	let r = e.format ?? "", { width: i, height: a } = e.visibleRect ?? {
-		width: 0,
-		height: 0
-	};
-	if (!xs.has(r) && !Ss.has(r) && !Cs.has(r)) throw new M("unsupported", `This browser does not hand out its frames (${r || "no format"}).`, "");
-	let o = e.allocationSize(), s = t && t.length >= o ? t : new Uint8Array(o), [c] = await e.copyTo(s), { offset: l, stride: u } = c ?? {
-		offset: 0,
-		stride: 0
-	};
-	if (xs.has(r)) return {
-		data: s.subarray(l),
-		width: i,
-		height: a,
-		stride: u,
-		room: s
-	};
-	let d = Cs.has(r), [f, p] = d ? [4, l + ws] : [1, l], m = d && e.colorSpace?.fullRange === !1 ? n ? Ds : Es : Ts;
-	return ks(s.subarray(p), u, f, [i, a], m);
-}
-function ks(e, t, n, [r, i], a = Ts) {
-	let o = new Uint16Array(r * i);
-	for (let s = 0; s < i; s++) for (let i = 0; i < r; i++) o[s * r + i] = a[e[s * t + n * i]];
-	return {
-		data: new Uint8Array(o.buffer),
-		width: r,
-		height: i,
-		stride: 2 * r
-	};
-}
-function As({ data: e, stride: t }, { size: [n, r], at: i }) {
-	return i.map(([i, a]) => ({
-		data: e.subarray(a * t + 2 * i),
-		width: n,
-		height: r,
-		stride: t
-	}));
-}
 // eigenfield-three/src/pieces.ts
-function js(e) {
+function Fs(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
 // eigenfield-three/src/strength.ts
-var Ms = 128, Ns = .98;
-async function Ps(e, t, n, r) {
+var Is = 128, Ls = .98;
+async function Rs(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = Ni(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Ms, Ms).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = Ji(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Is, Is).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	return u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, Ms, Ms);
-		let { data: u } = d.getImageData(0, 0, Ms, Ms);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, Is, Is);
+		let { data: u } = d.getImageData(0, 0, Is, Is);
 		(l ? [
 			0,
 			1,
@@ -3337,15 +3358,15 @@ async function Ps(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), js(u), Fs(f);
+	}), Fs(u), zs(f);
 }
-function Fs(e) {
+function zs(e) {
 	e.sort((e, t) => e - t);
-	let t = e[Math.floor(Ns * e.length)] ?? 0;
+	let t = e[Math.floor(Ls * e.length)] ?? 0;
 	return t > 0 ? .45 / t : 1;
 }
 // eigenfield-three/src/film-textures.ts
-var Is = class {
+var Bs = class {
 	scene;
 	films;
 	filling = null;
@@ -3371,17 +3392,18 @@ var Is = class {
 	}
 	put(e) {
 		e.together(() => {
-			fa(this.scene).forEach(({ mean: t }, n) => e.putMean(n, {
+			Ea(this.scene).forEach(({ mean: t }, n) => e.putMean(n, {
 				pieces: this.piecesOf(t),
 				precision: null
-			})), J(this.scene).forEach(({ pictures: [t] }, n) => {
-				t && e.putTextures(n, 0, this.piecesOf(t), t);
+			})), q(this.scene).forEach(({ pictures: [t] }, n) => {
+				let r = t ? this.piecesOf(t) : [];
+				t && r.length && e.putTextures(n, 0, r, t);
 			});
 		});
 	}
 	piecesOf({ part: e }) {
 		let t = e && this.films[e.film];
-		return t ? As(t, e).map((e) => ({
+		return t ? qt(t, e).map((e) => ({
 			picture: e,
 			row: 0,
 			rows: e.height
@@ -3389,69 +3411,69 @@ var Is = class {
 	}
 	gainOf({ part: e, pieces: t, scale: n, zero: r }, i, a) {
 		let o = e && this.films[e.film];
-		return o ? Fs(As(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
+		return o ? zs(qt(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
 			let s = t * i + o, c = Math.max(...(a[o] ?? [0]).map(Math.abs)) * (n[s] ?? 0);
-			return Rs(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
+			return Hs(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
 		})) : 1;
 	}
-}, Ls = 8;
-function Rs({ data: e, width: t, height: n, stride: r }) {
+}, Vs = 8;
+function Hs({ data: e, width: t, height: n, stride: r }) {
 	let i = [];
-	for (let a = 0; a < n; a += Ls) for (let n = 0; n < t; n += Ls) {
+	for (let a = 0; a < n; a += Vs) for (let n = 0; n < t; n += Vs) {
 		let t = a * r + 2 * n;
 		i.push(e[t] + 256 * e[t + 1]);
 	}
 	return i;
 }
 // eigenfield-three/src/container.ts
-var zs = 1179937895, Bs = 1313821514, Vs = 5130562, Hs = 1280591429;
-async function Us(e) {
+var Us = 1179937895, Ws = 1313821514, Gs = 5130562, Ks = 1280591429;
+async function qs(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof M && t.code === "truncated" ? Js(e.received === 0) : t;
+		throw t instanceof j && t.code === "truncated" ? Qs(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== zs) throw Js(!1);
+	if (new DataView(t).getUint32(0, !0) !== Us) throw Qs(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
-	if (r !== 2) throw new M("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
-	if (i < 20) throw N("8", "a length of no file");
+	if (r !== 2) throw new j("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
+	if (i < 20) throw M("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== Bs) throw N("16", "it does not begin with JSON");
-	if (o > xe) throw N("12", `${o} bytes of JSON`);
-	if (20 + o > i) throw N("12", "a chunk longer than the file");
-	let s = Gs(await e.read(20, 20 + o)), c = (t, n) => () => Ws(e, 20 + o, i, t, n);
+	if (a.getUint32(4, !0) !== Ws) throw M("16", "it does not begin with JSON");
+	if (o > Ce) throw M("12", `${o} bytes of JSON`);
+	if (20 + o > i) throw M("12", "a chunk longer than the file");
+	let s = Ys(await e.read(20, 20 + o)), c = (t, n) => () => Js(e, 20 + o, i, t, n);
 	return {
 		length: i,
 		text: s,
-		json: Ks(s, "20"),
-		binary: c(Vs, "binary chunk"),
-		groups: c(Hs, "chunk of groups")
+		json: Xs(s, "20"),
+		binary: c(Gs, "binary chunk"),
+		groups: c(Ks, "chunk of groups")
 	};
 }
-async function Ws(e, t, n, r, i) {
+async function Js(e, t, n, r, i) {
 	let a = t;
 	for (let t = 1; t < 64 && a + 8 <= n; t++) {
 		let t = new DataView(await e.read(a, a + 8)), i = t.getUint32(0, !0);
-		if (a + 8 + i > n) throw N(String(a), "a chunk longer than the file");
+		if (a + 8 + i > n) throw M(String(a), "a chunk longer than the file");
 		if (t.getUint32(4, !0) === r) return a + 8;
 		a += 8 + i;
 	}
-	throw N(String(t), `no ${i}`);
+	throw M(String(t), `no ${i}`);
 }
-function Gs(e) {
+function Ys(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
-		throw N("20", "its JSON is not UTF-8");
+		throw M("20", "its JSON is not UTF-8");
 	}
 }
-function Ks(e, t) {
-	if (qs(e) > 64) throw N(t, "its JSON is nested too deep");
+function Xs(e, t) {
+	if (Zs(e) > 64) throw M(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
-		throw N(t, "its JSON cannot be read");
+		throw M(t, "its JSON cannot be read");
 	}
 }
-function qs(e) {
+function Zs(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3462,11 +3484,11 @@ function qs(e) {
 	}
 	return n;
 }
-function Js(e) {
-	return new M("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
+function Qs(e) {
+	return new j("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/groups.ts
-var Ys = 3, Xs = 4, Zs = class {
+var $s = 3, ec = 4, tc = class {
 	scene;
 	timeline;
 	mesh;
@@ -3478,16 +3500,16 @@ var Ys = 3, Xs = 4, Zs = class {
 	open(e) {
 		let t = this.kept.get(e) ?? this.opened(e);
 		t.catch(() => this.kept.get(e) === t && this.kept.delete(e)), this.kept.delete(e), this.kept.set(e, t);
-		for (let [e] of this.kept) this.kept.size > Ys && this.kept.delete(e);
+		for (let [e] of this.kept) this.kept.size > $s && this.kept.delete(e);
 		return t;
 	}
 	async begin() {
-		let e = this.placeOf(0), t = async (t) => new Uint8Array(await this.read(e, Math.min(t, e.length))), { head: n, at: r } = await nc(await t(Xs + ec(await t(Xs), e)), e), i = [
+		let e = this.placeOf(0), t = async (t) => new Uint8Array(await this.read(e, Math.min(t, e.length))), { head: n, at: r } = await oc(await t(ec + ic(await t(ec), e)), e), i = [
 			n.key("weights"),
 			n.key("mesh"),
 			n.key("motion"),
 			n.key("frames").at(0)
-		].reduce((e, { raw: t }) => e + tc(t), r);
+		].reduce((e, { raw: t }) => e + ac(t), r);
 		return this.build(0, await t(i), n, r, 1);
 	}
 	placeOf(e) {
@@ -3497,12 +3519,12 @@ var Ys = 3, Xs = 4, Zs = class {
 	}
 	async opened(e) {
 		let t = this.placeOf(e), n = new Uint8Array(await this.read(t, t.length));
-		await $s(n, t);
-		let { head: r, at: i } = await nc(n, t);
+		await rc(n, t);
+		let { head: r, at: i } = await oc(n, t);
 		return this.build(e, n, r, i, t.frames);
 	}
 	build(e, t, n, r, i) {
-		let a = this.placeOf(e), o = rc(t, r, a), s = this.weightsOf(n, o), c = this.meshOf(n, o), l = ic(n, o, c, a), { first: u, frames: d } = a, f = ac(n, a, this.timeline.films.length, o, i);
+		let a = this.placeOf(e), o = sc(t, r, a), s = this.weightsOf(n, o), c = this.meshOf(n, o), l = cc(n, o, c, a), { first: u, frames: d } = a, f = lc(n, a, this.timeline.films.length, o, i);
 		return {
 			index: e,
 			first: u,
@@ -3518,57 +3540,57 @@ var Ys = 3, Xs = 4, Zs = class {
 		let n = e.key("mesh");
 		if (!n.exists) return this.mesh;
 		if (this.scene.sheets) throw n.wrong("a mesh of its own, in a clip with sheets");
-		let r = W["mesh-2"].decode(t(n), n.where);
-		if (!r.indices.length) throw N(n.where, "a mesh without faces");
+		let r = H["mesh-2"].decode(t(n), n.where);
+		if (!r.indices.length) throw M(n.where, "a mesh without faces");
 		return r;
 	}
 	weightsOf(e, t) {
-		let n = this.scene.heldOut.filter((e) => !e).length, r = sc(e.key("weights"), this.scene.planes.length);
-		return Ia(n, this.scene.planes.flatMap(({ bases: e }, i) => {
-			let a = r[i] && sc(r[i], e.length);
+		let n = this.scene.heldOut.filter((e) => !e).length, r = X(e.key("weights"), this.scene.planes.length);
+		return Xa(n, this.scene.planes.flatMap(({ bases: e }, i) => {
+			let a = r[i] && X(r[i], e.length);
 			return e.map(({ count: e }, r) => {
 				let i = a[r];
-				return Ra(W["weights-1"].decode(t(i), i.where), n, e, i.where);
+				return Qa(H["weights-1"].decode(t(i), i.where), n, e, i.where);
 			});
 		}));
 	}
 	scalesOf(e) {
 		let { planes: t } = this.scene;
 		return {
-			means: sc(e.key("means"), t.length).map((e, n) => oc(e, t[n].mean)),
-			bases: sc(e.key("bases"), t.length).flatMap((e, n) => {
+			means: X(e.key("means"), t.length).map((e, n) => uc(e, t[n].mean)),
+			bases: X(e.key("bases"), t.length).flatMap((e, n) => {
 				let { bases: r } = t[n];
-				return sc(e, r.length).map((e, t) => oc(e, r[t].pictures[0]));
+				return X(e, r.length).map((e, t) => uc(e, r[t].pictures[0]));
 			})
 		};
 	}
 };
-function Qs(e, { means: t, bases: n }) {
-	e.planes.forEach(({ mean: e }, n) => Object.assign(e, t[n])), J(e).forEach(({ pictures: [e] }, t) => e && Object.assign(e, n[t]));
+function nc(e, { means: t, bases: n }) {
+	e.planes.forEach(({ mean: e }, n) => Object.assign(e, t[n])), q(e).forEach(({ pictures: [e] }, t) => e && Object.assign(e, n[t]));
 }
-async function $s(e, { sha256: t, file: n, where: r }) {
+async function rc(e, { sha256: t, file: n, where: r }) {
 	let i = globalThis.crypto?.subtle;
 	if (!i) return;
 	let a = new Uint8Array(await i.digest("SHA-256", e));
-	if (Array.from(a, (e) => e.toString(16).padStart(2, "0")).join("") !== t) throw N(n ?? r, "other bytes than its SHA-256 says");
+	if (Array.from(a, (e) => e.toString(16).padStart(2, "0")).join("") !== t) throw M(n ?? r, "other bytes than its SHA-256 says");
 }
-function ec(e, { where: t }) {
-	if (e.length < Xs) throw N(t, "no head");
+function ic(e, { where: t }) {
+	if (e.length < ec) throw M(t, "no head");
 	return new DataView(e.buffer).getUint32(0, !0);
 }
-function tc(e) {
-	return typeof e == "number" ? e : Array.isArray(e) ? e.reduce((e, t) => e + tc(t), 0) : 0;
+function ac(e) {
+	return typeof e == "number" ? e : Array.isArray(e) ? e.reduce((e, t) => e + ac(t), 0) : 0;
 }
-async function nc(e, { where: t }) {
-	let n = Xs + ec(e, { where: t });
-	if (n > e.length) throw N(t, "a head longer than the group");
-	let r = await ye(e.subarray(Xs, n), "deflate-raw", Ve, t);
+async function oc(e, { where: t }) {
+	let n = ec + ic(e, { where: t });
+	if (n > e.length) throw M(t, "a head longer than the group");
+	let r = await xe(e.subarray(ec, n), "deflate-raw", He, t);
 	return {
-		head: new G(Ks(new TextDecoder("utf-8").decode(r), t), t),
+		head: new U(Xs(new TextDecoder("utf-8").decode(r), t), t),
 		at: n
 	};
 }
-function rc(e, t, n) {
+function sc(e, t, n) {
 	let r = t;
 	return (t) => {
 		let i = r;
@@ -3576,29 +3598,29 @@ function rc(e, t, n) {
 		return e.subarray(i, r);
 	};
 }
-function ic(e, t, n, { frames: r }) {
+function cc(e, t, n, { frames: r }) {
 	let i = e.key("motion");
 	if (!i.exists) return null;
-	let a = W["motion-1"].decode(t(i), n, i.where);
+	let a = H["motion-1"].decode(t(i), n, i.where);
 	if (a.frames !== r) throw i.wrong(`${a.frames} frames of ${r}`);
 	return a;
 }
-function ac(e, t, n, r, i) {
-	return sc(e.key("frames"), t.frames).slice(0, i).map((e) => sc(e, n).map((e) => r(e)));
+function lc(e, t, n, r, i) {
+	return X(e.key("frames"), t.frames).slice(0, i).map((e) => X(e, n).map((e) => r(e)));
 }
-function oc(e, { pieces: t, textures: n }) {
+function uc(e, { pieces: t, textures: n }) {
 	let r = e;
 	return {
-		scale: Fi(r.key("scale"), t, n),
-		zero: Fi(r.key("zero"), t, n)
+		scale: Xi(r.key("scale"), t, n),
+		zero: Xi(r.key("zero"), t, n)
 	};
 }
-function sc(e, t) {
+function X(e, t) {
 	let n = e.items(t);
 	if (n.length !== t) throw e.wrong(`${t} entries are needed`);
 	return n;
 }
-var cc = 3, lc = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", uc = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform int first; // row of the picture with which the texture begins\nout vec4 stored;\nvoid main() {\n  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));\n}\n", dc = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", fc = `#version 300 es
+var dc = 3, fc = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", pc = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform int first; // row of the picture with which the texture begins\nout vec4 stored;\nvoid main() {\n  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));\n}\n", mc = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", hc = `#version 300 es
 precision highp float;
 precision highp int;
 uniform highp sampler2D picture; // values, and whether they are of a chart
@@ -3608,7 +3630,7 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec2 own = texelFetch(picture, at, 0).rg;
   vec2 sum = vec2(own.r * own.g, own.g);
-  for (int far = 1; far <= ${cc} && sum.y == 0.0; far++) {
+  for (int far = 1; far <= ${dc} && sum.y == 0.0; far++) {
     for (int y = -far; y <= far; y++) {
       for (int x = -far; x <= far; x++) {
         vec2 near = texelFetch(picture, clamp(at + ivec2(x, y), ivec2(0), size - 1), 0).rg;
@@ -3618,9 +3640,9 @@ void main() {
   }
   stored = vec4(sum.y > 0.0 ? sum.x / sum.y : own.r);
 }
-`, pc = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
+`, gc = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
 // eigenfield-three/src/parts.ts
-function mc(e, t, n) {
+function _c(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -3630,7 +3652,7 @@ function mc(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = _c(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = bc(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -3658,7 +3680,7 @@ function mc(e, t, n) {
 						a + e[1] / i[1]
 					],
 					colours: f,
-					...vc(l, u, h, n.halves && Mi(l)),
+					...xc(l, u, h, n.halves && qi(l)),
 					basis: {
 						ready: m,
 						column: o,
@@ -3666,17 +3688,17 @@ function mc(e, t, n) {
 					}
 				});
 			}
-			o += p, s += h ? vo(h) : 0;
+			o += p, s += h ? Mo(h) : 0;
 		}
 	}), r;
 }
-function hc(e, t, n, r) {
-	mc(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
+function vc(e, t, n, r) {
+	_c(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
 		scale: t,
 		bias: n
 	}));
 }
-function gc({ planes: e, sheets: t }, { means: n, needs: r }) {
+function yc({ planes: e, sheets: t }, { means: n, needs: r }) {
 	let i = n[e.length], a = r.means[e.length]?.size;
 	return !t || !i || !a ? null : {
 		stored: i,
@@ -3692,12 +3714,12 @@ function gc({ planes: e, sheets: t }, { means: n, needs: r }) {
 			0,
 			0
 		]],
-		..._c(t.opacity),
+		...bc(t.opacity),
 		basis: null
 	};
 }
-function _c({ mean: e, channels: t, precision: n }) {
-	let { scale: r, zero: i } = e, a = n ? 4 : 1 / Pi(e, Mi([e])), o = {
+function bc({ mean: e, channels: t, precision: n }) {
+	let { scale: r, zero: i } = e, a = n ? 4 : 1 / Yi(e, qi([e])), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
 	};
@@ -3707,8 +3729,8 @@ function _c({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function vc(e, t, n, r) {
-	let i = e.flatMap((e) => Array(e.textures).fill(Pi(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * vo(n), c = {
+function xc(e, t, n, r) {
+	let i = e.flatMap((e) => Array(e.textures).fill(Yi(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * Mo(n), c = {
 		scale: new Float32Array(s),
 		bias: new Float32Array(s)
 	};
@@ -3719,7 +3741,7 @@ function vc(e, t, n, r) {
 	return c;
 }
 // eigenfield-three/src/player.ts
-var yc = .25, bc = class extends f {
+var Sc = .25, Cc = 100, wc = 2, Tc = .25, Ec = .1, Dc = class extends f {
 	timeline;
 	user;
 	first;
@@ -3738,14 +3760,21 @@ var yc = .25, bc = class extends f {
 	waiters = [];
 	asked = null;
 	disposed = !1;
+	lacking = [];
+	watched = {
+		seconds: 0,
+		due: 0,
+		short: 0
+	};
 	constructor(e, t, n, r = null) {
 		super(), this.timeline = e, this.user = n, this.rate = e.rate, this.frames = e.frames, this.first = e.first, this.duration = e.frames / e.rate, this.shown = {
 			position: 0,
 			number: 0
 		}, this.clock = 0, this.ring = t({
 			ready: () => this.wake(),
-			failed: (e, t) => this.fail(e, t)
-		}), this.sound = r && r(() => void this.dispatchEvent({ type: "change" }));
+			failed: (e, t) => this.fail(e, t),
+			thinned: () => this.thin()
+		}), this.sound = r && r(() => void this.dispatchEvent({ type: "change" })), globalThis.document?.addEventListener("visibilitychange", this.hide);
 	}
 	get playing() {
 		return this.plays;
@@ -3754,7 +3783,7 @@ var yc = .25, bc = class extends f {
 		return this.shown.number;
 	}
 	get time() {
-		return ta(this.timeline, this.shown.number);
+		return ga(this.timeline, this.shown.number);
 	}
 	get sought() {
 		return (this.following ?? this.goal ?? this.shown.position) % this.frames;
@@ -3763,7 +3792,7 @@ var yc = .25, bc = class extends f {
 		return this.goal !== null;
 	}
 	get group() {
-		let { groups: e } = this.timeline, t = na(this.timeline, this.shown.number);
+		let { groups: e } = this.timeline, t = K(this.timeline, this.shown.number);
 		return {
 			index: t,
 			count: e.length,
@@ -3776,6 +3805,9 @@ var yc = .25, bc = class extends f {
 	get open() {
 		return this.ring.open;
 	}
+	get fallbacks() {
+		return this.lacking;
+	}
 	get loop() {
 		return this.ring.loop;
 	}
@@ -3787,35 +3819,35 @@ var yc = .25, bc = class extends f {
 	}
 	set speed(e) {
 		if (!(e > 0 && e < Infinity)) throw RangeError("A speed is above 0.");
-		this.pace = e, this.dispatchEvent({ type: "change" });
+		this.pace = e, this.watch(), this.dispatchEvent({ type: "change" });
 	}
 	play() {
-		this.plays || this.disposed || (this.plays = !0, this.last = null, this.ring.retry(), !this.loop && (this.following ?? this.goal ?? this.shown.position) >= this.end && this.toFrame(0), this.dispatchEvent({ type: "change" }), this.wake());
+		this.plays || this.disposed || (this.plays = !0, this.last = null, this.watch(), this.ring.retry(), !this.loop && (this.following ?? this.goal ?? this.shown.position) >= this.end && this.toFrame(0), this.dispatchEvent({ type: "change" }), this.wake());
 	}
 	pause() {
-		this.plays && (this.plays = !1, this.clock = this.shown.position, this.sound?.rest(), this.dispatchEvent({ type: "change" }));
+		this.plays && (this.plays = !1, this.clock = this.shown.position, this.sound?.rest(), this.ring.plain && this.begin(this.shown.position), this.dispatchEvent({ type: "change" }));
 	}
 	seek(e) {
-		return this.toFrame(ea(this.timeline, e));
+		return this.toFrame(ha(this.timeline, e));
 	}
 	toFrame(e) {
 		return this.toPosition(this.lap + Math.min(Math.max(Math.round(e), 0), this.frames - 1));
 	}
 	step(e) {
 		this.pause();
-		let t = (this.following ?? this.goal ?? this.shown.position) + Math.round(e);
+		let t = this.ring.stepped(this.following ?? this.goal ?? this.shown.position, Math.round(e));
 		return this.loop ? this.toPosition(t < 0 ? t + this.frames : t) : this.toPosition(Math.min(Math.max(t, this.lap), this.end));
 	}
 	update(e = performance.now()) {
 		if (this.disposed) return;
-		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, yc);
+		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, Sc);
 		if (this.last = this.plays && this.goal === null ? e : null, this.goal === null && !this.plays) return;
-		this.goal === null ? (this.clock = this.advanced(t), this.sound?.follow(this.first + this.clock % this.frames / this.rate, this.pace)) : this.sound?.rest();
+		this.goal === null ? (this.advance(t), this.sound?.follow(this.first + this.clock % this.frames / this.rate, this.pace)) : this.sound?.rest();
 		let n = this.ring.take(this.goal ?? Math.floor(this.clock));
 		n && this.show(n), this.goal === null && !this.loop && this.clock >= this.end && this.ring.isOver(this.end) && this.pause();
 	}
 	dispose() {
-		this.disposed = !0, this.plays = !1, this.ring.dispose(), this.sound?.dispose(), this.settle();
+		this.disposed = !0, this.plays = !1, globalThis.document?.removeEventListener("visibilitychange", this.hide), this.ring.dispose(), this.sound?.dispose(), this.settle();
 	}
 	get lap() {
 		return this.shown.position - this.shown.number;
@@ -3823,17 +3855,30 @@ var yc = .25, bc = class extends f {
 	get end() {
 		return this.lap + this.frames - 1;
 	}
-	advanced(e) {
-		let t = this.clock + e * this.pace * this.rate, n = this.loop ? this.ring.reach : Math.min(this.ring.reach, this.end);
-		return Math.max(this.clock, Math.min(t, n));
+	advance(e) {
+		let [t, n] = [this.clock, e * this.pace * this.rate], r = this.loop ? this.ring.reach : Math.min(this.ring.reach, this.end);
+		if (this.clock = Math.max(t, Math.min(t + n, r)), e > Ec) return;
+		let { watched: i } = this;
+		i.seconds += e, i.due += n, this.ring.busy && (i.short += n - (this.clock - t)), i.seconds < wc || (i.short > Tc * i.due && this.ring.leaveOut(), this.watch());
 	}
+	watch() {
+		this.watched = {
+			seconds: 0,
+			due: 0,
+			short: 0
+		};
+	}
+	hide = () => {
+		document.hidden && this.sound?.rest();
+	};
 	toPosition(e) {
 		let t = new Promise((e) => void this.waiters.push(e));
 		return this.goal === null ? this.begin(e) : this.following = e, t;
 	}
 	begin(e) {
-		if (this.following = null, e === this.shown.position) return this.goal = null, this.clock = e, this.settle();
-		if (this.goal = this.ring.seek(e) ? e : null, this.goal === null) return this.settle();
+		let t = this.ring.standIn(e);
+		if (this.following = null, this.watch(), t === this.shown.position && this.ring.follows(t)) return this.goal = null, this.clock = t, this.settle();
+		if (this.goal = this.ring.seek(t) ? t : null, this.preview(), this.goal === null) return this.settle();
 		this.dispatchEvent({ type: "change" }), this.wake();
 	}
 	show(e) {
@@ -3841,7 +3886,18 @@ var yc = .25, bc = class extends f {
 		this.shown = {
 			position: t,
 			number: n
-		}, this.user.show(e), t === this.goal && (this.goal = null, this.clock = t, this.following === null ? this.settle() : this.begin(this.following)), this.dispatchEvent({ type: "frame" });
+		}, this.user.show(e), this.note(e), this.goal !== null && t !== this.goal && this.following === null ? this.preview() : this.goal !== null && (this.goal = null, this.clock = t, this.following === null ? this.settle() : this.begin(this.following)), this.dispatchEvent({ type: "frame" });
+	}
+	preview() {
+		this.ring.previewsFrom = this.goal === null ? Infinity : performance.now() + Cc;
+	}
+	note({ films: e }) {
+		let t = [];
+		this.ring.sparse && t.push("keys"), e.some((e) => e?.grown) && t.push("bits"), e.includes(null) && t.push("textures"), t.join() !== this.lacking.join() && (this.lacking = t, this.dispatchEvent({ type: "change" }));
+	}
+	thin() {
+		let e = this.following ?? this.goal;
+		this.lacking = ["keys"], e !== null && this.begin(e), this.dispatchEvent({ type: "change" }), this.wake();
 	}
 	settle() {
 		for (let e of this.waiters.splice(0)) e();
@@ -3854,52 +3910,52 @@ var yc = .25, bc = class extends f {
 	}
 	fail(e, t) {
 		if (this.disposed) return;
-		this.user.failed(e), t === null && this.pause();
-		let n = this.goal !== null && na(this.timeline, this.goal % this.frames);
-		n === !1 || t !== null && n !== t || (this.goal = this.following = null, this.settle());
+		this.user.failed(e), t === null && (this.lacking = [], this.pause());
+		let n = this.goal !== null && K(this.timeline, this.goal % this.frames);
+		n === !1 || t !== null && n !== t || (this.goal !== null && (this.clock = this.goal), this.goal = this.following = null, this.settle());
 	}
-}, xc = 65535;
-function Sc(e, t) {
+}, Oc = 65535;
+function kc(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
-	if (!i) throw new M("damaged", "The proxy mesh has no triangles; make or download the file again.");
-	if (r.count !== n.count) throw N(t.uv.where, `${r.count} for ${n.count} vertices`);
+	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
+	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
 	for (let e = 0; e < n.count; e++) {
-		if (!(Math.max(Math.abs(n.getX(e)), Math.abs(n.getY(e)), Math.abs(n.getZ(e))) <= 1e30)) throw N(t.position.where, `vertex ${e} is not finite`);
-		if (!(Math.max(Math.abs(r.getX(e)), Math.abs(r.getY(e))) <= 1e30)) throw N(t.uv.where, `texture coordinates of vertex ${e} are not finite`);
+		if (!(Math.max(Math.abs(n.getX(e)), Math.abs(n.getY(e)), Math.abs(n.getZ(e))) <= 1e30)) throw M(t.position.where, `vertex ${e} is not finite`);
+		if (!(Math.max(Math.abs(r.getX(e)), Math.abs(r.getY(e))) <= 1e30)) throw M(t.uv.where, `texture coordinates of vertex ${e} are not finite`);
 	}
-	for (let e of i.array) if (e >= n.count) throw N(t.indices.where, `no vertex ${e}`);
+	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
 }
-async function Cc({ view: e, codec: t, where: n }, r) {
+async function Ac({ view: e, codec: t, where: n }, r) {
 	let i = t.decode(new Uint8Array(await r(e)), n);
-	if (!i.indices.length) throw N(n, "a mesh without faces");
+	if (!i.indices.length) throw M(n, "a mesh without faces");
 	return i;
 }
-function wc({ positions: n, uv: r, indices: i }) {
+function jc({ positions: n, uv: r, indices: i }) {
 	let a = new t();
 	a.setAttribute("position", new e(n.slice(), 3)), a.setAttribute("uv", new e(r, 2));
-	let o = n.length / 3 <= xc;
+	let o = n.length / 3 <= Oc;
 	return a.setIndex(new e(o ? Uint16Array.from(i) : i, 1)), a;
 }
-function Tc(e) {
+function Mc(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/footprint.ts
-var Ec = 256;
-function Dc(e, t, n) {
+var Nc = 256;
+function Pc(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / Ec)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / Nc)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Oc(t, i.getX(e), i.getY(e), i.getZ(e))), l = kc(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Fc(t, i.getX(e), i.getY(e), i.getZ(e))), l = Ic(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = kc(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = Ic(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -3909,7 +3965,7 @@ function Dc(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function Oc({ K: e, R: t, t: n }, r, i, a) {
+function Fc({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -3917,12 +3973,12 @@ function Oc({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function kc(e) {
+function Ic(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/sheet-stack.ts
-var Ac = "sheets", jc = 16, Mc = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Nc = `${ls}${us}
+var Lc = "sheets", Rc = 16, zc = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Bc = `${Cs}${ws}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -3947,9 +4003,9 @@ void main() {
   gl_FragDepth = depth;
   fragment = colour;
 }
-`, Pc = new ie(), Fc = class {
+`, Vc = new ae(), Hc = class {
 	material;
-	scene = new A();
+	scene = new k();
 	camera = new n();
 	sheets = new S();
 	depth;
@@ -3957,16 +4013,16 @@ void main() {
 	everywhere = new t();
 	target = null;
 	constructor(t) {
-		this.material = t, this.depth = vs(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
+		this.material = t, this.depth = Ms(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
 			let { materialIndex: o = 0 } = a, s = this.sheets.material.length / 2, c = s - 1 - (o >> 1);
 			e.getContext().depthRange(c / s, (c + 1) / s);
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
 		let { shown: n, photograph: r, toPhotograph: i } = t.uniforms;
-		this.screen = new k({
-			name: Ac,
+		this.screen = new O({
+			name: Lc,
 			glslVersion: h,
-			vertexShader: Mc,
-			fragmentShader: Nc,
+			vertexShader: zc,
+			fragmentShader: Bc,
 			uniforms: {
 				shown: n,
 				photograph: r,
@@ -3975,12 +4031,12 @@ void main() {
 				solid: { value: null },
 				nearest: { value: null },
 				slices: { value: 1 },
-				corner: { value: new re() },
-				size: { value: new re() },
+				corner: { value: new ie() },
+				size: { value: new ie() },
 				toPlace: { value: new x() }
 			},
 			transparent: !0,
-			...hs
+			...ks
 		});
 		let a = new Float32Array([
 			-1,
@@ -3996,7 +4052,7 @@ void main() {
 		this.everywhere.setAttribute("position", new e(a, 3));
 	}
 	get bytes() {
-		return this.target ? jc * this.target.width * this.target.height : 0;
+		return this.target ? Rc * this.target.width * this.target.height : 0;
 	}
 	setGeometry(e, t) {
 		e.clearGroups();
@@ -4014,7 +4070,7 @@ void main() {
 	attach(e, t) {
 		for (let t of [e.material].flat()) t.visible = !1;
 		let n = new S(this.everywhere, this.screen);
-		n.name = Ac, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
+		n.name = Lc, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
 			t(n, i), this.draw(n, i, e);
 		}, e.add(n);
 	}
@@ -4025,21 +4081,21 @@ void main() {
 		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
 	}
 	draw(e, t, n) {
-		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Pc);
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Vc);
 		if (!a || !o) return;
-		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Ic(a, o));
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Uc(a, o));
 		let { target: s } = this;
-		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), qo(e, t, () => {
+		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), ss(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
 		}), e.getContext().depthRange(0, 1);
 		let { uniforms: c } = this.screen;
 		this.set("sheets", s.textures[0]), this.set("solid", s.textures[1]), this.set("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
 	}
 };
-function Ic(e, t) {
-	let n = new l(e, t, ne);
+function Uc(e, t) {
+	let n = new l(e, t, re);
 	n.format = c;
-	let r = new ae(e, t, {
+	let r = new oe(e, t, {
 		count: 2,
 		type: g,
 		stencilBuffer: !0,
@@ -4047,10 +4103,10 @@ function Ic(e, t) {
 		minFilter: w,
 		magFilter: w
 	}), [, i] = r.textures;
-	return i && (i.type = te), r;
+	return i && (i.type = ne), r;
 }
 // eigenfield-three/src/surface.ts
-var Lc = class {
+var Wc = class {
 	meshes;
 	faces;
 	reference;
@@ -4065,7 +4121,7 @@ var Lc = class {
 		if (!i) throw Error("a field needs a mesh");
 		this.mesh = i;
 		let a = [i.material].flat().some((e) => e.side !== m);
-		this.material = _s(a, t !== null), this.stack = t && new Fc(this.material);
+		this.material = js(a, t !== null), this.stack = t && new Hc(this.material);
 		for (let t of e) {
 			let e = (e, n) => r(e, n, t);
 			this.stack ? this.stack.attach(t, e) : (t.material = this.material, t.onBeforeRender = (t, n, r) => e(t, r));
@@ -4083,7 +4139,7 @@ var Lc = class {
 		if (n !== e) {
 			let { index: r, attributes: i } = e;
 			if (!r || !i.position || !i.uv) throw TypeError("A surface needs position, uv and an index.");
-			this.stack && t && Hi({
+			this.stack && t && ra({
 				faces: t,
 				where: "the geometry"
 			}, e), n.dispose();
@@ -4092,52 +4148,52 @@ var Lc = class {
 		e.boundingBox = e.boundingSphere = null, this.faces = t, this.version += 1, this.show(t);
 	}
 	show(e) {
-		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? Dc(this.geometry, this.reference, [1, 1]) : 0;
+		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? Pc(this.geometry, this.reference, [1, 1]) : 0;
 	}
 	dispose() {
 		this.stack?.dispose(), this.material.dispose(), this.geometry.dispose();
 	}
 };
 // eigenfield-three/src/gpu.ts
-function Rc(e) {
+function Gc(e) {
 	let t = e.getContext();
-	if (!(t instanceof WebGL2RenderingContext)) throw new M("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
+	if (!(t instanceof WebGL2RenderingContext)) throw new j("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
 	if ((t.getExtension("EXT_color_buffer_float") ?? t.getExtension("EXT_color_buffer_half_float")) || t.isContextLost()) return t;
-	throw new M("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
+	throw new j("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
 }
-function zc(e, t) {
+function Kc(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function Bc(e, { components: t, halves: n }) {
+function qc(e, { components: t, halves: n }) {
 	return t > 2 ? n ? e.RGBA16F : e.RGBA8 : t > 1 ? n ? e.RG16F : e.RG8 : n ? e.R16F : e.R8;
 }
-function Vc(e, [t, n], r, i, a) {
-	return Wc(e, e.TEXTURE_2D_ARRAY, () => {
-		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, Bc(e, a), t, n, r);
+function Jc(e, [t, n], r, i, a) {
+	return Zc(e, e.TEXTURE_2D_ARRAY, () => {
+		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, qc(e, a), t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function Hc(e, t, n, r) {
+function Yc(e, t, n, r) {
 	let { width: i, height: a } = n, o = r > 2 ? e.RGBA : r > 1 ? e.RG : e.RED;
-	Gc(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
+	Qc(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
 }
-function Uc(e, [t, n], r) {
-	return Wc(e, e.TEXTURE_2D, () => {
-		e.texStorage2D(e.TEXTURE_2D, 1, Bc(e, r), t, n);
+function Xc(e, [t, n], r) {
+	return Zc(e, e.TEXTURE_2D, () => {
+		e.texStorage2D(e.TEXTURE_2D, 1, qc(e, r), t, n);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D, t, e.NEAREST);
 	});
 }
-function Wc(e, t, n) {
+function Zc(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return Gc(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return Qc(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function Gc(e, t, n, r) {
+function Qc(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -4151,7 +4207,7 @@ function Gc(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-function Kc(e, t, n) {
+function $c(e, t, n) {
 	let r = e.createProgram();
 	for (let [i, a] of [[e.VERTEX_SHADER, t], [e.FRAGMENT_SHADER, n]]) {
 		let t = e.createShader(i);
@@ -4159,7 +4215,7 @@ function Kc(e, t, n) {
 	}
 	return e.linkProgram(r), r;
 }
-function qc(e, t, n, r) {
+function el(e, t, n, r) {
 	if (!n) {
 		r();
 		return;
@@ -4167,9 +4223,9 @@ function qc(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), Gc(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), Qc(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function Jc(e, t) {
+function tl(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -4184,13 +4240,13 @@ function Jc(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r && e.isProgram(r) ? r : null), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/charts.ts
-function Yc(e, t) {
-	let n = Kc(e, ...pc), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
+function nl(e, t) {
+	let n = $c(e, ...gc), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
 		let { index: o } = t, s = t.getAttribute("uv"), c = Float32Array.from({ length: 2 * (o?.count ?? 0) }, (e, t) => {
 			let n = o?.getX(t >> 1) ?? 0;
 			return t % 2 ? s.getY(n) : s.getX(n);
 		}), [l, u] = [e.createVertexArray(), e.createBuffer()], d = e.getParameter(e.ARRAY_BUFFER_BINDING);
-		Jc(e, () => {
+		tl(e, () => {
 			e.useProgram(n), e.bindVertexArray(l), e.bindBuffer(e.ARRAY_BUFFER, u), e.bufferData(e.ARRAY_BUFFER, c, e.STREAM_DRAW);
 			let t = e.getAttribLocation(n, "uv");
 			e.enableVertexAttribArray(t), e.vertexAttribPointer(t, 2, e.FLOAT, !1, 0, 0), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, a, 0), e.viewport(0, 0, ...i), e.colorMask(!0, !0, !0, !0), e.drawArrays(e.TRIANGLES, 0, c.length / 2);
@@ -4201,7 +4257,7 @@ function Yc(e, t) {
 			let { geometry: r } = t;
 			if (i?.grid.join() !== n.join() || i.geometry !== r) {
 				e.deleteTexture(i?.texture ?? null);
-				let t = Uc(e, n, {
+				let t = Xc(e, n, {
 					components: 1,
 					halves: !1
 				});
@@ -4219,7 +4275,7 @@ function Yc(e, t) {
 	};
 }
 // eigenfield-three/src/packing.ts
-var Xc = [
+var rl = [
 	"precisions",
 	"covered",
 	"factors",
@@ -4230,14 +4286,14 @@ var Xc = [
 	"nodes",
 	"zero"
 ];
-function Zc(e, t, n, r) {
+function il(e, t, n, r) {
 	let [i, a, o] = [
-		Kc(e, lc, uc),
-		Kc(e, lc, dc),
-		Kc(e, lc, fc)
-	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && Yc(e, r), u = !1, d = (t) => Object.fromEntries(Xc.map((n) => [n, e.getUniformLocation(t, n)])), [f, p] = [d(i), d(a)], m = (t, n, r, i, a, o, s) => {
+		$c(e, fc, pc),
+		$c(e, fc, mc),
+		$c(e, fc, hc)
+	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && nl(e, r), u = !1, d = (t) => Object.fromEntries(rl.map((n) => [n, e.getUniformLocation(t, n)])), [f, p] = [d(i), d(a)], m = (t, n, r, i, a, o, s) => {
 		let { picture: c, rows: l } = n, { size: u, corner: d, unit: f, codes: p } = i;
-		Qc(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
+		al(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
 			0,
 			1,
 			2,
@@ -4248,34 +4304,34 @@ function Zc(e, t, n, r) {
 	}, g = (t, { layer: n, component: r }) => {
 		h(t, n), e.colorMask(r === 0, r === 1, r === 2, r === 3);
 	}, _ = (r, s, d, _, v, y) => {
-		let { picture: b, row: x, rows: S } = r, [C, w] = v.size, T = C < b.width || w < S ? t.smaller : null, E = Math.max(1, Math.floor((T ? n - 2 : n) * w / S)), D = u && s === t.codes, O = (T && l?.covered(v.grid)) ?? null;
-		qc(e, 0, D ? null : s, () => {
+		let { picture: b, row: x, rows: S } = r, [C, w] = v.size, T = C < b.width || w < S ? t.smaller : null, E = Math.max(1, Math.floor((T ? n - 2 : n) * w / S)), ee = u && s === t.codes, D = (T && l?.covered(v.grid)) ?? null;
+		el(e, 0, ee ? null : s, () => {
 			for (let t = 0; t < w; t += E) {
 				let n = Math.min(E, w - t), o = Math.floor(t * S / w), s = Math.ceil((t + n) * S / w);
-				Qc(b) ? el(e, b, x + o, s - o) : $c(e, b, x + o, s - o);
+				al(b) ? sl(e, b, x + o, s - o) : ol(e, b, x + o, s - o);
 				let l = () => {
 					let s = T || y ? p : f;
 					e.useProgram(T || y ? a : i), e.bindVertexArray(c), e.uniform1i(s.precisions, +!!y), e.uniform1i(s.covered, T ? 2 : 0), e.uniform2i(s.nodes, y?.precision.width ?? 0, y?.precision.height ?? 0), e.uniform1f(s.zero, y?.zero ?? 0), T ? (h(T, null), e.colorMask(!0, !0, !0, !0)) : g(d, _), m(s, r, _.channel, v, o, t, n);
 				};
-				qc(e, 2, O, () => {
-					D ? l() : Jc(e, l);
+				el(e, 2, D, () => {
+					ee ? l() : tl(e, l);
 				});
 			}
-		}), T && qc(e, 0, T, () => Jc(e, () => {
+		}), T && el(e, 0, T, () => tl(e, () => {
 			e.useProgram(o), e.bindVertexArray(c), e.uniform2i(e.getUniformLocation(o, "size"), C, w), g(d, _), e.viewport(0, 0, C, w), e.drawArrays(e.TRIANGLES, 0, 3);
 		}));
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let s = Qc(n.picture) ? t.codes : t.picture;
+			let s = al(n.picture) ? t.codes : t.picture;
 			if (!s) return;
 			let c = () => i.forEach((e) => _(n, s, r, e, a, o));
-			o ? qc(e, 1, t.precision, () => {
-				$c(e, o.precision, 0, o.precision.height), c();
+			o ? el(e, 1, t.precision, () => {
+				ol(e, o.precision, 0, o.precision.height), c();
 			}) : c();
 		},
 		together(n) {
-			qc(e, 0, t.codes, () => Jc(e, () => {
+			el(e, 0, t.codes, () => tl(e, () => {
 				u = !0;
 				try {
 					n();
@@ -4295,17 +4351,17 @@ function Zc(e, t, n, r) {
 		}
 	};
 }
-function Qc(e) {
+function al(e) {
 	return "data" in e;
 }
-function $c(e, t, n, r) {
+function ol(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function el(e, { data: t, width: n, stride: r }, i, a) {
+function sl(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
 // eigenfield-three/src/textures.ts
-var tl = class {
+var cl = class {
 	parts;
 	source;
 	surface;
@@ -4331,16 +4387,16 @@ var tl = class {
 		let { scene: i, info: a, meanSizes: o } = e, s = i.planes.flatMap(({ channels: e, bases: t }) => t.map((t) => ({
 			...t,
 			channels: e,
-			tenBits: Mi(t.pictures)
+			tenBits: qi(t.pictures)
 		})));
 		this.layout = s;
-		let c = fa(i).map(({ channels: e, mean: t }, n) => {
+		let c = Ea(i).map(({ channels: e, mean: t }, n) => {
 			let r = n === i.planes.length;
 			return {
 				size: o[n] ?? [1, 1],
 				channels: e,
 				pieces: t.pieces,
-				tenBits: Mi([t]),
+				tenBits: qi([t]),
 				opacity: r
 			};
 		});
@@ -4349,7 +4405,7 @@ var tl = class {
 			means: c,
 			bases: s,
 			rays: a.facesPlane,
-			geometry: nl(n.geometry)
+			geometry: ll(n.geometry)
 		}, this.means = c.map(() => new p()), this.bases = s.map(() => new p()), this.ready = s.map(({ count: e }) => Array(e).fill(!1)), this.stillVersions = c.map(() => 0);
 	}
 	get hasMeans() {
@@ -4363,7 +4419,7 @@ var tl = class {
 		return Math.min(t, ...e);
 	}
 	get bytes() {
-		return this.plan ? this.plan.bytes - this.needs.geometry + nl(this.surface.geometry) : 0;
+		return this.plan ? this.plan.bytes - this.needs.geometry + ll(this.surface.geometry) : 0;
 	}
 	get attached() {
 		return this.renderer !== null || this.disposed;
@@ -4393,7 +4449,7 @@ var tl = class {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		let n = Rc(e);
+		let n = Gc(e);
 		if (n.isContextLost()) return;
 		let { packer: r, plan: i } = this.makeRoom(n);
 		this.plan = i, this.packer = r, this.onPlan(i), await this.source.fill(this.filling(n, i, t)), t.aborted || this.onComplete();
@@ -4426,12 +4482,12 @@ var tl = class {
 			this.layout[t]
 		];
 		if (!(c instanceof WebGLTexture) || !l || !u) return;
-		let { size: d, grid: f, corner: p, channels: m, tenBits: h } = u, g = Pi(i, s && h), _ = {
-			size: X(d, o),
+		let { size: d, grid: f, corner: p, channels: m, tenBits: h } = u, g = Yi(i, s && h), _ = {
+			size: Y(d, o),
 			grid: f,
 			corner: p,
 			unit: g,
-			codes: 255 * Ni(i)
+			codes: 255 * Ji(i)
 		};
 		for (let e = n; e < Math.min(n + i.textures, a); e++) {
 			let t = r.slice((e - n) * i.pieces, (e - n + 1) * i.pieces), a = m * Math.floor(e / 4);
@@ -4443,20 +4499,20 @@ var tl = class {
 		this.version += 1;
 	}
 	putMean(e, t, n, { pieces: r, precision: i }) {
-		let [a, o] = [this.means[n]?.sourceTexture, fa(this.parts.scene)[n]], { size: s, tenBits: c } = this.needs.means[n] ?? {};
+		let [a, o] = [this.means[n]?.sourceTexture, Ea(this.parts.scene)[n]], { size: s, tenBits: c } = this.needs.means[n] ?? {};
 		if (!(a instanceof WebGLTexture) || !o || !s) return;
 		this.stillVersions[n] = this.version += 1;
-		let { mean: l, channels: u } = o, d = X(s, t.meanDown), [f] = r;
+		let { mean: l, channels: u } = o, d = Y(s, t.meanDown), [f] = r;
 		if (f && r.length === 1 && "close" in f.picture && !c && d.join() === s.join()) {
-			Hc(e, a, f.picture, u);
+			Yc(e, a, f.picture, u);
 			return;
 		}
 		let p = {
 			size: d,
 			grid: s,
 			corner: [0, 0],
-			unit: Pi(l, c === !0),
-			codes: 255 * Ni(l)
+			unit: Yi(l, c === !0),
+			codes: 255 * Ji(l)
 		};
 		this.put(r, a, u, p, (e) => ({
 			layer: Math.floor(e / 4),
@@ -4482,25 +4538,25 @@ var tl = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs;
-		this.needs.geometry = nl(this.surface.geometry);
+		this.needs.geometry = ll(this.surface.geometry);
 		let r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
-		for (let i = this.options.memory ?? po();; i /= 2) {
-			let a = xo(this.needs, zc(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => Vc(e, X(t, o), go(n), !1, {
+		for (let i = this.options.memory ?? Do();; i /= 2) {
+			let a = Fo(this.needs, Kc(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => Jc(e, Y(t, o), Ao(n), !1, {
 				components: n,
 				halves: r
 			})), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return Vc(e, a ? X(t, s) : [1, 1], a ? _o(a, n) : 1, u, {
+				return Jc(e, a ? Y(t, s) : [1, 1], a ? jo(a, n) : 1, u, {
 					components: Math.max(1, a),
 					halves: l && i
 				});
-			})], f = wo(this.needs, a, i), [p, m, h] = [
+			})], f = Ro(this.needs, a, i), [p, m, h] = [
 				f.picture,
 				f.codes,
 				f.smaller
-			].map((t) => t ? Uc(e, t.size, t.format) : null), g = Uc(e, To(r), ao);
+			].map((t) => t ? Xc(e, t.size, t.format) : null), g = Xc(e, zo(r), bo);
 			if (p && g && (m || !f.codes) && (h || !f.smaller) && !d.includes(null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = d[t] ?? null), {
-				packer: Zc(e, {
+				packer: il(e, {
 					picture: p,
 					codes: m ?? null,
 					precision: g,
@@ -4515,15 +4571,15 @@ var tl = class {
 				h,
 				g
 			]) e.deleteTexture(t ?? null);
-			if (!c) throw new M("unsupported", "The graphics memory is full; close other pages and try again.");
+			if (!c) throw new j("unsupported", "The graphics memory is full; close other pages and try again.");
 		}
 	}
 };
-function nl({ attributes: e, index: t }) {
+function ll({ attributes: e, index: t }) {
 	return Object.values(e).reduce((e, t) => e + t.array.byteLength, 0) + (t?.array.byteLength ?? 0);
 }
 // eigenfield-three/src/field.ts
-var rl = 1.5, il = .001, al = class extends f {
+var ul = 1.5, dl = .001, fl = class extends f {
 	parts;
 	source;
 	mesh;
@@ -4547,6 +4603,7 @@ var rl = 1.5, il = .001, al = class extends f {
 	textures;
 	weights;
 	group;
+	plain = !1;
 	moved;
 	summed = {
 		parts: [],
@@ -4559,7 +4616,7 @@ var rl = 1.5, il = .001, al = class extends f {
 	constructor(e, t, n = {}) {
 		super(), this.parts = e, this.source = t;
 		let { scene: r, info: i } = e, a = r.sheets?.faces ?? null;
-		this.surface = new Lc(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = za(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip && this.shape(e.clip.group, 0, e.clip.mesh, !1), this.textures = new tl(e, t, this.surface, n), this.complete = new Promise((e, t) => {
+		this.surface = new Wc(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = $a(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip && this.shape(e.clip.group, 0, e.clip.mesh, !1), this.textures = new cl(e, t, this.surface, n), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0), this.listen(), n.renderer && this.textures.attach(n.renderer);
 	}
@@ -4603,44 +4660,44 @@ var rl = 1.5, il = .001, al = class extends f {
 		this.textures.onPlan = (e) => {
 			let { scene: t } = this.parts;
 			this.freeComposers(), this.summed = {
-				parts: mc(t, this.textures, e),
-				opacity: gc(t, this.textures)
+				parts: _c(t, this.textures, e),
+				opacity: yc(t, this.textures)
 			}, e.limitation && queueMicrotask(() => this.dispatchEvent({ type: "limited" }));
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return rl * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
+		return ul * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
 	}
 	weightsOf(e) {
 		let { scene: t, info: n, weights: r } = this.parts;
-		return new rs(n, J(t).map(({ count: e }) => e), e, r);
+		return new _s(n, q(t).map(({ count: e }) => e), e, r);
 	}
 	makePlayer({ timeline: e, ring: t, sound: n }) {
-		return new bc(e, t, {
+		return new Dc(e, t, {
 			show: (e) => this.showFrame(e),
 			failed: (e) => this.dispatchEvent({
 				type: "error",
-				error: ue(e)
+				error: de(e)
 			})
 		}, n);
 	}
 	showFrame({ number: e, group: t, films: n }) {
-		this.group && this.shape(t, e - t.first, this.group.mesh, this.group.motion !== null), t !== this.group && this.enter(t), this.source instanceof Is && this.source.show(n);
+		this.group && this.shape(t, e - t.first, this.group.mesh, this.group.motion !== null), t !== this.group && this.enter(t), this.plain = n.includes(null), this.source instanceof Bs && this.source.show(n);
 	}
 	shape({ mesh: e, motion: t }, n, r, i) {
 		if (this.surface.geometry !== this.moved || e === r && !t && !i) return;
-		let a = e === r ? this.moved : wc(e), o = a.getAttribute("position");
+		let a = e === r ? this.moved : jc(e), o = a.getAttribute("position");
 		t ? t.place(n, o.array) : o.copyArray(e.positions), o.needsUpdate = !0, this.moved = a, this.surface.setGeometry(a);
 	}
 	enter(e) {
 		let { scene: t } = this.parts, { plan: n } = this.textures;
-		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), Qs(t, e), n && hc(this.summed.parts, t, this.textures, n);
+		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), nc(t, e), n && vc(this.summed.parts, t, this.textures, n);
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = cl(t, n), [i, a] = Ga(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
+		let r = hl(t, n), [i, a] = ao(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
 		this.setView(), this.setExposure(o, [i, a]);
-		let u = as[this.filter];
+		let u = ys[this.filter];
 		l.defines.BICUBIC !== u && (l.defines.BICUBIC = u, l.needsUpdate = !0), l.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
@@ -4649,7 +4706,7 @@ var rl = 1.5, il = .001, al = class extends f {
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
 		if (!s) {
 			let { parts: e, opacity: t } = this.summed;
-			s = new Yo(i, e, t, o, this.coarser > 1, this.surface, a), this.composers.set(o, s);
+			s = new ls(i, e, t, o, this.coarser > 1, this.surface, a), this.composers.set(o, s);
 		}
 		s.compose(e, t, n);
 		let { composed: c, finest: l } = this.surface.material.uniforms;
@@ -4660,15 +4717,15 @@ var rl = 1.5, il = .001, al = class extends f {
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.surface.material.uniforms.shown.value, r = n === os.eigen ? this.shownEigen : null;
+		let n = this.surface.material.uniforms.shown.value, r = n === bs.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			opacity: this.textures.opacityVersion,
 			only: r,
-			count: n === os.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === bs.mean || this.plain ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && Uo(this.info.viewPlane, t),
+			eye: t && rs(this.info.viewPlane, t),
 			places: t || this.coarser > 1 ? this.surface.version : 0,
 			maps: t && this.weights.maps(this.mixing, this.usable)
 		};
@@ -4676,7 +4733,7 @@ var rl = 1.5, il = .001, al = class extends f {
 	setExposure(e, t) {
 		let { cameras: n, heldOut: r, mixedColours: i, viewPlane: a } = this.info, o = this.exposure ?? (i || this.showsErrors ? e : null), s = o === null ? void 0 : n[o], c = [[s, 1]];
 		if (i && (o === null || r[o])) {
-			let e = s ? Ga(a, s.centre) : t, { camera: n, weight: r } = this.parts.weights.at(...e, this.mixing);
+			let e = s ? ao(a, s.centre) : t, { camera: n, weight: r } = this.parts.weights.at(...e, this.mixing);
 			c = [
 				0,
 				1,
@@ -4684,7 +4741,7 @@ var rl = 1.5, il = .001, al = class extends f {
 				3
 			].map((e) => [this.encoded[n[e] ?? 0], r[e] ?? 0]);
 		}
-		let { scale: l, bias: u } = no(c), { exposureScale: d, exposureBias: f } = this.surface.material.uniforms;
+		let { scale: l, bias: u } = _o(c), { exposureScale: d, exposureBias: f } = this.surface.material.uniforms;
 		d.value.fromArray(l), f.value.fromArray(u);
 	}
 	get showsErrors() {
@@ -4692,9 +4749,9 @@ var rl = 1.5, il = .001, al = class extends f {
 	}
 	setView() {
 		let { uniforms: e } = this.surface.material, t = this.showsErrors, n = this.view === "error" && !t ? "picture" : this.view, r = this.shownEigen;
-		e.shown.value = os[n === "eigen" && r >= this.loaded ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
+		e.shown.value = bs[n === "eigen" && (this.plain || r >= this.loaded) ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
 		let i = t && this.info.cameras[this.camera ?? 0];
-		i && this.photograph && ys(e, i, this.photograph);
+		i && this.photograph && Ns(e, i, this.photograph);
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -4707,29 +4764,29 @@ var rl = 1.5, il = .001, al = class extends f {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= il * Math.max(...r);
+		return Math.abs(i) <= dl * Math.max(...r);
 	}
 	fail(e) {
-		if (ll(e)) return;
-		let t = ue(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
+		if (gl(e)) return;
+		let t = de(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
 		this.dispatchEvent({
 			type: "error",
-			error: new M(t.code, r, t.where)
+			error: new j(t.code, r, t.where)
 		});
 	}
-}, ol = new x(), sl = new j();
-function cl(e, t) {
-	return sl.setFromMatrixPosition(e.matrixWorld).applyMatrix4(ol.copy(t.matrixWorld).invert()), [
-		sl.x,
-		sl.y,
-		sl.z
+}, pl = new x(), ml = new A();
+function hl(e, t) {
+	return ml.setFromMatrixPosition(e.matrixWorld).applyMatrix4(pl.copy(t.matrixWorld).invert()), [
+		ml.x,
+		ml.y,
+		ml.z
 	];
 }
-function ll(e) {
+function gl(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var ul = class {
+var _l = class {
 	received = 0;
 	onPush = () => void 0;
 	chunks = [];
@@ -4761,7 +4818,7 @@ var ul = class {
 	}
 	settle() {
 		let e = [];
-		for (let t of this.waiters) t.to <= this.received ? t.resolve(this.copy(t.from, t.to)) : this.broken ? t.reject(this.broken.reason) : this.ended ? t.reject(ce(this.received, t.to)) : e.push(t);
+		for (let t of this.waiters) t.to <= this.received ? t.resolve(this.copy(t.from, t.to)) : this.broken ? t.reject(this.broken.reason) : this.ended ? t.reject(le(this.received, t.to)) : e.push(t);
 		this.waiters = e;
 	}
 	copy(e, t) {
@@ -4774,7 +4831,7 @@ var ul = class {
 		return n.buffer;
 	}
 };
-async function dl(e, t, n) {
+async function vl(e, t, n) {
 	let r = e.getReader();
 	for (n.addEventListener("abort", () => void r.cancel().catch(() => void 0));;) {
 		let { done: e, value: n } = await r.read();
@@ -4784,7 +4841,7 @@ async function dl(e, t, n) {
 	n.throwIfAborted(), t.end();
 }
 // eigenfield-three/src/ranges.ts
-var fl = 2 ** 20, pl = 2 ** 25, ml = 3, hl = 500, gl = class {
+var yl = 2 ** 20, bl = 2 ** 25, xl = 3, Sl = 500, Cl = class {
 	source;
 	arrival;
 	length;
@@ -4798,20 +4855,20 @@ var fl = 2 ** 20, pl = 2 ** 25, ml = 3, hl = 500, gl = class {
 	}
 	async read(e, t) {
 		let { arrival: n } = this;
-		if (t <= n.received || !this.begun || !this.parted && e <= n.received + fl) {
+		if (t <= n.received || !this.begun || !this.parted && e <= n.received + yl) {
 			let r = await n.read(e, t).catch((e) => {
-				if (this.signal.aborted || !(this.parted || this.begun && vl(e))) throw e;
+				if (this.signal.aborted || !(this.parted || this.begun && Tl(e))) throw e;
 			});
 			if (this.begun || this.limit(), r) return r;
 		}
 		if (this.giveUp(), this.source instanceof Blob) return this.slice(this.source, e, t);
 		let r = this.source;
-		return _l(this.signal, () => this.whole?.read(e, t) ?? this.fetch(r, e, t), () => this.whole === null);
+		return wl(this.signal, () => this.whole?.read(e, t) ?? this.fetch(r, e, t), () => this.whole === null);
 	}
 	limit() {
 		let { arrival: e } = this;
 		this.begun = !0, e.onPush = () => {
-			e.received >= pl && e.received < this.length && this.giveUp();
+			e.received >= bl && e.received < this.length && this.giveUp();
 		}, e.onPush();
 	}
 	giveUp() {
@@ -4819,7 +4876,7 @@ var fl = 2 ** 20, pl = 2 ** 25, ml = 3, hl = 500, gl = class {
 	}
 	async slice(e, t, n) {
 		let r = await e.slice(t, n).arrayBuffer();
-		if (r.byteLength < n - t) throw ce(t + r.byteLength, n);
+		if (r.byteLength < n - t) throw le(t + r.byteLength, n);
 		return r;
 	}
 	async fetch(e, t, n) {
@@ -4838,26 +4895,26 @@ var fl = 2 ** 20, pl = 2 ** 25, ml = 3, hl = 500, gl = class {
 		return a;
 	}
 	receive(e) {
-		let t = this.whole = new ul();
-		return dl(e, t, this.signal).catch((e) => t.fail(this.signal.aborted ? e : this.broken(t.received, e))), t;
+		let t = this.whole = new _l();
+		return vl(e, t, this.signal).catch((e) => t.fail(this.signal.aborted ? e : this.broken(t.received, e))), t;
 	}
 	broken(e, t) {
-		return new M("network", `The connection broke at byte ${e} of ${this.length} of the clip; it is tried again when it plays on.`, String(e), { cause: t });
+		return new j("network", `The connection broke at byte ${e} of ${this.length} of the clip; it is tried again when it plays on.`, String(e), { cause: t });
 	}
 };
-async function _l(e, t, n = () => !0) {
+async function wl(e, t, n = () => !0) {
 	for (let r = 1;; r++) try {
 		return await t();
 	} catch (t) {
-		if (e.throwIfAborted(), r === ml || !vl(t) || !n()) throw t;
-		await new Promise((e) => setTimeout(e, hl * 2 ** (r - 1))), e.throwIfAborted();
+		if (e.throwIfAborted(), r === xl || !Tl(t) || !n()) throw t;
+		await new Promise((e) => setTimeout(e, Sl * 2 ** (r - 1))), e.throwIfAborted();
 	}
 }
-function vl(e) {
-	return e instanceof M && e.code === "network";
+function Tl(e) {
+	return e instanceof j && e.code === "network";
 }
 // eigenfield-three/src/beside.ts
-var yl = class {
+var El = class {
 	scene;
 	signal;
 	arriving = /* @__PURE__ */ new Map();
@@ -4865,7 +4922,7 @@ var yl = class {
 		this.scene = e, this.signal = t;
 	}
 	read(e, t, n) {
-		return _l(this.signal, async () => {
+		return wl(this.signal, async () => {
 			let r = this.arriving.get(e) ?? this.fetch(e, t);
 			try {
 				let i = await r.read(0, n);
@@ -4876,32 +4933,88 @@ var yl = class {
 		});
 	}
 	fetch(e, t) {
-		let n = new ul();
+		let n = new _l();
 		return this.arriving.set(e, n), this.receive(e, t, n).catch((t) => {
-			n.fail(this.signal.aborted || t instanceof M ? t : bl(e, t));
+			n.fail(this.signal.aborted || t instanceof j ? t : Dl(e, t));
 		}), n;
 	}
 	async receive(e, t, n) {
 		let r = new URL(e, new URL(this.scene, document.baseURI)), { ok: i, status: a, headers: o, body: s } = await fetch(r, { signal: this.signal }), c = o.get("Content-Encoding") ? null : o.get("Content-Length"), l = i && c !== null && Number(c) !== t;
-		if (i && s && !l) return dl(s, n, this.signal);
-		throw await s?.cancel(), l ? N(e, `${c} bytes of ${t}`) : bl(e, `The server answered ${a}`);
+		if (i && s && !l) return vl(s, n, this.signal);
+		throw await s?.cancel(), l ? M(e, `${c} bytes of ${t}`) : Dl(e, `The server answered ${a}`);
 	}
 };
-function bl(e, t) {
-	return new M("network", `The clip's file ${e} cannot be fetched; put it beside the clip's own. It is tried again when it plays on.`, e, { cause: t });
+function Dl(e, t) {
+	return new j("network", `The clip's file ${e} cannot be fetched; put it beside the clip's own. It is tried again when it plays on.`, e, { cause: t });
 }
-// eigenfield-three/src/frame-ring.ts
-var xl = 8, Sl = 2 / 3, Cl = /* @__PURE__ */ new Set([
+// eigenfield-three/src/film-pictures.ts
+var Ol = {
+	mimeType: "video/AV1",
+	bits: 10
+};
+async function kl(e, t, n) {
+	let r = {
+		view: -1,
+		codec: Ol,
+		textures: 1,
+		pieces: 1,
+		where: n
+	}, i = await ui(ve(e.slice().buffer, n), r, t), a = i[0].picture;
+	if ("data" in a) return a;
+	let o = new OffscreenCanvas(...t).getContext("2d");
+	return o.drawImage(a, 0, 0), Fs(i), Kt(o.getImageData(0, 0, ...t).data, 4 * t[0], 4, t);
+}
+var Al = class {
+	size;
+	where;
+	user;
+	decoding = /* @__PURE__ */ new Set();
+	turn = 0;
+	constructor(e, t, n) {
+		this.size = e, this.where = t, this.user = n;
+	}
+	open = 0;
+	get busy() {
+		return this.decoding.size > 0;
+	}
+	get ready() {
+		return this.decoding.size === 0;
+	}
+	start() {
+		return Promise.resolve();
+	}
+	decode(e, t, n) {
+		if (!n) return;
+		let { turn: r } = this, i = kl(e, this.size, this.where).then((e) => r === this.turn ? this.user.take(t, () => Promise.resolve(e)) : void 0).catch((e) => {
+			r === this.turn && this.user.failed(e);
+		}).finally(() => {
+			this.decoding.delete(i), this.user.closed();
+		});
+		this.decoding.add(i);
+	}
+	async flush() {
+		await Promise.all(this.decoding);
+	}
+	reset() {
+		this.turn += 1;
+	}
+	dispose() {
+		this.reset();
+	}
+}, jl = 8, Ml = 2, Nl = 2 / 3, Pl = /* @__PURE__ */ new Set([
 	"damaged",
 	"truncated",
 	"network"
-]), wl = class {
+]), Fl = class {
 	timeline;
 	groups;
 	user;
 	loop = !0;
 	late = 0;
+	previewsFrom = Infinity;
 	decoders;
+	keysAlone = null;
+	meansAlone = !1;
 	slots = /* @__PURE__ */ new Map();
 	skipped = /* @__PURE__ */ new Set();
 	rooms;
@@ -4911,51 +5024,68 @@ var xl = 8, Sl = 2 / 3, Cl = /* @__PURE__ */ new Set([
 	next = 0;
 	given = null;
 	fed = 0;
+	tried = /* @__PURE__ */ new Set();
 	broken = /* @__PURE__ */ new Set();
 	newest = -1;
 	turn = 0;
 	feeding = !1;
 	hopeless = !1;
 	constructor(e, t, n) {
-		this.timeline = e, this.groups = t, this.user = n, this.rooms = e.films.map(() => []), this.decoders = e.films.map(({ codec: e, size: t, where: n }, r) => e.decode(t, n, {
-			take: (e, t) => this.receive(r, e, t),
-			closed: () => this.feed(),
-			failed: (e) => this.fail(e),
-			lost: () => this.rest()
-		}));
+		this.timeline = e, this.groups = t, this.user = n, this.rooms = e.films.map(() => []), this.decoders = this.makeDecoders();
 	}
 	get open() {
 		return this.decoders.reduce((e, t) => e + t.open, 0);
 	}
 	get reach() {
-		return Math.max(this.newest, this.from) + xl / 2;
+		return Math.max(this.newestEnd, this.from) + jl / 2;
+	}
+	get busy() {
+		return this.decoders.some(({ busy: e }) => e);
+	}
+	get sparse() {
+		return this.keysAlone !== null;
+	}
+	get plain() {
+		return this.meansAlone;
+	}
+	follows(e) {
+		return !this.meansAlone && this.from <= e + 1;
+	}
+	leaveOut() {
+		this.meansAlone || this.keysAlone || this.timeline.films.every(({ detail: e }) => !e) || (this.meansAlone = !0, this.decoders.forEach((e, t) => this.needs(t) || e.reset()), this.user.ready(), this.feed());
 	}
 	isOver(e) {
-		return this.newest >= e && ![...this.slots.keys()].some((t) => t <= e);
+		return this.newestEnd >= e && ![...this.slots.keys()].some((t) => t <= e);
+	}
+	standIn(e) {
+		return this.keysAlone ? this.startOf(e) : e;
+	}
+	stepped(e, t) {
+		if (!this.keysAlone) return e + t;
+		let { groups: n, frames: r } = this.timeline, i = K(this.timeline, this.numberOf(e)) + t, a = Math.floor(i / n.length);
+		return e - this.numberOf(e) + a * r + n[i - a * n.length].first;
 	}
 	seek(e) {
-		let t = na(this.timeline, this.numberOf(e));
-		if (this.broken.has(t)) return !1;
-		let n = e - this.numberOf(e) + (this.timeline.groups[t]?.first ?? 0), r = this.slots.has(e) && ![...this.skipped].some((t) => t > e);
-		(this.given === null || this.next <= n || e < this.next && !r) && (this.stop(), this.next = n), this.wanted = this.from = e;
+		if (this.broken.has(K(this.timeline, this.numberOf(e)))) return !1;
+		let t = this.startOf(e), n = e >= this.from && this.slots.has(e) && ![...this.skipped].some((t) => t > e);
+		(this.meansAlone || this.given === null || this.next <= t || e < this.next && !n) && (this.meansAlone = !1, this.stop(), this.next = t), this.wanted = this.from = e;
 		for (let [t, n] of this.slots) t < e && this.forget(t, n);
 		return this.feed(), !0;
 	}
 	retry() {
-		this.hopeless = !1, this.next === Infinity && this.seek(this.from);
+		this.hopeless && this.keysAlone && (this.keysAlone = null, this.decoders = this.makeDecoders()), this.hopeless = !1, this.next === Infinity && this.seek(this.from);
 	}
 	take(e) {
-		this.next === Infinity && !this.hopeless && this.seek(this.from), this.wanted = e;
-		let t = [...this.slots.keys()].filter((t) => t <= e && !this.slots.get(t)?.films.includes(null)), n = Math.max(...t), r = this.slots.get(n);
+		this.next === Infinity && !this.hopeless && !this.seek(this.from) && this.pass(K(this.timeline, this.numberOf(this.from)), this.from), this.wanted = e;
+		let t = [...this.slots].filter(([t, { films: n }]) => t <= e && this.isWhole(n)), n = Math.max(...t.map(([e]) => e)), r = this.slots.get(n);
 		if (!r) return this.feed(), null;
-		for (let [e, t] of this.slots) e >= n || (this.late += 1, this.forget(e, t));
+		for (let [e, t] of this.slots) e >= n || (e >= this.from && (this.late += 1), this.forget(e, t));
 		this.slots.delete(n);
 		for (let e of this.skipped) e < n && this.skipped.delete(e);
-		return this.reuse(this.shown?.films ?? []), this.from = n + 1, this.shown = {
+		return this.reuse(this.shown?.films ?? []), this.from = Math.max(this.from, n + 1), this.shown = {
 			position: n,
 			number: this.numberOf(n),
-			group: r.group,
-			films: r.films
+			...r
 		}, this.feed(), this.shown;
 	}
 	feed() {
@@ -4975,9 +5105,36 @@ var xl = 8, Sl = 2 / 3, Cl = /* @__PURE__ */ new Set([
 	numberOf(e) {
 		return e % this.timeline.frames;
 	}
+	startOf(e) {
+		let t = this.numberOf(e);
+		return e - t + this.timeline.groups[K(this.timeline, t)].first;
+	}
+	get newestEnd() {
+		if (!this.keysAlone || this.newest < 0) return this.newest;
+		let e = this.timeline.groups[K(this.timeline, this.numberOf(this.newest))];
+		return this.startOf(this.newest) + e.frames - 1;
+	}
+	makeDecoders() {
+		return this.timeline.films.map(({ codec: e, size: t, where: n }, r) => e.decode(t, n, this.userOf(r)));
+	}
+	userOf(e) {
+		let { opacity: t } = this.timeline.films[e];
+		return {
+			take: (n, r) => this.receive(e, n, (e) => r(e, t)),
+			closed: () => this.feed(),
+			failed: (e) => this.fail(e),
+			lost: () => this.rest()
+		};
+	}
+	needs(e) {
+		return !this.meansAlone || !this.timeline.films[e].detail;
+	}
+	isWhole(e) {
+		return e.every((e, t) => e !== null || !this.needs(t));
+	}
 	get hasRoom() {
-		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = Math.max(this.from, this.wanted) + xl;
-		return this.next < Math.min(n, t) && this.decoders.every(({ ready: e }) => e);
+		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = this.keysAlone ? this.slots.size < Ml ? Infinity : 0 : Math.max(this.from, this.wanted) + jl;
+		return this.next < Math.min(n, t) && this.decoders.every(({ ready: e }, t) => e || !this.needs(t));
 	}
 	async feedAll() {
 		for (; this.hasRoom;) {
@@ -4985,14 +5142,19 @@ var xl = 8, Sl = 2 / 3, Cl = /* @__PURE__ */ new Set([
 				this,
 				this.next,
 				this.numberOf(this.next)
-			], r = na(this.timeline, n);
+			], r = K(this.timeline, n);
 			if (this.broken.has(r)) {
 				this.pass(r, t);
 				continue;
 			}
 			this.fed = r;
 			let i = this.given?.index === r ? this.given : await this.groups.open(r), a = n - i.first, o = i.units[a] ?? [];
-			if (a >= i.frames * Sl && this.prepare((r + 1) % this.timeline.groups.length), i.motion?.read(a), a === 0 && await Promise.all(this.decoders.map((e, t) => e.start(o[t]))), e !== this.turn || (this.given = i, this.next = t + 1, this.decoders.forEach((e, n) => e.decode(o[n], t, a === 0)), a === i.frames - 1 && await Promise.all(this.decoders.map((e) => e.flush())), e !== this.turn)) return;
+			a >= i.frames * Nl && this.prepare((r + 1) % this.timeline.groups.length), i.motion?.read(a);
+			let s = () => this.decoders.map((e, t) => [e, o[t]]).filter((e, t) => this.needs(t));
+			if (a === 0 && await Promise.all(s().map(([e, t]) => e.start(t))), e !== this.turn) return;
+			this.given = i, this.next = this.keysAlone ? t + i.frames : t + 1;
+			for (let [e, n] of s()) e.decode(n, t, a === 0);
+			if (a === i.frames - 1 && await Promise.all(this.decoders.map((e) => e.flush())), e !== this.turn) return;
 		}
 	}
 	prepare(e) {
@@ -5001,26 +5163,35 @@ var xl = 8, Sl = 2 / 3, Cl = /* @__PURE__ */ new Set([
 	async receive(e, t, n) {
 		let [{ turn: r }, i] = [this, this.slotOf(t)];
 		if (!i) return;
-		let a = await Os(n, this.rooms[e]?.pop() ?? null, this.timeline.films[e]?.opacity);
+		let a = await n(this.rooms[e]?.pop());
 		if (r !== this.turn || this.slots.get(t) !== i) return this.reuseOne(e, a);
-		i.films[e] = a, i.films.includes(null) || this.user.ready();
+		i.films[e] = a, this.isWhole(i.films) && this.user.ready();
 	}
 	slotOf(e) {
 		let t = this.slots.get(e);
 		if (t || this.skipped.has(e)) return t ?? null;
-		if (this.newest = Math.max(this.newest, e), e < this.from || !this.given) return null;
-		if (e < this.wanted && this.slots.size > 0) return this.late += 1, this.skipped.add(e), null;
-		let n = {
+		this.newest = Math.max(this.newest, e);
+		let n = e < this.from;
+		if (!this.given || n && performance.now() < this.previewsFrom) return null;
+		if (!n && e < this.wanted && this.slots.size > 0) return this.late += 1, this.skipped.add(e), null;
+		let r = {
 			group: this.given,
 			films: this.decoders.map(() => null)
 		};
-		return this.slots.set(e, n), n;
+		return this.slots.set(e, r), r;
 	}
 	fail(e) {
-		if (!(e instanceof M) || !Cl.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(e, null);
+		let t = e instanceof j && e.code === "codec" ? e : null;
+		if (t && !this.keysAlone) return this.thin(t);
+		if (!(e instanceof j) || !Pl.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(t ? this.keysAlone : e, null);
+		let n = e.code === "damaged" && this.given?.index === this.fed && !this.tried.has(this.fed), r = this.startOf(Math.max(this.next - 1, 0));
 		this.halt();
-		for (let [e, t] of this.slots) t.films.includes(null) && this.forget(e, t);
-		this.broken.add(this.fed), this.user.failed(e, this.fed), this.feed();
+		for (let [e, t] of this.slots) this.isWhole(t.films) || this.forget(e, t);
+		n ? (this.tried.add(this.fed), this.next = r) : (this.broken.add(this.fed), this.user.failed(e, this.fed)), this.feed();
+	}
+	thin(e) {
+		for (let e of this.decoders) e.dispose();
+		this.keysAlone = e, this.meansAlone = !1, this.decoders = this.timeline.films.map(({ size: e, where: t }, n) => new Al(e, t, this.userOf(n))), this.stop(), this.next = this.startOf(this.from), this.user.thinned(), this.feed();
 	}
 	rest() {
 		this.stop(), this.next = Infinity;
@@ -5046,7 +5217,7 @@ var xl = 8, Sl = 2 / 3, Cl = /* @__PURE__ */ new Set([
 	reuseOne(e, { room: t }) {
 		t && this.rooms[e]?.push(t);
 	}
-}, Tl = .3, El = .2, Dl = 2, Ol = class {
+}, Il = .3, Ll = .2, Rl = 2, zl = class {
 	place;
 	read;
 	changed;
@@ -5077,7 +5248,7 @@ var xl = 8, Sl = 2 / 3, Cl = /* @__PURE__ */ new Set([
 		let r = e - this.place.first;
 		if (r < 0 || r >= n.duration) return n.pause();
 		let i = r - n.currentTime;
-		Math.abs(i) > Tl * Math.max(t, 1) ? n.seeking || (n.currentTime = r) : n.playbackRate = t * (1 + Math.min(Math.max(Dl * i, -.2), El)), n.paused && !this.starting && this.start(n);
+		Math.abs(i) > Il * Math.max(t, 1) ? n.seeking || (n.currentTime = r) : n.playbackRate = t * (1 + Math.min(Math.max(Rl * i, -.2), Ll)), n.paused && !this.starting && this.start(n);
 	}
 	rest() {
 		this.audio?.pause();
@@ -5100,78 +5271,64 @@ var xl = 8, Sl = 2 / 3, Cl = /* @__PURE__ */ new Set([
 	fail() {
 		this.silent = !0, this.audio = null, this.changed();
 	}
-}, kl = {
-	mimeType: "video/AV1",
-	bits: 10
 };
-async function Al(e, t, n, r) {
-	let i = new Zs(e, t, n, r), a = await i.begin();
-	a.motion?.read(0), Qs(e, a);
-	let o = await Promise.all(t.films.map((e, t) => jl(a.units[0][t], e))), { sound: s } = t;
+// eigenfield-three/src/clip.ts
+async function Bl(e, t, n, r) {
+	let i = new tc(e, t, n, r), a = await i.begin();
+	a.motion?.read(0), nc(e, a);
+	let o = await Promise.all(t.films.map(({ size: e, where: t }, n) => kl(a.units[0][n], e, t))), { sound: s } = t;
 	return {
 		timeline: t,
 		group: a,
 		films: o,
 		mesh: n,
-		ring: (e) => new wl(t, i, e),
-		sound: s && ((e) => new Ol(s, () => r(s, s.length), e))
+		ring: (e) => new Fl(t, i, e),
+		sound: s && ((e) => new zl(s, () => r(s, s.length), e))
 	};
 }
-async function jl(e, { size: t, where: n }) {
-	let r = {
-		view: -1,
-		codec: kl,
-		textures: 1,
-		pieces: 1,
-		where: n
-	}, i = await Yr(_e(e.slice().buffer, n), r, t), a = i[0].picture;
-	if ("data" in a) return a;
-	let o = new OffscreenCanvas(...t).getContext("2d");
-	return o.drawImage(a, 0, 0), js(i), ks(o.getImageData(0, 0, ...t).data, 4 * t[0], 4, t);
-}
 // eigenfield-three/src/means.ts
-async function Ml(e, t) {
-	let { mean: n, meanSize: r } = e, i = e.precision && await Nl(await t(e.precision.view), e.precision);
+async function Vl(e, t) {
+	let { mean: n, meanSize: r } = e, i = e.precision && await Hl(await t(e.precision.view), e.precision);
 	return {
 		pieces: await n.codec.decode(await t(n.view), n, r),
 		precision: i
 	};
 }
-async function Nl(e, t) {
-	let { type: n } = Ir(e) ?? {}, { mimeType: r } = t.codec;
-	if (n && n !== r) throw N(t.where, `${n}, not ${r}`);
+async function Hl(e, t) {
+	let { type: n } = Zr(e) ?? {}, { mimeType: r } = t.codec;
+	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
-	if (!i) throw N(t.where, "no picture");
+	if (!i) throw M(t.where, "no picture");
 	return i.picture;
 }
-function Pl({ pieces: e, precision: t }) {
-	js(e), t?.close();
+function Ul({ pieces: e, precision: t }) {
+	Fs(e), t?.close();
 }
 // eigenfield-three/src/packed.ts
-var Fl = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Il = 4;
-async function Ll(e, t) {
-	let n = new G(e, ""), r = n.key("extensions").key(be), i = r.key("packed");
+var Wl = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Gl = 4;
+async function Kl(e, t) {
+	let n = new U(e, ""), r = n.key("extensions").key(Se), i = r.key("packed");
 	if (!i.exists) return e;
-	pa(r);
-	let a = mi(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < Il) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, Il)).getUint32(0, !0);
-	if (Il + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new G(Ks(await zl(await t(o.offset + Il, s), i.where), i.where), i.where).object(), u = Rl(new G(c, `${i.where}/lengths`), o, Il + s), { packed: d, ...f } = r.object();
+	Da(r);
+	let a = ki(n), o = a[i.integer(a.length - 1, a.length - 1)];
+	if (!o || o.length < Gl) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, Gl)).getUint32(0, !0);
+	if (Gl + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new U(Xs(await Jl(await t(o.offset + Gl, s), i.where), i.where), i.where).object(), u = ql(new U(c, `${i.where}/lengths`), o, Gl + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
-		bufferViews: [...n.key("bufferViews").items(Se).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
+		bufferViews: [...n.key("bufferViews").items(we).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
 		extensions: {
 			...n.key("extensions").object(),
-			[be]: {
+			[Se]: {
 				...f,
 				...l
 			}
 		}
 	};
 }
-function Rl(e, t, n) {
-	let r = n, i = e.items(Se).map((e) => {
+function ql(e, t, n) {
+	let r = n, i = e.items(we).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
 			buffer: 0,
@@ -5182,8 +5339,8 @@ function Rl(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function zl(e, t) {
-	let n = new TextEncoder().encode(Fl), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function Jl(e, t) {
+	let n = new TextEncoder().encode(Wl), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -5191,20 +5348,20 @@ async function zl(e, t) {
 		~r,
 		~i
 	]), a.set(n, 5), a.set(new Uint8Array(e), 5 + n.length);
-	let o = await ye(a, "deflate-raw", n.length + xe, t);
+	let o = await xe(a, "deflate-raw", n.length + Ce, t);
 	try {
 		return new TextDecoder("utf-8", {
 			fatal: !0,
 			ignoreBOM: !0
 		}).decode(o.subarray(n.length));
 	} catch {
-		throw N(t, "its JSON is not UTF-8");
+		throw M(t, "its JSON is not UTF-8");
 	}
 }
 // eigenfield-three/src/still-textures.ts
-var Bl = 3;
-function Vl(e) {
-	return J(e).flatMap((e, t) => {
+var Yl = 3;
+function Xl(e) {
+	return q(e).flatMap((e, t) => {
 		let n = 0;
 		return e.pictures.map((r) => {
 			let i = n;
@@ -5217,27 +5374,27 @@ function Vl(e) {
 		});
 	}).sort((e, t) => e.first - t.first || e.number - t.number);
 }
-function Hl(e, t, n) {
-	let r = Vl(e), i = n, a = ({ basis: e, picture: n }) => {
+function Zl(e, t, n) {
+	let r = Xl(e), i = n, a = ({ basis: e, picture: n }) => {
 		let r = t(n.view).then((t) => n.codec.decode(t, n, e.size));
 		return r.catch(() => void 0), r;
 	};
 	return {
 		async fill(n) {
-			let { plan: o, signal: s } = n, c = i ?? await Promise.all(fa(e).map((e) => Ml(e, t)));
+			let { plan: o, signal: s } = n, c = i ?? await Promise.all(Ea(e).map((e) => Vl(e, t)));
 			i = null, c.forEach((e, t) => {
-				n.putMean(t, e), Pl(e);
+				n.putMean(t, e), Ul(e);
 			});
 			let l = r.filter(({ first: e }) => e < o.usable), u = [], d = 0;
 			try {
 				for (let { number: e, first: t, picture: r } of l) {
 					if (s.aborted) return;
-					for (let e of l.slice(d, d + Bl - u.length)) u.push(a(e)), d += 1;
+					for (let e of l.slice(d, d + Yl - u.length)) u.push(a(e)), d += 1;
 					let i = await u[0] ?? [];
-					u.shift(), n.putTextures(e, t, i, r), js(i), n.announce();
+					u.shift(), n.putTextures(e, t, i, r), Fs(i), n.announce();
 				}
 			} finally {
-				for (let e of u) e.then(js).catch(() => void 0);
+				for (let e of u) e.then(Fs).catch(() => void 0);
 			}
 			n.end();
 		},
@@ -5245,41 +5402,41 @@ function Hl(e, t, n) {
 			let r = 0;
 			for (let { channels: i, bases: a } of e.planes) {
 				let o = e.colours.slice(r, r += i), s = a.find(({ count: e }) => e > n);
-				if (s) return Ps(s, n, o, t);
+				if (s) return Rs(s, n, o, t);
 			}
 			return Promise.resolve(1);
 		},
 		dispose() {
-			i?.forEach(Pl), i = null;
+			i?.forEach(Ul), i = null;
 		}
 	};
 }
 // eigenfield-three/src/grid.ts
-function Ul(e) {
+function Ql(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = Wl(e, n, r) ?? (n === r ? null : Wl(e, r, n));
+		let r = t / n, i = $l(e, n, r) ?? (n === r ? null : $l(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function Wl(e, t, n) {
-	let [r, i] = [Kl(e, 0), Kl(e, 1)];
-	if (t === 1 && ql(i) > 0 || n === 1 && ql(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => Jl(i, e) - Jl(i, t));
+function $l(e, t, n) {
+	let [r, i] = [tu(e, 0), tu(e, 1)];
+	if (t === 1 && nu(i) > 0 || n === 1 && nu(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => ru(i, e) - ru(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Jl(r, e) - Jl(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => ru(r, e) - ru(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return Gl(n, t, (e, t) => Jl(r, o(t, e))) && Gl(t, n, (e, t) => Jl(i, o(e, t))) ? {
+	return eu(n, t, (e, t) => ru(r, o(t, e))) && eu(t, n, (e, t) => ru(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function Gl(e, t, n) {
+function eu(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -5289,33 +5446,33 @@ function Gl(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function Kl(e, t) {
+function tu(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function ql(e) {
+function nu(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var Jl = (e, t) => e[t] ?? 0, Yl = 1e-6, Xl = 32, Zl = class {
+var ru = (e, t) => e[t] ?? 0, iu = 1e-6, au = 32, ou = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = Ul(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = Ql(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(Ql(e), this.isLine ? 0 : Ql(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(su(e), this.isLine ? 0 : su(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => cu(e, t, this.places) : e === "bilinear" && this.grid ? uu(this.places, this.grid) : tu(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => _u(e, t, this.places) : e === "bilinear" && this.grid ? yu(this.places, this.grid) : uu(this.places, this.triangles);
 	}
 };
-function Ql(e) {
+function su(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function $l(e) {
+function cu(e) {
 	let t = {
 		camera: [
 			0,
@@ -5335,7 +5492,7 @@ function $l(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function eu(e, t, n, r, i, a) {
+function lu(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -5343,49 +5500,49 @@ function eu(e, t, n, r, i, a) {
 		m
 	];
 }
-function tu(e, t) {
+function uu(e, t) {
 	if (!t.length) {
-		let t = su(e, ou(e));
-		return (n, r) => au(n, r, e, t);
+		let t = gu(e, hu(e));
+		return (n, r) => mu(n, r, e, t);
 	}
-	let n = ru(e, t, 3), r = iu(t);
+	let n = fu(e, t, 3), r = pu(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * Xl + $(i)] ?? []) {
+		for (let r of n[$(a) * au + $(i)] ?? []) {
 			let [n, l, u] = [
-				nu(t, r, 0),
-				nu(t, r, 1),
-				nu(t, r, 2)
-			], d = eu(i, a, e, n, l, u), f = Math.min(...d);
+				du(t, r, 0),
+				du(t, r, 1),
+				du(t, r, 2)
+			], d = lu(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? au(i, a, e, r) : $l(c.map((e, n) => [nu(t, o, n), e]));
+		return s < -1e-9 ? mu(i, a, e, r) : cu(c.map((e, n) => [du(t, o, n), e]));
 	};
 }
-var nu = (e, t, n) => e[3 * t + n] ?? 0;
+var du = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * Xl)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * au)));
 }
-function ru(e, t, n) {
+function fu(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * Xl + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * au + t]?.push(i);
 	}
 	return r;
 }
-function iu(e) {
+function pu(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [nu(e, n, r), nu(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [du(e, n, r), du(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -5394,7 +5551,7 @@ function iu(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function au(e, t, n, r) {
+function mu(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -5409,12 +5566,12 @@ function au(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return $l([[o, 1 - c], [s, c]]);
+	return cu([[o, 1 - c], [s, c]]);
 }
-function ou(e) {
+function hu(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function su(e, t) {
+function gu(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -5435,7 +5592,7 @@ function su(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function cu(e, t, n) {
+function _u(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -5449,12 +5606,12 @@ function cu(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || lu(n, r, i, a) <= Yl) return au(e, t, n, su(n, [
+	if (a < 0 || vu(n, r, i, a) <= iu) return mu(e, t, n, gu(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = eu(e, t, n, r, i, a);
+	let [l, u, d] = lu(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -5470,15 +5627,15 @@ function cu(e, t, n) {
 		]
 	};
 }
-function lu(e, t, n, r) {
+function vu(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function uu(e, t) {
+function yu(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = su(e, ou(e));
-		return (n, r) => au(n, r, e, t);
+		let t = gu(e, hu(e));
+		return (n, r) => mu(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -5487,7 +5644,7 @@ function uu(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = ru(e, o.flat(), 4), c = [];
+	let s = fu(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -5495,12 +5652,12 @@ function uu(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * Xl + $(t)] ?? []) {
-			let s = o[a], c = s ? du(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * au + $(t)] ?? []) {
+			let s = o[a], c = s ? bu(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return au(t, n, e, l);
-		let [a, c] = fu(t, n, e, r);
+		if (!r || i < -1e-9) return mu(t, n, e, l);
+		let [a, c] = xu(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -5512,7 +5669,7 @@ function uu(e, t) {
 		};
 	};
 }
-function du(e, t, n, r) {
+function bu(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -5520,7 +5677,7 @@ function du(e, t, n, r) {
 	}
 	return i;
 }
-function fu(e, t, n, r) {
+function xu(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -5538,34 +5695,36 @@ function fu(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = pu(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [pu(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Su(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [Su(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function pu(e) {
+function Su(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var mu = class {
+var Cu = class {
 	parser;
 	options;
-	name = be;
+	name = Se;
 	scene = null;
+	views = [];
+	lacks = null;
 	ours;
 	constructor(e, t = {}) {
-		this.parser = e, this.options = t, this.ours = la(e.json);
+		this.parser = e, this.options = t, this.ours = Ca(e.json);
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
-		this.options.renderer && Rc(this.options.renderer);
+		this.options.renderer && Gc(this.options.renderer);
 		let { json: e } = this.parser;
-		pe(e), Object.assign(e, await Ll(e, (e, t) => this.read(e, t)));
-		let t = ua(e), { stream: n } = this.options, r = t.timeline?.groups[0]?.file ? n?.readFile : n?.readGroups;
-		(!t.timeline || r) && (this.scene = t, this.scene.shown || hu(e));
+		me(e), Object.assign(e, await Kl(e, (e, t) => this.read(e, t)));
+		let t = wa(e), { stream: n } = this.options, r = t.timeline?.groups[0]?.file ? n?.readFile : n?.readGroups;
+		(!t.timeline || r) && (this.views = t.views, t.timeline && t.shown && !await si("image/avif") ? this.lacks = new j("codec", "This browser decodes no AV1; use a newer browser. The first frame is shown.", "") : (this.scene = t, this.scene.shown || wu(e)));
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
 		let n = (await this.parser.getDependency("buffer", 0)).slice(e, e + t);
-		if (n.byteLength < t) throw le("/buffers/0");
+		if (n.byteLength < t) throw ue("/buffers/0");
 		return n;
 	}
 	loadMaterial(e) {
@@ -5575,45 +5734,45 @@ var mu = class {
 		return r.side = n === !0 ? 2 : 0, Promise.resolve(r);
 	}
 	loadBufferView(e) {
-		let t = this.scene?.views[e];
+		let t = this.views[e];
 		return t && this.options.stream ? this.options.stream.read(t.offset, t.length) : null;
 	}
 	async afterRoot(e) {
 		let { scene: t } = this;
-		if (!t) return;
-		let n = gu(e, this.parser), [r] = n;
-		if (!r) throw N("/meshes/0", "no node shows it");
-		t.shown && Sc(r.geometry, t.shown);
+		if (this.lacks && (e.userData.eigenfieldError = this.lacks), !t) return;
+		let n = Tu(e, this.parser), [r] = n;
+		if (!r) throw M("/meshes/0", "no node shows it");
+		t.shown && kc(r.geometry, t.shown);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
-			if (n.byteLength < (t.views[e]?.length ?? 0)) throw le(`/bufferViews/${e}`);
+			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ue(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await Cc(t.mesh, i), o = t.timeline && a && await this.openClip(t, t.timeline, a);
+		}, a = t.mesh && await Ac(t.mesh, i), o = t.timeline && a && await this.openClip(t, t.timeline, a);
 		if (a) {
-			let e = wc(a);
+			let e = jc(a);
 			r.geometry.dispose();
 			for (let t of n) t.geometry = e;
 		}
-		t.sheets && Hi(t.sheets, r.geometry);
+		t.sheets && ra(t.sheets, r.geometry);
 		let [s, c, l, u] = await Promise.all([
-			Promise.all(o ? [] : fa(t).map((e) => Ml(e, i))),
-			Da(t, i),
-			o ? o.group.omega : Fa(t, i),
-			Va(t, i)
-		]), d = c.filter((e, n) => !t.heldOut[n]), f = new Zl(Float64Array.from(d.flatMap((e) => Ga(t, e.centre))), u, t.extent[1] === 0), p = o ? fa(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
+			Promise.all(o ? [] : Ea(t).map((e) => Vl(e, i))),
+			Va(t, i),
+			o ? o.group.omega : Ya(t, i),
+			to(t, i)
+		]), d = c.filter((e, n) => !t.heldOut[n]), f = new ou(Float64Array.from(d.flatMap((e) => ao(t, e.centre))), u, t.extent[1] === 0), p = o ? Ea(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
 			scene: t,
-			info: Ua(t, c, p, f.grid, this.fileBytes(), Tc(r.geometry)),
+			info: ro(t, c, p, f.grid, this.fileBytes(), Mc(r.geometry)),
 			meshes: n,
 			meanSizes: p,
 			omega: l,
 			weights: f,
 			clip: o
-		}, h = o ? new Is(t, o.films) : Hl(t, i, s);
-		e.userData.eigenfield = new al(m, h, this.options);
+		}, h = o ? new Bs(t, o.films) : Zl(t, i, s);
+		e.userData.eigenfield = new fl(m, h, this.options);
 	}
 	openClip(e, t, n) {
 		let r = this.options.stream;
-		return Al(e, t, n, ({ offset: e, length: t, file: n }, i) => n === null ? r.readGroups(e, i) : r.readFile(n, t, i));
+		return Bl(e, t, n, ({ offset: e, length: t, file: n }, i) => n === null ? r.readGroups(e, i) : r.readFile(n, t, i));
 	}
 	fileBytes() {
 		let { groups: e = [], sound: t = null } = this.scene?.timeline ?? {}, n = [...e, ...t ? [t] : []].reduce((e, t) => e + (t.file ? t.length : 0), 0);
@@ -5622,51 +5781,53 @@ var mu = class {
 		return r.KHR_binary_glTF?.header?.length ?? i.buffers[0]?.byteLength ?? 0;
 	}
 };
-function hu(e) {
+function wu(e) {
 	let [t] = e.nodes;
 	t && (t.mesh = 0), e.meshes = [{ primitives: [{
 		attributes: {},
 		material: 0
 	}] }], e.materials = [{ doubleSided: !0 }];
 }
-function gu(e, t) {
+function Tu(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		_u(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		Eu(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function _u(e) {
+function Eu(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function vu(e, t = {}) {
+async function Du(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new ul(), [i, a] = [new AbortController(), new AbortController()], o = () => {
+	let r = new _l(), [i, a] = [new AbortController(), new AbortController()], o = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", o), i.signal.addEventListener("abort", () => a.abort());
-	let s = Su(e, r, a.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", o));
+	let s = ju(e, r, a.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", o));
 	try {
-		let o = await Us(r);
-		if (!la(o.json)) return {
-			gltf: await xu(r, o, s),
-			field: null
+		let o = await qs(r);
+		if (!Ca(o.json)) return {
+			gltf: await Au(r, o, s),
+			field: null,
+			error: null
 		};
-		let c = await yu(r, o, e instanceof ArrayBuffer ? r : ((e) => new gl(e, r, o.length, () => a.abort(), i.signal))(e), typeof e == "string" ? new yl(e, i.signal) : null, t);
+		let c = await Ou(r, o, e instanceof ArrayBuffer ? r : ((e) => new Cl(e, r, o.length, () => a.abort(), i.signal))(e), typeof e == "string" ? new El(e, i.signal) : null, t);
 		n?.throwIfAborted();
-		let l = c.userData.eigenfield;
+		let { eigenfield: l, eigenfieldError: u } = c.userData;
 		return {
 			gltf: c,
-			field: l instanceof al ? l : null
+			field: l instanceof fl ? l : null,
+			error: u instanceof j ? u : null
 		};
 	} catch (e) {
-		throw i.abort(), n?.throwIfAborted(), ue(e);
+		throw i.abort(), n?.throwIfAborted(), de(e);
 	}
 }
-async function yu(e, t, n, r, i) {
-	let a = new se(), o = (e, t = n) => async (n, r) => {
+async function Ou(e, t, n, r, i) {
+	let a = new ce(), o = (e, t = n) => async (n, r) => {
 		let i = await e + n;
 		return t.read(i, i + r);
 	}, s = t.binary();
@@ -5675,58 +5836,58 @@ async function yu(e, t, n, r, i) {
 		total: t.length,
 		read: o(s, e),
 		readGroups: (...e) => o(t.groups())(...e),
-		readFile: (...e) => r?.read(...e) ?? Promise.reject(bu(e[0]))
+		readFile: (...e) => r?.read(...e) ?? Promise.reject(ku(e[0]))
 	};
-	return a.register((e) => new mu(e, {
+	return a.register((e) => new Cu(e, {
 		...i,
 		stream: c
 	})), a.parseAsync(t.text, "");
 }
-function bu(e) {
-	return new M("unsupported", `The clip is a folder, and its file ${e} cannot be found from here; make one file of it, with \`eigenfield export\`.`, e);
+function ku(e) {
+	return new j("unsupported", `The clip is a folder, and its file ${e} cannot be found from here; make one file of it, with \`eigenfield export\`.`, e);
 }
-async function xu(e, t, n) {
+async function Au(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
-		let e = new se();
-		return e.register(fe), await e.parseAsync(r, "");
+		let e = new ce();
+		return e.register(pe), await e.parseAsync(r, "");
 	} catch (e) {
-		if (e instanceof M) throw e;
-		let t = ue(e).message;
-		throw new M("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
+		if (e instanceof j) throw e;
+		let t = de(e).message;
+		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function Su(e, t, n, r) {
+async function ju(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? Cu(e) : await wu(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? Mu(e) : await Nu(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : Tu(t.received, e);
+			throw n.aborted ? e : Pu(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function Cu(e) {
+function Mu(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function wu(e, t) {
+async function Nu(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
-		throw t.aborted ? n : new M("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
+		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
-	if (!n.ok || !n.body) throw await n.body?.cancel(), new M("network", `The server answered ${n.status} for the scene; check its address.`, e);
+	if (!n.ok || !n.body) throw await n.body?.cancel(), new j("network", `The server answered ${n.status} for the scene; check its address.`, e);
 	let r = n.headers.get("Content-Encoding") ? null : n.headers.get("Content-Length");
 	return {
 		body: n.body,
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function Tu(e, t) {
-	return new M("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
+function Pu(e, t) {
+	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { al as EigenField, mu as EigenfieldPlugin, bc as Player, Ac as SHEETS, M as SceneError, po as defaultMemory, vu as loadEigenfield, Ja as novelCamera, Qa as placeCamera, fe as refuseAddresses };
+export { fl as EigenField, Cu as EigenfieldPlugin, Dc as Player, Lc as SHEETS, j as SceneError, Do as defaultMemory, Du as loadEigenfield, co as novelCamera, po as placeCamera, pe as refuseAddresses };
