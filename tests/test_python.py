@@ -211,6 +211,7 @@ def test_a_scene_is_viewed_beside_its_photographs(nine, small, tmp_path, caplog)
         ef.view(scene, tmp_path / "others", browser=False)
 
 
+@pytest.mark.slow
 def test_cameras_are_found_as_the_command_line_finds_them(tmp_path, monkeypatch):
     monkeypatch.setattr("eigenfield.calibration.motion.features.FEATURE_MIN_MEDIAN_COUNT", 0)  # of small photographs
     photographed(tmp_path / "photos")

@@ -103,6 +103,7 @@ def test_a_batch_from_its_list_to_its_page(listed):
     assert failed["error"] in page
 
 
+@pytest.mark.slow
 def test_what_is_finished_is_taken_up_and_what_changed_is_made_again(listed, capture):
     first = ef.batch(listed, progress=None)
     places = {path: path.stat().st_mtime_ns for path in first.folder.glob("scenes/*/*.glb")}

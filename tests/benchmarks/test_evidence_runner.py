@@ -33,6 +33,7 @@ def step(tmp_path, capture, work, run=None, said=None):
     return runner._step("paper", tmp_path / "steps", run, capture, work, (said if said is not None else []).append)
 
 
+@pytest.mark.slow
 def test_a_step_is_done_once(tmp_path, capture):
     done = []
     first = step(tmp_path, capture, lambda: done.append(1) or {"value": 1.23456789})

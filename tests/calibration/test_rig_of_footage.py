@@ -52,6 +52,7 @@ def takes(tmp_path_factory) -> Path:
     return root
 
 
+@pytest.mark.slow
 def test_cameras_are_found_once_and_used_for_another_take(takes, tmp_path):
     footage = open_path(takes / "first", clip=":")
     assert isinstance(footage, Footage)

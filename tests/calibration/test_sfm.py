@@ -85,6 +85,7 @@ def numbers(field: LightField) -> bytes:
 # what works
 
 
+@pytest.mark.slow
 def test_workers_find_the_same_features_and_matches(scene, kept, tmp_path, monkeypatch):
     monkeypatch.setattr("eigenfield.calibration.motion.on_workers.PHOTOGRAPHS_A_TASK", 2)
     monkeypatch.setattr("eigenfield.calibration.motion.on_workers.PAIRS_A_TASK", 4)
@@ -180,6 +181,7 @@ def test_a_known_lens_is_kept_and_its_distortion_understood(scene, tmp_path):
 # what people do wrong
 
 
+@pytest.mark.slow
 def test_photographs_that_do_not_belong_are_named_and_a_twin_stands_in_its_place(scene, tmp_path):
     photos, truth = scene
     blank = picture(tmp_path, "blank.png", np.full((HEIGHT, WIDTH, 3), 0.5))

@@ -8,6 +8,7 @@ from pathlib import Path
 import av
 import cv2
 import numpy as np
+import pytest
 
 from eigenfield.capture import open_any, open_photographs
 from eigenfield.capture.readers import video, walk
@@ -91,6 +92,7 @@ def test_what_is_no_walk(tmp_path, monkeypatch):
     refused("names-unknown", tmp_path / "p", format="walk")
 
 
+@pytest.mark.slow
 def test_inspect_and_calibrate(tmp_path, run):
     write_walk(tmp_path / "a.mp4")
     code, out, _ = run("inspect", tmp_path / "a.mp4", "--walk-frames", "12")

@@ -38,6 +38,7 @@ def error(data: bytes) -> float:
     return float(np.square(decode_10bit(data, False, "picture") - codes().astype(float)).mean())
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not HAS_AOM, reason="no ffmpeg program with libaom")
 def test_fewer_bytes_at_the_same_error():
     made = [encode_10bit(codes(), crf, 4) for crf in (24, 32, 40)]

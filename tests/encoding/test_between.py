@@ -34,6 +34,7 @@ def encoded(folder, **options):
     return ef.encode(open_capture(folder), proxy=folder / "proxy.ply", textures=6, **options)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fit", ["photographs", "none"])
 def test_the_estimate_is_below_the_true_figure_and_near_it(fit, folder):
     """The middle photograph is the one that is left out; the truth is a scene that is made without it."""

@@ -20,6 +20,7 @@ from support.scenes import row_grid
 from support.surfaces import relief
 
 
+@pytest.mark.slow
 def test_figures_are_measured_of_the_file_that_is_kept(fitted, monkeypatch):
     """They are measured once, and take no more bytes than the search leaves for them."""
     folder, output = fitted
@@ -51,6 +52,7 @@ def test_a_size_is_kept_to(fitted, tmp_path, run):
     assert validate(tmp_path / "small.glb") == []
 
 
+@pytest.mark.slow
 def test_a_psnr_is_reached_and_one_that_cannot_be_is_said_to_be_out_of_reach(fitted, caplog):
     folder, _ = fitted
     capture = open_capture(folder)

@@ -61,6 +61,7 @@ def test_one_camera_determines_no_depth():
     assert simplify_surface_rd(wavy(0.1), CAMERAS[:1], greys([stripes(CAMERAS[0])]), 1e-5) is None
 
 
+@pytest.mark.slow
 def test_photographs_again_at_another_time_keep_as_many_triangles():
     twice = repeated(greys([stripes(camera) for camera in CAMERAS]).pixels, 2)
     found = simplify_surface_rd(wavy(0.05), CAMERAS, twice, 1e-5)
@@ -125,6 +126,7 @@ def test_large_photographs_are_looked_at_smaller():
     assert view.grey.shape == (view.camera.height, view.camera.width) == view.inverse_depth.shape
 
 
+@pytest.mark.slow
 def test_a_surface_before_cameras_in_no_array_has_fewer_texels(tmp_path):
     given = unwrap_mesh(ball(radius=1.5, level=2))
     grid = nine_cameras()

@@ -99,6 +99,7 @@ def test_it_takes_its_part_of_the_bytes():
     assert sizes == sorted(sizes) and sizes[0] < 2_500 < sizes[-1]
 
 
+@pytest.mark.slow
 def test_good_takes_at_most_a_quarter():
     scene, sizes = with_fallback(coded_scene(), "good"), []
     for coded in (20_000, 100_000, 400_000):
@@ -198,6 +199,7 @@ def test_a_reference_camera_that_sees_nothing_is_no_error():
     assert len(found.faces) and picture.data
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("budget", BUDGETS)
 def test_a_file_that_is_written_again_keeps_it(tmp_path, budget):
     scene = coded_scene()

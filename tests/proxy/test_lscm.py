@@ -198,6 +198,7 @@ def test_a_wide_background_does_not_take_the_atlas():
     assert np.isclose(scales[0] / scales[1], 6, rtol=0.02)  # as far behind: texels are spread as pixels are
 
 
+@pytest.mark.slow
 @settings(max_examples=2)
 @given(seed=st.integers(0, 100))
 def test_rough_surfaces_get_an_atlas_without_overlap(seed):

@@ -59,6 +59,7 @@ def test_finished_sheets_are_taken_up(photos, made):
     assert np.array_equal(again.lattice.matrix, first.proxy.lattice.matrix)
 
 
+@pytest.mark.slow
 def test_auto_says_which_surface_draws_views_left_out_better(photos, made, caplog):
     work, _ = made
     with caplog.at_level(logging.INFO):

@@ -53,6 +53,7 @@ def picture(index, rng):
     return multiview.WorkingPicture(camera, np.roll(pixels, 0, 1), None, None)
 
 
+@pytest.mark.slow
 def test_workers_make_the_same_depth_maps(tmp_path):
     rng = np.random.default_rng(0)
     wide = rng.integers(0, 255, (36, 80, 3)).astype(np.uint8)

@@ -44,6 +44,7 @@ def test_the_second_process_compiles_nothing(counts, tmp_path):
     assert not (tmp_path / "__pycache__").exists()  # nothing beside the source, which may be read-only
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="XDG_CACHE_HOME names the cache on Linux")
 def test_a_copy_of_the_source_has_its_kernels_and_a_change_has_none(counts, tmp_path):
     assert counts(tmp_path / "cache") == (0, 1)
