@@ -21,6 +21,7 @@ from eigenfield.proxy import atlas_fault, read_mesh
 from eigenfield.reconstruction.array import looks_one_way
 from eigenfield.reconstruction.whole import reconstruct
 from support.captures import write_array
+from support.motion import photographed
 
 
 @pytest.fixture(scope="module")
@@ -62,6 +63,18 @@ def test_refined_cameras_are_kept_for_other_tools(photos, made):
         read = open_capture(photos, calibration=result.calibration / name)
         for before, after in zip(result.light_field.cameras, read.cameras, strict=True):
             np.testing.assert_allclose(after.matrix, before.matrix, atol=1e-6)
+
+
+@pytest.mark.slow
+def test_a_surface_from_all_sides_gets_an_atlas_unless_it_is_left_to_who_simplifies_it(tmp_path):
+    _, capture = photographed(tmp_path / "photos")
+    bare, whole = (
+        reconstruct(capture, surface="poisson", triangles=500, atlas=atlas, work=tmp_path / "work")
+        for atlas in (False, True)
+    )
+    assert bare.proxy.mesh.uv is None and bare.report.atlas is None and list(bare.seconds) == ["surface"]
+    assert atlas_fault(whole.proxy.mesh) is None and whole.seconds["surface"] == 0 < whole.seconds["proxy"]
+    assert len(whole.proxy.mesh.faces) == len(bare.proxy.mesh.faces)
 
 
 @pytest.mark.slow

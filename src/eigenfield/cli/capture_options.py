@@ -88,12 +88,14 @@ def reconstruct_capture(
     progress: Progress | None,
     quiet: bool,
     workers: Workers | None = None,
+    *,
+    atlas: bool = True,
 ) -> Reconstruction:
-    """Cameras and proxy of a capture, estimated where they are not given, with notes on what was found."""
+    """As `reconstruct`, with notes on what was found."""
     from eigenfield.encoding.cost import STEPS
     from eigenfield.reconstruction.whole import reconstruct
 
-    made = reconstruct(opened, surface, work=work, workers=workers, progress=progress)
+    made = reconstruct(opened, surface, atlas=atlas, work=work, workers=workers, progress=progress)
     note_all(made.light_field.problems[len(opened.problems) :], quiet)
     for stage, took in made.seconds.items():
         if not took:

@@ -247,7 +247,7 @@ def command(
                 if surface is None:
                     scene = encode(opened, proxy, options, work=kept, workers=for_maps, progress=progress)
                 else:
-                    result = reconstruct_capture(opened, surface, scratch, progress, quiet, reached)
+                    result = reconstruct_capture(opened, surface, scratch, progress, quiet, reached, atlas=projected)
                     log.info("%s", "\n".join(result.report.lines(result.light_field.names)))
                     scene = encode(
                         result.light_field, result.proxy, options, triangles=None, hold_out=result.hold_out,

@@ -104,7 +104,8 @@ def expected_cost(capture: Capture, options: EncodeOptions, surface: SurfaceOpti
     sizes, share = capture.sizes, threads**-THREADS_POWER
     pixels = float(sum(width * height for width, height in sizes))
 
-    estimation, textures = [] if surface is None else _estimation(capture, surface), _textures(options)
+    textures = _textures(options)
+    estimation = [] if surface is None else _estimation(capture, surface, atlas="maps" in textures)
     encoded = encoded_ratio(capture, options)
     few = encoded * len(sizes) < SUBSAMPLE_MIN_OBSERVATIONS
     around = AROUND if _looks_around(capture) else {}
@@ -134,13 +135,14 @@ def _looks_around(capture: Any) -> bool:
     return light_field is not None and not looks_one_way(light_field.cameras)
 
 
-def _estimation(capture: Any, settings: SurfaceOptions) -> list[str]:
-    """The names of the steps that make cameras and proxy."""
+def _estimation(capture: Any, settings: SurfaceOptions, atlas: bool) -> list[str]:
+    """The names of the steps that make cameras and proxy; `atlas`: as of `reconstruct`."""
     unknown = capture.light_field is None
     found = ["motion"] if unknown and capture.layout is None else []
     one_way = not _looks_around(capture)
     if settings.surface != "layers":
-        found += ["array", "relief"] if one_way and settings.surface != "poisson" else ["surface", "proxy"]
+        all_around = ["surface", "proxy"] if atlas else ["surface"]
+        found += ["array", "relief"] if one_way and settings.surface != "poisson" else all_around
     elif one_way:
         found += ["array"]
     may_have_layers = settings.layers != 1 and capture_fault(capture) is None

@@ -107,7 +107,8 @@ def estimate(
     else:
         raise OptionError("capture", f"{kind_in_words(given)} makes no proxy", remedy="give the proxy, or a folder")
     check_selection(opened, options)
-    reconstruction = reconstruct(opened, surface, work=folder, workers=workers, progress=progress)
+    atlas = options.resolved().fit == "none"  # a fit simplifies the surface first
+    reconstruction = reconstruct(opened, surface, atlas=atlas, work=folder, workers=workers, progress=progress)
     _warn(reconstruction.light_field.problems[len(opened.problems) :])
     return reconstruction
 

@@ -23,12 +23,13 @@ class ProxyReport:
     Attributes:
         coverage: (n,) fraction of each camera's pixels that the proxy covers.
         error: Of its simplification; None if it was not simplified (reliefs).
+        atlas: None where it has none.
     """
 
     triangles: int
     coverage: NDArray[np.float64]
     error: SurfaceError | None
-    atlas: AtlasStatistics
+    atlas: AtlasStatistics | None
 
     __repr__ = brief_repr
 
@@ -41,13 +42,10 @@ class ProxyReport:
         lines = [f"  {self.triangles} triangles, {coverage}"]
         if self.error is not None:
             lines.append(f"  simplified with an error of {self.error}")
-        return [*lines, f"  {self.atlas}"]
+        return lines if self.atlas is None else [*lines, f"  {self.atlas}"]
 
 
 def measure_proxy(mesh: Mesh, cameras: Sequence[Camera], error: SurfaceError | None) -> ProxyReport:
-    """The report of a mesh.
-
-    Args:
-        mesh: With an atlas.
-    """
-    return ProxyReport(len(mesh.faces), camera_coverage(mesh, cameras), error, atlas_statistics(mesh))
+    """The report of a mesh, with an atlas or without."""
+    atlas = None if mesh.uv is None else atlas_statistics(mesh)
+    return ProxyReport(len(mesh.faces), camera_coverage(mesh, cameras), error, atlas)

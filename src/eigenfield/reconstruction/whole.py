@@ -71,7 +71,8 @@ class Reconstruction:
 
     Attributes:
         light_field: The photographs with their cameras; `problems` lists those that were left out.
-        proxy: With an atlas, in the cameras' world.
+        proxy: In the cameras' world, with an atlas, unless `reconstruct` was to leave that of a surface from all sides
+            to who simplifies it.
         calibration: The folder with a transforms.json and a COLMAP model, if cameras were estimated or refined.
         seconds: Time of each stage, in order; 0 for stages of an earlier run.
         report: Quality measures of the proxy's mesh.
@@ -97,6 +98,7 @@ def reconstruct(
     capture: Capture,
     options: SurfaceOptions | None = None,
     *,
+    atlas: bool = True,
     work: Path | None = None,
     workers: Workers | None = None,
     progress: Progress | None = notebook_progress,
@@ -107,6 +109,7 @@ def reconstruct(
     Args:
         capture: Photographs, with or without cameras.
         options: What is asked for; None for the defaults.
+        atlas: Whether a surface from all sides gets an atlas.
         work: The folder of finished stages; None: nothing is stored.
         workers: Of `open_executor`: they find features, compare pairs, and make the depth maps of cameras all around.
             They see `work`.
@@ -145,7 +148,7 @@ def reconstruct(
         if settings.surface == "layers":
             proxy, error = layers_of_capture(run, source, asked_count(run, source)), None
         else:
-            mesh, error = _opaque_surface(run, source, without(light_field, unseen))
+            mesh, error = _opaque_surface(run, source, without(light_field, unseen), atlas)
             proxy = Proxy(mesh)
             count = better_count(run, source, mesh) if settings.surface == "auto" else None
             if count is not None:
@@ -175,13 +178,14 @@ def check_settings(capture: Capture, settings: SurfaceOptions) -> None:
         _is_array(seen, settings)  # raises
 
 
-def _opaque_surface(run: StageRunner, source: LayerSource, shown: LightField) -> tuple[Mesh, SurfaceError | None]:
-    """A relief, or a surface from all sides, with an atlas, made from the photographs `shown`."""
+def _opaque_surface(
+    run: StageRunner, source: LayerSource, shown: LightField, atlas: bool
+) -> tuple[Mesh, SurfaceError | None]:
+    """A relief, or a surface from all sides, made from the photographs `shown`; `atlas`: whether the latter has one."""
     if source.array is not None:
-        mesh, error = relief_of_array(run, source.capture, source.array), None
-    else:
-        mesh, error = _poisson(run, shown, source.points)
-    return _add_atlas(run, shown, mesh), error
+        return _add_atlas(run, shown, relief_of_array(run, source.capture, source.array)), None
+    mesh, error = _poisson(run, shown, source.points)
+    return _add_atlas(run, shown, mesh) if atlas else mesh, error
 
 
 def _estimate_cameras(
