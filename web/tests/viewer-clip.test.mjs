@@ -6,7 +6,7 @@ import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { eigenfield } from "./command.mjs";
 import { launch, openPage, scenePath } from "./harness.mjs";
-import { openViewer, picture, settled } from "./viewer-page.mjs";
+import { holdGamepad, openViewer, picture, settled } from "./viewer-page.mjs";
 
 const CLIP = "clip.glb";
 const FRAMES = 25;
@@ -173,12 +173,7 @@ test("a finger on the bar: the clip rests while it is dragged, shows where it is
 });
 
 test("a gamepad plays a clip: A, the cross and the triggers", async () => {
-  const init = () => {
-    const pad = { axes: [0, 0, 0, 0], buttons: Array.from({ length: 16 }, () => ({ pressed: false })) };
-    window.pad = pad;
-    navigator.getGamepads = () => [pad];
-  };
-  const { page, close } = await openViewer(browser, CLIP, { init });
+  const { page, close } = await openViewer(browser, CLIP, { init: holdGamepad });
   await opened(page);
   await page.evaluate(() => window.dispatchEvent(new Event("gamepadconnected")));
   const press = (button) =>

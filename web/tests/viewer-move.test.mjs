@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { launch } from "./harness.mjs";
-import { apart, near, openViewer, picture, set, settled, state } from "./viewer-page.mjs";
+import { apart, holdGamepad, near, openViewer, picture, set, settled, state } from "./viewer-page.mjs";
 
 let browser;
 before(async () => {
@@ -167,12 +167,7 @@ test("touch: one finger moves, two pinch", async () => {
 });
 
 test("a stick of a gamepad moves, and a resting one draws nothing", async () => {
-  const init = () => {
-    const pad = { axes: [0, 0, 0, 0], buttons: Array.from({ length: 16 }, () => ({ pressed: false })) };
-    window.pad = pad;
-    navigator.getGamepads = () => [pad];
-  };
-  const { page, close } = await openViewer(browser, "scene.glb", { init });
+  const { page, close } = await openViewer(browser, "scene.glb", { init: holdGamepad });
   const start = await state(page);
   await page.evaluate(() => {
     window.dispatchEvent(new Event("gamepadconnected"));

@@ -103,3 +103,10 @@ export async function drop(page, name, bytes = sceneBytes(name)) {
     [data, name],
   );
 }
+
+/** Before the page's own scripts: a gamepad, which is `window.pad`. */
+export function holdGamepad() {
+  const pad = { axes: [0, 0, 0, 0], buttons: Array.from({ length: 16 }, () => ({ pressed: false })) };
+  window.pad = pad;
+  navigator.getGamepads = () => [pad];
+}

@@ -54,11 +54,11 @@ function tableOf(frame: VideoFrame, opacity: boolean): typeof GROWN {
   return opacity ? CUT : STRETCHED;
 }
 
-/** The colours of a frame, four bytes a texel; null where there is no canvas. */
-function drawnOf(frame: VideoFrame, size: [number, number]): Uint8ClampedArray | null {
+/** The colours of a picture, four bytes a texel; null where there is no canvas. */
+export function drawnOf(picture: CanvasImageSource, size: [number, number]): Uint8ClampedArray | null {
   if (typeof OffscreenCanvas === "undefined" || !size[0]) return null;
   const context = new OffscreenCanvas(...size).getContext("2d", { willReadFrequently: true });
-  context?.drawImage(frame, 0, 0);
+  context?.drawImage(picture, 0, 0);
   return context?.getImageData(0, 0, ...size).data ?? null;
 }
 

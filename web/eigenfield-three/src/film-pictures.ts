@@ -1,7 +1,7 @@
 // The films of a clip where the browser decodes pictures of AV1 and no videos: the key picture of each group.
 
 import { asAvif } from "./av1-picture.js";
-import { grownCodes } from "./film-codes.js";
+import { drawnOf, grownCodes } from "./film-codes.js";
 import type { FilmSource, FilmUser } from "./film-decoder.js";
 import { decodeTenBits } from "./pictures-10bit.js";
 import { closePieces, type Codes } from "./pieces.js";
@@ -15,10 +15,9 @@ export async function keyPicture(unit: Uint8Array, size: [number, number], where
   const pieces = await decodeTenBits(asAvif(unit.slice().buffer, where), picture, size);
   const found = pieces[0]!.picture;
   if ("data" in found) return found;
-  const context = new OffscreenCanvas(...size).getContext("2d")!;
-  context.drawImage(found, 0, 0);
+  const drawn = drawnOf(found, size)!;
   closePieces(pieces);
-  return grownCodes(context.getImageData(0, 0, ...size).data, 4 * size[0], 4, size);
+  return grownCodes(drawn, 4 * size[0], 4, size);
 }
 
 /** Of each group the first unit becomes a frame, and no other. */

@@ -25,7 +25,7 @@ from eigenfield.encoding.fitted.start import open_residual_maps, principal_weigh
 from eigenfield.encoding.fitted.tied_weights import WeightEquations, weight_equations
 
 # From farther off, frames that are fitted to what changes alone would each fill it otherwise, and films code that
-OUTLINE_TEXELS = 1.0
+CLIP_OUTLINE_TEXELS = 1.0
 FIRST_ROUNDS = 2  # at least
 
 
@@ -138,7 +138,7 @@ def _fit_textures(
             with pixels.weighed(pixels.thinned, shared.variance) as some:
                 found |= equation_arrays(weight_equations(some, model, shared.variance), number)
             found[f"energy{number}"] = texture_gram(model.blocks[0], scales)
-        fill_unseen(model, scales, clip.footprints.surface, OUTLINE_TEXELS)
+        fill_unseen(model, scales, clip.footprints.surface, CLIP_OUTLINE_TEXELS)
         if last and clip.moving is not None:
             found[f"mean{number}-share"], found[f"textures{number}-share"] = scales.mean, scales.coarse
         found[f"mean{number}"], found[f"textures{number}"] = model.mean, model.blocks[0].textures

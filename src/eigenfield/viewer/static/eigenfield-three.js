@@ -194,11 +194,11 @@ async function xe(e, t, n, r) {
 	return s;
 }
 // eigenfield-three/src/limits.ts
-var Se = "EIGENFIELD_eigen_textures", Ce = 64 * 2 ** 20, we = 16384, Te = 16384, Ee = 1024, De = 2 ** 27, Oe = 4096, ke = 8 * 2 ** 30, F = 1e5, Ae = 65535, je = 2 ** 29, I = 1024, Me = 2 ** 25, Ne = 2 ** 26, Pe = 2 ** 27, Fe = 8192, Ie = 2 ** 24, Le = 2 ** 25, Re = 2 ** 20, ze = 2 ** 16, Be = 2 ** 30, Ve = 1024, He = 2 ** 22, Ue = 2 ** 28, We = 2 ** 31 - 1, Ge = 2 ** 28, Ke = 1e30, L = 65536, qe = 126, Je = 64, Ye = 0, Xe = 1, Ze = 2, Qe = 24, $e = 44, et = 21, tt = 26214, nt = 4, rt = Float64Array.from({ length: 4095 }, (e, t) => Math.round(L / (1 + Math.exp((2047 - t) / 256)))), it = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), at = Float64Array.from({ length: 127 }, (e, t) => Math.round(L / (t + 1.5)));
-function R(e) {
-	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + R(Math.floor(e / 4294967296));
+var Se = "EIGENFIELD_eigen_textures", Ce = 64 * 2 ** 20, F = 16384, we = 16384, Te = 1024, Ee = 2 ** 27, De = 4096, Oe = 8 * 2 ** 30, I = 1e5, ke = 65535, Ae = 2 ** 29, L = 1024, je = 2 ** 25, Me = 2 ** 26, Ne = 2 ** 27, Pe = 8192, Fe = 2 ** 24, Ie = 2 ** 25, Le = 2 ** 20, Re = 2 ** 16, ze = 2 ** 30, Be = 1024, Ve = 2 ** 22, He = 2 ** 28, Ue = 2 ** 31 - 1, We = 2 ** 28, Ge = 1e30, R = 65536, Ke = 126, qe = 64, Je = 0, Ye = 1, Xe = 2, Ze = 24, Qe = 44, $e = 21, et = 26214, tt = 4, nt = Float64Array.from({ length: 4095 }, (e, t) => Math.round(R / (1 + Math.exp((2047 - t) / 256)))), rt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), it = Float64Array.from({ length: 127 }, (e, t) => Math.round(R / (t + 1.5)));
+function z(e) {
+	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + z(Math.floor(e / 4294967296));
 }
-var ot = class {
+var at = class {
 	bytes;
 	low = 0;
 	high = 4294967295;
@@ -208,49 +208,49 @@ var ot = class {
 	seen;
 	weights;
 	constructor(e, t, n) {
-		this.bytes = e, this.probability = new Uint16Array(t * Je).fill(L / 2), this.seen = new Uint8Array(t * Je), this.weights = new Float64Array(n * Je * 3).fill(tt);
-		for (let e = 0; e < nt; e++) this.code = this.code * 256 + this.next();
+		this.bytes = e, this.probability = new Uint16Array(t * qe).fill(R / 2), this.seen = new Uint8Array(t * qe), this.weights = new Float64Array(n * qe * 3).fill(et);
+		for (let e = 0; e < tt; e++) this.code = this.code * 256 + this.next();
 	}
 	checkEnd(e) {
-		if (this.at > this.bytes.length + nt) throw ue(e);
+		if (this.at > this.bytes.length + tt) throw ue(e);
 	}
 	flag(e, t, n, r) {
 		return this.node(e, t, n, r, 0) === 1;
 	}
 	raw(e) {
 		let t = 0;
-		for (let n = 0; n < e; n++) t = t * 2 + this.split(L / 2);
+		for (let n = 0; n < e; n++) t = t * 2 + this.split(R / 2);
 		return t;
 	}
 	integer(e, t, n, r) {
 		let i = this.magnitude(e, t, n, r);
-		return i === 0 ? 0 : this.node(e, t, n, r, Xe) ? -i : i;
+		return i === 0 ? 0 : this.node(e, t, n, r, Ye) ? -i : i;
 	}
 	magnitude(e, t, n, r) {
-		if (!this.node(e, t, n, r, Ye)) return 0;
+		if (!this.node(e, t, n, r, Je)) return 0;
 		let i = 0;
-		for (; i < et && this.node(e, t, n, r, Ze + i);) i += 1;
+		for (; i < $e && this.node(e, t, n, r, Xe + i);) i += 1;
 		if (i < 2) return i + 1;
 		let a = 1;
 		for (let o = i - 2; o >= 0; o--) {
 			let s;
-			s = o === i - 2 ? this.node(e, t, n, r, Qe + i) : o === i - 3 ? this.node(e, t, n, r, $e + 2 * Math.min(i, 9) + (a & 1)) : this.split(L / 2), a = a * 2 + s;
+			s = o === i - 2 ? this.node(e, t, n, r, Ze + i) : o === i - 3 ? this.node(e, t, n, r, Qe + 2 * Math.min(i, 9) + (a & 1)) : this.split(R / 2), a = a * 2 + s;
 		}
 		return a + 1;
 	}
 	node(e, t, n, r, i) {
-		return this.bit(e * Je + i, t * Je + i, n * Je + i, (r * Je + i) * 3);
+		return this.bit(e * qe + i, t * qe + i, n * qe + i, (r * qe + i) * 3);
 	}
 	bit(e, t, n, r) {
-		let { probability: i, weights: a } = this, o = it[i[e] >> 4], s = it[i[t] >> 4], c = it[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / L), u = rt[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? L - u : -u;
+		let { probability: i, weights: a } = this, o = rt[i[e] >> 4], s = rt[i[t] >> 4], c = rt[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / R), u = nt[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? R - u : -u;
 		return a[r] += o * f >> 14, a[r + 1] += s * f >> 14, a[r + 2] += c * f >> 14, this.learn(e, d), this.learn(t, d), this.learn(n, d), d;
 	}
 	learn(e, t) {
 		let [n, r] = [this.probability[e], this.seen[e]];
-		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * at[r] / L), r < qe && (this.seen[e] = r + 1);
+		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * it[r] / R), r < Ke && (this.seen[e] = r + 1);
 	}
 	split(e) {
-		let t = this.low + Math.floor((this.high - this.low) * e / L), n = +(this.code <= t);
+		let t = this.low + Math.floor((this.high - this.low) * e / R), n = +(this.code <= t);
 		for (n ? this.high = t : this.low = t + 1; !((this.low ^ this.high) >>> 24);) this.low = this.low << 8 >>> 0, this.high = (this.high << 8 | 255) >>> 0, this.code = (this.code << 8 | this.next()) >>> 0;
 		return n;
 	}
@@ -258,26 +258,26 @@ var ot = class {
 		return this.bytes[this.at++] ?? 0;
 	}
 };
-function z(e, t, n, r = 1) {
+function B(e, t, n, r = 1) {
 	if (e.length < t) throw ue(n);
 	if (e[0] !== r) throw M(n, `coded numbers of version ${e[0]}`);
 	return new DataView(e.buffer, e.byteOffset, e.byteLength);
 }
-function st(e, t, n, r) {
+function ot(e, t, n, r) {
 	if (t > n || t > 16 * e.length + 1024) throw M(r, `${t} numbers announced`);
 }
 // eigenfield-three/src/table-decoder.ts
-var ct = 12, lt = 1, ut = 3, dt = 312, ft = ut * dt, pt = 938, mt = 24, ht = 16, gt = 1722, _t = 1726, vt = 4, yt = 5;
+var st = 12, ct = 1, lt = 3, ut = 312, dt = lt * ut, ft = 938, pt = 24, mt = 16, ht = 1722, gt = 1726, _t = 4, vt = 5;
+function yt(e) {
+	return new at(e, gt, 21);
+}
 function bt(e) {
-	return new ot(e, _t, 21);
+	return e.flag(dt, dt, dt, lt) ? 2 : e.flag(937, 937, 937, lt) ? ct : 0;
 }
 function xt(e) {
-	return e.flag(ft, ft, ft, ut) ? 2 : e.flag(937, 937, 937, ut) ? lt : 0;
+	return Math.min(z(e), 11);
 }
-function St(e) {
-	return Math.min(R(e), 11);
-}
-function Ct(e, t, n, r) {
+function St(e, t, n, r) {
 	let i = new Float64Array(n.length), a = n.length / t, o = (e, n, r) => n < 0 || r < 0 || r >= t ? 0 : e[n * t + r], s = 0;
 	for (let c = 0; c < a; c++) for (let a = 0; a < t; a++) {
 		let [l, u] = [o(i, c, a - 1), o(i, c - 1, a)], [d, f] = [o(i, c - 1, a - 1), o(i, c - 1, a + 1)], [p, m, h] = [
@@ -285,32 +285,32 @@ function Ct(e, t, n, r) {
 			0,
 			s
 		];
-		r === lt ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
-		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * dt, y = e.integer(v + St(m) * ct + St(g), v + 144 + St(m + h), v + 144 + 24 + _ * ct + St(g + Math.abs(l)), r);
+		r === ct ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
+		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * ut, y = e.integer(v + xt(m) * st + xt(g), v + 144 + xt(m + h), v + 144 + 24 + _ * st + xt(g + Math.abs(l)), r);
 		i[c * t + a] = p + y, s = Math.abs(y);
 	}
 	return i;
 }
-function wt(e, t, n, r) {
+function Ct(e, t, n, r) {
 	let i = new Float64Array(t * n), a = new Float64Array(n);
 	for (let o = 0; o < t; o++) {
 		let t = 0;
 		for (let s = 0; s < n; s++) {
-			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(R(a[s]), 23), d = Math.min(R(t), 23), f = e.integer(pt + l * mt + u, pt + (ht + l) * mt + d, 1706 + l, yt + l);
+			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(z(a[s]), 23), d = Math.min(z(t), 23), f = e.integer(ft + l * pt + u, ft + (mt + l) * pt + d, 1706 + l, vt + l);
 			i[o * n + s] = c + f, t = Math.abs(f), a[s] = Math.floor((a[s] + t + 1) / 2);
 		}
 	}
 	return i;
 }
-function Tt(e, t, n, r) {
+function wt(e, t, n, r) {
 	let i = new Float64Array(t).fill(-1), a = new Uint8Array(n), [o, s, c] = [
 		0,
 		1,
 		0
 	];
 	for (let l = 0; l < t; l++) {
-		if (s = +!!e.flag(gt + s, gt + s, 1724, vt), !s) continue;
-		let t = o + e.integer(1725, 1725, 1725, vt);
+		if (s = +!!e.flag(ht + s, ht + s, 1724, _t), !s) continue;
+		let t = o + e.integer(1725, 1725, 1725, _t);
 		if (!(t >= 0 && t < n) || a[t]) throw M(r, "a grid with a camera out of place");
 		a[t] = 1, i[l] = t, o = t + 1, c += 1;
 	}
@@ -318,20 +318,20 @@ function Tt(e, t, n, r) {
 	return i;
 }
 // eigenfield-three/src/camera-decoder.ts
-var Et = 130, Dt = 11, Ot = 1, kt = 2, At = 2, jt = 44 * F + 1024;
-async function Mt(e, t) {
-	if (e[0] !== At) throw M(t, `version ${e[0]}`);
-	let n = await xe(Uint8Array.from(e.subarray(1)), "deflate-raw", jt, t);
-	return Nt(Uint8Array.from([1, ...n]), t);
+var Tt = 130, V = 11, Et = 1, Dt = 2, Ot = 2, kt = 44 * I + 1024;
+async function At(e, t) {
+	if (e[0] !== Ot) throw M(t, `version ${e[0]}`);
+	let n = await xe(Uint8Array.from(e.subarray(1)), "deflate-raw", kt, t);
+	return jt(Uint8Array.from([1, ...n]), t);
 }
-function Nt(e, t) {
-	let n = z(e, Et, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Ot) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
+function jt(e, t) {
+	let n = B(e, Tt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Et) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
 	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw M(t, "cameras that cannot be");
 	if (i > 1e5 || a && o * s < i) throw M(t, `${i} cameras`);
-	st(e, Math.max(Dt * i, o * s), Dt * F, t);
-	let l = Et + (a ? 132 : 0);
-	z(e, l, t);
-	let u = (e, t) => a ? n.getFloat32(Et + 4 * (e * Dt + t), !0) : 0, d = bt(e.subarray(l)), f = a ? Tt(d, o * s, i, t) : null, p = wt(d, i, Dt, (r & kt) !== 0);
+	ot(e, Math.max(V * i, o * s), V * I, t);
+	let l = Tt + (a ? 132 : 0);
+	B(e, l, t);
+	let u = (e, t) => a ? n.getFloat32(Tt + 4 * (e * V + t), !0) : 0, d = yt(e.subarray(l)), f = a ? wt(d, o * s, i, t) : null, p = Ct(d, i, V, (r & Dt) !== 0);
 	d.checkEnd(t);
 	let m = {
 		intrinsics: new Float32Array(5 * i),
@@ -342,27 +342,27 @@ function Nt(e, t) {
 		0,
 		0,
 		...c.subarray(12)
-	], g = Ft(c[3], c[4], c[5], c[6]), _ = new Float64Array(Dt), v = 0;
+	], g = Nt(c[3], c[4], c[5], c[6]), _ = new Float64Array(V), v = 0;
 	for (let e = 0; e < (f ? f.length : i); e++) {
 		let t = f ? f[e] : e;
 		if (t < 0) continue;
 		let [n, r] = f ? [Math.floor(e / s), e % s] : [0, 0];
-		for (let e = 0; e < Dt; e++) {
+		for (let e = 0; e < V; e++) {
 			let t = c[e < 5 ? 0 : e < 8 ? 1 : 2], i = u(0, e) + u(1, e) * n + u(2, e) * r;
-			_[e] = p[v * Dt + e] * t + h[e] + i;
+			_[e] = p[v * V + e] * t + h[e] + i;
 		}
-		Pt(_, g, m, t), v += 1;
+		Mt(_, g, m, t), v += 1;
 	}
 	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw M(t, "cameras that are not finite");
 	return m;
 }
-function Pt(e, t, n, r) {
+function Mt(e, t, n, r) {
 	n.intrinsics.set(e.subarray(0, 5), 5 * r);
 	let [i, a, o] = [
 		e[5],
 		e[6],
 		e[7]
-	], s = i * i + a * a + o * o, c = 1 + s, l = Ft(2 * i / c, 2 * a / c, 2 * o / c, (1 - s) / c);
+	], s = i * i + a * a + o * o, c = 1 + s, l = Nt(2 * i / c, 2 * a / c, 2 * o / c, (1 - s) / c);
 	for (let i = 0; i < 3; i++) {
 		let a = 0;
 		for (let o = 0; o < 3; o++) {
@@ -373,7 +373,7 @@ function Pt(e, t, n, r) {
 		n.poses[12 * r + 4 * i + 3] = a;
 	}
 }
-function Ft(e, t, n, r) {
+function Nt(e, t, n, r) {
 	return [
 		[
 			1 - 2 * (t * t + n * n),
@@ -393,55 +393,55 @@ function Ft(e, t, n, r) {
 	].flat();
 }
 // eigenfield-three/src/film-codes.ts
-var It = /* @__PURE__ */ new Set([
+var Pt = /* @__PURE__ */ new Set([
 	"I420P10",
 	"I422P10",
 	"I444P10"
-]), Lt = /* @__PURE__ */ new Set([
+]), Ft = /* @__PURE__ */ new Set([
 	"I420",
 	"I420A",
 	"I422",
 	"I444",
 	"NV12"
-]), Rt = /* @__PURE__ */ new Set([
+]), It = /* @__PURE__ */ new Set([
 	"RGBA",
 	"RGBX",
 	"BGRA",
 	"BGRX"
-]), zt = 1, Bt = Uint16Array.from({ length: 256 }, (e, t) => Math.round(t * 1023 / 255)), Vt = Uint16Array.from({ length: 256 }, (e, t) => Bt[16 + Math.round(t * 219 / 255)]), Ht = Vt.map((e, t) => t === 0 ? 0 : t === 255 ? 1023 : e);
-async function Ut(e, t, n = !1) {
+]), Lt = 1, Rt = Uint16Array.from({ length: 256 }, (e, t) => Math.round(t * 1023 / 255)), zt = Uint16Array.from({ length: 256 }, (e, t) => Rt[16 + Math.round(t * 219 / 255)]), Bt = zt.map((e, t) => t === 0 ? 0 : t === 255 ? 1023 : e);
+async function Vt(e, t, n = !1) {
 	let r = e.format ?? "", { width: i, height: a } = e.visibleRect ?? {
 		width: 0,
 		height: 0
 	};
-	if (!It.has(r) && !Lt.has(r) && !Rt.has(r)) {
-		let t = Gt(e, [i, a]);
-		if (t) return Kt(t, 4 * i, 4, [i, a], Wt(e, n));
+	if (!Pt.has(r) && !Ft.has(r) && !It.has(r)) {
+		let t = Ut(e, [i, a]);
+		if (t) return Wt(t, 4 * i, 4, [i, a], Ht(e, n));
 		throw new j("unsupported", `This browser does not hand out its frames (${r || "no format"}).`, "");
 	}
 	let o = e.allocationSize(), s = t && t.length >= o ? t : new Uint8Array(o), [c] = await e.copyTo(s), { offset: l, stride: u } = c ?? {
 		offset: 0,
 		stride: 0
 	};
-	if (It.has(r)) return {
+	if (Pt.has(r)) return {
 		data: s.subarray(l),
 		width: i,
 		height: a,
 		stride: u,
 		room: s
 	};
-	let d = Rt.has(r), [f, p] = d ? [4, l + zt] : [1, l], m = d ? Wt(e, n) : Bt;
-	return Kt(s.subarray(p), u, f, [i, a], m);
+	let d = It.has(r), [f, p] = d ? [4, l + Lt] : [1, l], m = d ? Ht(e, n) : Rt;
+	return Wt(s.subarray(p), u, f, [i, a], m);
 }
-function Wt(e, t) {
-	return e.colorSpace?.fullRange === !1 ? t ? Ht : Vt : Bt;
+function Ht(e, t) {
+	return e.colorSpace?.fullRange === !1 ? t ? Bt : zt : Rt;
 }
-function Gt(e, t) {
+function Ut(e, t) {
 	if (typeof OffscreenCanvas > "u" || !t[0]) return null;
 	let n = new OffscreenCanvas(...t).getContext("2d", { willReadFrequently: !0 });
 	return n?.drawImage(e, 0, 0), n?.getImageData(0, 0, ...t).data ?? null;
 }
-function Kt(e, t, n, [r, i], a = Bt) {
+function Wt(e, t, n, [r, i], a = Rt) {
 	let o = new Uint16Array(r * i);
 	for (let s = 0; s < i; s++) for (let i = 0; i < r; i++) o[s * r + i] = a[e[s * t + n * i]];
 	return {
@@ -452,7 +452,7 @@ function Kt(e, t, n, [r, i], a = Bt) {
 		grown: !0
 	};
 }
-function qt({ data: e, stride: t }, { size: [n, r], at: i }) {
+function Gt({ data: e, stride: t }, { size: [n, r], at: i }) {
 	return i.map(([i, a]) => ({
 		data: e.subarray(a * t + 2 * i),
 		width: n,
@@ -461,7 +461,7 @@ function qt({ data: e, stride: t }, { size: [n, r], at: i }) {
 	}));
 }
 // eigenfield-three/src/film-decoder.ts
-var Jt = 4, Yt = ["prefer-software", "no-preference"], Xt = class {
+var Kt = 4, qt = ["prefer-software", "no-preference"], Jt = class {
 	size;
 	where;
 	user;
@@ -480,12 +480,12 @@ var Jt = 4, Yt = ["prefer-software", "no-preference"], Xt = class {
 		return this.onTheWay > 0;
 	}
 	get ready() {
-		return this.onTheWay < Jt || this.decoder?.state === "closed";
+		return this.onTheWay < Kt || this.decoder?.state === "closed";
 	}
 	async start(e) {
 		let { level: t, tier: n, width: r, height: i } = ye(e, this.where);
 		if (r !== this.size[0] || i !== this.size[1]) throw M(this.where, `frames of ${r} x ${i}`);
-		let a = `av01.0.${String(t).padStart(2, "0")}${n ? "H" : "M"}.10`, { turn: o } = this, s = this.config?.codec === a, c = s ? this.config : await Zt(a, this.size, this.where);
+		let a = `av01.0.${String(t).padStart(2, "0")}${n ? "H" : "M"}.10`, { turn: o } = this, s = this.config?.codec === a, c = s ? this.config : await Yt(a, this.size, this.where);
 		o === this.turn && c && (s && this.decoder?.state === "configured" || (this.config = c, this.decoder && this.decoder.state !== "closed" || (this.decoder = this.made()), this.decoder.configure(c)));
 	}
 	decode(e, t, n) {
@@ -509,7 +509,7 @@ var Jt = 4, Yt = ["prefer-software", "no-preference"], Xt = class {
 		let e = new VideoDecoder({
 			output: (e) => void this.receive(e),
 			error: (t) => {
-				this.decoder === e && (t.name === "QuotaExceededError" ? this.user.lost() : t.name === "NotSupportedError" ? this.fail(this.turn, Qt(this.where)) : this.fail(this.turn, M(this.where, t.message)));
+				this.decoder === e && (t.name === "QuotaExceededError" ? this.user.lost() : t.name === "NotSupportedError" ? this.fail(this.turn, Xt(this.where)) : this.fail(this.turn, M(this.where, t.message)));
 			}
 		});
 		return e;
@@ -518,7 +518,7 @@ var Jt = 4, Yt = ["prefer-software", "no-preference"], Xt = class {
 		let { turn: t } = this;
 		this.opened += 1;
 		try {
-			await this.user.take(e.timestamp, (...t) => Ut(e, ...t));
+			await this.user.take(e.timestamp, (...t) => Vt(e, ...t));
 		} catch (e) {
 			this.fail(t, e);
 		} finally {
@@ -529,8 +529,8 @@ var Jt = 4, Yt = ["prefer-software", "no-preference"], Xt = class {
 		e === this.turn && (this.reset(), this.user.failed(t));
 	}
 };
-async function Zt(e, [t, n], r) {
-	for (let r of typeof VideoDecoder > "u" ? [] : Yt) {
+async function Yt(e, [t, n], r) {
+	for (let r of typeof VideoDecoder > "u" ? [] : qt) {
 		let i = {
 			codec: e,
 			codedWidth: t,
@@ -540,13 +540,13 @@ async function Zt(e, [t, n], r) {
 		};
 		if ((await VideoDecoder.isConfigSupported(i).catch(() => null))?.supported) return i;
 	}
-	throw Qt(r);
+	throw Xt(r);
 }
-function Qt(e) {
+function Xt(e) {
 	return new j("codec", `This browser ${globalThis.isSecureContext ? "decodes no AV1 of 10 bits" : "plays clips from https and localhost only"}; ${globalThis.isSecureContext ? "use a newer browser" : "open the page from there"}. The first frame is shown.`, e);
 }
 // eigenfield-three/src/mesh-front.ts
-var $t = 0, en = 2 ** 24, tn = class {
+var Zt = 0, Qt = 2 ** 24, $t = class {
 	points;
 	start;
 	end;
@@ -584,8 +584,8 @@ var $t = 0, en = 2 ** 24, tn = class {
 	}
 	closeLeft(e) {
 		let [t, n] = [this.before[e], this.after[e]], r = this.start[t];
-		if (this.status[e] = this.status[t] = $t, this.status[n] === 1 && this.end[n] === r && n !== t) {
-			this.status[n] = $t, this.link(this.before[t], this.after[n]);
+		if (this.status[e] = this.status[t] = Zt, this.status[n] === 1 && this.end[n] === r && n !== t) {
+			this.status[n] = Zt, this.link(this.before[t], this.after[n]);
 			return;
 		}
 		let i = this.before[t], a = this.add(r, this.end[e], this.start[e]);
@@ -593,7 +593,7 @@ var $t = 0, en = 2 ** 24, tn = class {
 	}
 	closeRight(e) {
 		let [t, n] = [this.before[e], this.after[e]];
-		this.status[e] = this.status[n] = $t;
+		this.status[e] = this.status[n] = Zt;
 		let r = this.after[n], i = this.add(this.start[e], this.end[n], this.end[e]);
 		this.link(t, i), this.link(i, r);
 	}
@@ -603,9 +603,9 @@ var $t = 0, en = 2 ** 24, tn = class {
 			this.after[e],
 			this.into[t]
 		];
-		this.status[e] = $t;
+		this.status[e] = Zt;
 		let a = this.add(this.start[e], t, this.end[e]), o = this.add(t, this.end[e], this.start[e]);
-		i >= 0 && this.status[i] !== $t ? (this.link(a, this.after[i]), this.link(i, o)) : this.link(a, o), this.link(n, a), this.link(o, r), this.into[t] = a;
+		i >= 0 && this.status[i] !== Zt ? (this.link(a, this.after[i]), this.link(i, o)) : this.link(a, o), this.link(n, a), this.link(o, r), this.into[t] = a;
 	}
 	link(e, t) {
 		this.after[e] = t, this.before[t] = e;
@@ -613,7 +613,7 @@ var $t = 0, en = 2 ** 24, tn = class {
 	add(e, t, n) {
 		let { heap: r, key: i, points: a } = this, o = this.gates++;
 		this.start[o] = e, this.end[o] = t, this.opposite[o] = n, this.status[o] = 1, this.into[t] = o;
-		let s = (a[3 * e] + a[3 * t]) * en + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
+		let s = (a[3 * e] + a[3 * t]) * Qt + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
 		for (; c > 0;) {
 			let e = c - 1 >> 1;
 			if (i[e] <= s) break;
@@ -621,57 +621,57 @@ var $t = 0, en = 2 ** 24, tn = class {
 		}
 		return r[c] = o, i[c] = s, o;
 	}
-}, nn = 2 ** 20, rn = .8, an = 44, on = 385, sn = 897, cn = 1086, ln = 1095, [un, dn, fn, pn, mn] = [
+}, en = 2 ** 20, tn = .8, nn = 44, rn = 385, an = 897, on = 1086, sn = 1095, [cn, ln, un, dn, fn] = [
 	0,
 	1,
 	2,
 	3,
 	15
 ];
-function hn(e) {
-	return Math.floor(Math.min(Math.max(e, -nn), nn) + .5);
+function pn(e) {
+	return Math.floor(Math.min(Math.max(e, -en), en) + .5);
 }
-function gn(e, t, n) {
+function mn(e, t, n) {
 	let r = Math.max((1 << n) - 1, 1);
 	return (e[3 * t] & r ? 1 : 0) + (e[3 * t + 1] & r ? 2 : 0);
 }
-function _n(e, t, n, r, i) {
-	i.flat ? vn(e, t, n, r, i.fine) : yn(e, t, n, r);
+function hn(e, t, n, r, i) {
+	i.flat ? gn(e, t, n, r, i.fine) : _n(e, t, n, r);
 }
-function vn(e, t, n, r, i) {
+function gn(e, t, n, r, i) {
 	let { a, b: o, o: s, pair: c } = r, [l, u, d, f] = [
 		t[3 * a],
 		t[3 * a + 1],
 		t[3 * o],
 		t[3 * o + 1]
-	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? rn : -.8, _ = 1 << i >> 1, v = hn((l + d) * .5 + g * m) + _ >> i, y = hn((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(R(Math.floor((p * p + m * m) / b)), 23), S = Math.min(R(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, un), T = Math.min(R(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(on + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, dn);
+	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? tn : -.8, _ = 1 << i >> 1, v = pn((l + d) * .5 + g * m) + _ >> i, y = pn((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(z(Math.floor((p * p + m * m) / b)), 23), S = Math.min(z(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, cn), T = Math.min(z(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(rn + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, ln);
 	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + O << i, i === 0) return;
-	let k = gn(t, a, i) + 4 * gn(t, o, i);
-	if (e.flag(sn + k, 913 + gn(t, s, i), 917 + c, mn)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
+	let k = mn(t, a, i) + 4 * mn(t, o, i);
+	if (e.flag(an + k, 913 + mn(t, s, i), 917 + c, fn)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
 }
-function yn(e, t, n, { a: r, b: i, o: a }) {
+function _n(e, t, n, { a: r, b: i, o: a }) {
 	let o = 0;
 	for (let e = 0; e < 3; e++) o += (t[3 * i + e] - t[3 * r + e]) ** 2;
-	let s = Math.min(R(o), 43), c = 0;
+	let s = Math.min(z(o), 43), c = 0;
 	for (let o = 0; o < 3; o++) {
-		let l = hn(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, an + o * 24 + c, 116 + o * an + s, fn);
-		t[3 * n + o] = l + u, c = Math.min(R(Math.abs(u)), 23);
+		let l = pn(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, nn + o * 24 + c, 116 + o * nn + s, un);
+		t[3 * n + o] = l + u, c = Math.min(z(Math.abs(u)), 23);
 	}
 }
-function bn(e, t, n, r, i) {
+function vn(e, t, n, r, i) {
 	for (let a = 0; a < (i ? 2 : 3); a++) {
-		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -nn), nn) : 0, o = cn + a;
-		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, pn);
+		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -en), en) : 0, o = on + a;
+		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, dn);
 	}
 }
 // eigenfield-three/src/mesh-faces.ts
-var xn = 13, Sn = 11, Cn = 12, B = 169, wn = 8, Tn = ln, En = Tn + B + 104 + 26, Dn = En + B + 104 + xn, On = Dn + 64 + 64 + B, kn = On + B + 4 + 1, An = kn + 6, [jn, Mn, Nn, Pn, Fn] = [
+var yn = 13, bn = 11, xn = 12, H = 169, Sn = 8, Cn = sn, wn = Cn + H + 104 + 26, Tn = wn + H + 104 + yn, En = Tn + 64 + 64 + H, Dn = En + H + 4 + 1, On = Dn + 6, [kn, An, jn, Mn, Nn] = [
 	4,
 	5,
 	6,
 	7,
 	8
-], In = [
+], Pn = [
 	-1,
 	-.4,
 	0,
@@ -682,12 +682,12 @@ var xn = 13, Sn = 11, Cn = 12, B = 169, wn = 8, Tn = ln, En = Tn + B + 104 + 26,
 	2,
 	4
 ];
-function Ln(e, t, n, r, i) {
+function Fn(e, t, n, r, i) {
 	let a = new Int32Array(3 * t), o = {
 		points: a,
 		faces: new Int32Array(3 * n),
 		parents: new Int32Array(3 * t).fill(-1)
-	}, s = new Int32Array(t), c = new tn(a, n), [l, u] = [0, 0], d = (e, t, n) => {
+	}, s = new Int32Array(t), c = new $t(a, n), [l, u] = [0, 0], d = (e, t, n) => {
 		o.faces.set([
 			e,
 			t,
@@ -702,7 +702,7 @@ function Ln(e, t, n, r, i) {
 		if (l >= t) throw M(i, "more places than announced");
 		return l++;
 	}, p = () => {
-		let t = e.raw(R(l - 1));
+		let t = e.raw(z(l - 1));
 		if (t >= l) throw M(i, "a place that is not there yet");
 		return t;
 	}, m = () => {
@@ -711,44 +711,44 @@ function Ln(e, t, n, r, i) {
 			-1,
 			-1
 		];
-		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(kn + n, kn + 3 + n, kn + n, Fn)) t[n] = p();
+		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(Dn + n, Dn + 3 + n, Dn + n, Nn)) t[n] = p();
 		else {
 			let i = t[n] = f();
-			bn(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
+			vn(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
 		}
 		let [n, o, s] = t;
 		if (n === o || o === s || s === n) throw M(i, "a face of two corners");
 		d(n, o, s), c.seed(t);
-	}, h = (e, t, n, i) => c.status[t] === 2 ? Cn : c.status[t] !== 1 || n === i || t === e ? Sn : Rn(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
+	}, h = (e, t, n, i) => c.status[t] === 2 ? xn : c.status[t] !== 1 || n === i || t === e ? bn : In(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
 	for (; u < n;) {
 		let t = c.next();
 		if (t < 0) {
 			m();
 			continue;
 		}
-		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * xn + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = Tn + B + 104 + 2 * y + +(_ === v);
-		if (y < Sn && e.flag(Tn + x, Tn + B + y * wn + S, w, jn)) {
+		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * yn + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = Cn + H + 104 + 2 * y + +(_ === v);
+		if (y < bn && e.flag(Cn + x, Cn + H + y * Sn + S, w, kn)) {
 			d(l, n, _), c.closeLeft(t);
 			continue;
 		}
-		if (b < Sn && (v !== _ || y >= Sn) && e.flag(En + x, En + B + b * wn + C, En + B + 104 + b, Mn)) {
+		if (b < bn && (v !== _ || y >= bn) && e.flag(wn + x, wn + H + b * Sn + C, wn + H + 104 + b, An)) {
 			d(l, n, v), c.closeRight(t);
 			continue;
 		}
-		let T = +(y === Cn) + (b === Cn ? 2 : 0), E = gn(a, n, r.fine) + 4 * gn(a, l, r.fine), ee = Dn + 64 + S * wn + C;
-		if (e.flag(Dn + T * 16 + E, ee, Dn + 64 + 64 + x, Nn)) {
+		let T = +(y === xn) + (b === xn ? 2 : 0), E = mn(a, n, r.fine) + 4 * mn(a, l, r.fine), ee = Tn + 64 + S * Sn + C;
+		if (e.flag(Tn + T * 16 + E, ee, Tn + 64 + 64 + x, jn)) {
 			c.status[t] = 2;
 			continue;
 		}
 		let D;
-		if (e.flag(On + x, On + B + T, On + B + 4, Pn)) {
+		if (e.flag(En + x, En + H + T, En + H + 4, Mn)) {
 			D = f();
 			let i = c.opposite[t];
 			o.parents.set([
 				n,
 				l,
 				i
-			], 3 * D), _n(e, a, D, {
+			], 3 * D), hn(e, a, D, {
 				a: n,
 				b: l,
 				o: i,
@@ -760,7 +760,7 @@ function Ln(e, t, n, r, i) {
 	if (l !== t) throw M(i, "fewer places than announced");
 	return o;
 }
-function Rn(e, t, n, r, i, a) {
+function In(e, t, n, r, i, a) {
 	let o = (n, r) => a && r === 2 ? 0 : e[3 * n + r] - e[3 * t + r], [s, c, l] = [
 		o(n, 0),
 		o(n, 1),
@@ -783,21 +783,21 @@ function Rn(e, t, n, r, i, a) {
 		s * m - c * p
 	], S = Math.sqrt(g * g + _ * _ + v * v);
 	if (S === 0 || g * y + _ * b + v * x > 0) return 0;
-	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = In.findIndex((e) => C < e);
+	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = Pn.findIndex((e) => C < e);
 	return w < 0 ? 10 : w + 1;
 }
 // eigenfield-three/src/mesh-corners.ts
-var zn = 32, Bn = 4, [Vn, Hn, Un, Wn] = [
+var Ln = 32, Rn = 4, [zn, Bn, Vn, Hn] = [
 	0,
 	1,
 	2,
 	3
-], Gn = An, Kn = Gn + 64 + 12 + 16, V = Kn + Bn + 1, qn = V + 4, [Jn, Yn, Xn] = [
+], Un = On, Wn = Un + 64 + 12 + 16, U = Wn + Rn + 1, Gn = U + 4, [Kn, qn, Jn] = [
 	9,
 	10,
 	11
 ];
-function Zn(e, t) {
+function Yn(e, t) {
 	let n = new Int32Array(t + 1);
 	for (let t of e) n[t + 1] += 1;
 	for (let e = 0; e < t; e++) n[e + 1] += n[e];
@@ -807,7 +807,7 @@ function Zn(e, t) {
 		corners: i
 	};
 }
-function Qn(e, t, n, r, i, a, o) {
+function Xn(e, t, n, r, i, a, o) {
 	let s = t.faces.length / 3, c = Math.min(s, Math.floor(n / 3)), l = {
 		faces: new Int32Array(3 * s),
 		place: new Int32Array(n),
@@ -822,7 +822,7 @@ function Qn(e, t, n, r, i, a, o) {
 		0,
 		0,
 		0
-	], m = new Int32Array(Bn), h = /* @__PURE__ */ new Int32Array(8), [g, _, v] = [
+	], m = new Int32Array(Rn), h = /* @__PURE__ */ new Int32Array(8), [g, _, v] = [
 		0,
 		0,
 		-1
@@ -831,7 +831,7 @@ function Qn(e, t, n, r, i, a, o) {
 		return -1;
 	}, b = (e, n) => {
 		let [a, o] = [t.faces[3 * e + n], t.faces[3 * e + (n + 1) % 3]];
-		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + zn); t++) {
+		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + Ln); t++) {
 			let n = Math.floor(i[t] / 3);
 			if (n >= e) break;
 			if (y(n, o) >= 0) return n;
@@ -840,42 +840,42 @@ function Qn(e, t, n, r, i, a, o) {
 	}, x = (e, t) => l.faces[3 * e + y(e, t)], S = (n, r) => {
 		let i = t.faces[3 * n + r], a = u[i];
 		if (a < 0) return -1;
-		h.fill(Wn);
+		h.fill(Hn);
 		let s = 0;
 		for (let e of [r, (r + 2) % 3]) {
 			if (f[e] < 0) continue;
 			let t = x(f[e], i);
 			s === 1 && m[0] === t ? h[1] = p[e] : (m[s] = t, h[2 * s] = p[e], s += 1);
 		}
-		for (let e = 0; e < zn && s < Bn && a >= 0; e++) (s < 1 || a !== m[0]) && (s < 2 || a !== m[1]) && (m[s++] = a), a = d[a];
+		for (let e = 0; e < Ln && s < Rn && a >= 0; e++) (s < 1 || a !== m[0]) && (s < 2 || a !== m[1]) && (m[s++] = a), a = d[a];
 		let c = -1;
 		for (let t = 0; t < s && c < 0; t++) {
-			let [n, i] = [h[2 * t], h[2 * t + 1]], a = Gn + 76 + Math.min(s, 3) * 4 + n;
-			e.flag(Gn + t * 16 + n * 4 + i, Gn + 64 + t * 3 + r, a, Jn) && (c = m[t]);
+			let [n, i] = [h[2 * t], h[2 * t + 1]], a = Un + 76 + Math.min(s, 3) * 4 + n;
+			e.flag(Un + t * 16 + n * 4 + i, Un + 64 + t * 3 + r, a, Kn) && (c = m[t]);
 		}
 		if (c < 0) {
-			if (e.flag(Kn + s, Kn + s, Kn + Bn, Yn)) return -1;
-			if (c = e.raw(R(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
+			if (e.flag(Wn + s, Wn + s, Wn + Rn, qn)) return -1;
+			if (c = e.raw(z(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
 		}
-		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? Hn : Un);
+		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? Bn : Vn);
 		return c;
 	}, C = () => {
 		let t = _++;
-		if (!e.flag(V, V, V, Xn)) return l.kinds[t] = e.flag(V + 1, V + 1, V + 1, Xn) ? 2 : 0, t;
+		if (!e.flag(U, U, U, Jn)) return l.kinds[t] = e.flag(U + 1, U + 1, U + 1, Jn) ? 2 : 0, t;
 		l.kinds[t] = 1;
 		let n = v;
-		if (v = t, n >= 0 && e.flag(V + 2, V + 2, V + 2, Xn)) {
-			let n = e.raw(R(t - 1));
+		if (v = t, n >= 0 && e.flag(U + 2, U + 2, U + 2, Jn)) {
+			let n = e.raw(z(t - 1));
 			if (n >= t || l.kinds[n] !== 1) throw M(o, "a map that is not there");
 			return l.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
 		}
-		let r = n >= 0 && e.flag(V + 3, V + 3, V + 3, Xn);
+		let r = n >= 0 && e.flag(U + 3, U + 3, U + 3, Jn);
 		for (let i = 0; i < 4; i++) l.maps[6 * t + i] = r ? l.maps[6 * n + i] : e.raw(32);
 		for (let n = 4; n < 6; n++) l.maps[6 * t + n] = e.raw(a);
 		return t;
 	};
 	for (let e = 0; e < s; e++) {
-		for (let t = 0; t < 3; t++) f[t] = b(e, t), p[t] = Vn;
+		for (let t = 0; t < 3; t++) f[t] = b(e, t), p[t] = zn;
 		let r = -1, i = [];
 		for (let a = 0; a < 3; a++) {
 			let s = S(e, a);
@@ -895,7 +895,7 @@ function Qn(e, t, n, r, i, a, o) {
 	return l;
 }
 // eigenfield-three/src/mesh-values.ts
-var $n = 16, er = 6, tr = 13, nr = 14, rr = 20, ir = qn, ar = ir + 169 + 280 + 182, or = ar + 144 + 576 + 48, [sr, cr] = [12, 13], lr = [
+var Zn = 16, Qn = 6, $n = 13, er = 14, tr = 20, nr = Gn, rr = nr + 169 + 280 + 182, ir = rr + 144 + 576 + 48, [ar, or] = [12, 13], sr = [
 	.5,
 	1.5,
 	3,
@@ -903,14 +903,14 @@ var $n = 16, er = 6, tr = 13, nr = 14, rr = 20, ir = qn, ar = ir + 169 + 280 + 1
 	12,
 	30
 ];
-function ur(e, t) {
-	return hn(Number.isNaN(e) ? t : e);
+function cr(e, t) {
+	return pn(Number.isNaN(e) ? t : e);
 }
-function dr(e) {
-	let t = lr.filter((t) => Math.abs(e) >= t).length;
-	return e < 0 ? er - t : er + t;
+function lr(e) {
+	let t = sr.filter((t) => Math.abs(e) >= t).length;
+	return e < 0 ? Qn - t : Qn + t;
 }
-function fr(e, t, n, r) {
+function ur(e, t, n, r) {
 	let { points: i, faces: a, parents: o } = t, s = /* @__PURE__ */ new Float64Array(9), c = (e) => i[3 * e], l = (e) => i[3 * e + 1], u = (e) => i[3 * e + 2], d = (e, t) => {
 		let [n, r, i] = [
 			c(t) - c(e),
@@ -931,18 +931,18 @@ function fr(e, t, n, r) {
 			Infinity,
 			-Infinity
 		];
-		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + $n); e++) for (let i = 1; i < 3; i++) {
-			let o = pr(a, r[e], i);
+		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + Zn); e++) for (let i = 1; i < 3; i++) {
+			let o = dr(a, r[e], i);
 			if (o >= t) continue;
 			let s = d(t, o);
 			h += s * u(o), g += s, _ = Math.min(_, u(o)), v = Math.max(v, u(o));
-			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + $n); e++) for (let n = 1; n < 3; n++) {
-				let i = pr(a, r[e], n);
+			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + Zn); e++) for (let n = 1; n < 3; n++) {
+				let i = dr(a, r[e], n);
 				i < t && d(t, i);
 			}
 		}
 		let y = 13, b = t > 0 ? u(t - 1) : 0, x = b;
-		g > 0 && (y = Math.min(R(v - _), 12), b = h / g, x = Math.min(Math.max(mr(s), p), m));
+		g > 0 && (y = Math.min(z(v - _), 12), b = h / g, x = Math.min(Math.max(fr(s), p), m));
 		let S = b, [C, w, T] = [
 			o[3 * t],
 			o[3 * t + 1],
@@ -960,15 +960,15 @@ function fr(e, t, n, r) {
 				S = Math.min(Math.max(u(C) + t * (u(w) - u(C)) + c * (u(T) - u(C)), p), m);
 			}
 		}
-		let E = ur(x, b), [ee, D] = [dr(S - E), dr(b - E)], O = e.integer(ir + ee * tr + D, ir + 169 + y * rr + f, ir + 169 + 280 + ee * nr + y, sr), k = E + O;
-		i[3 * t + 2] = k, f = Math.min(R(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
+		let E = cr(x, b), [ee, D] = [lr(S - E), lr(b - E)], O = e.integer(nr + ee * $n + D, nr + 169 + y * tr + f, nr + 169 + 280 + ee * er + y, ar), k = E + O;
+		i[3 * t + 2] = k, f = Math.min(z(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
 	}
 }
-function pr(e, t, n) {
+function dr(e, t, n) {
 	let r = t % 3;
 	return e[t - r + (r + n) % 3];
 }
-function mr(e) {
+function fr(e) {
 	let [t, n, r] = [
 		e[0],
 		e[1],
@@ -988,7 +988,7 @@ function mr(e) {
 	];
 	return (s * u - c * d + l * f) / (t * u - n * d + r * f);
 }
-function hr(e, t, n, r, i) {
+function pr(e, t, n, r, i) {
 	let { faces: a, chart: o, kinds: s, place: c } = t, l = new Int32Array(2 * c.length), u = [0, 0], d = -1;
 	for (let t = 0; t < c.length; t++) {
 		let f = s[o[t]];
@@ -1000,25 +1000,25 @@ function hr(e, t, n, r, i) {
 			-1,
 			0
 		];
-		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + $n); e++) {
-			let [r, s] = [pr(a, i[e], 1), pr(a, i[e], 2)];
+		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + Zn); e++) {
+			let [r, s] = [dr(a, i[e], 1), dr(a, i[e], 2)];
 			if (r < t && o[r] === o[t] && (g = Math.max(g, r)), s < t && o[s] === o[t] && (g = Math.max(g, s)), r >= t || s >= t) continue;
-			let [u, d] = gr(n, c, l, t, r, s, f === 2);
+			let [u, d] = mr(n, c, l, t, r, s, f === 2);
 			if (!Number.isFinite(u) || !Number.isFinite(d)) continue;
 			p += u, m += d, h += 1;
 			let v = Math.abs(l[2 * r] - l[2 * s]) + Math.abs(l[2 * r + 1] - l[2 * s + 1]);
-			_ = Math.max(_, R(v));
+			_ = Math.max(_, z(v));
 		}
 		g < 0 && (g = d), d = t;
-		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = ar + 144;
+		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = rr + 144;
 		for (let n = 0; n < 2; n++) {
-			let r = e.integer(ar + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], cr + n);
-			l[2 * t + n] = ur(y[n], 0) + r, u[n] = Math.min(R(Math.abs(r)), 23);
+			let r = e.integer(rr + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], or + n);
+			l[2 * t + n] = cr(y[n], 0) + r, u[n] = Math.min(z(Math.abs(r)), 23);
 		}
 	}
 	return l;
 }
-function gr(e, t, n, r, i, a, o) {
+function mr(e, t, n, r, i, a, o) {
 	let [s, c, l] = [
 		0,
 		0,
@@ -1032,15 +1032,15 @@ function gr(e, t, n, r, i, a, o) {
 	return [n[2 * i] + f * u - m * d, n[2 * i + 1] + f * d + m * u];
 }
 // eigenfield-three/src/mesh-decoder.ts
-var _r = 144, vr = 2, yr = 3, br = 18, xr = 8;
-function Sr(e, t) {
-	return wr(e, t, 1);
+var hr = 144, gr = 2, _r = 3, vr = 18, yr = 8;
+function br(e, t) {
+	return Sr(e, t, 1);
 }
-function Cr(e, t) {
-	return wr(e, t, vr);
+function xr(e, t) {
+	return Sr(e, t, gr);
 }
-function wr(e, t, n) {
-	let r = z(e, _r, t, n), [i, a, o] = [
+function Sr(e, t, n) {
+	let r = B(e, hr, t, n), [i, a, o] = [
 		r.getUint8(1),
 		r.getUint8(2),
 		r.getUint8(3)
@@ -1049,24 +1049,24 @@ function wr(e, t, n) {
 		8,
 		12
 	].map((e) => r.getUint32(e, !0)), u = Float64Array.from({ length: 16 }, (e, t) => r.getFloat64(16 + 8 * t, !0));
-	if (s > Ne || l > Ne || c > Pe) throw M(t, `${l} vertices and ${c} faces`);
-	if (st(e, Math.max(s, c, l), Pe, t), i > 1 || o > xr * i || a < 1 || a > br || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
-	let d = new ot(e.subarray(_r), or, 16), f = Ln(d, s, c, {
+	if (s > Me || l > Me || c > Ne) throw M(t, `${l} vertices and ${c} faces`);
+	if (ot(e, Math.max(s, c, l), Ne, t), i > 1 || o > yr * i || a < 1 || a > vr || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
+	let d = new at(e.subarray(hr), ir, 16), f = Fn(d, s, c, {
 		flat: i === 1,
 		fine: o
 	}, t);
 	d.checkEnd(t);
-	let p = Zn(f.faces, s);
-	i && fr(d, f, p.first, p.corners);
-	let m = n === vr ? a + yr : 32, h = Qn(d, f, l, p.first, p.corners, m, t), g = Tr(f.points, u), _ = Zn(h.faces, l), v = hr(d, h, g, _.first, _.corners);
+	let p = Yn(f.faces, s);
+	i && ur(d, f, p.first, p.corners);
+	let m = n === gr ? a + _r : 32, h = Xn(d, f, l, p.first, p.corners, m, t), g = Cr(f.points, u), _ = Yn(h.faces, l), v = pr(d, h, g, _.first, _.corners);
 	d.checkEnd(t);
 	let y = new Float32Array(h.maps.buffer);
-	return Dr({
-		...Er(f, h, g, v, 2 ** a, (e) => n === vr ? h.maps[e] / 2 ** (a + 1) - 2 : y[e]),
+	return Tr({
+		...wr(f, h, g, v, 2 ** a, (e) => n === gr ? h.maps[e] / 2 ** (a + 1) - 2 : y[e]),
 		matrix: u
 	}, t);
 }
-function Tr(e, t) {
+function Cr(e, t) {
 	let n = new Float64Array(e.length);
 	for (let r = 0; r < e.length; r += 3) {
 		let i = (n) => t[4 * n] * e[r] + t[4 * n + 1] * e[r + 1] + t[4 * n + 2] * e[r + 2] + t[4 * n + 3], a = i(3);
@@ -1074,7 +1074,7 @@ function Tr(e, t) {
 	}
 	return n;
 }
-function Er(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) {
+function wr(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) {
 	let u = new Float32Array(3 * n.length), d = new Int32Array(3 * n.length), f = new Float32Array(2 * n.length), p = new Float32Array(a.buffer);
 	return n.forEach((t, n) => {
 		u.set(o.subarray(3 * t, 3 * t + 3), 3 * n), d.set(e.points.subarray(3 * t, 3 * t + 3), 3 * n);
@@ -1090,18 +1090,18 @@ function Er(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) 
 		places: d
 	};
 }
-function Dr(e, t) {
-	let n = (e) => Math.abs(e) <= Ke;
+function Tr(e, t) {
+	let n = (e) => Math.abs(e) <= Ge;
 	if (!e.positions.every(n) || !e.uv.every(n)) throw M(t, "positions or texture coordinates that are not finite");
 	return e;
 }
 // eigenfield-three/src/mesh-motion.ts
-var Or = 11, kr = 2 ** 20, Ar = 8, [jr, Mr] = [7, 8], Nr = 12, [Pr, Fr, Ir, Lr] = [
+var Er = 11, Dr = 2 ** 20, Or = 8, [kr, Ar] = [7, 8], jr = 12, [Mr, Nr, Pr, Fr] = [
 	0,
 	1,
 	2,
 	3
-], Rr = 576, zr = 720, Br = 1152, Vr = 1159, Hr = 3, Ur = 4, Wr = class {
+], Ir = 576, Lr = 720, Rr = 1152, zr = 1159, Br = 3, Vr = 4, Hr = class {
 	mesh;
 	where;
 	frames;
@@ -1114,15 +1114,15 @@ var Or = 11, kr = 2 ** 20, Ar = 8, [jr, Mr] = [7, 8], Nr = 12, [Pr, Fr, Ir, Lr] 
 	decoded = 0;
 	constructor(e, t, n) {
 		this.mesh = t, this.where = n;
-		let r = z(e, Or, n), i = t.places.length / 3, a = r.getUint32(5, !0);
+		let r = B(e, Er, n), i = t.places.length / 3, a = r.getUint32(5, !0);
 		this.frames = r.getUint16(9, !0);
-		let o = Or + this.frames;
+		let o = Er + this.frames;
 		if (r.getUint32(1, !0) !== i || a > i) throw M(n, `${a} vertices that move, of another mesh`);
-		if (this.frames < 1 || this.frames > 1024 || this.frames * a > Le) throw M(n, `${a} vertices that move in ${this.frames} frames`);
-		if (z(e, o, n), this.flags = e.slice(Or, o), this.flags.some((e) => e > jr + Mr)) throw M(n, "frames that cannot be");
-		if (st(e, this.flags.reduce((e, t) => e + (t & 1) + (t >> 1 & 1) + (t >> 2 & 1), 0) * a, 3 * Le, n), this.moving = new Int32Array(a), this.steps = new Int32Array(a && 3 * a * (2 + this.frames)), this.off = new Int32Array(3 * a), this.around = Jr(t.places, t.indices), !a) return;
-		this.decoder = new ot(e.subarray(o), Vr, Ur);
-		let s = qr(this.decoder, i, this.around);
+		if (this.frames < 1 || this.frames > 1024 || this.frames * a > Ie) throw M(n, `${a} vertices that move in ${this.frames} frames`);
+		if (B(e, o, n), this.flags = e.slice(Er, o), this.flags.some((e) => e > kr + Ar)) throw M(n, "frames that cannot be");
+		if (ot(e, this.flags.reduce((e, t) => e + (t & 1) + (t >> 1 & 1) + (t >> 2 & 1), 0) * a, 3 * Ie, n), this.moving = new Int32Array(a), this.steps = new Int32Array(a && 3 * a * (2 + this.frames)), this.off = new Int32Array(3 * a), this.around = Kr(t.places, t.indices), !a) return;
+		this.decoder = new at(e.subarray(o), zr, Vr);
+		let s = Gr(this.decoder, i, this.around);
 		if (s.reduce((e, t) => e + t, 0) !== a) throw M(n, "other vertices that move");
 		this.around = this.start(s);
 	}
@@ -1135,7 +1135,7 @@ var Or = 11, kr = 2 ** 20, Ar = 8, [jr, Mr] = [7, 8], Nr = 12, [Pr, Fr, Ir, Lr] 
 		let r = this.moving.length;
 		if (!r) return;
 		let i = this.steps.subarray(3 * r * (2 + e), 3 * r * (3 + e));
-		this.moving.forEach((e, r) => t.set(Gr(i, 3 * r, n), 3 * e));
+		this.moving.forEach((e, r) => t.set(Ur(i, 3 * r, n), 3 * e));
 	}
 	start(e) {
 		let { places: t, indices: n } = this.mesh, r = new Int32Array(e.length).fill(-1), i = 0;
@@ -1143,7 +1143,7 @@ var Or = 11, kr = 2 ** 20, Ar = 8, [jr, Mr] = [7, 8], Nr = 12, [Pr, Fr, Ir, Lr] 
 			e && (this.moving[i] = t, r[t] = i++);
 		});
 		let a = new Int32Array(3 * i);
-		return this.moving.forEach((e, n) => a.set(t.subarray(3 * e, 3 * e + 3), 3 * n)), this.steps.set(a), this.steps.set(a, a.length), Jr(a, Int32Array.from(n, (e) => r[e]));
+		return this.moving.forEach((e, n) => a.set(t.subarray(3 * e, 3 * e + 3), 3 * n)), this.steps.set(a), this.steps.set(a, a.length), Kr(a, Int32Array.from(n, (e) => r[e]));
 	}
 	readFrame(e, t) {
 		let { steps: n, around: r, off: i } = this, { near: a, starts: o, twins: s } = r, c = 3 * this.moving.length, [l, u, d, f] = [
@@ -1151,9 +1151,9 @@ var Or = 11, kr = 2 ** 20, Ar = 8, [jr, Mr] = [7, 8], Nr = 12, [Pr, Fr, Ir, Lr] 
 			c * (2 + t),
 			c * (1 + t),
 			c * t
-		], p = (l & Mr) !== 0, m = new Int32Array(c);
+		], p = (l & Ar) !== 0, m = new Int32Array(c);
 		for (let t = 0; t < this.moving.length; t++) {
-			let [r, c] = [o[t], o[t + 1]], h = c - r, g = s[t] ? Pr : h === 0 ? Lr : h === 1 ? Ir : Fr;
+			let [r, c] = [o[t], o[t + 1]], h = c - r, g = s[t] ? Mr : h === 0 ? Fr : h === 1 ? Pr : Nr;
 			for (let o = 0; o < 3; o++) {
 				let s = 3 * t + o;
 				if (!(l >> o & 1)) {
@@ -1171,18 +1171,18 @@ var Or = 11, kr = 2 ** 20, Ar = 8, [jr, Mr] = [7, 8], Nr = 12, [Pr, Fr, Ir, Lr] 
 					p && (r -= n[d + t] - n[f + t]), _ = Math.min(_, r), v = Math.max(v, r), y += r, b += Math.abs(m[t]);
 				}
 				let x = n[d + s];
-				p && (x += x - n[f + s]), h && (x += Math.floor((2 * y + h) / (2 * h))), x = Math.min(Math.max(x, -kr), kr);
-				let S = Kr(h && Math.floor(4 * b / h)), C = Kr(4 * Math.abs(i[s])), w = Kr(h && v - _);
-				m[s] = e.integer((g * Nr + S) * Nr + C, Rr + (o * 4 + g) * Nr + w, zr + (o * Nr + w) * Nr + S, o), n[u + s] = x + m[s];
+				p && (x += x - n[f + s]), h && (x += Math.floor((2 * y + h) / (2 * h))), x = Math.min(Math.max(x, -Dr), Dr);
+				let S = Wr(h && Math.floor(4 * b / h)), C = Wr(4 * Math.abs(i[s])), w = Wr(h && v - _);
+				m[s] = e.integer((g * jr + S) * jr + C, Ir + (o * 4 + g) * jr + w, Lr + (o * jr + w) * jr + S, o), n[u + s] = x + m[s];
 			}
 		}
 		this.off = m, e.checkEnd(this.where), this.check(u, c);
 	}
 	check(e, t) {
-		for (let n = e; n < e + t; n += 3) if (!Gr(this.steps, n, this.mesh.matrix).every((e) => Math.abs(e) <= 1e30)) throw M(this.where, "positions that are not finite");
+		for (let n = e; n < e + t; n += 3) if (!Ur(this.steps, n, this.mesh.matrix).every((e) => Math.abs(e) <= 1e30)) throw M(this.where, "positions that are not finite");
 	}
 };
-function Gr(e, t, n) {
+function Ur(e, t, n) {
 	let [r, i, a] = [
 		e[t],
 		e[t + 1],
@@ -1194,20 +1194,20 @@ function Gr(e, t, n) {
 		o(2) / s
 	];
 }
-function Kr(e) {
-	return Math.min(R(e), 11);
+function Wr(e) {
+	return Math.min(z(e), 11);
 }
-function qr(e, t, { near: n, starts: r }) {
+function Gr(e, t, { near: n, starts: r }) {
 	let i = new Uint8Array(t), a = 0;
 	for (let o = 0; o < t; o++) {
 		let [t, s] = [r[o], r[o + 1]], c = 0;
 		for (let e = t; e < s; e++) c += i[n[e]];
 		let l = s === t ? 3 : c === 0 ? 0 : c === s - t ? 2 : 1;
-		a = Number(e.flag(Br + l, 1156 + a, 1158, Hr)), i[o] = a;
+		a = Number(e.flag(Rr + l, 1156 + a, 1158, Br)), i[o] = a;
 	}
 	return i;
 }
-function Jr(e, t) {
+function Kr(e, t) {
 	let n = e.length / 3, r = Array.from({ length: n }, () => []), i = new Uint8Array(n), a = /* @__PURE__ */ new Map();
 	for (let t = 0; t < n; t++) {
 		let n = `${e[3 * t]} ${e[3 * t + 1]} ${e[3 * t + 2]}`, o = a.get(n);
@@ -1219,7 +1219,7 @@ function Jr(e, t) {
 		let a = e - e % 3;
 		for (let i of [1, 2]) {
 			let o = t[a + (e + i) % 3];
-			o >= 0 && o < n && r[n].length < Ar && r[n].push(o);
+			o >= 0 && o < n && r[n].length < Or && r[n].push(o);
 		}
 	}
 	let o = new Int32Array(n + 1);
@@ -1230,9 +1230,9 @@ function Jr(e, t) {
 	};
 }
 // eigenfield-three/src/name-decoder.ts
-var Yr = 4 * I;
-async function Xr(e, t, n) {
-	let r = Math.min(Me, Yr * t), i = await xe(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
+var qr = 4 * L;
+async function Jr(e, t, n) {
+	let r = Math.min(je, qr * t), i = await xe(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
 	if (a === 0 || !Number.isInteger(a)) throw M(n, `${i.length} bytes of ${t} names`);
 	let o = new TextDecoder("utf-8", {
 		fatal: !0,
@@ -1251,16 +1251,16 @@ async function Xr(e, t, n) {
 	return c;
 }
 // eigenfield-three/src/headers.ts
-function Zr(e) {
+function Yr(e) {
 	let t = new DataView(e);
 	try {
-		return $r(t) ?? ei(t) ?? ti(t) ?? ni(t);
+		return Zr(t) ?? Qr(t) ?? $r(t) ?? ei(t);
 	} catch (e) {
 		if (e instanceof RangeError) return null;
 		throw e;
 	}
 }
-function Qr(e, t) {
+function Xr(e, t) {
 	return String.fromCharCode(...[
 		0,
 		1,
@@ -1268,15 +1268,15 @@ function Qr(e, t) {
 		3
 	].map((n) => e.getUint8(t + n)));
 }
-function $r(e) {
-	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || Qr(e, 12) !== "IHDR" ? null : {
+function Zr(e) {
+	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || Xr(e, 12) !== "IHDR" ? null : {
 		type: "image/png",
 		width: e.getUint32(16),
 		height: e.getUint32(20),
 		bits: null
 	};
 }
-function ei(e) {
+function Qr(e) {
 	if (e.getUint16(0) !== 65496) return null;
 	for (let t = 2;;) {
 		let n = e.getUint16(t);
@@ -1299,12 +1299,12 @@ function ei(e) {
 		t += 2 + e.getUint16(t + 2);
 	}
 }
-function ti(e) {
-	if (Qr(e, 0) !== "RIFF" || Qr(e, 8) !== "WEBP") return null;
+function $r(e) {
+	if (Xr(e, 0) !== "RIFF" || Xr(e, 8) !== "WEBP") return null;
 	let t = {
 		type: "image/webp",
 		bits: null
-	}, n = Qr(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
+	}, n = Xr(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
 	if (n === "VP8X") return {
 		...t,
 		width: 1 + r(24),
@@ -1324,11 +1324,11 @@ function ti(e) {
 		height: e.getUint16(28, !0) & 16383
 	} : null;
 }
-function ni(e) {
-	if (Qr(e, 4) !== "ftyp") return null;
+function ei(e) {
+	if (Xr(e, 4) !== "ftyp") return null;
 	let t = null, n = null, r = (i, a) => {
 		for (let o = i; o + 8 <= a;) {
-			let i = e.getUint32(o), s = Qr(e, o + 4), c = i === 0 ? a : o + i;
+			let i = e.getUint32(o), s = Xr(e, o + 4), c = i === 0 ? a : o + i;
 			if (i === 1 || c < o + 8 || c > a) return;
 			if (s === "meta" && r(o + 12, c), (s === "iprp" || s === "ipco") && r(o + 8, c), s === "ispe") {
 				let [n, r] = [e.getUint32(o + 12), e.getUint32(o + 16)];
@@ -1351,29 +1351,29 @@ function ni(e) {
 	};
 }
 // eigenfield-three/src/pictures-8bit.ts
-var ri = {
+var ti = {
 	colorSpaceConversion: "none",
 	premultiplyAlpha: "none"
-}, ii = {
+}, ni = {
 	"image/avif": "AAAAHGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZgAAAOltZXRhAAAAAAAAACFoZGxyAAAAAAAAAABwaWN0AAAAAAAAAAAAAAAAAAAAAA5waXRtAAAAAAABAAAAHmlsb2MAAAAARAAAAQABAAAAAQAAAQ0AAAAZAAAAKGlpbmYAAAAAAAEAAAAaaW5mZQIAAAAAAQAAYXYwMUNvbG9yAAAAAGhpcHJwAAAASWlwY28AAAAUaXNwZQAAAAAAAAAIAAAACAAAAA5waXhpAAAAAAEIAAAADGF2MUOBABwAAAAAE2NvbHJuY2x4AAEADQAGgAAAABdpcG1hAAAAAAAAAAEAAQQBAoMEAAAAIW1kYXQSAAoIGAi/aYCGg1AyCxlGIYeeaACQQNmg",
 	"image/webp": "UklGRh4AAABXRUJQVlA4TBEAAAAvAAAAAAdQwAIWsP+BiOh/AAA="
 };
-function ai(e, t, n) {
-	let r = Zr(e);
+function ri(e, t, n) {
+	let r = Yr(e);
 	if (!r) throw M(t.where, "no picture");
 	let { width: i, height: a, bits: o } = r;
 	if (n && (i !== n[0] || a !== n[1])) throw M(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
 	if (t.codec.bits !== 8 && t.codec.bits !== o) throw M(t.where, `no picture of ${t.codec.bits} bits`);
 	let s = i * a;
-	if (!s || i > 16384 || a > 32768 || s > De) throw M(t.where, `a picture of ${i} x ${a}`);
+	if (!s || i > 16384 || a > 32768 || s > Ee) throw M(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
-var oi = async (e, t, n) => {
-	let r = t.pieces * t.textures, [i, a] = ai(e, t, n && [n[0], r * n[1]]), o = Zr(e)?.type ?? t.codec.mimeType, s;
+var ii = async (e, t, n) => {
+	let r = t.pieces * t.textures, [i, a] = ri(e, t, n && [n[0], r * n[1]]), o = Yr(e)?.type ?? t.codec.mimeType, s;
 	try {
-		s = await createImageBitmap(new Blob([e], { type: o }), ri);
+		s = await createImageBitmap(new Blob([e], { type: o }), ti);
 	} catch (e) {
-		throw await si(o) ? M(t.where, "it cannot be decoded") : ci(o, t, e);
+		throw await ai(o) ? M(t.where, "it cannot be decoded") : oi(o, t, e);
 	}
 	if (s.width !== i || s.height !== a) throw s.close(), M(t.where, `decoded to ${s.width} x ${s.height}, not to ${i} x ${a}`);
 	let c = a / r;
@@ -1383,8 +1383,8 @@ var oi = async (e, t, n) => {
 		rows: c
 	}));
 };
-async function si(e) {
-	let t = ii[e];
+async function ai(e) {
+	let t = ni[e];
 	if (!t) return !0;
 	let n = Uint8Array.from(atob(t), (e) => e.charCodeAt(0));
 	try {
@@ -1393,17 +1393,17 @@ async function si(e) {
 		return !1;
 	}
 }
-function ci(e, t, n) {
+function oi(e, t, n) {
 	return new j("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
 }
 // eigenfield-three/src/pictures-10bit.ts
-var li = /* @__PURE__ */ new Set([
+var si = /* @__PURE__ */ new Set([
 	"I420P10",
 	"I422P10",
 	"I444P10"
-]), ui = async (e, t, n) => {
-	let r = t.pieces * t.textures, [i, a] = ai(e, t, n && [n[0], r * n[1]]), o = await di(e, i, a);
-	if (!o) return oi(e, t, n);
+]), ci = async (e, t, n) => {
+	let r = t.pieces * t.textures, [i, a] = ri(e, t, n && [n[0], r * n[1]]), o = await li(e, i, a);
+	if (!o) return ii(e, t, n);
 	let s = a / r;
 	return Array.from({ length: r }, (e, t) => ({
 		picture: o,
@@ -1411,7 +1411,7 @@ var li = /* @__PURE__ */ new Set([
 		rows: s
 	}));
 };
-async function di(e, t, n) {
+async function li(e, t, n) {
 	if (typeof ImageDecoder > "u") return null;
 	let r = null, i = null;
 	try {
@@ -1420,7 +1420,7 @@ async function di(e, t, n) {
 			type: "image/avif"
 		}), i = (await r.decode()).image;
 		let a = i.visibleRect;
-		if (!li.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
+		if (!si.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
 		let o = new Uint8Array(i.allocationSize()), [s] = await i.copyTo(o);
 		return s ? {
 			data: o.subarray(s.offset),
@@ -1435,36 +1435,36 @@ async function di(e, t, n) {
 	}
 }
 // eigenfield-three/src/triangle-decoder.ts
-var fi = 5;
-function pi(e, t) {
-	let n = z(e, fi, t).getUint32(1, !0);
-	st(e, 3 * n, 6 * F, t);
-	let r = bt(e.subarray(fi)), i = wt(r, n, 3, !0);
+var ui = 5;
+function di(e, t) {
+	let n = B(e, ui, t).getUint32(1, !0);
+	ot(e, 3 * n, 6 * I, t);
+	let r = yt(e.subarray(ui)), i = Ct(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
 	if (!a.every((e) => e >= 0 && e < 1e5)) throw M(t, "triangles of cameras that there cannot be");
 	return { corners: Uint32Array.from(a) };
 }
 // eigenfield-three/src/weight-decoder.ts
-var mi = 14, hi = 2 ** 20;
-function gi(e, t) {
-	let n = z(e, mi, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
+var fi = 14, pi = 2 ** 20;
+function mi(e, t) {
+	let n = B(e, fi, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
 	if (n.getUint8(1) > 1 || i === 0) throw M(t, "weights of no camera, or of an unknown kind");
-	st(e, o * s * Math.max(a, 1), Ge, t), z(e, mi + 4 * a, t);
+	ot(e, o * s * Math.max(a, 1), We, t), B(e, fi + 4 * a, t);
 	let c = o * s;
 	if (c < i) throw M(t, "a grid with too few cells");
-	let l = bt(e.subarray(mi + 4 * a)), u = r ? Tt(l, c, i, t) : null, d = u !== null && i === c, f = [
+	let l = yt(e.subarray(fi + 4 * a)), u = r ? wt(l, c, i, t) : null, d = u !== null && i === c, f = [
 		0,
 		1,
 		2
-	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * hi * Math.max(o, s);
+	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * pi * Math.max(o, s);
 	for (let e = 0; e < a; e++) {
-		let r = n.getFloat32(mi + 4 * e, !0);
+		let r = n.getFloat32(fi + 4 * e, !0);
 		if (!(r > 0 && r < Infinity)) throw M(t, "a step that is not positive");
-		let i = xt(l), h = Ct(l, s, f[i], i);
+		let i = bt(l), h = St(l, s, f[i], i);
 		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw M(t, `numbers of component ${e} that cannot be`);
 		f[i] = h;
-		let g = i === 2 ? _i(h, o, s) : h;
+		let g = i === 2 ? hi(h, o, s) : h;
 		for (let t = 0; t < c; t++) {
 			let n = u ? u[t] : t;
 			n >= 0 && (p[n * a + e] = g[t] * r);
@@ -1478,14 +1478,14 @@ function gi(e, t) {
 		values: p
 	};
 }
-function _i(e, t, n) {
-	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = vi(n);
+function hi(e, t, n) {
+	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = gi(n);
 	for (let i = 0; i < t; i++) for (let t = 0; t < n; t++) {
 		let o = 0;
 		for (let r = 0; r < n; r++) o += a(r, t) * e[i * n + r];
 		r[i * n + t] = o;
 	}
-	let o = vi(t);
+	let o = gi(t);
 	for (let e = 0; e < t; e++) for (let a = 0; a < n; a++) {
 		let s = 0;
 		for (let i = 0; i < t; i++) s += o(i, e) * r[i * n + a];
@@ -1493,13 +1493,13 @@ function _i(e, t, n) {
 	}
 	return i;
 }
-function vi(e) {
+function gi(e) {
 	let [t, n] = [Math.sqrt(1 / e), Math.sqrt(2 / e)], r = Float64Array.from({ length: 4 * e }, (t, r) => n * Math.cos(Math.PI * r / (2 * e)));
 	return (n, i) => n === 0 ? t : r[(2 * i + 1) * n % (4 * e)];
 }
 // eigenfield-three/src/codecs.ts
-function yi(e) {
-	let [t, n] = [oi, oi];
+function _i(e) {
+	let [t, n] = [ii, ii];
 	return {
 		kind: "picture",
 		decode: t,
@@ -1514,98 +1514,98 @@ function yi(e) {
 		bits: 8
 	};
 }
-var H = {
+var W = {
 	"mesh-1": {
 		kind: "mesh",
-		decode: Sr,
+		decode: br,
 		needs: "codedMesh",
 		limits: ["MAX_VERTICES", "MAX_TRIANGLES"]
 	},
 	"mesh-2": {
 		kind: "mesh",
-		decode: Cr,
+		decode: xr,
 		needs: "mesh-2",
 		limits: ["MAX_VERTICES", "MAX_TRIANGLES"]
 	},
 	"cameras-1": {
 		kind: "cameras",
-		decode: Nt,
+		decode: jt,
 		needs: "codedCameras",
 		limits: ["MAX_CAMERAS"]
 	},
 	"cameras-2": {
 		kind: "cameras",
-		decode: Mt,
+		decode: At,
 		needs: "cameras-2",
 		limits: ["MAX_CAMERAS"]
 	},
 	"names-1": {
 		kind: "names",
-		decode: Xr,
+		decode: Jr,
 		needs: "codedNames",
 		limits: ["MAX_NAMES", "MAX_CAMERAS"]
 	},
 	"triangles-1": {
 		kind: "triangles",
-		decode: pi,
+		decode: di,
 		needs: "codedTriangles",
 		limits: ["MAX_CAMERAS"]
 	},
 	"weights-1": {
 		kind: "weights",
-		decode: gi,
+		decode: mi,
 		needs: "codedWeights",
 		limits: ["MAX_WEIGHTS"]
 	},
 	"film-1": {
 		kind: "film",
-		decode: (...e) => new Xt(...e),
+		decode: (...e) => new Jt(...e),
 		needs: "film-1",
 		limits: ["MAX_FILM_SIDE", "MAX_FILM_PIXELS"]
 	},
 	"motion-1": {
 		kind: "motion",
-		decode: (...e) => new Wr(...e),
+		decode: (...e) => new Hr(...e),
 		needs: "motion-1",
 		limits: ["MAX_GROUP_FRAMES", "MAX_MOTION"]
 	},
-	png: yi("image/png"),
-	webp: yi("image/webp"),
-	avif: yi("image/avif"),
-	jpeg: yi("image/jpeg"),
+	png: _i("image/png"),
+	webp: _i("image/webp"),
+	avif: _i("image/avif"),
+	jpeg: _i("image/jpeg"),
 	"av1-10bit-1": {
-		...yi("image/avif"),
+		..._i("image/avif"),
 		bits: 10,
-		decode: ui,
+		decode: ci,
 		needs: "bits"
 	},
 	"av1-10bit-2": {
-		...yi("video/AV1"),
+		..._i("video/AV1"),
 		bits: 10,
-		decode: (e, t, n) => ui(ve(e, t.where), t, n),
-		bitmaps: (e, t, n) => oi(ve(e, t.where), t, n),
+		decode: (e, t, n) => ci(ve(e, t.where), t, n),
+		bitmaps: (e, t, n) => ii(ve(e, t.where), t, n),
 		needs: "av1-10bit-2"
 	}
-}, bi = {
+}, vi = {
 	mesh: "mesh-1",
 	cameras: "cameras-1",
 	names: "names-1",
 	triangles: "triangles-1",
 	weights: "weights-1"
 };
-function xi(e, t, n) {
-	let r = t.exists ? t.text(I) : n, i = Object.hasOwn(H, r) ? H[r] : null;
+function yi(e, t, n) {
+	let r = t.exists ? t.text(L) : n, i = Object.hasOwn(W, r) ? W[r] : null;
 	if (i?.kind === e) return i;
 	throw new j("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
 }
-function Si(e, t) {
-	return Object.keys(H).find((n) => {
-		let r = H[n];
+function bi(e, t) {
+	return Object.keys(W).find((n) => {
+		let r = W[n];
 		return r.kind === "picture" && r.mimeType === e && (t ?? r.bits) === r.bits;
 	});
 }
 // eigenfield-three/src/json.ts
-var U = class e {
+var G = class e {
 	raw;
 	where;
 	constructor(e, t) {
@@ -1636,7 +1636,7 @@ var U = class e {
 		if (this.raw.length > e) throw this.wrong(`longer than ${e} characters`);
 		return this.raw;
 	}
-	number(e = -Ke, t = Ke) {
+	number(e = -Ge, t = Ge) {
 		if (typeof this.raw != "number") throw this.wrong("no number");
 		if (!(this.raw >= e && this.raw <= t)) throw this.wrong(`${this.raw} is not in ${e}..${t}`);
 		return this.raw;
@@ -1646,7 +1646,7 @@ var U = class e {
 		if (!Number.isInteger(n)) throw this.wrong(`${n} is no whole number`);
 		return n;
 	}
-	numbers(e, t = -Ke, n = Ke) {
+	numbers(e, t = -Ge, n = Ge) {
 		let r = this.items(e);
 		if (r.length !== e) throw this.wrong(`${e} numbers are needed`);
 		return r.map((e) => e.number(t, n));
@@ -1662,25 +1662,25 @@ var U = class e {
 	wrong(e) {
 		return M(this.where || "/", this.exists ? e : "missing");
 	}
-}, Ci = 5121, wi = 5123, Ti = 5125, W = 5126, Ei = {
-	[Ci]: 1,
-	[wi]: 2,
-	[Ti]: 4,
-	[W]: 4
-}, Di = /* @__PURE__ */ new Set([
+}, xi = 5121, Si = 5123, Ci = 5125, wi = 5126, Ti = {
+	[xi]: 1,
+	[Si]: 2,
+	[Ci]: 4,
+	[wi]: 4
+}, Ei = /* @__PURE__ */ new Set([
 	"cameras",
 	"triangles",
 	"weights"
-]), Oi = {
+]), Di = {
 	SCALAR: 1,
 	VEC2: 2,
 	VEC3: 3
 };
-function ki(e) {
+function Oi(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
-	return e.key("bufferViews").items(we).map((e) => {
+	return e.key("bufferViews").items(F).map((e) => {
 		let t = e.key("byteOffset"), r = e.key("byteStride");
 		e.key("buffer").integer(0, 0);
 		let i = {
@@ -1692,11 +1692,11 @@ function ki(e) {
 		return i;
 	});
 }
-function Ai(e) {
+function ki(e) {
 	return (t) => t.integer(0, e.length - 1);
 }
-function ji(e, t) {
-	let n = e.key("accessors"), r = n.exists ? n.items(we) : [];
+function Ai(e, t) {
+	let n = e.key("accessors"), r = n.exists ? n.items(F) : [];
 	return (e, n, i, a) => {
 		let o = r[e.integer(0, r.length - 1)];
 		if (!o) throw e.wrong("no such accessor");
@@ -1706,14 +1706,14 @@ function ji(e, t) {
 		if (o.key("sparse").exists) throw o.wrong("sparse");
 		let c = o.key("normalized");
 		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = Oi[n] ?? 1, u = o.key("count").integer(1, Ge);
+		let l = Di[n] ?? 1, u = o.key("count").integer(1, We);
 		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
 		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
 		if (!f) throw o.wrong("no such buffer view");
-		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = Ei[s] * l;
+		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = Ti[s] * l;
 		if (f.stride && (f.stride < h || n === "SCALAR")) throw o.wrong("a stride that cannot be");
 		if (m + (u - 1) * (f.stride || h) + h > f.length) throw o.wrong("outside its buffer view");
-		if ((m + f.offset) % Ei[s]) throw o.wrong("not aligned");
+		if ((m + f.offset) % Ti[s]) throw o.wrong("not aligned");
 		return {
 			view: d,
 			offset: m,
@@ -1724,40 +1724,40 @@ function ji(e, t) {
 		};
 	};
 }
-function Mi(e, t, n) {
-	let r = typeof t.raw == "number" && Di.has(e), i = xi(e, r ? new U(void 0, t.where) : t.key("codec"), bi[e]);
+function ji(e, t, n) {
+	let r = typeof t.raw == "number" && Ei.has(e), i = yi(e, r ? new G(void 0, t.where) : t.key("codec"), vi[e]);
 	return {
 		view: n(r ? t : t.key("bufferView")),
 		codec: i,
 		where: t.where
 	};
 }
-async function Ni(e, t, n) {
+async function Mi(e, t, n) {
 	let r = await n(e.view), i = t[e.view]?.length ?? Infinity;
 	if (r.byteLength < i) throw ue(e.where);
-	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + Ei[c] * o * s);
-	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : Pi(new Float32Array(l), e.where);
+	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + Ti[c] * o * s);
+	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : Ni(new Float32Array(l), e.where);
 }
-function Pi(e, t) {
+function Ni(e, t) {
 	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw M(t, `${n} among its numbers`);
 	return e;
 }
 // eigenfield-three/src/planes.ts
-var Fi = 8, Ii = 16, Li = "av1-10bit-2";
-function Ri(e, t) {
+var Pi = 8, Fi = 16, Ii = "av1-10bit-2";
+function Li(e, t) {
 	return new j("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function zi(e, t = Te) {
+function Ri(e, t = we) {
 	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
 	if (!n || !r) throw e.wrong("two numbers are needed");
-	if (n * r > De) throw e.wrong(`more than ${De} texels`);
+	if (n * r > Ee) throw e.wrong(`more than ${Ee} texels`);
 	return [n, r];
 }
-function Bi(e, t, n, r, i) {
+function zi(e, t, n, r, i) {
 	let a = e.key("planes").items(16);
 	if (!a.length) throw e.key("planes").wrong("no plane");
 	let o = a.map((e, a) => {
-		let o = e.key("channels").integer(1, 64), s = Zi(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => ea(e, o, t, r, i);
+		let o = e.key("channels").integer(1, 64), s = Xi(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => $i(e, o, t, r, i);
 		return {
 			channels: o,
 			...s,
@@ -1767,15 +1767,15 @@ function Bi(e, t, n, r, i) {
 	for (let { channels: e, meanSize: t, bases: n } of o) {
 		s += 4 * e * (t ? t[0] * t[1] : 0);
 		for (let { size: t, count: r, pictures: i } of n) {
-			let n = i.reduce((e, { textures: t, codec: n }) => e + t * (n.bits === Fi ? 1 : 2), 0);
+			let n = i.reduce((e, { textures: t, codec: n }) => e + t * (n.bits === Pi ? 1 : 2), 0);
 			s += t[0] * t[1] * e * n, c += r;
 		}
 	}
-	if (c > 4096) throw e.key("planes").wrong(`more than ${Oe} textures`);
-	if (s > ke) throw e.key("planes").wrong("too large when it is decoded");
+	if (c > 4096) throw e.key("planes").wrong(`more than ${De} textures`);
+	if (s > Oe) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
-function Vi(e, t) {
+function Bi(e, t) {
 	let n = t.reduce((e, { channels: t }) => e + t, 0), r = e.key("toRGB");
 	if (r.exists) {
 		let e = r.numbers(3 * n), t = (t, r) => e[t * n + r] ?? 0;
@@ -1807,11 +1807,11 @@ function Vi(e, t) {
 			1
 		]
 	];
-	throw Ri(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
+	throw Li(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
 }
-function Hi(e, t, n, r, i, a = !1) {
-	let o = Ui(e), s = t === 3 && o.bits === Fi ? 1 : t;
-	r && ta(e, s * n, r);
+function Vi(e, t, n, r, i, a = !1) {
+	let o = Hi(e), s = t === 3 && o.bits === Pi ? 1 : t;
+	r && ea(e, s * n, r);
 	let [c, l] = [e.key("scale"), e.key("zero")], u = {
 		view: i(e.key("bufferView")),
 		codec: o,
@@ -1820,27 +1820,27 @@ function Hi(e, t, n, r, i, a = !1) {
 		where: e.where,
 		part: null
 	};
-	return a && o.bits === Fi && !c.exists && !l.exists ? {
+	return a && o.bits === Pi && !c.exists && !l.exists ? {
 		...u,
-		...Ki(t)
+		...Gi(t)
 	} : {
 		...u,
-		scale: Xi(c, t, n),
-		zero: Xi(l, t, n)
+		scale: Yi(c, t, n),
+		zero: Yi(l, t, n)
 	};
 }
-function Ui(e) {
-	let t = e.key("mimeType").text(I);
-	if (!Si(t)) throw e.key("mimeType").wrong("an unknown type");
-	let n = e.key("bits"), r = n.exists ? n.integer(1, Ii) : Fi, i = Si(t, r);
+function Hi(e) {
+	let t = e.key("mimeType").text(L);
+	if (!bi(t)) throw e.key("mimeType").wrong("an unknown type");
+	let n = e.key("bits"), r = n.exists ? n.integer(1, Fi) : Pi, i = bi(t, r);
 	if (!i) throw n.wrong(`${r} bits of ${t}`);
-	let a = e.key("codec"), o = xi("picture", a, i);
+	let a = e.key("codec"), o = yi("picture", a, i);
 	if (o.mimeType !== t || o.bits !== r) throw a.wrong(`${r} bits of ${t}`);
 	return o;
 }
-function Wi(e, t, n) {
-	let r = e.key("at").items(Oe * t).map((e) => {
-		let [t = 0, n = 0] = e.numbers(2, 0, Fe);
+function Ui(e, t, n) {
+	let r = e.key("at").items(De * t).map((e) => {
+		let [t = 0, n = 0] = e.numbers(2, 0, Pe);
 		if (!Number.isInteger(t) || !Number.isInteger(n)) throw e.wrong("no whole numbers");
 		return [t, n];
 	});
@@ -1856,7 +1856,7 @@ function Wi(e, t, n) {
 	};
 	return {
 		view: -1,
-		codec: H[Li],
+		codec: W[Ii],
 		textures: r.length / t,
 		pieces: t,
 		where: i,
@@ -1864,67 +1864,67 @@ function Wi(e, t, n) {
 		...o
 	};
 }
-function Gi(e, t, n) {
-	let r = Wi(e, t, n);
+function Wi(e, t, n) {
+	let r = Ui(e, t, n);
 	if (r.textures !== 1) throw e.key("at").wrong(`${t} places are needed`);
 	return r;
 }
-function Ki(e) {
+function Gi(e) {
 	return {
 		scale: Array(e).fill(1 / 255),
 		zero: Array(e).fill(0)
 	};
 }
-function qi(e) {
-	return e.some(({ codec: e }) => e.bits > Fi);
+function Ki(e) {
+	return e.some(({ codec: e }) => e.bits > Pi);
 }
-function Ji({ codec: e }) {
+function qi({ codec: e }) {
 	return (2 ** e.bits - 1) / 255;
 }
-function Yi(e, t) {
-	return t ? 1 : 1 / (255 * Ji(e));
+function Ji(e, t) {
+	return t ? 1 : 1 / (255 * qi(e));
 }
-function Xi(e, t, n) {
+function Yi(e, t, n) {
 	let r = e.items(t * n).map((e) => e.number());
 	if (r.length === t * n) return r;
 	if (r.length !== t) throw e.wrong(`${t} or ${t * n} numbers are needed`);
 	return Array(n).fill(r).flat();
 }
-function Zi(e, t, n, r) {
+function Xi(e, t, n, r) {
 	let i = e.key("mean");
 	if (!i.exists) {
 		if (n === null || t !== 1 && t !== 3) throw i.wrong("no mean");
 		return {
 			mean: {
 				view: n,
-				codec: H.png,
+				codec: W.png,
 				textures: 1,
 				pieces: 1,
 				where: "/images/0",
 				part: null,
-				...Ki(t)
+				...Gi(t)
 			},
 			meanSize: null,
 			precision: null
 		};
 	}
-	let a = zi(i.key("size"));
+	let a = Ri(i.key("size"));
 	if (i.key("film").exists) return {
-		mean: Gi(i, t, a),
+		mean: Wi(i, t, a),
 		meanSize: a,
 		precision: null
 	};
-	let o = Hi(i, t, 1, a, r, !0);
+	let o = Vi(i, t, 1, a, r, !0);
 	return {
 		mean: o,
 		meanSize: a,
-		precision: $i(i.key("precision"), o, r)
+		precision: Qi(i.key("precision"), o, r)
 	};
 }
-function Qi(e, t) {
-	let n = zi(e.key("size")), r = e.key("film").exists ? Gi(e, 1, n) : (() => {
-		let r = Ui(e);
-		return ta(e, 1, n), {
+function Zi(e, t) {
+	let n = Ri(e.key("size")), r = e.key("film").exists ? Wi(e, 1, n) : (() => {
+		let r = Hi(e);
+		return ea(e, 1, n), {
 			view: t(e.key("bufferView")),
 			codec: r,
 			textures: 1,
@@ -1944,11 +1944,11 @@ function Qi(e, t) {
 		precision: null
 	};
 }
-function $i(e, t, n) {
+function Qi(e, t, n) {
 	if (!e.exists) return null;
-	if (t.codec.bits === Fi) throw e.wrong(`of a mean of ${Fi} bits`);
-	let r = zi(e.key("size"), Ee), i = xi("picture", e.key("codec"), "png");
-	if (i !== H.png) throw e.key("codec").wrong("no PNG");
+	if (t.codec.bits === Pi) throw e.wrong(`of a mean of ${Pi} bits`);
+	let r = Ri(e.key("size"), Te), i = yi("picture", e.key("codec"), "png");
+	if (i !== W.png) throw e.key("codec").wrong("no PNG");
 	return {
 		view: n(e.key("bufferView")),
 		codec: i,
@@ -1958,14 +1958,14 @@ function $i(e, t, n) {
 		where: e.where
 	};
 }
-function ea(e, t, n, r, i) {
-	let a = zi(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? zi(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, Te) : [];
+function $i(e, t, n, r, i) {
+	let a = Ri(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Ri(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, we) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
 	let d = e.where;
 	if (e.key("film").exists) {
-		let n = Wi(e, t, a), { textures: r } = n;
-		if (r > 4096) throw e.wrong(`more than ${Oe} textures`);
+		let n = Ui(e, t, a), { textures: r } = n;
+		if (r > 4096) throw e.wrong(`more than ${De} textures`);
 		return {
 			size: a,
 			grid: c,
@@ -1976,15 +1976,15 @@ function ea(e, t, n, r, i) {
 			where: d
 		};
 	}
-	let f = 0, p = e.key("picture"), m = p.exists ? p.object() : {}, h = e.key("textures").items(Oe).map((e) => {
-		let n = new U({
+	let f = 0, p = e.key("picture"), m = p.exists ? p.object() : {}, h = e.key("textures").items(De).map((e) => {
+		let n = new G({
 			...m,
 			...e.object()
-		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, Oe) : 1;
-		return f += o, Hi(n, t, o, a, i);
+		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, De) : 1;
+		return f += o, Vi(n, t, o, a, i);
 	});
-	if (f > 4096) throw e.wrong(`more than ${Oe} textures`);
-	let g = e.key("codedWeights"), _ = f ? g.exists ? Mi("weights", g, i) : r(e.key("weights"), "SCALAR", [W], n * f) : null;
+	if (f > 4096) throw e.wrong(`more than ${De} textures`);
+	let g = e.key("codedWeights"), _ = f ? g.exists ? ji("weights", g, i) : r(e.key("weights"), "SCALAR", [wi], n * f) : null;
 	return {
 		size: a,
 		grid: c,
@@ -1995,23 +1995,23 @@ function ea(e, t, n, r, i) {
 		where: d
 	};
 }
-function ta(e, t, [n, r]) {
+function ea(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
-	if (n * i > De) throw e.wrong(`more than ${De} texels`);
+	if (n * i > Ee) throw e.wrong(`more than ${Ee} texels`);
 }
 // eigenfield-three/src/sheets.ts
-function na(e, t) {
+function ta(e, t) {
 	if (!e.exists) return null;
-	let n = e.key("faces").items(32).map((e) => e.integer(1, Pe));
+	let n = e.key("faces").items(32).map((e) => e.integer(1, Ne));
 	if (!n.length) throw e.key("faces").wrong("no sheet");
 	return {
 		faces: n,
-		opacity: Qi(e.key("opacity"), t),
+		opacity: Zi(e.key("opacity"), t),
 		where: e.where
 	};
 }
-function ra({ faces: e, where: t }, { index: n, attributes: r }) {
+function na({ faces: e, where: t }, { index: n, attributes: r }) {
 	let i = e.reduce((e, t) => e + t, 0), a = (n?.count ?? 0) / 3;
 	if (i !== a) throw M(`${t}/faces`, `the sheets have ${i} triangles, the mesh has ${a}`);
 	let o = new Uint8Array(r.position?.count ?? 0), s = 0;
@@ -2024,46 +2024,46 @@ function ra({ faces: e, where: t }, { index: n, attributes: r }) {
 	});
 }
 // eigenfield-three/src/timeline.ts
-var ia = 64, G = 16, aa = "audio/ogg", oa = "sound.opus", sa = /^[0-9a-f]{64}$/;
-function ca(e, t, n) {
-	let r = [...pa(t), ...n ? [n] : []];
+var ra = 64, K = 16, ia = "audio/ogg", aa = "sound.opus", oa = /^[0-9a-f]{64}$/;
+function sa(e, t, n) {
+	let r = [...fa(t), ...n ? [n] : []];
 	if (!e.exists) {
 		let e = r.find(({ part: e }) => e);
 		if (e) throw M(e.where, "a texture in a film, and no timeline");
 		return null;
 	}
-	let [i = 1, a = 1] = e.key("rate").numbers(2, 1, We), o = i / a;
+	let [i = 1, a = 1] = e.key("rate").numbers(2, 1, Ue), o = i / a;
 	if (!(Number.isInteger(i) && Number.isInteger(a)) || o > 1e3 || o < 1 / 1e3) throw e.key("rate").wrong("no rate");
-	let s = e.key("first"), c = e.key("films").items(4).map(ua), l = e.key("frames").integer(1, Re);
-	ma(r, c);
+	let s = e.key("first"), c = e.key("films").items(4).map(la), l = e.key("frames").integer(1, Le);
+	pa(r, c);
 	let u = new Set([...t.map(({ mean: e }) => e), n].map((e) => c[e?.part?.film ?? -1]));
 	for (let e of c) e.opacity = e === c[n?.part?.film ?? -1], e.detail = !u.has(e);
-	let d = fa(e, l);
+	let d = da(e, l);
 	return {
 		rate: o,
 		first: s.exists ? s.number() : 0,
 		frames: l,
 		films: c,
 		groups: d,
-		sound: la(e, d)
+		sound: ca(e, d)
 	};
 }
-function la(e, t) {
+function ca(e, t) {
 	let n = e.key("audio");
 	if (!n.exists) return null;
-	if (n.key("mimeType").text(64) !== aa) throw n.key("mimeType").wrong(`no ${aa}`);
-	let r = t.at(-1), i = r.file === null ? null : oa, a = i ? 0 : da(n.key("offset"), r.offset + r.length), o = n.key("first"), s = n.key("length").integer(1, Ue);
+	if (n.key("mimeType").text(64) !== ia) throw n.key("mimeType").wrong(`no ${ia}`);
+	let r = t.at(-1), i = r.file === null ? null : aa, a = i ? 0 : ua(n.key("offset"), r.offset + r.length), o = n.key("first"), s = n.key("length").integer(1, He);
 	return {
-		mimeType: aa,
+		mimeType: ia,
 		first: o.exists ? o.number() : 0,
 		offset: a,
 		length: s,
 		file: i
 	};
 }
-function ua(e) {
-	let t = xi("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, ia, Fe);
-	if (n % ia || r % ia || n * r > Ie) throw e.key("size").wrong(`a film of ${n} x ${r}`);
+function la(e) {
+	let t = yi("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, ra, Pe);
+	if (n % ra || r % ra || n * r > Fe) throw e.key("size").wrong(`a film of ${n} x ${r}`);
 	return {
 		codec: t,
 		size: [n, r],
@@ -2072,17 +2072,17 @@ function ua(e) {
 		where: e.where
 	};
 }
-function da(e, t) {
+function ua(e, t) {
 	let n = e.integer(t, 2 ** 53 - 1);
 	if (n % 4) throw e.wrong("no multiple of 4");
 	return n;
 }
-function fa(e, t) {
+function da(e, t) {
 	let [n, r] = [0, 0], i = e.key("groupFiles");
 	if (i.exists && i.raw !== !0) throw i.wrong("not true");
-	let a = e.key("groups").items(ze).map((e, t) => {
-		let a = i.exists ? `groups/${String(t).padStart(5, "0")}.eftg` : null, o = e.key("frames").integer(1, Ve), s = e.key("length").integer(1, Be), c = a ? 0 : da(e.key("offset"), r), l = e.key("sha256").text(64);
-		if (!sa.test(l)) throw e.key("sha256").wrong("no SHA-256");
+	let a = e.key("groups").items(Re).map((e, t) => {
+		let a = i.exists ? `groups/${String(t).padStart(5, "0")}.eftg` : null, o = e.key("frames").integer(1, Be), s = e.key("length").integer(1, ze), c = a ? 0 : ua(e.key("offset"), r), l = e.key("sha256").text(64);
+		if (!oa.test(l)) throw e.key("sha256").wrong("no SHA-256");
 		return [n, r] = [n + o, c + s], {
 			first: n - o,
 			frames: o,
@@ -2096,33 +2096,33 @@ function fa(e, t) {
 	if (n !== t) throw e.key("groups").wrong(`${n} frames in groups, and ${t} in all`);
 	return a;
 }
-function pa(e) {
+function fa(e) {
 	return e.flatMap(({ mean: e, bases: t }) => [e, ...t.flatMap((e) => e.pictures)]);
 }
-function ma(e, t) {
-	let n = t.map(({ size: e }) => new Uint8Array(e[0] * e[1] / G ** 2));
+function pa(e, t) {
+	let n = t.map(({ size: e }) => new Uint8Array(e[0] * e[1] / K ** 2));
 	for (let { part: r, where: i } of e) {
 		let e = r && t[r.film];
 		if (!r || !e) throw M(i, "it lies in no film");
-		let [a, o] = [e.size[0] / G, n[r.film]], [s, c] = r.size.map((e) => Math.ceil(e / G));
+		let [a, o] = [e.size[0] / K, n[r.film]], [s, c] = r.size.map((e) => Math.ceil(e / K));
 		for (let [t, n] of r.at) {
 			let l = t + r.size[0] <= e.size[0] && n + r.size[1] <= e.size[1];
-			if (t % G || n % G || !l) throw M(i, `a texture at ${t}, ${n} of its film`);
-			for (let e = n / G; e < n / G + c; e++) {
-				let r = o.subarray(e * a + t / G, e * a + t / G + s);
+			if (t % K || n % K || !l) throw M(i, `a texture at ${t}, ${n} of its film`);
+			for (let e = n / K; e < n / K + c; e++) {
+				let r = o.subarray(e * a + t / K, e * a + t / K + s);
 				if (r.includes(1)) throw M(i, `two textures at ${t}, ${n} of a film`);
 				r.fill(1);
 			}
 		}
 	}
 }
-function ha({ rate: e, first: t, frames: n }, r) {
+function ma({ rate: e, first: t, frames: n }, r) {
 	return Math.min(Math.max(Math.floor((r - t) * e + .5), 0), n - 1);
 }
-function ga({ rate: e, first: t }, n) {
+function ha({ rate: e, first: t }, n) {
 	return t + n / e;
 }
-function K({ groups: e }, t) {
+function q({ groups: e }, t) {
 	let [n, r] = [0, e.length - 1];
 	for (; n < r;) {
 		let i = n + r + 1 >> 1;
@@ -2131,7 +2131,7 @@ function K({ groups: e }, t) {
 	return n;
 }
 // eigenfield-three/src/document.ts
-var _a = [
+var ga = [
 	"groupFiles",
 	"namePattern",
 	"noFallback",
@@ -2143,73 +2143,73 @@ var _a = [
 	"stacks",
 	"timeline",
 	"toRGB"
-], va = Object.values(H).flatMap(({ needs: e }) => e ?? []), ya = /* @__PURE__ */ new Set([..._a, ...va]), ba = 64, xa = 9, Sa = 10 ** xa;
-function Ca(e) {
-	let t = new U(e, "");
+], _a = Object.values(W).flatMap(({ needs: e }) => e ?? []), va = /* @__PURE__ */ new Set([...ga, ..._a]), ya = 64, ba = 9, xa = 10 ** ba;
+function Sa(e) {
+	let t = new G(e, "");
 	try {
 		return t.key("extensions").key(Se).exists;
 	} catch {
 		return !1;
 	}
 }
-function wa(e) {
-	let t = new U(e, ""), n = t.key("extensions").key(Se), r = Da(n), i = ki(t), a = ji(t, i), o = Ai(i);
-	Oa(t);
-	let s = ja(t, o), c = n.key("cameras"), { count: l, names: u } = Ma(c, o), d = Fa(c, l), f = d.filter((e) => !e).length, p = Bi(n, f, s, a, o), m = Vi(n, p), h = c.key("colour"), g = c.key("codedColour");
+function Ca(e) {
+	let t = new G(e, ""), n = t.key("extensions").key(Se), r = Ea(n), i = Oi(t), a = Ai(t, i), o = ki(i);
+	Da(t);
+	let s = Aa(t, o), c = n.key("cameras"), { count: l, names: u } = ja(c, o), d = Pa(c, l), f = d.filter((e) => !e).length, p = zi(n, f, s, a, o), m = Bi(n, p), h = c.key("colour"), g = c.key("codedColour");
 	if ((h.exists || g.exists) && m.length < 3) throw h.wrong("needs three channels");
-	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), [x, S] = [n.key("mesh"), n.key("timeline")], C = na(n.key("sheets"), o);
+	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), [x, S] = [n.key("mesh"), n.key("timeline")], C = ta(n.key("sheets"), o);
 	return {
 		version: r,
-		generator: b.exists ? b.text(I) : "",
+		generator: b.exists ? b.text(L) : "",
 		planes: p,
 		colours: m,
 		names: u,
 		heldOut: d,
 		reference: n.key("reference").integer(0, l - 1),
-		calibration: Ia(c, l, a, o),
-		sizes: La(c, l, a),
-		colour: g.exists ? Mi("weights", g, o) : h.exists ? a(h, "SCALAR", [W], 6 * l) : null,
-		...Ra(_),
-		triangles: y.exists ? Mi("triangles", y, o) : v.exists ? Aa(a(v, "SCALAR", [wi, Ti], null), 2 * F) : null,
-		settings: za(n.key("settings")),
-		scores: za(n.key("scores")),
+		calibration: Fa(c, l, a, o),
+		sizes: Ia(c, l, a),
+		colour: g.exists ? ji("weights", g, o) : h.exists ? a(h, "SCALAR", [wi], 6 * l) : null,
+		...La(_),
+		triangles: y.exists ? ji("triangles", y, o) : v.exists ? ka(a(v, "SCALAR", [Si, Ci], null), 2 * I) : null,
+		settings: Ra(n.key("settings")),
+		scores: Ra(n.key("scores")),
 		views: i,
-		mesh: x.exists || S.exists ? Mi("mesh", x, o) : null,
+		mesh: x.exists || S.exists ? ji("mesh", x, o) : null,
 		sheets: C,
-		shown: x.exists && !t.key("meshes").exists ? null : Ta(t, a),
+		shown: x.exists && !t.key("meshes").exists ? null : wa(t, a),
 		preview: s,
-		timeline: ca(S, p, C && C.opacity.mean)
+		timeline: sa(S, p, C && C.opacity.mean)
 	};
 }
-function Ta(e, t) {
+function wa(e, t) {
 	let n = e.key("meshes").at(0).key("primitives").at(0), r = n.key("mode");
 	if (r.exists && r.integer(0, 6) !== 4) throw r.wrong("no triangles");
 	let [i, a] = [n.key("attributes"), n.key("indices")];
 	return {
-		position: ka(t(i.key("POSITION"), "VEC3", [W], null), Ne),
-		uv: ka(t(i.key("TEXCOORD_0"), "VEC2", [W], null), Ne),
-		indices: Aa(t(a, "SCALAR", [
-			Ci,
-			wi,
-			Ti
-		], null), Pe)
+		position: Oa(t(i.key("POSITION"), "VEC3", [wi], null), Me),
+		uv: Oa(t(i.key("TEXCOORD_0"), "VEC2", [wi], null), Me),
+		indices: ka(t(a, "SCALAR", [
+			xi,
+			Si,
+			Ci
+		], null), Ne)
 	};
 }
-function Ea({ planes: e, sheets: t }) {
+function Ta({ planes: e, sheets: t }) {
 	return t ? [...e, t.opacity] : e;
 }
-function Da(e) {
-	let t = e.key("version").text(I);
+function Ea(e) {
+	let t = e.key("version").text(L);
 	if (!/^1\.\d+$/.test(t)) throw new j("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
-	for (let e of n.exists ? n.items(we) : []) {
-		let t = e.text(I);
-		if (!ya.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
+	for (let e of n.exists ? n.items(F) : []) {
+		let t = e.text(L);
+		if (!va.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
-function Oa(e) {
-	let t = e.key("nodes").items(we), n = Array(t.length).fill(!1);
+function Da(e) {
+	let t = e.key("nodes").items(F), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
 		for (let e of r.exists ? r.items(t.length) : []) {
@@ -2218,64 +2218,64 @@ function Oa(e) {
 			n[r] = !0;
 		}
 	}
-	for (let r of e.key("scenes").items(we)) {
+	for (let r of e.key("scenes").items(F)) {
 		let e = r.key("nodes");
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
-function ka(e, t) {
+function Oa(e, t) {
 	if (e.count > t) throw M(e.where, `more than ${t}`);
 	return e;
 }
-function Aa(e, t) {
+function ka(e, t) {
 	if (e.count % 3) throw M(e.where, "torn triangles");
-	return ka(e, 3 * t);
+	return Oa(e, 3 * t);
 }
-function ja(e, t) {
+function Aa(e, t) {
 	let n = e.key("images");
 	if (!n.exists) return null;
 	let r = n.at(0).key("bufferView");
 	return r.exists ? t(r) : null;
 }
-function Ma(e, t) {
+function ja(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
-		count: n.key("count").integer(1, F),
-		names: Mi("names", n, t)
+		count: n.key("count").integer(1, I),
+		names: ji("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? Pa(r) : i.items(F).map((e) => e.text(I));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? Na(r) : i.items(I).map((e) => e.text(L));
 	if (!a.length) throw i.wrong("no cameras");
-	let o = Na(a);
+	let o = Ma(a);
 	if (o) throw i.wrong(o);
 	return {
 		count: a.length,
 		names: a
 	};
 }
-function Na(e) {
+function Ma(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
-function Pa(e) {
-	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, F));
+function Na(e) {
+	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, I));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
-	let r = e.key("parts").items(ba).map((e) => {
-		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(I))];
+	let r = e.key("parts").items(ya).map((e) => {
+		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(L))];
 		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
 		if (a.exists) {
-			let e = a.items(i).map((e) => e.text(I));
+			let e = a.items(i).map((e) => e.text(L));
 			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
 			return [r, e];
 		}
-		let [o, s] = [e.key("first").integer(0, Sa), e.key("step").integer(0, Sa)], c = e.key("digits").integer(1, xa);
+		let [o, s] = [e.key("first").integer(0, xa), e.key("step").integer(0, xa)], c = e.key("digits").integer(1, ba);
 		return [r, Array.from({ length: i }, (e, t) => String(o + s * t).padStart(c, "0"))];
 	});
 	return Array.from({ length: t * n }, (t, i) => {
 		let a = [Math.floor(i / n), i % n], o = r.map(([e, t]) => t[a[e] ?? 0]).join("");
-		if (o.length > 1024) throw e.wrong(`names of more than ${I} characters`);
+		if (o.length > 1024) throw e.wrong(`names of more than ${L} characters`);
 		return o;
 	});
 }
-function Fa(e, t) {
+function Pa(e, t) {
 	let n = Array(t).fill(!1), r = e.key("heldOut");
 	if (!r.exists) return n;
 	for (let e of r.items(t)) {
@@ -2286,21 +2286,21 @@ function Fa(e, t) {
 	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
 	return n;
 }
-function Ia(e, t, n, r) {
+function Fa(e, t, n, r) {
 	let i = e.key("coded");
-	return i.exists ? Mi("cameras", i, r) : {
-		intrinsics: n(e.key("intrinsics"), "SCALAR", [W], 5 * t),
-		poses: n(e.key("poses"), "SCALAR", [W], 12 * t)
+	return i.exists ? ji("cameras", i, r) : {
+		intrinsics: n(e.key("intrinsics"), "SCALAR", [wi], 5 * t),
+		poses: n(e.key("poses"), "SCALAR", [wi], 12 * t)
 	};
 }
-function La(e, t, n) {
+function Ia(e, t, n) {
 	let r = e.key("size");
-	if (!r.exists) return n(e.key("sizes"), "SCALAR", [Ti], 2 * t);
-	let [i = 0, a = 0] = r.numbers(2, 1, Ae);
+	if (!r.exists) return n(e.key("sizes"), "SCALAR", [Ci], 2 * t);
+	let [i = 0, a = 0] = r.numbers(2, 1, ke);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
-function Ra(e) {
+function La(e) {
 	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
 	for (let i of [
 		r(t, t) - 1,
@@ -2315,23 +2315,23 @@ function Ra(e) {
 		extent: [i, a]
 	};
 }
-function za(e) {
+function Ra(e) {
 	return e.exists ? e.object() : {};
 }
 // eigenfield-three/src/info.ts
-var Ba = 1e-6;
-async function Va(e, t) {
+var za = 1e-6;
+async function Ba(e, t) {
 	let [n, { lenses: r, poses: i }, a, o] = await Promise.all([
-		Ua(e, t),
+		Ha(e, t),
+		Wa(e, t),
 		Ga(e, t),
-		Ka(e, t),
-		Ha(e, t)
+		Va(e, t)
 	]);
 	return n.map((t, n) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
-		if (!(s > Ba && c > Ba)) throw M(r.where, `focal lengths of "${t}"`);
-		let { R: f, t: p } = qa([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
-		if (!m || !h || Math.max(m, h) > 65535 || m * h > je) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
+		if (!(s > za && c > za)) throw M(r.where, `focal lengths of "${t}"`);
+		let { R: f, t: p } = Ka([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
+		if (!m || !h || Math.max(m, h) > 65535 || m * h > Ae) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
 				s,
@@ -2348,13 +2348,13 @@ async function Va(e, t) {
 				0,
 				1
 			]
-		], [_, v] = o ? Ja([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
+		], [_, v] = o ? qa([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
 		return {
 			name: t,
 			K: g,
 			R: f,
 			t: p,
-			centre: oo(f, p),
+			centre: ao(f, p),
 			width: m,
 			height: h,
 			gain: _,
@@ -2362,8 +2362,8 @@ async function Va(e, t) {
 		};
 	});
 }
-async function Ha({ colour: e, heldOut: t, views: n }, r) {
-	if (!e || "type" in e) return e && Ni(e, n, r);
+async function Va({ colour: e, heldOut: t, views: n }, r) {
+	if (!e || "type" in e) return e && Mi(e, n, r);
 	let { cameras: i, components: a, values: o } = await e.codec.decode(new Uint8Array(await r(e.view)), e.where);
 	if (a !== 6 || i !== t.filter((e) => !e).length) throw M(e.where, `${i} x ${a} colours`);
 	let s = 0;
@@ -2376,31 +2376,31 @@ async function Ha({ colour: e, heldOut: t, views: n }, r) {
 		0
 	] : [...o.subarray(6 * s, 6 * ++s)]));
 }
-async function Ua({ names: e, heldOut: t }, n) {
+async function Ha({ names: e, heldOut: t }, n) {
 	if (Array.isArray(e)) return e;
-	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : Na(r);
+	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : Ma(r);
 	if (i) throw M(e.where, i);
 	return r;
 }
-async function Wa(e, t, n) {
+async function Ua(e, t, n) {
 	return {
-		numbers: await Ni(e, t.views, n),
+		numbers: await Mi(e, t.views, n),
 		where: e.where
 	};
 }
-async function Ga(e, t) {
+async function Wa(e, t) {
 	let { calibration: n, heldOut: r } = e;
 	if ("intrinsics" in n) {
 		let { intrinsics: r, poses: i } = n;
 		return {
-			lenses: await Wa(r, e, t),
-			poses: await Wa(i, e, t)
+			lenses: await Ua(r, e, t),
+			poses: await Ua(i, e, t)
 		};
 	}
 	let { view: i, codec: a, where: o } = n, s = await a.decode(new Uint8Array(await t(i)), o), c = s.poses.length / 12;
 	if (c !== r.length) throw M(o, `${c} cameras in it, and ${r.length} names`);
 	let l = (e) => ({
-		numbers: Pi(e, o),
+		numbers: Ni(e, o),
 		where: o
 	});
 	return {
@@ -2408,15 +2408,15 @@ async function Ga(e, t) {
 		poses: l(s.poses)
 	};
 }
-async function Ka(e, t) {
-	if (!Array.isArray(e.sizes)) return Wa(e.sizes, e, t);
+async function Ga(e, t) {
+	if (!Array.isArray(e.sizes)) return Ua(e.sizes, e, t);
 	let [n, r] = e.sizes;
 	return {
 		numbers: Uint32Array.from({ length: 2 * e.heldOut.length }, (e, t) => t % 2 ? r : n),
 		where: "its cameras' size"
 	};
 }
-function qa(e, t, n) {
+function Ka(e, t, n) {
 	let r = (t) => [
 		e[4 * t] ?? NaN,
 		e[4 * t + 1] ?? NaN,
@@ -2431,25 +2431,25 @@ function qa(e, t, n) {
 		e[11] ?? NaN
 	];
 	for (let e = 0; e < 3; e++) for (let r = e; r < 3; r++) {
-		let a = J(i[e], i[r]) - +(e === r);
+		let a = Y(i[e], i[r]) - +(e === r);
 		if (!(Math.abs(a) <= 2e-4)) throw M(t, `the pose of "${n}" is no rotation`);
 	}
-	if (!(J(so(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
+	if (!(Y(oo(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
 	return {
 		R: i,
 		t: a
 	};
 }
-function Ja(e, t, n) {
+function qa(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
 	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw M(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
-async function Ya(e, t) {
+async function Ja(e, t) {
 	let n = e.heldOut.filter((e) => !e).length;
-	return Xa(n, await Promise.all(q(e).map((r) => Za(r, n, e, t))));
+	return Ya(n, await Promise.all(J(e).map((r) => Xa(r, n, e, t))));
 }
-function Xa(e, t) {
+function Ya(e, t) {
 	let n = t.reduce((e, { length: t }) => e + t, 0) / e, r = new Float32Array(e * n), i = 0;
 	for (let a of t) {
 		let t = a.length / e;
@@ -2458,29 +2458,29 @@ function Xa(e, t) {
 	}
 	return r;
 }
-async function Za({ weights: e, count: t }, n, r, i) {
+async function Xa({ weights: e, count: t }, n, r, i) {
 	if (!e) return /* @__PURE__ */ new Float32Array();
-	if ("type" in e) return Ni(e, r.views, i);
+	if ("type" in e) return Mi(e, r.views, i);
 	let { view: a, codec: o, where: s } = e;
-	return Qa(o.decode(new Uint8Array(await i(a)), s), n, t, s);
+	return Za(o.decode(new Uint8Array(await i(a)), s), n, t, s);
 }
-function Qa({ cameras: e, components: t, values: n }, r, i, a) {
-	if (e === r && t === i) return Pi(n, a);
+function Za({ cameras: e, components: t, values: n }, r, i, a) {
+	if (e === r && t === i) return Ni(n, a);
 	throw M(a, `${e} x ${t} weights, and ${r} encoded cameras x ${i} textures`);
 }
-function q(e) {
+function J(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
 }
-function $a(e) {
-	return Math.max(0, ...q(e).map(({ count: e }) => e));
+function Qa(e) {
+	return Math.max(0, ...J(e).map(({ count: e }) => e));
 }
-function eo(e, t) {
-	let n = [...t.slice(0, e.planes.length), ...q(e).map(({ grid: e }) => e)];
+function $a(e, t) {
+	let n = [...t.slice(0, e.planes.length), ...J(e).map(({ grid: e }) => e)];
 	return [Math.max(...n.map(([e]) => e)), Math.max(...n.map(([, e]) => e))];
 }
-async function to(e, t) {
+async function eo(e, t) {
 	if (!e.triangles) return /* @__PURE__ */ new Uint32Array();
-	let { where: n } = e.triangles, r = await no(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
+	let { where: n } = e.triangles, r = await to(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
 		if (Math.max(t, a, o) >= i) throw M(n, `no encoded camera ${Math.max(t, a, o)}`);
@@ -2488,11 +2488,11 @@ async function to(e, t) {
 	}
 	return r;
 }
-async function no(e, t, n) {
-	return "type" in e ? Uint32Array.from(await Ni(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
+async function to(e, t, n) {
+	return "type" in e ? Uint32Array.from(await Mi(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
 }
-function ro(e, t, n, r, i, a) {
-	let { right: o, up: s } = e, c = so(o, s), l = [
+function no(e, t, n, r, i, a) {
+	let { right: o, up: s } = e, c = oo(o, s), l = [
 		0,
 		0,
 		0
@@ -2520,8 +2520,8 @@ function ro(e, t, n, r, i, a) {
 		settings: e.settings,
 		scores: e.scores,
 		metresPerUnit: typeof u == "number" && u > 0 && u <= 1e30 ? u : null,
-		bytes: io(e, i),
-		size: eo(e, n),
+		bytes: ro(e, i),
+		size: $a(e, n),
 		planes: e.planes.map(({ channels: e, bases: t }, r) => ({
 			channels: e,
 			mean: n[r] ?? [1, 1],
@@ -2534,12 +2534,12 @@ function ro(e, t, n, r, i, a) {
 		...a,
 		mixedColours: e.colour !== null && !("type" in e.colour),
 		sheets: e.sheets?.faces.length ?? 0,
-		facesPlane: Math.abs(J(l, c)) > .7
+		facesPlane: Math.abs(Y(l, c)) > .7
 	};
 }
-function io(e, t) {
-	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array($a(e)).fill(0);
-	for (let { pictures: t } of q(e)) {
+function ro(e, t) {
+	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(Qa(e)).fill(0);
+	for (let { pictures: t } of J(e)) {
 		let e = 0;
 		for (let { view: n, textures: i } of t) {
 			let t = r(n);
@@ -2549,7 +2549,7 @@ function io(e, t) {
 			}
 		}
 	}
-	let c = i(q(e).flatMap((e) => e.weights ? [e.weights.view] : [])), l = i([...Object.values(e.shown ?? {}), ...e.mesh ? [e.mesh] : []].map(({ view: e }) => e)), u = e.sheets ? r(e.sheets.opacity.mean.view) : 0, d = e.timeline?.groups.reduce((e, { length: t }) => e + t, 0) ?? 0;
+	let c = i(J(e).flatMap((e) => e.weights ? [e.weights.view] : [])), l = i([...Object.values(e.shown ?? {}), ...e.mesh ? [e.mesh] : []].map(({ view: e }) => e)), u = e.sheets ? r(e.sheets.opacity.mean.view) : 0, d = e.timeline?.groups.reduce((e, { length: t }) => e + t, 0) ?? 0;
 	return {
 		total: t,
 		mesh: l,
@@ -2561,15 +2561,15 @@ function io(e, t) {
 		textures: s
 	};
 }
-function ao(e, t) {
+function io(e, t) {
 	let { origin: n, extent: r } = e, i = [
 		t[0] - n[0],
 		t[1] - n[1],
 		t[2] - n[2]
 	];
-	return [r[0] > 0 ? J(i, e.right) / r[0] : 0, r[1] > 0 ? J(i, e.up) / r[1] : 0];
+	return [r[0] > 0 ? Y(i, e.right) / r[0] : 0, r[1] > 0 ? Y(i, e.up) / r[1] : 0];
 }
-function oo(e, t) {
+function ao(e, t) {
 	let n = (n) => -(e[0][n] * t[0] + e[1][n] * t[1] + e[2][n] * t[2]);
 	return [
 		n(0),
@@ -2577,10 +2577,10 @@ function oo(e, t) {
 		n(2)
 	];
 }
-function J(e, t) {
+function Y(e, t) {
 	return e[0] * t[0] + e[1] * t[1] + e[2] * t[2];
 }
-function so(e, t) {
+function oo(e, t) {
 	return [
 		e[1] * t[2] - e[2] * t[1],
 		e[2] * t[0] - e[0] * t[2],
@@ -2588,7 +2588,7 @@ function so(e, t) {
 	];
 }
 // eigenfield-three/src/cameras.ts
-function co(e, t, n) {
+function so(e, t, n) {
 	let { info: r } = e, i = r.cameras.filter((e, t) => !r.heldOut[t]), a = r.cameras[r.reference];
 	if (!a) throw RangeError(`no camera ${r.reference}`);
 	let { width: o, height: s } = a, c = [
@@ -2627,7 +2627,7 @@ function co(e, t, n) {
 	e.viewWeights(t, n, "delaunay").forEach((e, t) => {
 		let n = i[t];
 		if (!e || !n) return;
-		let r = lo(n, o, s);
+		let r = co(n, o, s);
 		for (let t of [
 			0,
 			1,
@@ -2638,11 +2638,11 @@ function co(e, t, n) {
 			2
 		]) t < 2 && (c[t][i] += e * r[t][i]), l[t][i] += e * n.R[t][i];
 	});
-	let u = fo(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [uo(t) * m[0], uo(n) * m[1]], _ = [
+	let u = uo(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [lo(t) * m[0], lo(n) * m[1]], _ = [
 		0,
 		1,
 		2
-	].map((e) => d[e] + h * f[e] + g * p[e]), v = u.map((e) => -J(e, _));
+	].map((e) => d[e] + h * f[e] + g * p[e]), v = u.map((e) => -Y(e, _));
 	return {
 		name: `${t.toFixed(3)}, ${n.toFixed(3)}`,
 		K: c,
@@ -2655,7 +2655,7 @@ function co(e, t, n) {
 		offset: null
 	};
 }
-function lo({ K: e, width: t, height: n }, r, i) {
+function co({ K: e, width: t, height: n }, r, i) {
 	let a = Math.max(r / t, i / n), [o, s] = [(r - a * t) / 2, (i - a * n) / 2];
 	return [
 		[
@@ -2675,41 +2675,41 @@ function lo({ K: e, width: t, height: n }, r, i) {
 		]
 	];
 }
-function uo(e) {
+function lo(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function fo(e) {
+function uo(e) {
 	let t = e;
 	for (let e = 0; e < 50; e++) {
 		let e = [
-			so(t[1], t[2]),
-			so(t[2], t[0]),
-			so(t[0], t[1])
-		], n = J(t[0], e[0]);
+			oo(t[1], t[2]),
+			oo(t[2], t[0]),
+			oo(t[0], t[1])
+		], n = Y(t[0], e[0]);
 		if (!(n > 1e-12)) break;
 		let r = t.map((t, r) => t.map((t, i) => (t + e[r][i] / n) / 2)), i = Math.max(...r.flatMap((e, n) => e.map((e, r) => Math.abs(e - t[n][r]))));
 		if (t = r, i < 1e-15) break;
 	}
 	return t;
 }
-function po(e, t, n, r, i = 1) {
+function fo(e, t, n, r, i = 1) {
 	let a = n.width / n.height, o = i * Math.min(1, a / r), s = i * Math.min(1, r / a), c = {
 		left: (1 - o) / 2,
 		top: (1 - s) / 2,
 		width: o,
 		height: s
 	};
-	return mo(e, t, n), ho(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
+	return po(e, t, n), mo(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
 }
-function mo(e, t, n) {
+function po(e, t, n) {
 	let { R: r, centre: i } = n, a = new x().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
 	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new A()), t.updateMatrixWorld(!0);
 }
-function ho(e, t, n, r) {
-	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = go(e, n);
+function mo(e, t, n, r) {
+	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = ho(e, n);
 	t.near = d, t.far = f, t.projectionMatrix.set(l * i, -l * a, -(2 * r.left - 1 + l * o), 0, 0, u * s, -(1 - 2 * r.top - u * c), 0, 0, 0, -(f + d) / (f - d), -2 * f * d / (f - d), 0, 0, -1, 0), t.projectionMatrixInverse.copy(t.projectionMatrix).invert();
 }
-function go(e, t) {
+function ho(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
@@ -2719,7 +2719,7 @@ function go(e, t) {
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
 // eigenfield-three/src/exposure.ts
-function _o(e) {
+function go(e) {
 	let [t, n] = [[
 		1,
 		1,
@@ -2739,46 +2739,46 @@ function _o(e) {
 	};
 }
 // eigenfield-three/src/memory.ts
-var vo = 4 / 3, yo = Eo({
+var _o = 4 / 3, vo = To({
 	components: 4,
 	halves: !0
-}), bo = {
+}), yo = {
 	components: 4,
+	halves: !1
+}, bo = {
+	components: 2,
 	halves: !1
 }, xo = {
 	components: 2,
-	halves: !1
-}, So = {
-	components: 2,
 	halves: !0
-}, Co = 2 ** 20, wo = 1 / 64, To = 34;
-function Eo({ components: e, halves: t }) {
+}, So = 2 ** 20, Co = 1 / 64, wo = 34;
+function To({ components: e, halves: t }) {
 	return (e > 2 ? 4 : e) * (t ? 2 : 1);
 }
-function Do() {
+function Eo() {
 	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
-	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && Oo(e) ? Math.min(t ?? 4, 6) * 128 * Co : Math.min(t ?? 8, 8) * 256 * Co;
+	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && Do(e) ? Math.min(t ?? 4, 6) * 128 * So : Math.min(t ?? 8, 8) * 256 * So;
 }
-function Oo(e) {
+function Do(e) {
 	return (e?.maxTouchPoints ?? 0) > 1;
 }
-function Y([e, t], n) {
+function X([e, t], n) {
 	return [Math.ceil(e / n), Math.ceil(t / n)];
 }
-function ko(e, t) {
-	let [n, r] = Y(e, t);
+function Oo(e, t) {
+	let [n, r] = X(e, t);
 	return n * r;
 }
-function Ao(e) {
+function ko(e) {
 	return Math.ceil(e / 4);
 }
-function jo(e, t) {
-	return t * Mo(e);
+function Ao(e, t) {
+	return t * jo(e);
 }
-function Mo(e) {
+function jo(e) {
 	return Math.max(1, Math.ceil(e / 4));
 }
-function No(e) {
+function Mo(e) {
 	let { atlas: t, means: n, bases: r } = e, i = [
 		t,
 		...n.map(({ size: e }) => e),
@@ -2786,7 +2786,7 @@ function No(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-var Po = [{
+var No = [{
 	meanDown: 1,
 	scaleDown: 1,
 	halves: !0
@@ -2809,14 +2809,14 @@ var Po = [{
 	scaleDown: t * e,
 	halves: !1
 })))];
-function Fo(e, t) {
-	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => Io(e, t.meanDown) + e.geometry + Lo(e, t, n), o = (n, r) => a(n, r) + Bo(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = Po.filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
+function Po(e, t) {
+	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => Fo(e, t.meanDown) + e.geometry + Io(e, t, n), o = (n, r) => a(n, r) + zo(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = No.filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
 	for (; !u && l > 0; l--) u = c.find((e) => o(e, l - 1));
-	u ??= Po.at(-1);
-	let d = Vo({
+	u ??= No.at(-1);
+	let d = Bo({
 		...u,
 		usable: l
-	}, e), f = Ho(d, e, t);
+	}, e), f = Vo(d, e, t);
 	return {
 		...u,
 		usable: l,
@@ -2825,58 +2825,58 @@ function Fo(e, t) {
 		limitation: f
 	};
 }
-function Io(e, t) {
+function Fo(e, t) {
 	let n = e.means.map(({ size: e, channels: n, tenBits: r, opacity: i }) => {
-		let a = i ? yo : 0;
-		return (Eo({
+		let a = i ? vo : 0;
+		return (To({
 			components: n,
 			halves: r
-		}) * Ao(n) + a) * ko(e, t);
-	}), r = No({
+		}) * ko(n) + a) * Oo(e, t);
+	}), r = Mo({
 		...e,
 		means: e.means.filter(({ opacity: e }) => !e)
 	}).map((n) => {
-		let r = n.join() === e.atlas.join() ? vo : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
-		return yo * ko(n, t) * (r + +!!i);
+		let r = n.join() === e.atlas.join() ? _o : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
+		return vo * Oo(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function Lo({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
+function Io({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
 	return e.reduce((e, a) => {
 		let o = Math.min(i, a.count);
 		if (!o) return e;
-		let s = t ? Mo(o) * 129 * 129 * yo : 0;
-		return e + Eo({
+		let s = t ? jo(o) * 129 * 129 * vo : 0;
+		return e + To({
 			components: o,
 			halves: r && a.tenBits
-		}) * jo(o, a.channels) * ko(a.size, n) + s;
+		}) * Ao(o, a.channels) * Oo(a.size, n) + s;
 	}, 0);
 }
-function Ro({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
-	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = zo([...a, ...o].map(({ size: e }) => e)), l = Math.floor(wo * i / (Eo(bo) * s)), u = [s, Math.min(c, Math.max(To, l))], d = [...n > 1 ? a.map((e) => Y(e.size, n)) : [], ...r > 1 ? o.map((e) => Y(e.size, r)) : []];
+function Lo({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
+	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = Ro([...a, ...o].map(({ size: e }) => e)), l = Math.floor(Co * i / (To(yo) * s)), u = [s, Math.min(c, Math.max(wo, l))], d = [...n > 1 ? a.map((e) => X(e.size, n)) : [], ...r > 1 ? o.map((e) => X(e.size, r)) : []];
 	return {
 		picture: {
 			size: u,
-			format: bo
+			format: yo
 		},
 		codes: [...a, ...o].some(({ tenBits: e }) => e) ? {
 			size: u,
-			format: xo
+			format: bo
 		} : null,
 		smaller: d.length ? {
-			size: zo(d),
-			format: So
+			size: Ro(d),
+			format: xo
 		} : null
 	};
 }
-function zo(e) {
+function Ro(e) {
 	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
 }
-function Bo(e, t, n) {
-	let r = Object.values(Ro(e, t, n)).map((e) => e ? Eo(e.format) * ko(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(...No(e).map((e) => ko(e, 1))) : 0;
+function zo(e, t, n) {
+	let r = Object.values(Lo(e, t, n)).map((e) => e ? To(e.format) * Oo(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(...Mo(e).map((e) => Oo(e, 1))) : 0;
 	return [...r, i].reduce((e, t) => e + t, 0);
 }
-function Vo({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
+function Bo({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 	let a = Math.max(0, ...i.bases.map(({ count: e }) => e)), o = [];
 	return e < a && o.push({
 		kind: "count",
@@ -2890,28 +2890,28 @@ function Vo({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 		percent: Math.round(100 / t)
 	}), o;
 }
-function Ho(e, t, n) {
+function Vo(e, t, n) {
 	if (!e.length) return null;
 	let r = e.map((e) => e.kind === "count" ? `${e.part} of ${e.whole} eigen textures are drawn` : e.kind === "bits" ? "eigen textures have 8 bits" : `${e.kind === "mean" ? "the mean texture has" : "eigen textures have"} ${e.percent} % of ${e.kind === "mean" ? "its" : "their"} width and height`), i = {
 		meanDown: 1,
 		scaleDown: 1,
 		halves: !0
-	}, a = Io(t, 1) + Lo(t, i, Infinity) + Bo(t, i, n.memory) + t.geometry, o = a > n.memory ? `the scene needs ${Uo(a)} MB of graphics memory and ${Uo(n.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${Wo(r.join(", "))}: ${o}.`;
+	}, a = Fo(t, 1) + Io(t, i, Infinity) + zo(t, i, n.memory) + t.geometry, o = a > n.memory ? `the scene needs ${Ho(a)} MB of graphics memory and ${Ho(n.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${Uo(r.join(", "))}: ${o}.`;
 }
-function Uo(e) {
+function Ho(e) {
 	return (e / 1e6).toFixed(+(e < 1e7));
 }
-function Wo(e) {
+function Uo(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var Go = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\n#define REACH 2\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec2 beside;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nfloat codeOf(vec2 shift) { return shift.x + float(REACH) + float(2 * REACH + 1) * (shift.y + float(REACH)); }\nvec2 shiftOf(vec4 place) {\n  int code = int(place.w + 0.5) - 1;\n  return code < 0 ? vec2(0.0) : vec2(code % (2 * REACH + 1) - REACH, code / (2 * REACH + 1) - REACH);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec4 place = rayWeights || beside.x > 0.0 ? texelFetch(places, ivec2(gl_FragCoord.xy), 0) : vec4(0.0);\n  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);\n  own -= beside * shiftOf(place);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Ko = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", qo = 2, Jo = `
+var Wo = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\n#define REACH 2\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec2 beside;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nfloat codeOf(vec2 shift) { return shift.x + float(REACH) + float(2 * REACH + 1) * (shift.y + float(REACH)); }\nvec2 shiftOf(vec4 place) {\n  int code = int(place.w + 0.5) - 1;\n  return code < 0 ? vec2(0.0) : vec2(code % (2 * REACH + 1) - REACH, code / (2 * REACH + 1) - REACH);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec4 place = rayWeights || beside.x > 0.0 ? texelFetch(places, ivec2(gl_FragCoord.xy), 0) : vec4(0.0);\n  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);\n  own -= beside * shiftOf(place);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Go = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", Ko = 2, qo = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${Ko}${Go}`, Yo = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", Xo = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nflat out vec2 shift;\nvoid main() {\n  point = onPlane;\n  shift = shifts[gl_InstanceID];\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shift, 0.0, 1.0);\n}\n", Zo = `${Jo}
+${Go}${Wo}`, Jo = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", Yo = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nflat out vec2 shift;\nvoid main() {\n  point = onPlane;\n  shift = shifts[gl_InstanceID];\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shift, 0.0, 1.0);\n}\n", Xo = `${qo}
 in vec3 point;
 flat in vec2 shift;
 out vec4 place;
@@ -2919,12 +2919,12 @@ void main() {
   place = placeOf(point);
   place.w += codeOf(shift);
 }
-`, Qo = "sumTextures", $o = "finerValue", es = "finerOpacity";
-function ts(n, r, i) {
+`, Zo = "sumTextures", Qo = "finerValue", $o = "finerOpacity";
+function es(n, r, i) {
 	let o = new O({
 		glslVersion: h,
-		vertexShader: Yo,
-		fragmentShader: `${Jo}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
+		vertexShader: Jo,
+		fragmentShader: `${qo}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
 		uniforms: {
 			rectangle: { value: new ae(...r) },
 			...i
@@ -2960,7 +2960,7 @@ function ts(n, r, i) {
 	let c = new S(s, o);
 	return c.frustumCulled = !1, c;
 }
-function ns([e, t], n) {
+function ts([e, t], n) {
 	return new oe(e, t, {
 		type: g,
 		depthBuffer: !1,
@@ -2969,29 +2969,29 @@ function ns([e, t], n) {
 		magFilter: n ? y : w
 	});
 }
-function rs(e, t) {
-	let n = so(e.right, e.up), r = [
+function ns(e, t) {
+	let n = oo(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
 		t[2] - e.origin[2]
 	];
-	return [...ao(e, t), J(r, n) / (Math.max(...e.extent) || 1)];
+	return [...io(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
 }
-function is(t, n, r) {
+function rs(t, n, r) {
 	let { index: i } = t, a = t.getAttribute("position"), o = t.getAttribute("uv"), s = new Float32Array(3 * a.count), c = new Float32Array(2 * a.count);
-	for (let e = 0; e < a.count; e++) s.set(rs(n, [
+	for (let e = 0; e < a.count; e++) s.set(ns(n, [
 		a.getX(e),
 		a.getY(e),
 		a.getZ(e)
 	]), 3 * e), c.set([o.getX(e), o.getY(e)], 2 * e);
-	let l = Array.from({ length: 5 }, (e, t) => t - qo), d = l.flatMap((e) => l.map((t) => new ie(t, e)));
+	let l = Array.from({ length: 5 }, (e, t) => t - Ko), d = l.flatMap((e) => l.map((t) => new ie(t, e)));
 	d.sort((e, t) => t.lengthSq() - e.lengthSq());
 	let f = new v();
 	f.setAttribute("position", new e(c, 2)), f.setAttribute("onPlane", new e(s, 3)), f.setIndex(i && new e(i.array, 1)), f.instanceCount = d.length, f.boundingSphere = new te();
 	let p = new O({
 		glslVersion: h,
-		vertexShader: Xo.replace("SHIFTS", String(d.length)),
-		fragmentShader: Zo,
+		vertexShader: Yo.replace("SHIFTS", String(d.length)),
+		fragmentShader: Xo,
 		uniforms: {
 			texel: { value: new ie(2 / r.width, 2 / r.height) },
 			shifts: { value: d }
@@ -3010,19 +3010,19 @@ function is(t, n, r) {
 		}
 	};
 }
-var as = new i(0), os = new i();
-function ss(e, t, n) {
+var is = new i(0), as = new i();
+function os(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(os), e.setClearColor(as, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(os, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(as), e.setClearColor(is, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(as, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/composer.ts
-var cs = {
+var ss = {
 	version: 0,
 	mean: !0,
 	opacity: 0,
@@ -3032,7 +3032,7 @@ var cs = {
 	eye: null,
 	places: 0,
 	maps: null
-}, ls = class {
+}, cs = class {
 	snaps;
 	surface;
 	plane;
@@ -3043,14 +3043,14 @@ var cs = {
 	camera = new n();
 	constructor(e, t, n, r, i, a, o) {
 		this.snaps = i, this.surface = a, this.plane = o;
-		let [s, ...c] = No({
+		let [s, ...c] = Mo({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), l = (e, n) => {
-			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => fs(t, i ? Y(e, r) : null)), o = new k();
+			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => ds(t, i ? X(e, r) : null)), o = new k();
 			return a.forEach(({ quad: e }, t) => o.add(Object.assign(e, { renderOrder: t }))), {
-				target: ns(Y(e, r), n),
+				target: ts(X(e, r), n),
 				scene: o,
 				steps: a,
 				places: null
@@ -3058,7 +3058,7 @@ var cs = {
 		}, u = l(s ?? e, !0);
 		this.grids = c.map((e) => l(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = ts($o, [
+			let t = es(Qo, [
 				0,
 				0,
 				1,
@@ -3066,24 +3066,24 @@ var cs = {
 			], { coarse: { value: e.texture } });
 			u.scene.add(Object.assign(t, { renderOrder: u.scene.children.length }));
 		}
-		this.grids.push(u), this.opacity = n && us(n, r);
+		this.grids.push(u), this.opacity = n && ls(n, r);
 	}
 	get texture() {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && hs(this.composed, n) || (this.composed = n, ss(e, t, () => {
+		this.composed && ms(this.composed, n) || (this.composed = n, os(e, t, () => {
 			n.opacity > this.opacityDrawn && this.drawOpacity(e, n.opacity);
 			for (let t of this.grids) {
 				(n.eye !== null && t.steps.some(({ part: e }) => e.basis) || this.snaps) && this.findPlaces(e, t, n.places);
-				for (let e of t.steps) ps(e, t.places?.target.texture ?? null, n);
+				for (let e of t.steps) fs(e, t.places?.target.texture ?? null, n);
 				this.draw(e, t.scene, t.target, this.opacityDrawn > 0 && t === this.grids.at(-1));
 			}
 		}));
 	}
 	dispose() {
-		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), ds(n);
-		this.opacity?.target.dispose(), this.opacity && [this.opacity.sum, this.opacity.finer].forEach(ds);
+		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), us(n);
+		this.opacity?.target.dispose(), this.opacity && [this.opacity.sum, this.opacity.finer].forEach(us);
 	}
 	drawOpacity(e, t) {
 		let [n, r] = [this.grids.at(-1), this.opacity];
@@ -3091,7 +3091,7 @@ var cs = {
 	}
 	findPlaces(e, t, n) {
 		if (t.places?.version === n) return;
-		let r = t.places?.target ?? ns([t.target.width, t.target.height], !1), { scene: i, free: a } = is(this.surface.geometry, this.plane, r);
+		let r = t.places?.target ?? ts([t.target.width, t.target.height], !1), { scene: i, free: a } = rs(this.surface.geometry, this.plane, r);
 		this.draw(e, i, r), a(), t.places = {
 			target: r,
 			version: n
@@ -3103,11 +3103,11 @@ var cs = {
 		r && i.colorMask(!0, !0, !0, !1), e.clear(!0, !1, !1), r && i.colorMask(!0, !0, !0, !0), e.render(t, this.camera);
 	}
 };
-function us(e, t) {
-	let n = ns(Y(e.grid, t), !1), r = fs(e, null);
-	for (let e of r) ps(e, null, cs);
+function ls(e, t) {
+	let n = ts(X(e.grid, t), !1), r = ds(e, null);
+	for (let e of r) fs(e, null, ss);
 	let [i, a] = [new k(), new k()];
-	return i.add(...r.map(({ quad: e }) => e)), a.add(ts(es, [
+	return i.add(...r.map(({ quad: e }) => e)), a.add(es($o, [
 		0,
 		0,
 		1,
@@ -3118,17 +3118,17 @@ function us(e, t) {
 		finer: a
 	};
 }
-function ds(e) {
+function us(e) {
 	for (let { geometry: t, material: n } of e.children) t.dispose(), n.dispose();
 }
-function fs(e, t) {
+function ds(e, t) {
 	let [n, r, i, a] = e.rectangle, o = t && new ie(1 / ((i - n) * t[0]), 1 / ((a - r) * t[1])), s = e.colours.length, [c, l] = [e.scale.length / (4 * s), Math.floor(64 / s)], u = [];
 	for (let t = 0; t < c; t += l) {
 		let n = Array.from({ length: 64 }, (t, n) => new A(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), r = e.basis ? 1 : 4, i = ts(Qo, e.rectangle, {
+		])), r = e.basis ? 1 : 4, i = es(Zo, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(t * s / r) },
 			sharing: { value: r },
@@ -3153,31 +3153,31 @@ function fs(e, t) {
 	}
 	return u;
 }
-function ps({ part: e, first: t, groups: n, quad: r }, i, a) {
+function fs({ part: e, first: t, groups: n, quad: r }, i, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => ms(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => ps(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
 	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", i), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function ms(e, t, n, r) {
+function ps(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function hs(e, t) {
+function ms(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
 // eigenfield-three/src/maps.ts
-function gs(e, t, n, i, a) {
+function hs(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? Mo(t) : 0;
+		u += e, d += t ? jo(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -3196,7 +3196,7 @@ function gs(e, t, n, i, a) {
 	return p.format = D, p.type = g, p.minFilter = p.magFilter = y, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
 }
 // eigenfield-three/src/eigen-weights.ts
-var _s = class {
+var gs = class {
 	info;
 	counts;
 	omega;
@@ -3228,12 +3228,12 @@ var _s = class {
 		if (n >= 0) return Float64Array.from(this.omega.subarray(n * this.total, (n + 1) * this.total));
 		let r = this.info.cameras[e];
 		if (!r) throw RangeError(`no camera ${e}`);
-		return this.at(...ao(this.info.viewPlane, r.centre), t);
+		return this.at(...io(this.info.viewPlane, r.centre), t);
 	}
 	maps(e, t) {
 		if (this.made?.mixing === e && this.made.usable === t) return this.made.texture;
 		this.dispose();
-		let n = gs(this.views, e, this.omega, this.counts, t);
+		let n = hs(this.views, e, this.omega, this.counts, t);
 		return this.made = {
 			texture: n,
 			mixing: e,
@@ -3243,20 +3243,20 @@ var _s = class {
 	dispose() {
 		this.made?.texture.dispose();
 	}
-}, vs = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", ys = {
+}, _s = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", vs = {
 	bilinear: 0,
 	bicubic: 1
-}, bs = {
+}, ys = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, xs = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Ss = xs.replace("void main", "invariant gl_Position;\nvoid main"), Cs = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", ws = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", Ts = `${Cs}
-${Ko}${vs}
+}, bs = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", xs = bs.replace("void main", "invariant gl_Position;\nvoid main"), Ss = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", Cs = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", ws = `${Ss}
+${Go}${_s}
 uniform float shownGain;       // of the eigen texture around mid grey
 in vec2 surfaceUv;
 vec3 eigenColour(vec3 value) { return clamp(0.5 + shownGain * value, 0.0, 1.0); }
-`, Es = `${Ts}${ws}
+`, Ts = `${ws}${Cs}
 in vec3 surfacePlace;
 out vec4 fragment;
 void main() {
@@ -3266,7 +3266,7 @@ void main() {
   if (shown == 3) colour = errorColour(colour, surfacePlace);
   fragment = vec4(colour, 1.0);
 }
-`, Ds = `${Ts}
+`, Es = `${ws}
 layout(location = 0) out vec4 fragment;
 layout(location = 1) out vec4 solid;
 vec3 threeBytes(float depth) {
@@ -3280,76 +3280,76 @@ void main() {
   float depth = (gl_FragCoord.z - gl_DepthRange.near) / gl_DepthRange.diff;
   solid = colour.a < 0.5 ? vec4(0.0) : vec4(threeBytes(depth), 1.0);
 }
-`, Os = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", ks = {
+`, Ds = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", Os = {
 	blending: a,
 	blendSrc: E,
 	blendDst: ee
-}, As = {
+}, ks = {
 	depthWrite: !1,
 	stencilWrite: !0,
 	stencilFunc: d,
 	stencilZPass: _
 };
-function js(e, t) {
+function As(e, t) {
 	let n = {
 		composed: { value: null },
 		finest: { value: 1 },
 		exposureScale: { value: new A(1, 1, 1) },
 		exposureBias: { value: new A() },
-		shown: { value: bs.picture },
+		shown: { value: ys.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new x() }
 	}, r = new O({
 		glslVersion: h,
-		vertexShader: t ? Ss : xs,
-		fragmentShader: t ? Ds : Es,
+		vertexShader: t ? xs : bs,
+		fragmentShader: t ? Es : Ts,
 		uniforms: n,
-		defines: { BICUBIC: ys.bicubic },
+		defines: { BICUBIC: vs.bicubic },
 		side: e ? u : m,
 		...t ? {
-			...ks,
-			...As
+			...Os,
+			...ks
 		} : {}
 	});
 	return r.name = "eigen textures", r;
 }
-function Ms(e) {
+function js(e) {
 	let { side: t } = e;
 	return new O({
 		name: "depth of sheets",
 		glslVersion: h,
-		vertexShader: Ss,
-		fragmentShader: Os,
+		vertexShader: xs,
+		fragmentShader: Ds,
 		colorWrite: !1,
 		side: t,
 		stencilWrite: !0,
 		stencilZPass: se
 	});
 }
-function Ns(e, t, n) {
-	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !Ps(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
+function Ms(e, t, n) {
+	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !Ns(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
 	u && (d.elements[13] = 1), e.toPhotograph.value.multiplyMatrices(d, l.multiply(c)), e.photograph.value = n;
 }
-function Ps(e) {
+function Ns(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
 // eigenfield-three/src/pieces.ts
-function Fs(e) {
+function Ps(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
 // eigenfield-three/src/strength.ts
-var Is = 128, Ls = .98;
-async function Rs(e, t, n, r) {
+var Fs = 128, Is = .98;
+async function Ls(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = Ji(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Is, Is).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = qi(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Fs, Fs).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	return u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, Is, Is);
-		let { data: u } = d.getImageData(0, 0, Is, Is);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, Fs, Fs);
+		let { data: u } = d.getImageData(0, 0, Fs, Fs);
 		(l ? [
 			0,
 			1,
@@ -3358,15 +3358,15 @@ async function Rs(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), Fs(u), zs(f);
+	}), Ps(u), Rs(f);
 }
-function zs(e) {
+function Rs(e) {
 	e.sort((e, t) => e - t);
-	let t = e[Math.floor(Ls * e.length)] ?? 0;
+	let t = e[Math.floor(Is * e.length)] ?? 0;
 	return t > 0 ? .45 / t : 1;
 }
 // eigenfield-three/src/film-textures.ts
-var Bs = class {
+var zs = class {
 	scene;
 	films;
 	filling = null;
@@ -3392,10 +3392,10 @@ var Bs = class {
 	}
 	put(e) {
 		e.together(() => {
-			Ea(this.scene).forEach(({ mean: t }, n) => e.putMean(n, {
+			Ta(this.scene).forEach(({ mean: t }, n) => e.putMean(n, {
 				pieces: this.piecesOf(t),
 				precision: null
-			})), q(this.scene).forEach(({ pictures: [t] }, n) => {
+			})), J(this.scene).forEach(({ pictures: [t] }, n) => {
 				let r = t ? this.piecesOf(t) : [];
 				t && r.length && e.putTextures(n, 0, r, t);
 			});
@@ -3403,7 +3403,7 @@ var Bs = class {
 	}
 	piecesOf({ part: e }) {
 		let t = e && this.films[e.film];
-		return t ? qt(t, e).map((e) => ({
+		return t ? Gt(t, e).map((e) => ({
 			picture: e,
 			row: 0,
 			rows: e.height
@@ -3411,44 +3411,44 @@ var Bs = class {
 	}
 	gainOf({ part: e, pieces: t, scale: n, zero: r }, i, a) {
 		let o = e && this.films[e.film];
-		return o ? zs(qt(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
+		return o ? Rs(Gt(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
 			let s = t * i + o, c = Math.max(...(a[o] ?? [0]).map(Math.abs)) * (n[s] ?? 0);
-			return Hs(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
+			return Vs(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
 		})) : 1;
 	}
-}, Vs = 8;
-function Hs({ data: e, width: t, height: n, stride: r }) {
+}, Bs = 8;
+function Vs({ data: e, width: t, height: n, stride: r }) {
 	let i = [];
-	for (let a = 0; a < n; a += Vs) for (let n = 0; n < t; n += Vs) {
+	for (let a = 0; a < n; a += Bs) for (let n = 0; n < t; n += Bs) {
 		let t = a * r + 2 * n;
 		i.push(e[t] + 256 * e[t + 1]);
 	}
 	return i;
 }
 // eigenfield-three/src/container.ts
-var Us = 1179937895, Ws = 1313821514, Gs = 5130562, Ks = 1280591429;
-async function qs(e) {
+var Hs = 1179937895, Us = 1313821514, Ws = 5130562, Gs = 1280591429;
+async function Ks(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof j && t.code === "truncated" ? Qs(e.received === 0) : t;
+		throw t instanceof j && t.code === "truncated" ? Zs(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== Us) throw Qs(!1);
+	if (new DataView(t).getUint32(0, !0) !== Hs) throw Zs(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
 	if (r !== 2) throw new j("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
 	if (i < 20) throw M("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== Ws) throw M("16", "it does not begin with JSON");
+	if (a.getUint32(4, !0) !== Us) throw M("16", "it does not begin with JSON");
 	if (o > Ce) throw M("12", `${o} bytes of JSON`);
 	if (20 + o > i) throw M("12", "a chunk longer than the file");
-	let s = Ys(await e.read(20, 20 + o)), c = (t, n) => () => Js(e, 20 + o, i, t, n);
+	let s = Js(await e.read(20, 20 + o)), c = (t, n) => () => qs(e, 20 + o, i, t, n);
 	return {
 		length: i,
 		text: s,
-		json: Xs(s, "20"),
-		binary: c(Gs, "binary chunk"),
-		groups: c(Ks, "chunk of groups")
+		json: Ys(s, "20"),
+		binary: c(Ws, "binary chunk"),
+		groups: c(Gs, "chunk of groups")
 	};
 }
-async function Js(e, t, n, r, i) {
+async function qs(e, t, n, r, i) {
 	let a = t;
 	for (let t = 1; t < 64 && a + 8 <= n; t++) {
 		let t = new DataView(await e.read(a, a + 8)), i = t.getUint32(0, !0);
@@ -3458,22 +3458,22 @@ async function Js(e, t, n, r, i) {
 	}
 	throw M(String(t), `no ${i}`);
 }
-function Ys(e) {
+function Js(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
 		throw M("20", "its JSON is not UTF-8");
 	}
 }
-function Xs(e, t) {
-	if (Zs(e) > 64) throw M(t, "its JSON is nested too deep");
+function Ys(e, t) {
+	if (Xs(e) > 64) throw M(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
 		throw M(t, "its JSON cannot be read");
 	}
 }
-function Zs(e) {
+function Xs(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3484,11 +3484,11 @@ function Zs(e) {
 	}
 	return n;
 }
-function Qs(e) {
+function Zs(e) {
 	return new j("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/groups.ts
-var $s = 3, ec = 4, tc = class {
+var Qs = 3, $s = 4, ec = class {
 	scene;
 	timeline;
 	mesh;
@@ -3500,16 +3500,16 @@ var $s = 3, ec = 4, tc = class {
 	open(e) {
 		let t = this.kept.get(e) ?? this.opened(e);
 		t.catch(() => this.kept.get(e) === t && this.kept.delete(e)), this.kept.delete(e), this.kept.set(e, t);
-		for (let [e] of this.kept) this.kept.size > $s && this.kept.delete(e);
+		for (let [e] of this.kept) this.kept.size > Qs && this.kept.delete(e);
 		return t;
 	}
 	async begin() {
-		let e = this.placeOf(0), t = async (t) => new Uint8Array(await this.read(e, Math.min(t, e.length))), { head: n, at: r } = await oc(await t(ec + ic(await t(ec), e)), e), i = [
+		let e = this.placeOf(0), t = async (t) => new Uint8Array(await this.read(e, Math.min(t, e.length))), { head: n, at: r } = await ac(await t($s + rc(await t($s), e)), e), i = [
 			n.key("weights"),
 			n.key("mesh"),
 			n.key("motion"),
 			n.key("frames").at(0)
-		].reduce((e, { raw: t }) => e + ac(t), r);
+		].reduce((e, { raw: t }) => e + ic(t), r);
 		return this.build(0, await t(i), n, r, 1);
 	}
 	placeOf(e) {
@@ -3519,12 +3519,12 @@ var $s = 3, ec = 4, tc = class {
 	}
 	async opened(e) {
 		let t = this.placeOf(e), n = new Uint8Array(await this.read(t, t.length));
-		await rc(n, t);
-		let { head: r, at: i } = await oc(n, t);
+		await nc(n, t);
+		let { head: r, at: i } = await ac(n, t);
 		return this.build(e, n, r, i, t.frames);
 	}
 	build(e, t, n, r, i) {
-		let a = this.placeOf(e), o = sc(t, r, a), s = this.weightsOf(n, o), c = this.meshOf(n, o), l = cc(n, o, c, a), { first: u, frames: d } = a, f = lc(n, a, this.timeline.films.length, o, i);
+		let a = this.placeOf(e), o = oc(t, r, a), s = this.weightsOf(n, o), c = this.meshOf(n, o), l = sc(n, o, c, a), { first: u, frames: d } = a, f = cc(n, a, this.timeline.films.length, o, i);
 		return {
 			index: e,
 			first: u,
@@ -3540,57 +3540,57 @@ var $s = 3, ec = 4, tc = class {
 		let n = e.key("mesh");
 		if (!n.exists) return this.mesh;
 		if (this.scene.sheets) throw n.wrong("a mesh of its own, in a clip with sheets");
-		let r = H["mesh-2"].decode(t(n), n.where);
+		let r = W["mesh-2"].decode(t(n), n.where);
 		if (!r.indices.length) throw M(n.where, "a mesh without faces");
 		return r;
 	}
 	weightsOf(e, t) {
-		let n = this.scene.heldOut.filter((e) => !e).length, r = X(e.key("weights"), this.scene.planes.length);
-		return Xa(n, this.scene.planes.flatMap(({ bases: e }, i) => {
-			let a = r[i] && X(r[i], e.length);
+		let n = this.scene.heldOut.filter((e) => !e).length, r = uc(e.key("weights"), this.scene.planes.length);
+		return Ya(n, this.scene.planes.flatMap(({ bases: e }, i) => {
+			let a = r[i] && uc(r[i], e.length);
 			return e.map(({ count: e }, r) => {
 				let i = a[r];
-				return Qa(H["weights-1"].decode(t(i), i.where), n, e, i.where);
+				return Za(W["weights-1"].decode(t(i), i.where), n, e, i.where);
 			});
 		}));
 	}
 	scalesOf(e) {
 		let { planes: t } = this.scene;
 		return {
-			means: X(e.key("means"), t.length).map((e, n) => uc(e, t[n].mean)),
-			bases: X(e.key("bases"), t.length).flatMap((e, n) => {
+			means: uc(e.key("means"), t.length).map((e, n) => lc(e, t[n].mean)),
+			bases: uc(e.key("bases"), t.length).flatMap((e, n) => {
 				let { bases: r } = t[n];
-				return X(e, r.length).map((e, t) => uc(e, r[t].pictures[0]));
+				return uc(e, r.length).map((e, t) => lc(e, r[t].pictures[0]));
 			})
 		};
 	}
 };
-function nc(e, { means: t, bases: n }) {
-	e.planes.forEach(({ mean: e }, n) => Object.assign(e, t[n])), q(e).forEach(({ pictures: [e] }, t) => e && Object.assign(e, n[t]));
+function tc(e, { means: t, bases: n }) {
+	e.planes.forEach(({ mean: e }, n) => Object.assign(e, t[n])), J(e).forEach(({ pictures: [e] }, t) => e && Object.assign(e, n[t]));
 }
-async function rc(e, { sha256: t, file: n, where: r }) {
+async function nc(e, { sha256: t, file: n, where: r }) {
 	let i = globalThis.crypto?.subtle;
 	if (!i) return;
 	let a = new Uint8Array(await i.digest("SHA-256", e));
 	if (Array.from(a, (e) => e.toString(16).padStart(2, "0")).join("") !== t) throw M(n ?? r, "other bytes than its SHA-256 says");
 }
-function ic(e, { where: t }) {
-	if (e.length < ec) throw M(t, "no head");
+function rc(e, { where: t }) {
+	if (e.length < $s) throw M(t, "no head");
 	return new DataView(e.buffer).getUint32(0, !0);
 }
-function ac(e) {
-	return typeof e == "number" ? e : Array.isArray(e) ? e.reduce((e, t) => e + ac(t), 0) : 0;
+function ic(e) {
+	return typeof e == "number" ? e : Array.isArray(e) ? e.reduce((e, t) => e + ic(t), 0) : 0;
 }
-async function oc(e, { where: t }) {
-	let n = ec + ic(e, { where: t });
+async function ac(e, { where: t }) {
+	let n = $s + rc(e, { where: t });
 	if (n > e.length) throw M(t, "a head longer than the group");
-	let r = await xe(e.subarray(ec, n), "deflate-raw", He, t);
+	let r = await xe(e.subarray($s, n), "deflate-raw", Ve, t);
 	return {
-		head: new U(Xs(new TextDecoder("utf-8").decode(r), t), t),
+		head: new G(Ys(new TextDecoder("utf-8").decode(r), t), t),
 		at: n
 	};
 }
-function sc(e, t, n) {
+function oc(e, t, n) {
 	let r = t;
 	return (t) => {
 		let i = r;
@@ -3598,24 +3598,24 @@ function sc(e, t, n) {
 		return e.subarray(i, r);
 	};
 }
-function cc(e, t, n, { frames: r }) {
+function sc(e, t, n, { frames: r }) {
 	let i = e.key("motion");
 	if (!i.exists) return null;
-	let a = H["motion-1"].decode(t(i), n, i.where);
+	let a = W["motion-1"].decode(t(i), n, i.where);
 	if (a.frames !== r) throw i.wrong(`${a.frames} frames of ${r}`);
 	return a;
 }
-function lc(e, t, n, r, i) {
-	return X(e.key("frames"), t.frames).slice(0, i).map((e) => X(e, n).map((e) => r(e)));
+function cc(e, t, n, r, i) {
+	return uc(e.key("frames"), t.frames).slice(0, i).map((e) => uc(e, n).map((e) => r(e)));
 }
-function uc(e, { pieces: t, textures: n }) {
+function lc(e, { pieces: t, textures: n }) {
 	let r = e;
 	return {
-		scale: Xi(r.key("scale"), t, n),
-		zero: Xi(r.key("zero"), t, n)
+		scale: Yi(r.key("scale"), t, n),
+		zero: Yi(r.key("zero"), t, n)
 	};
 }
-function X(e, t) {
+function uc(e, t) {
 	let n = e.items(t);
 	if (n.length !== t) throw e.wrong(`${t} entries are needed`);
 	return n;
@@ -3680,7 +3680,7 @@ function _c(e, t, n) {
 						a + e[1] / i[1]
 					],
 					colours: f,
-					...xc(l, u, h, n.halves && qi(l)),
+					...xc(l, u, h, n.halves && Ki(l)),
 					basis: {
 						ready: m,
 						column: o,
@@ -3688,7 +3688,7 @@ function _c(e, t, n) {
 					}
 				});
 			}
-			o += p, s += h ? Mo(h) : 0;
+			o += p, s += h ? jo(h) : 0;
 		}
 	}), r;
 }
@@ -3719,7 +3719,7 @@ function yc({ planes: e, sheets: t }, { means: n, needs: r }) {
 	};
 }
 function bc({ mean: e, channels: t, precision: n }) {
-	let { scale: r, zero: i } = e, a = n ? 4 : 1 / Yi(e, qi([e])), o = {
+	let { scale: r, zero: i } = e, a = n ? 4 : 1 / Ji(e, Ki([e])), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
 	};
@@ -3730,7 +3730,7 @@ function bc({ mean: e, channels: t, precision: n }) {
 	return o;
 }
 function xc(e, t, n, r) {
-	let i = e.flatMap((e) => Array(e.textures).fill(Yi(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * Mo(n), c = {
+	let i = e.flatMap((e) => Array(e.textures).fill(Ji(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * jo(n), c = {
 		scale: new Float32Array(s),
 		bias: new Float32Array(s)
 	};
@@ -3783,7 +3783,7 @@ var Sc = .25, Cc = 100, wc = 2, Tc = .25, Ec = .1, Dc = class extends f {
 		return this.shown.number;
 	}
 	get time() {
-		return ga(this.timeline, this.shown.number);
+		return ha(this.timeline, this.shown.number);
 	}
 	get sought() {
 		return (this.following ?? this.goal ?? this.shown.position) % this.frames;
@@ -3792,7 +3792,7 @@ var Sc = .25, Cc = 100, wc = 2, Tc = .25, Ec = .1, Dc = class extends f {
 		return this.goal !== null;
 	}
 	get group() {
-		let { groups: e } = this.timeline, t = K(this.timeline, this.shown.number);
+		let { groups: e } = this.timeline, t = q(this.timeline, this.shown.number);
 		return {
 			index: t,
 			count: e.length,
@@ -3828,7 +3828,7 @@ var Sc = .25, Cc = 100, wc = 2, Tc = .25, Ec = .1, Dc = class extends f {
 		this.plays && (this.plays = !1, this.clock = this.shown.position, this.sound?.rest(), this.ring.plain && this.begin(this.shown.position), this.dispatchEvent({ type: "change" }));
 	}
 	seek(e) {
-		return this.toFrame(ha(this.timeline, e));
+		return this.toFrame(ma(this.timeline, e));
 	}
 	toFrame(e) {
 		return this.toPosition(this.lap + Math.min(Math.max(Math.round(e), 0), this.frames - 1));
@@ -3911,7 +3911,7 @@ var Sc = .25, Cc = 100, wc = 2, Tc = .25, Ec = .1, Dc = class extends f {
 	fail(e, t) {
 		if (this.disposed) return;
 		this.user.failed(e), t === null && (this.lacking = [], this.pause());
-		let n = this.goal !== null && K(this.timeline, this.goal % this.frames);
+		let n = this.goal !== null && q(this.timeline, this.goal % this.frames);
 		n === !1 || t !== null && n !== t || (this.goal !== null && (this.clock = this.goal), this.goal = this.following = null, this.settle());
 	}
 }, Oc = 65535;
@@ -3978,7 +3978,7 @@ function Ic(e) {
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/sheet-stack.ts
-var Lc = "sheets", Rc = 16, zc = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Bc = `${Cs}${ws}
+var Lc = "sheets", Rc = 16, zc = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Bc = `${Ss}${Cs}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -4013,7 +4013,7 @@ void main() {
 	everywhere = new t();
 	target = null;
 	constructor(t) {
-		this.material = t, this.depth = Ms(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
+		this.material = t, this.depth = js(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
 			let { materialIndex: o = 0 } = a, s = this.sheets.material.length / 2, c = s - 1 - (o >> 1);
 			e.getContext().depthRange(c / s, (c + 1) / s);
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
@@ -4036,7 +4036,7 @@ void main() {
 				toPlace: { value: new x() }
 			},
 			transparent: !0,
-			...ks
+			...Os
 		});
 		let a = new Float32Array([
 			-1,
@@ -4085,7 +4085,7 @@ void main() {
 		if (!a || !o) return;
 		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Uc(a, o));
 		let { target: s } = this;
-		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), ss(e, t, () => {
+		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), os(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
 		}), e.getContext().depthRange(0, 1);
 		let { uniforms: c } = this.screen;
@@ -4121,7 +4121,7 @@ var Wc = class {
 		if (!i) throw Error("a field needs a mesh");
 		this.mesh = i;
 		let a = [i.material].flat().some((e) => e.side !== m);
-		this.material = js(a, t !== null), this.stack = t && new Hc(this.material);
+		this.material = As(a, t !== null), this.stack = t && new Hc(this.material);
 		for (let t of e) {
 			let e = (e, n) => r(e, n, t);
 			this.stack ? this.stack.attach(t, e) : (t.material = this.material, t.onBeforeRender = (t, n, r) => e(t, r));
@@ -4139,7 +4139,7 @@ var Wc = class {
 		if (n !== e) {
 			let { index: r, attributes: i } = e;
 			if (!r || !i.position || !i.uv) throw TypeError("A surface needs position, uv and an index.");
-			this.stack && t && ra({
+			this.stack && t && na({
 				faces: t,
 				where: "the geometry"
 			}, e), n.dispose();
@@ -4387,16 +4387,16 @@ var cl = class {
 		let { scene: i, info: a, meanSizes: o } = e, s = i.planes.flatMap(({ channels: e, bases: t }) => t.map((t) => ({
 			...t,
 			channels: e,
-			tenBits: qi(t.pictures)
+			tenBits: Ki(t.pictures)
 		})));
 		this.layout = s;
-		let c = Ea(i).map(({ channels: e, mean: t }, n) => {
+		let c = Ta(i).map(({ channels: e, mean: t }, n) => {
 			let r = n === i.planes.length;
 			return {
 				size: o[n] ?? [1, 1],
 				channels: e,
 				pieces: t.pieces,
-				tenBits: qi([t]),
+				tenBits: Ki([t]),
 				opacity: r
 			};
 		});
@@ -4482,12 +4482,12 @@ var cl = class {
 			this.layout[t]
 		];
 		if (!(c instanceof WebGLTexture) || !l || !u) return;
-		let { size: d, grid: f, corner: p, channels: m, tenBits: h } = u, g = Yi(i, s && h), _ = {
-			size: Y(d, o),
+		let { size: d, grid: f, corner: p, channels: m, tenBits: h } = u, g = Ji(i, s && h), _ = {
+			size: X(d, o),
 			grid: f,
 			corner: p,
 			unit: g,
-			codes: 255 * Ji(i)
+			codes: 255 * qi(i)
 		};
 		for (let e = n; e < Math.min(n + i.textures, a); e++) {
 			let t = r.slice((e - n) * i.pieces, (e - n + 1) * i.pieces), a = m * Math.floor(e / 4);
@@ -4499,10 +4499,10 @@ var cl = class {
 		this.version += 1;
 	}
 	putMean(e, t, n, { pieces: r, precision: i }) {
-		let [a, o] = [this.means[n]?.sourceTexture, Ea(this.parts.scene)[n]], { size: s, tenBits: c } = this.needs.means[n] ?? {};
+		let [a, o] = [this.means[n]?.sourceTexture, Ta(this.parts.scene)[n]], { size: s, tenBits: c } = this.needs.means[n] ?? {};
 		if (!(a instanceof WebGLTexture) || !o || !s) return;
 		this.stillVersions[n] = this.version += 1;
-		let { mean: l, channels: u } = o, d = Y(s, t.meanDown), [f] = r;
+		let { mean: l, channels: u } = o, d = X(s, t.meanDown), [f] = r;
 		if (f && r.length === 1 && "close" in f.picture && !c && d.join() === s.join()) {
 			Yc(e, a, f.picture, u);
 			return;
@@ -4511,8 +4511,8 @@ var cl = class {
 			size: d,
 			grid: s,
 			corner: [0, 0],
-			unit: Yi(l, c === !0),
-			codes: 255 * Ji(l)
+			unit: Ji(l, c === !0),
+			codes: 255 * qi(l)
 		};
 		this.put(r, a, u, p, (e) => ({
 			layer: Math.floor(e / 4),
@@ -4540,21 +4540,21 @@ var cl = class {
 		let { means: t, bases: n } = this.needs;
 		this.needs.geometry = ll(this.surface.geometry);
 		let r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
-		for (let i = this.options.memory ?? Do();; i /= 2) {
-			let a = Fo(this.needs, Kc(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => Jc(e, Y(t, o), Ao(n), !1, {
+		for (let i = this.options.memory ?? Eo();; i /= 2) {
+			let a = Po(this.needs, Kc(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => Jc(e, X(t, o), ko(n), !1, {
 				components: n,
 				halves: r
 			})), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return Jc(e, a ? Y(t, s) : [1, 1], a ? jo(a, n) : 1, u, {
+				return Jc(e, a ? X(t, s) : [1, 1], a ? Ao(a, n) : 1, u, {
 					components: Math.max(1, a),
 					halves: l && i
 				});
-			})], f = Ro(this.needs, a, i), [p, m, h] = [
+			})], f = Lo(this.needs, a, i), [p, m, h] = [
 				f.picture,
 				f.codes,
 				f.smaller
-			].map((t) => t ? Xc(e, t.size, t.format) : null), g = Xc(e, zo(r), bo);
+			].map((t) => t ? Xc(e, t.size, t.format) : null), g = Xc(e, Ro(r), yo);
 			if (p && g && (m || !f.codes) && (h || !f.smaller) && !d.includes(null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = d[t] ?? null), {
 				packer: il(e, {
 					picture: p,
@@ -4616,7 +4616,7 @@ var ul = 1.5, dl = .001, fl = class extends f {
 	constructor(e, t, n = {}) {
 		super(), this.parts = e, this.source = t;
 		let { scene: r, info: i } = e, a = r.sheets?.faces ?? null;
-		this.surface = new Wc(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = $a(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip && this.shape(e.clip.group, 0, e.clip.mesh, !1), this.textures = new cl(e, t, this.surface, n), this.complete = new Promise((e, t) => {
+		this.surface = new Wc(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = Qa(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip && this.shape(e.clip.group, 0, e.clip.mesh, !1), this.textures = new cl(e, t, this.surface, n), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0), this.listen(), n.renderer && this.textures.attach(n.renderer);
 	}
@@ -4670,7 +4670,7 @@ var ul = 1.5, dl = .001, fl = class extends f {
 	}
 	weightsOf(e) {
 		let { scene: t, info: n, weights: r } = this.parts;
-		return new _s(n, q(t).map(({ count: e }) => e), e, r);
+		return new gs(n, J(t).map(({ count: e }) => e), e, r);
 	}
 	makePlayer({ timeline: e, ring: t, sound: n }) {
 		return new Dc(e, t, {
@@ -4682,7 +4682,7 @@ var ul = 1.5, dl = .001, fl = class extends f {
 		}, n);
 	}
 	showFrame({ number: e, group: t, films: n }) {
-		this.group && this.shape(t, e - t.first, this.group.mesh, this.group.motion !== null), t !== this.group && this.enter(t), this.plain = n.includes(null), this.source instanceof Bs && this.source.show(n);
+		this.group && this.shape(t, e - t.first, this.group.mesh, this.group.motion !== null), t !== this.group && this.enter(t), this.plain = n.includes(null), this.source instanceof zs && this.source.show(n);
 	}
 	shape({ mesh: e, motion: t }, n, r, i) {
 		if (this.surface.geometry !== this.moved || e === r && !t && !i) return;
@@ -4691,13 +4691,13 @@ var ul = 1.5, dl = .001, fl = class extends f {
 	}
 	enter(e) {
 		let { scene: t } = this.parts, { plan: n } = this.textures;
-		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), nc(t, e), n && vc(this.summed.parts, t, this.textures, n);
+		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), tc(t, e), n && vc(this.summed.parts, t, this.textures, n);
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = hl(t, n), [i, a] = ao(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
+		let r = hl(t, n), [i, a] = io(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
 		this.setView(), this.setExposure(o, [i, a]);
-		let u = ys[this.filter];
+		let u = vs[this.filter];
 		l.defines.BICUBIC !== u && (l.defines.BICUBIC = u, l.needsUpdate = !0), l.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
@@ -4706,7 +4706,7 @@ var ul = 1.5, dl = .001, fl = class extends f {
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
 		if (!s) {
 			let { parts: e, opacity: t } = this.summed;
-			s = new ls(i, e, t, o, this.coarser > 1, this.surface, a), this.composers.set(o, s);
+			s = new cs(i, e, t, o, this.coarser > 1, this.surface, a), this.composers.set(o, s);
 		}
 		s.compose(e, t, n);
 		let { composed: c, finest: l } = this.surface.material.uniforms;
@@ -4717,15 +4717,15 @@ var ul = 1.5, dl = .001, fl = class extends f {
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.surface.material.uniforms.shown.value, r = n === bs.eigen ? this.shownEigen : null;
+		let n = this.surface.material.uniforms.shown.value, r = n === ys.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			opacity: this.textures.opacityVersion,
 			only: r,
-			count: n === bs.mean || this.plain ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === ys.mean || this.plain ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && rs(this.info.viewPlane, t),
+			eye: t && ns(this.info.viewPlane, t),
 			places: t || this.coarser > 1 ? this.surface.version : 0,
 			maps: t && this.weights.maps(this.mixing, this.usable)
 		};
@@ -4733,7 +4733,7 @@ var ul = 1.5, dl = .001, fl = class extends f {
 	setExposure(e, t) {
 		let { cameras: n, heldOut: r, mixedColours: i, viewPlane: a } = this.info, o = this.exposure ?? (i || this.showsErrors ? e : null), s = o === null ? void 0 : n[o], c = [[s, 1]];
 		if (i && (o === null || r[o])) {
-			let e = s ? ao(a, s.centre) : t, { camera: n, weight: r } = this.parts.weights.at(...e, this.mixing);
+			let e = s ? io(a, s.centre) : t, { camera: n, weight: r } = this.parts.weights.at(...e, this.mixing);
 			c = [
 				0,
 				1,
@@ -4741,7 +4741,7 @@ var ul = 1.5, dl = .001, fl = class extends f {
 				3
 			].map((e) => [this.encoded[n[e] ?? 0], r[e] ?? 0]);
 		}
-		let { scale: l, bias: u } = _o(c), { exposureScale: d, exposureBias: f } = this.surface.material.uniforms;
+		let { scale: l, bias: u } = go(c), { exposureScale: d, exposureBias: f } = this.surface.material.uniforms;
 		d.value.fromArray(l), f.value.fromArray(u);
 	}
 	get showsErrors() {
@@ -4749,9 +4749,9 @@ var ul = 1.5, dl = .001, fl = class extends f {
 	}
 	setView() {
 		let { uniforms: e } = this.surface.material, t = this.showsErrors, n = this.view === "error" && !t ? "picture" : this.view, r = this.shownEigen;
-		e.shown.value = bs[n === "eigen" && (this.plain || r >= this.loaded) ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
+		e.shown.value = ys[n === "eigen" && (this.plain || r >= this.loaded) ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
 		let i = t && this.info.cameras[this.camera ?? 0];
-		i && this.photograph && Ns(e, i, this.photograph);
+		i && this.photograph && Ms(e, i, this.photograph);
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -4959,10 +4959,10 @@ async function kl(e, t, n) {
 		textures: 1,
 		pieces: 1,
 		where: n
-	}, i = await ui(ve(e.slice().buffer, n), r, t), a = i[0].picture;
+	}, i = await ci(ve(e.slice().buffer, n), r, t), a = i[0].picture;
 	if ("data" in a) return a;
-	let o = new OffscreenCanvas(...t).getContext("2d");
-	return o.drawImage(a, 0, 0), Fs(i), Kt(o.getImageData(0, 0, ...t).data, 4 * t[0], 4, t);
+	let o = Ut(a, t);
+	return Ps(i), Wt(o, 4 * t[0], 4, t);
 }
 var Al = class {
 	size;
@@ -5062,11 +5062,11 @@ var Al = class {
 	}
 	stepped(e, t) {
 		if (!this.keysAlone) return e + t;
-		let { groups: n, frames: r } = this.timeline, i = K(this.timeline, this.numberOf(e)) + t, a = Math.floor(i / n.length);
+		let { groups: n, frames: r } = this.timeline, i = q(this.timeline, this.numberOf(e)) + t, a = Math.floor(i / n.length);
 		return e - this.numberOf(e) + a * r + n[i - a * n.length].first;
 	}
 	seek(e) {
-		if (this.broken.has(K(this.timeline, this.numberOf(e)))) return !1;
+		if (this.broken.has(q(this.timeline, this.numberOf(e)))) return !1;
 		let t = this.startOf(e), n = e >= this.from && this.slots.has(e) && ![...this.skipped].some((t) => t > e);
 		(this.meansAlone || this.given === null || this.next <= t || e < this.next && !n) && (this.meansAlone = !1, this.stop(), this.next = t), this.wanted = this.from = e;
 		for (let [t, n] of this.slots) t < e && this.forget(t, n);
@@ -5076,7 +5076,7 @@ var Al = class {
 		this.hopeless && this.keysAlone && (this.keysAlone = null, this.decoders = this.makeDecoders()), this.hopeless = !1, this.next === Infinity && this.seek(this.from);
 	}
 	take(e) {
-		this.next === Infinity && !this.hopeless && !this.seek(this.from) && this.pass(K(this.timeline, this.numberOf(this.from)), this.from), this.wanted = e;
+		this.next === Infinity && !this.hopeless && !this.seek(this.from) && this.pass(q(this.timeline, this.numberOf(this.from)), this.from), this.wanted = e;
 		let t = [...this.slots].filter(([t, { films: n }]) => t <= e && this.isWhole(n)), n = Math.max(...t.map(([e]) => e)), r = this.slots.get(n);
 		if (!r) return this.feed(), null;
 		for (let [e, t] of this.slots) e >= n || (e >= this.from && (this.late += 1), this.forget(e, t));
@@ -5107,11 +5107,11 @@ var Al = class {
 	}
 	startOf(e) {
 		let t = this.numberOf(e);
-		return e - t + this.timeline.groups[K(this.timeline, t)].first;
+		return e - t + this.timeline.groups[q(this.timeline, t)].first;
 	}
 	get newestEnd() {
 		if (!this.keysAlone || this.newest < 0) return this.newest;
-		let e = this.timeline.groups[K(this.timeline, this.numberOf(this.newest))];
+		let e = this.timeline.groups[q(this.timeline, this.numberOf(this.newest))];
 		return this.startOf(this.newest) + e.frames - 1;
 	}
 	makeDecoders() {
@@ -5142,7 +5142,7 @@ var Al = class {
 				this,
 				this.next,
 				this.numberOf(this.next)
-			], r = K(this.timeline, n);
+			], r = q(this.timeline, n);
 			if (this.broken.has(r)) {
 				this.pass(r, t);
 				continue;
@@ -5274,8 +5274,8 @@ var Al = class {
 };
 // eigenfield-three/src/clip.ts
 async function Bl(e, t, n, r) {
-	let i = new tc(e, t, n, r), a = await i.begin();
-	a.motion?.read(0), nc(e, a);
+	let i = new ec(e, t, n, r), a = await i.begin();
+	a.motion?.read(0), tc(e, a);
 	let o = await Promise.all(t.films.map(({ size: e, where: t }, n) => kl(a.units[0][n], e, t))), { sound: s } = t;
 	return {
 		timeline: t,
@@ -5295,29 +5295,29 @@ async function Vl(e, t) {
 	};
 }
 async function Hl(e, t) {
-	let { type: n } = Zr(e) ?? {}, { mimeType: r } = t.codec;
+	let { type: n } = Yr(e) ?? {}, { mimeType: r } = t.codec;
 	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
 	if (!i) throw M(t.where, "no picture");
 	return i.picture;
 }
 function Ul({ pieces: e, precision: t }) {
-	Fs(e), t?.close();
+	Ps(e), t?.close();
 }
 // eigenfield-three/src/packed.ts
 var Wl = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Gl = 4;
 async function Kl(e, t) {
-	let n = new U(e, ""), r = n.key("extensions").key(Se), i = r.key("packed");
+	let n = new G(e, ""), r = n.key("extensions").key(Se), i = r.key("packed");
 	if (!i.exists) return e;
-	Da(r);
-	let a = ki(n), o = a[i.integer(a.length - 1, a.length - 1)];
+	Ea(r);
+	let a = Oi(n), o = a[i.integer(a.length - 1, a.length - 1)];
 	if (!o || o.length < Gl) throw i.wrong("no length");
 	let s = new DataView(await t(o.offset, Gl)).getUint32(0, !0);
 	if (Gl + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new U(Xs(await Jl(await t(o.offset + Gl, s), i.where), i.where), i.where).object(), u = ql(new U(c, `${i.where}/lengths`), o, Gl + s), { packed: d, ...f } = r.object();
+	let { lengths: c, ...l } = new G(Ys(await Jl(await t(o.offset + Gl, s), i.where), i.where), i.where).object(), u = ql(new G(c, `${i.where}/lengths`), o, Gl + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
-		bufferViews: [...n.key("bufferViews").items(we).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
+		bufferViews: [...n.key("bufferViews").items(F).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
 		extensions: {
 			...n.key("extensions").object(),
 			[Se]: {
@@ -5328,7 +5328,7 @@ async function Kl(e, t) {
 	};
 }
 function ql(e, t, n) {
-	let r = n, i = e.items(we).map((e) => {
+	let r = n, i = e.items(F).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
 			buffer: 0,
@@ -5361,7 +5361,7 @@ async function Jl(e, t) {
 // eigenfield-three/src/still-textures.ts
 var Yl = 3;
 function Xl(e) {
-	return q(e).flatMap((e, t) => {
+	return J(e).flatMap((e, t) => {
 		let n = 0;
 		return e.pictures.map((r) => {
 			let i = n;
@@ -5381,7 +5381,7 @@ function Zl(e, t, n) {
 	};
 	return {
 		async fill(n) {
-			let { plan: o, signal: s } = n, c = i ?? await Promise.all(Ea(e).map((e) => Vl(e, t)));
+			let { plan: o, signal: s } = n, c = i ?? await Promise.all(Ta(e).map((e) => Vl(e, t)));
 			i = null, c.forEach((e, t) => {
 				n.putMean(t, e), Ul(e);
 			});
@@ -5391,10 +5391,10 @@ function Zl(e, t, n) {
 					if (s.aborted) return;
 					for (let e of l.slice(d, d + Yl - u.length)) u.push(a(e)), d += 1;
 					let i = await u[0] ?? [];
-					u.shift(), n.putTextures(e, t, i, r), Fs(i), n.announce();
+					u.shift(), n.putTextures(e, t, i, r), Ps(i), n.announce();
 				}
 			} finally {
-				for (let e of u) e.then(Fs).catch(() => void 0);
+				for (let e of u) e.then(Ps).catch(() => void 0);
 			}
 			n.end();
 		},
@@ -5402,7 +5402,7 @@ function Zl(e, t, n) {
 			let r = 0;
 			for (let { channels: i, bases: a } of e.planes) {
 				let o = e.colours.slice(r, r += i), s = a.find(({ count: e }) => e > n);
-				if (s) return Rs(s, n, o, t);
+				if (s) return Ls(s, n, o, t);
 			}
 			return Promise.resolve(1);
 		},
@@ -5711,15 +5711,15 @@ var Cu = class {
 	lacks = null;
 	ours;
 	constructor(e, t = {}) {
-		this.parser = e, this.options = t, this.ours = Ca(e.json);
+		this.parser = e, this.options = t, this.ours = Sa(e.json);
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
 		this.options.renderer && Gc(this.options.renderer);
 		let { json: e } = this.parser;
 		me(e), Object.assign(e, await Kl(e, (e, t) => this.read(e, t)));
-		let t = wa(e), { stream: n } = this.options, r = t.timeline?.groups[0]?.file ? n?.readFile : n?.readGroups;
-		(!t.timeline || r) && (this.views = t.views, t.timeline && t.shown && !await si("image/avif") ? this.lacks = new j("codec", "This browser decodes no AV1; use a newer browser. The first frame is shown.", "") : (this.scene = t, this.scene.shown || wu(e)));
+		let t = Ca(e), { stream: n } = this.options, r = t.timeline?.groups[0]?.file ? n?.readFile : n?.readGroups;
+		(!t.timeline || r) && (this.views = t.views, t.timeline && t.shown && !await ai("image/avif") ? this.lacks = new j("codec", "This browser decodes no AV1; use a newer browser. The first frame is shown.", "") : (this.scene = t, this.scene.shown || wu(e)));
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
@@ -5753,21 +5753,21 @@ var Cu = class {
 			r.geometry.dispose();
 			for (let t of n) t.geometry = e;
 		}
-		t.sheets && ra(t.sheets, r.geometry);
+		t.sheets && na(t.sheets, r.geometry);
 		let [s, c, l, u] = await Promise.all([
-			Promise.all(o ? [] : Ea(t).map((e) => Vl(e, i))),
-			Va(t, i),
-			o ? o.group.omega : Ya(t, i),
-			to(t, i)
-		]), d = c.filter((e, n) => !t.heldOut[n]), f = new ou(Float64Array.from(d.flatMap((e) => ao(t, e.centre))), u, t.extent[1] === 0), p = o ? Ea(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
+			Promise.all(o ? [] : Ta(t).map((e) => Vl(e, i))),
+			Ba(t, i),
+			o ? o.group.omega : Ja(t, i),
+			eo(t, i)
+		]), d = c.filter((e, n) => !t.heldOut[n]), f = new ou(Float64Array.from(d.flatMap((e) => io(t, e.centre))), u, t.extent[1] === 0), p = o ? Ta(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
 			scene: t,
-			info: ro(t, c, p, f.grid, this.fileBytes(), Mc(r.geometry)),
+			info: no(t, c, p, f.grid, this.fileBytes(), Mc(r.geometry)),
 			meshes: n,
 			meanSizes: p,
 			omega: l,
 			weights: f,
 			clip: o
-		}, h = o ? new Bs(t, o.films) : Zl(t, i, s);
+		}, h = o ? new zs(t, o.films) : Zl(t, i, s);
 		e.userData.eigenfield = new fl(m, h, this.options);
 	}
 	openClip(e, t, n) {
@@ -5808,8 +5808,8 @@ async function Du(e, t = {}) {
 	n?.addEventListener("abort", o), i.signal.addEventListener("abort", () => a.abort());
 	let s = ju(e, r, a.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", o));
 	try {
-		let o = await qs(r);
-		if (!Ca(o.json)) return {
+		let o = await Ks(r);
+		if (!Sa(o.json)) return {
 			gltf: await Au(r, o, s),
 			field: null,
 			error: null
@@ -5890,4 +5890,4 @@ async function Nu(e, t) {
 function Pu(e, t) {
 	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { fl as EigenField, Cu as EigenfieldPlugin, Dc as Player, Lc as SHEETS, j as SceneError, Do as defaultMemory, Du as loadEigenfield, co as novelCamera, po as placeCamera, pe as refuseAddresses };
+export { fl as EigenField, Cu as EigenfieldPlugin, Dc as Player, Lc as SHEETS, j as SceneError, Eo as defaultMemory, Du as loadEigenfield, so as novelCamera, fo as placeCamera, pe as refuseAddresses };
