@@ -134,7 +134,7 @@ def test_a_page_for_guests_names_its_poster_to_crawlers_and_shows_how_to_embed_i
         assert [str(side) for side in poster.size] == [tags["og:image:width"], tags["og:image:height"]]
         assert poster.format == "JPEG" and np.asarray(poster).std() > 5
     assert '"url":"https://example.org/a b/page.html"' in page and '"ui":"plain"' in page
-    assert page.index('class="poster"') < page.index("eigenfield-config")
+    assert page.index('class="poster"') < page.index("eigenfield-config") < page.index('type="module"')
     code, err = export("other.html", "--at", "0.5,0")
     page = (export.place / "other.html").read_text(encoding="utf-8")
     assert code == 0 and '<iframe src="other.html"' in err and "og:url" not in page

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-TRUST_RATIO = 0.25  # of the expected seconds of all steps: as much measured work outweighs what was expected
+# What was expected counts beside the measured work as so many times all steps: a step that takes twice its time says
+# more about the capture than about the machine
+TRUST_RATIO = 1.0
 STEP_TRUST_RATIO = 0.3  # likewise, of one step
 RANGE_LOW_RATIO, RANGE_HIGH_RATIO = 0.65, 1.8  # of an expectation, between which the time lies
 RANGE_UNTIL = 0.25  # of the expected work that is done, from when on one number is said

@@ -34,18 +34,18 @@ class StepCost(NamedTuple):
 
 STEPS = {  # by the name with which a step begins
     "motion": StepCost("cameras", 8, 3.6, stages={"features": 35, "matches": 25, "cameras": 40}),
-    "array": StepCost("depth", 15, 0.5, 35, stages={"cameras and depth": 1}),
-    "relief": StepCost("surface", 8, stages={"second layer": 70, "what lies open": 30}),
+    "array": StepCost("depth", 15, 0.2, 60, stages={"cameras and depth": 1}),
+    "relief": StepCost("surface", 8, of_one=10, stages={"second layer": 70, "what lies open": 30}),
     "surface": StepCost(
         "surface",
-        30,
+        40,
         5,
         stages={"features": 8, "first depth": 20, "depth": 25, "fusion": 6, "visibility": 26, "surface": 15},
     ),
     "proxy": StepCost("atlas", 12),
     "trial": StepCost("trial of layers", 35, stages={"planes": 25, "sheets": 75}),
     "layers": StepCost("layers", 10, 22, stages={"planes": 50, "sheets": 45, "what is seen": 5}),
-    "mesh": StepCost("mesh", 5, 1),
+    "mesh": StepCost("mesh", 5, 0.6),
     "maps": StepCost("texture maps", 5, 0.7, stages={"texture maps": 1}),
     "fit": StepCost("fit", 5, 1.5, stages={"fit luma": 1, "fit chroma": 1}),
     "code": StepCost(
@@ -53,14 +53,14 @@ STEPS = {  # by the name with which a step begins
     ),
 }
 FEW_VIEWS = {  # of below SUBSAMPLE_MIN_OBSERVATIONS: more rounds, and all pixels
-    "mesh": StepCost("mesh", 5, of_root=8),
-    "fit": StepCost("fit", 5, of_root=32),
-    "code": StepCost("coding", 4, of_root=15),
+    "mesh": StepCost("mesh", 10, of_root=6),
+    "fit": StepCost("fit", 5, of_root=26),
+    "code": StepCost("coding", 4, of_root=12),
 }
 AROUND = {"code": StepCost("coding", 6, 1.2)}  # of more views that look around: their textures are rotated
 TEXTURE_MAPS = {"mesh": StepCost("mesh", 5)}  # without a fit: its surface and triangles stay as they are
 DENSE_TRIAL = StepCost("trial of layers", 20)  # which ends with the fewest layers, as a rule
-LAYERED = {"layers": STEPS["layers"], "mesh": StepCost("mesh", 5, 28), "fit": StepCost("fit", 5, 30)}
+LAYERED = {"layers": STEPS["layers"], "mesh": StepCost("mesh", 10, 28), "fit": StepCost("fit", 5, 30)}
 DENSE_LAYERS_RATIO = 1 / 3  # of the time of layers: dense arrays have fewer
 THREADS_POWER = 0.8  # of the number of threads, by which time falls
 MEMORY_FIXED_BYTES, MEMORY_BYTES_A_PIXEL = 9e8, 50.0

@@ -116,11 +116,11 @@ def single_file(
     scene = base64.b64encode(glb).decode("ascii")
     page = _text("index.html")
     page = _replace_once(page, STYLE_ELEMENT, lambda _: f"<style>{style}</style>")
-    page = _replace_once(page, SCRIPT_ELEMENT, lambda _: f'<script type="module">{script}</script>')
+    page = _replace_once(page, SCRIPT_ELEMENT, lambda _: "")  # it comes behind the poster, which else waits for it
     meta = f'<meta http-equiv="Content-Security-Policy" content="{policy}">'
     page = _replace_once(page, HEAD_ELEMENT, lambda found: f"{found}\n{meta}{head}")
     data = f'<script type="application/octet-stream" id="eigenfield-scene">{scene}</script>'
-    return _encode(_configure(page, config, data, poster))
+    return _encode(_configure(page, config, f'{data}\n<script type="module">{script}</script>', poster))
 
 
 def write_page(
