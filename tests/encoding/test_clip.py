@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 from dataclasses import replace
 from fractions import Fraction
 
@@ -210,6 +212,32 @@ def test_workers_make_the_same_groups(tmp_path, count):
         seen.asked.clear()
         spread = encode_footage(seen, MESH, OPTIONS, group="2", work=tmp_path, workers=workers)
     assert set(seen.asked[4:]) == {0, 1}  # this process has made the first group alone
+    assert list(map(stored_bytes, spread.groups.stored)) == list(map(stored_bytes, alone.groups.stored))
+
+
+@pytest.mark.slow
+def test_a_cluster_makes_the_same_groups_though_one_of_its_workers_is_killed(tmp_path):
+    from distributed import Client, LocalCluster
+
+    seen = footage(1.0, 0.8, 0.7, 0.9)
+    alone = encode_footage(seen, MESH, OPTIONS, group="1")
+    killed = []
+
+    with (
+        LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs=50) as small,
+        Client(small.scheduler_address, set_as_default=False) as client,
+        open_executor(cluster=small.scheduler_address) as workers,
+    ):
+        started = [*client.run(os.getpid).values()]
+
+        def disturb(stage: str, done: int, total: int) -> None:
+            if stage == "groups on workers" and done == 1 and not killed:
+                os.kill(started[0], signal.SIGKILL)
+                killed.append(started[0])
+
+        spread = encode_footage(seen, MESH, OPTIONS, group="1", work=tmp_path, workers=workers, progress=disturb)
+        client.wait_for_workers(2, timeout=60)
+        assert killed and killed[0] not in client.run(os.getpid).values()
     assert list(map(stored_bytes, spread.groups.stored)) == list(map(stored_bytes, alone.groups.stored))
 
 
