@@ -1,7 +1,9 @@
 // A clip in the built viewer: its bar, its keys, its time in the address, and what is said where nothing plays it.
 
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
+import { cpSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { eigenfield } from "./command.mjs";
@@ -37,6 +39,31 @@ test("a clip plays when it is opened, while the eye moves, and stands still wher
   await opened(page);
   assert.deepEqual([(await state(page)).playing, (await state(page)).time], [false, 0]);
   await close();
+});
+
+test("the folder of a clip is dropped on the page, and one that lacks a file says which", async () => {
+  const lacking = mkdtempSync(join(tmpdir(), "eigenfield-clip-"));
+  cpSync(scenePath("folder"), lacking, { recursive: true });
+  rmSync(join(lacking, "groups/00001.eftg"));
+  const { page, close } = await openViewer(browser, CLIP);
+  const devtools = await page.context().newCDPSession(page);
+  const dropFolder = async (path) => {
+    const data = { items: [], files: [path], dragOperationsMask: 1 };
+    for (const type of ["dragEnter", "dragOver", "drop"]) await devtools.send("Input.dispatchDragEvent", { type, x: 200, y: 150, data });
+  };
+  await opened(page);
+  await dropFolder(scenePath("folder"));
+  await until(page, () => document.title.startsWith("folder"));
+  for (const number of [7, 13]) {
+    await page.evaluate((number) => window.eigenfield.field.player.toFrame(number), number);
+    assert.equal(await frame(page), number);
+  }
+  await dropFolder(lacking);
+  await until(page, () => document.title.startsWith("eigenfield-clip-"));
+  const said = await page.evaluate(() => window.eigenfield.field.player.seek(0.9).then(() => "", ({ message }) => message));
+  assert.match(`${said} ${await page.locator(".stage").innerText()}`, /groups\/00001\.eftg/);
+  await close();
+  rmSync(lacking, { recursive: true });
 });
 
 for (const ui of ["plain", "full"]) {

@@ -4,8 +4,25 @@ import { Arrival, pour } from "./arrival.js";
 import { SceneError, damaged } from "./errors.js";
 import { retried } from "./ranges.js";
 
+/** Where the files of a clip's folder are read: the first `length` bytes of one that has `size`. Rejects with a SceneError:
+ * `network`, `damaged`, `truncated`, or the reason of a signal. */
+export interface Beside {
+  read(name: string, size: number, length: number): Promise<ArrayBuffer>;
+}
+
+/** Files that somebody brought, by their paths in the folder. */
+export function besideHere(files: ReadonlyMap<string, Blob>): Beside {
+  const read = async (name: string, size: number, length: number): Promise<ArrayBuffer> => {
+    const file = files.get(name);
+    if (!file) throw new SceneError("damaged", `The folder has no file ${name}; copy the clip's whole folder.`, name);
+    if (file.size !== size) throw damaged(name, `${file.size} bytes of ${size}`);
+    return file.slice(0, length).arrayBuffer();
+  };
+  return { read };
+}
+
 /** Files in the folder of a clip that lies on a server. */
-export class Beside {
+export class BesideUrl implements Beside {
   private readonly arriving = new Map<string, Arrival>(); // of which not all was read yet
 
   /** `scene`: the address of the clip. */
@@ -14,8 +31,6 @@ export class Beside {
     private readonly signal: AbortSignal,
   ) {}
 
-  /** The first `length` bytes of a file that has `size`. Rejects with a SceneError: `network`, `damaged`, `truncated`, or
-   * the signal's reason. */
   read(name: string, size: number, length: number): Promise<ArrayBuffer> {
     return retried(this.signal, async () => {
       const arrival = this.arriving.get(name) ?? this.fetch(name, size);

@@ -1,7 +1,7 @@
 import { GLTFLoader, type GLTF } from "three/addons/loaders/GLTFLoader.js";
 import { refuseAddresses } from "./addresses.js";
 import { Arrival } from "./arrival.js";
-import { Beside } from "./beside.js";
+import { type Beside, besideHere, BesideUrl } from "./beside.js";
 import { openContainer, type Container } from "./container.js";
 import { isScene } from "./document.js";
 import { SceneError, asSceneError } from "./errors.js";
@@ -13,6 +13,7 @@ import { Ranges } from "./ranges.js";
 export interface LoadOptions extends EigenfieldOptions {
   signal?: AbortSignal | undefined;
   onBytes?: ((loaded: number, total: number | undefined) => void) | undefined;
+  files?: ReadonlyMap<string, Blob> | undefined; // of a clip's folder, by their paths in it, where no address leads to them
 }
 
 export interface Loaded {
@@ -47,7 +48,8 @@ export async function loadEigenfield(source: string | Blob | ArrayBuffer, option
     const ranges = (file: string | Blob): Ranges =>
       new Ranges(file, arrival, container.length, () => first.abort(), stop.signal);
     const far = source instanceof ArrayBuffer ? arrival : ranges(source);
-    const beside = typeof source === "string" ? new Beside(source, stop.signal) : null;
+    const brought = options.files ? besideHere(options.files) : null;
+    const beside = typeof source === "string" ? new BesideUrl(source, stop.signal) : brought;
     const gltf = await parseScene(arrival, container, far, beside, options);
     signal?.throwIfAborted();
     const { eigenfield: field, eigenfieldError: error }: Record<string, unknown> = gltf.userData;

@@ -22,7 +22,7 @@ import { createPlaybar } from "./playbar";
 import { posterShown, takePoster } from "./poster";
 import { saveScreenshot } from "./screenshot";
 import { createShare } from "./share";
-import { fileSource, namedSource } from "./source";
+import { namedSource } from "./source";
 import { keepAddress } from "./url";
 import { createViewer, type Viewer } from "./viewer";
 import { createHeadset } from "./xr";
@@ -65,7 +65,7 @@ function start(): void {
     return;
   }
 
-  const chooser = takeFiles((file) => void viewer.open(fileSource(file)), (over) => overlays.hover(over));
+  const chooser = takeFiles((source) => void viewer.open(source), (over) => overlays.hover(over));
   const overlays = createOverlays(viewer, chooser.choose);
   const panel = createPanel(viewer);
   const map = createCameraMap(viewer);

@@ -85,6 +85,7 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
         renderer: stage.renderer,
         signal: mine.signal,
         memory: config.memory ?? undefined,
+        files: source.files,
         onBytes: (loaded, total) => {
           confine(document); // the answer has come, and nothing of the file is read yet
           if (!latest()) return;

@@ -9,6 +9,7 @@ export interface Source {
   from: string | Blob;
   bytes: number | null;
   own: boolean; // the page was made for it: its title and photographs belong to it
+  files?: ReadonlyMap<string, Blob>; // of the folder that a clip is
 }
 
 /** What the page or its address names, or null: then somebody has to bring a file. */
@@ -26,6 +27,12 @@ export function namedSource(config: Config, page: Document, address: URL): Sourc
 
 export function fileSource(file: File): Source {
   return { name: withoutSuffix(file.name), from: file, bytes: file.size, own: false };
+}
+
+/** The clip in a folder, whose files are named by their paths in it. Without its file another is opened, and says why not. */
+export function folderSource(name: string, files: ReadonlyMap<string, File>): Source | null {
+  const file = files.get("scene.glb") ?? files.values().next().value;
+  return file ? { ...fileSource(file), ...(file.name === "scene.glb" && { name }), files } : null;
 }
 
 function lastPart(url: string): string {

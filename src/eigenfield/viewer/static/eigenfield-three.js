@@ -4914,7 +4914,15 @@ function Tl(e) {
 	return e instanceof j && e.code === "network";
 }
 // eigenfield-three/src/beside.ts
-var El = class {
+function El(e) {
+	return { read: async (t, n, r) => {
+		let i = e.get(t);
+		if (!i) throw new j("damaged", `The folder has no file ${t}; copy the clip's whole folder.`, t);
+		if (i.size !== n) throw M(t, `${i.size} bytes of ${n}`);
+		return i.slice(0, r).arrayBuffer();
+	} };
+}
+var Dl = class {
 	scene;
 	signal;
 	arriving = /* @__PURE__ */ new Map();
@@ -4935,27 +4943,27 @@ var El = class {
 	fetch(e, t) {
 		let n = new _l();
 		return this.arriving.set(e, n), this.receive(e, t, n).catch((t) => {
-			n.fail(this.signal.aborted || t instanceof j ? t : Dl(e, t));
+			n.fail(this.signal.aborted || t instanceof j ? t : Ol(e, t));
 		}), n;
 	}
 	async receive(e, t, n) {
 		let r = new URL(e, new URL(this.scene, document.baseURI)), { ok: i, status: a, headers: o, body: s } = await fetch(r, { signal: this.signal }), c = o.get("Content-Encoding") ? null : o.get("Content-Length"), l = i && c !== null && Number(c) !== t;
 		if (i && s && !l) return vl(s, n, this.signal);
-		throw await s?.cancel(), l ? M(e, `${c} bytes of ${t}`) : Dl(e, `The server answered ${a}`);
+		throw await s?.cancel(), l ? M(e, `${c} bytes of ${t}`) : Ol(e, `The server answered ${a}`);
 	}
 };
-function Dl(e, t) {
+function Ol(e, t) {
 	return new j("network", `The clip's file ${e} cannot be fetched; put it beside the clip's own. It is tried again when it plays on.`, e, { cause: t });
 }
 // eigenfield-three/src/film-pictures.ts
-var Ol = {
+var kl = {
 	mimeType: "video/AV1",
 	bits: 10
 };
-async function kl(e, t, n) {
+async function Al(e, t, n) {
 	let r = {
 		view: -1,
-		codec: Ol,
+		codec: kl,
 		textures: 1,
 		pieces: 1,
 		where: n
@@ -4964,7 +4972,7 @@ async function kl(e, t, n) {
 	let o = Ut(a, t);
 	return Ps(i), Wt(o, 4 * t[0], 4, t);
 }
-var Al = class {
+var jl = class {
 	size;
 	where;
 	user;
@@ -4985,7 +4993,7 @@ var Al = class {
 	}
 	decode(e, t, n) {
 		if (!n) return;
-		let { turn: r } = this, i = kl(e, this.size, this.where).then((e) => r === this.turn ? this.user.take(t, () => Promise.resolve(e)) : void 0).catch((e) => {
+		let { turn: r } = this, i = Al(e, this.size, this.where).then((e) => r === this.turn ? this.user.take(t, () => Promise.resolve(e)) : void 0).catch((e) => {
 			r === this.turn && this.user.failed(e);
 		}).finally(() => {
 			this.decoding.delete(i), this.user.closed();
@@ -5001,11 +5009,11 @@ var Al = class {
 	dispose() {
 		this.reset();
 	}
-}, jl = 8, Ml = 2, Nl = 2 / 3, Pl = /* @__PURE__ */ new Set([
+}, Ml = 8, Nl = 2, Pl = 2 / 3, Fl = /* @__PURE__ */ new Set([
 	"damaged",
 	"truncated",
 	"network"
-]), Fl = class {
+]), Il = class {
 	timeline;
 	groups;
 	user;
@@ -5037,7 +5045,7 @@ var Al = class {
 		return this.decoders.reduce((e, t) => e + t.open, 0);
 	}
 	get reach() {
-		return Math.max(this.newestEnd, this.from) + jl / 2;
+		return Math.max(this.newestEnd, this.from) + Ml / 2;
 	}
 	get busy() {
 		return this.decoders.some(({ busy: e }) => e);
@@ -5133,7 +5141,7 @@ var Al = class {
 		return e.every((e, t) => e !== null || !this.needs(t));
 	}
 	get hasRoom() {
-		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = this.keysAlone ? this.slots.size < Ml ? Infinity : 0 : Math.max(this.from, this.wanted) + jl;
+		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = this.keysAlone ? this.slots.size < Nl ? Infinity : 0 : Math.max(this.from, this.wanted) + Ml;
 		return this.next < Math.min(n, t) && this.decoders.every(({ ready: e }, t) => e || !this.needs(t));
 	}
 	async feedAll() {
@@ -5149,7 +5157,7 @@ var Al = class {
 			}
 			this.fed = r;
 			let i = this.given?.index === r ? this.given : await this.groups.open(r), a = n - i.first, o = i.units[a] ?? [];
-			a >= i.frames * Nl && this.prepare((r + 1) % this.timeline.groups.length), i.motion?.read(a);
+			a >= i.frames * Pl && this.prepare((r + 1) % this.timeline.groups.length), i.motion?.read(a);
 			let s = () => this.decoders.map((e, t) => [e, o[t]]).filter((e, t) => this.needs(t));
 			if (a === 0 && await Promise.all(s().map(([e, t]) => e.start(t))), e !== this.turn) return;
 			this.given = i, this.next = this.keysAlone ? t + i.frames : t + 1;
@@ -5183,7 +5191,7 @@ var Al = class {
 	fail(e) {
 		let t = e instanceof j && e.code === "codec" ? e : null;
 		if (t && !this.keysAlone) return this.thin(t);
-		if (!(e instanceof j) || !Pl.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(t ? this.keysAlone : e, null);
+		if (!(e instanceof j) || !Fl.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(t ? this.keysAlone : e, null);
 		let n = e.code === "damaged" && this.given?.index === this.fed && !this.tried.has(this.fed), r = this.startOf(Math.max(this.next - 1, 0));
 		this.halt();
 		for (let [e, t] of this.slots) this.isWhole(t.films) || this.forget(e, t);
@@ -5191,7 +5199,7 @@ var Al = class {
 	}
 	thin(e) {
 		for (let e of this.decoders) e.dispose();
-		this.keysAlone = e, this.meansAlone = !1, this.decoders = this.timeline.films.map(({ size: e, where: t }, n) => new Al(e, t, this.userOf(n))), this.stop(), this.next = this.startOf(this.from), this.user.thinned(), this.feed();
+		this.keysAlone = e, this.meansAlone = !1, this.decoders = this.timeline.films.map(({ size: e, where: t }, n) => new jl(e, t, this.userOf(n))), this.stop(), this.next = this.startOf(this.from), this.user.thinned(), this.feed();
 	}
 	rest() {
 		this.stop(), this.next = Infinity;
@@ -5217,7 +5225,7 @@ var Al = class {
 	reuseOne(e, { room: t }) {
 		t && this.rooms[e]?.push(t);
 	}
-}, Il = .3, Ll = .2, Rl = 2, zl = class {
+}, Ll = .3, Rl = .2, zl = 2, Bl = class {
 	place;
 	read;
 	changed;
@@ -5248,7 +5256,7 @@ var Al = class {
 		let r = e - this.place.first;
 		if (r < 0 || r >= n.duration) return n.pause();
 		let i = r - n.currentTime;
-		Math.abs(i) > Il * Math.max(t, 1) ? n.seeking || (n.currentTime = r) : n.playbackRate = t * (1 + Math.min(Math.max(Rl * i, -.2), Ll)), n.paused && !this.starting && this.start(n);
+		Math.abs(i) > Ll * Math.max(t, 1) ? n.seeking || (n.currentTime = r) : n.playbackRate = t * (1 + Math.min(Math.max(zl * i, -.2), Rl)), n.paused && !this.starting && this.start(n);
 	}
 	rest() {
 		this.audio?.pause();
@@ -5273,48 +5281,48 @@ var Al = class {
 	}
 };
 // eigenfield-three/src/clip.ts
-async function Bl(e, t, n, r) {
+async function Vl(e, t, n, r) {
 	let i = new ec(e, t, n, r), a = await i.begin();
 	a.motion?.read(0), tc(e, a);
-	let o = await Promise.all(t.films.map(({ size: e, where: t }, n) => kl(a.units[0][n], e, t))), { sound: s } = t;
+	let o = await Promise.all(t.films.map(({ size: e, where: t }, n) => Al(a.units[0][n], e, t))), { sound: s } = t;
 	return {
 		timeline: t,
 		group: a,
 		films: o,
 		mesh: n,
-		ring: (e) => new Fl(t, i, e),
-		sound: s && ((e) => new zl(s, () => r(s, s.length), e))
+		ring: (e) => new Il(t, i, e),
+		sound: s && ((e) => new Bl(s, () => r(s, s.length), e))
 	};
 }
 // eigenfield-three/src/means.ts
-async function Vl(e, t) {
-	let { mean: n, meanSize: r } = e, i = e.precision && await Hl(await t(e.precision.view), e.precision);
+async function Hl(e, t) {
+	let { mean: n, meanSize: r } = e, i = e.precision && await Ul(await t(e.precision.view), e.precision);
 	return {
 		pieces: await n.codec.decode(await t(n.view), n, r),
 		precision: i
 	};
 }
-async function Hl(e, t) {
+async function Ul(e, t) {
 	let { type: n } = Yr(e) ?? {}, { mimeType: r } = t.codec;
 	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
 	if (!i) throw M(t.where, "no picture");
 	return i.picture;
 }
-function Ul({ pieces: e, precision: t }) {
+function Wl({ pieces: e, precision: t }) {
 	Ps(e), t?.close();
 }
 // eigenfield-three/src/packed.ts
-var Wl = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Gl = 4;
-async function Kl(e, t) {
+var Gl = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Kl = 4;
+async function ql(e, t) {
 	let n = new G(e, ""), r = n.key("extensions").key(Se), i = r.key("packed");
 	if (!i.exists) return e;
 	Ea(r);
 	let a = Oi(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < Gl) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, Gl)).getUint32(0, !0);
-	if (Gl + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new G(Ys(await Jl(await t(o.offset + Gl, s), i.where), i.where), i.where).object(), u = ql(new G(c, `${i.where}/lengths`), o, Gl + s), { packed: d, ...f } = r.object();
+	if (!o || o.length < Kl) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, Kl)).getUint32(0, !0);
+	if (Kl + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new G(Ys(await Yl(await t(o.offset + Kl, s), i.where), i.where), i.where).object(), u = Jl(new G(c, `${i.where}/lengths`), o, Kl + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
 		bufferViews: [...n.key("bufferViews").items(F).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
@@ -5327,7 +5335,7 @@ async function Kl(e, t) {
 		}
 	};
 }
-function ql(e, t, n) {
+function Jl(e, t, n) {
 	let r = n, i = e.items(F).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
@@ -5339,8 +5347,8 @@ function ql(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function Jl(e, t) {
-	let n = new TextEncoder().encode(Wl), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function Yl(e, t) {
+	let n = new TextEncoder().encode(Gl), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -5359,8 +5367,8 @@ async function Jl(e, t) {
 	}
 }
 // eigenfield-three/src/still-textures.ts
-var Yl = 3;
-function Xl(e) {
+var Xl = 3;
+function Zl(e) {
 	return J(e).flatMap((e, t) => {
 		let n = 0;
 		return e.pictures.map((r) => {
@@ -5374,22 +5382,22 @@ function Xl(e) {
 		});
 	}).sort((e, t) => e.first - t.first || e.number - t.number);
 }
-function Zl(e, t, n) {
-	let r = Xl(e), i = n, a = ({ basis: e, picture: n }) => {
+function Ql(e, t, n) {
+	let r = Zl(e), i = n, a = ({ basis: e, picture: n }) => {
 		let r = t(n.view).then((t) => n.codec.decode(t, n, e.size));
 		return r.catch(() => void 0), r;
 	};
 	return {
 		async fill(n) {
-			let { plan: o, signal: s } = n, c = i ?? await Promise.all(Ta(e).map((e) => Vl(e, t)));
+			let { plan: o, signal: s } = n, c = i ?? await Promise.all(Ta(e).map((e) => Hl(e, t)));
 			i = null, c.forEach((e, t) => {
-				n.putMean(t, e), Ul(e);
+				n.putMean(t, e), Wl(e);
 			});
 			let l = r.filter(({ first: e }) => e < o.usable), u = [], d = 0;
 			try {
 				for (let { number: e, first: t, picture: r } of l) {
 					if (s.aborted) return;
-					for (let e of l.slice(d, d + Yl - u.length)) u.push(a(e)), d += 1;
+					for (let e of l.slice(d, d + Xl - u.length)) u.push(a(e)), d += 1;
 					let i = await u[0] ?? [];
 					u.shift(), n.putTextures(e, t, i, r), Ps(i), n.announce();
 				}
@@ -5407,36 +5415,36 @@ function Zl(e, t, n) {
 			return Promise.resolve(1);
 		},
 		dispose() {
-			i?.forEach(Ul), i = null;
+			i?.forEach(Wl), i = null;
 		}
 	};
 }
 // eigenfield-three/src/grid.ts
-function Ql(e) {
+function $l(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = $l(e, n, r) ?? (n === r ? null : $l(e, r, n));
+		let r = t / n, i = eu(e, n, r) ?? (n === r ? null : eu(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function $l(e, t, n) {
-	let [r, i] = [tu(e, 0), tu(e, 1)];
-	if (t === 1 && nu(i) > 0 || n === 1 && nu(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => ru(i, e) - ru(i, t));
+function eu(e, t, n) {
+	let [r, i] = [nu(e, 0), nu(e, 1)];
+	if (t === 1 && ru(i) > 0 || n === 1 && ru(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => iu(i, e) - iu(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => ru(r, e) - ru(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => iu(r, e) - iu(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return eu(n, t, (e, t) => ru(r, o(t, e))) && eu(t, n, (e, t) => ru(i, o(e, t))) ? {
+	return tu(n, t, (e, t) => iu(r, o(t, e))) && tu(t, n, (e, t) => iu(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function eu(e, t, n) {
+function tu(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -5446,33 +5454,33 @@ function eu(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function tu(e, t) {
+function nu(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function nu(e) {
+function ru(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var ru = (e, t) => e[t] ?? 0, iu = 1e-6, au = 32, ou = class {
+var iu = (e, t) => e[t] ?? 0, au = 1e-6, ou = 32, su = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = Ql(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = $l(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(su(e), this.isLine ? 0 : su(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(cu(e), this.isLine ? 0 : cu(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => _u(e, t, this.places) : e === "bilinear" && this.grid ? yu(this.places, this.grid) : uu(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => vu(e, t, this.places) : e === "bilinear" && this.grid ? bu(this.places, this.grid) : du(this.places, this.triangles);
 	}
 };
-function su(e) {
+function cu(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function cu(e) {
+function lu(e) {
 	let t = {
 		camera: [
 			0,
@@ -5492,7 +5500,7 @@ function cu(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function lu(e, t, n, r, i, a) {
+function uu(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -5500,49 +5508,49 @@ function lu(e, t, n, r, i, a) {
 		m
 	];
 }
-function uu(e, t) {
+function du(e, t) {
 	if (!t.length) {
-		let t = gu(e, hu(e));
-		return (n, r) => mu(n, r, e, t);
+		let t = _u(e, gu(e));
+		return (n, r) => hu(n, r, e, t);
 	}
-	let n = fu(e, t, 3), r = pu(t);
+	let n = pu(e, t, 3), r = mu(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * au + $(i)] ?? []) {
+		for (let r of n[$(a) * ou + $(i)] ?? []) {
 			let [n, l, u] = [
-				du(t, r, 0),
-				du(t, r, 1),
-				du(t, r, 2)
-			], d = lu(i, a, e, n, l, u), f = Math.min(...d);
+				fu(t, r, 0),
+				fu(t, r, 1),
+				fu(t, r, 2)
+			], d = uu(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? mu(i, a, e, r) : cu(c.map((e, n) => [du(t, o, n), e]));
+		return s < -1e-9 ? hu(i, a, e, r) : lu(c.map((e, n) => [fu(t, o, n), e]));
 	};
 }
-var du = (e, t, n) => e[3 * t + n] ?? 0;
+var fu = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * au)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * ou)));
 }
-function fu(e, t, n) {
+function pu(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * au + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * ou + t]?.push(i);
 	}
 	return r;
 }
-function pu(e) {
+function mu(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [du(e, n, r), du(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [fu(e, n, r), fu(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -5551,7 +5559,7 @@ function pu(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function mu(e, t, n, r) {
+function hu(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -5566,12 +5574,12 @@ function mu(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return cu([[o, 1 - c], [s, c]]);
+	return lu([[o, 1 - c], [s, c]]);
 }
-function hu(e) {
+function gu(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function gu(e, t) {
+function _u(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -5592,7 +5600,7 @@ function gu(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function _u(e, t, n) {
+function vu(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -5606,12 +5614,12 @@ function _u(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || vu(n, r, i, a) <= iu) return mu(e, t, n, gu(n, [
+	if (a < 0 || yu(n, r, i, a) <= au) return hu(e, t, n, _u(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = lu(e, t, n, r, i, a);
+	let [l, u, d] = uu(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -5627,15 +5635,15 @@ function _u(e, t, n) {
 		]
 	};
 }
-function vu(e, t, n, r) {
+function yu(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function yu(e, t) {
+function bu(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = gu(e, hu(e));
-		return (n, r) => mu(n, r, e, t);
+		let t = _u(e, gu(e));
+		return (n, r) => hu(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -5644,7 +5652,7 @@ function yu(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = fu(e, o.flat(), 4), c = [];
+	let s = pu(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -5652,12 +5660,12 @@ function yu(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * au + $(t)] ?? []) {
-			let s = o[a], c = s ? bu(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * ou + $(t)] ?? []) {
+			let s = o[a], c = s ? xu(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return mu(t, n, e, l);
-		let [a, c] = xu(t, n, e, r);
+		if (!r || i < -1e-9) return hu(t, n, e, l);
+		let [a, c] = Su(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -5669,7 +5677,7 @@ function yu(e, t) {
 		};
 	};
 }
-function bu(e, t, n, r) {
+function xu(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -5677,7 +5685,7 @@ function bu(e, t, n, r) {
 	}
 	return i;
 }
-function xu(e, t, n, r) {
+function Su(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -5695,14 +5703,14 @@ function xu(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Su(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [Su(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Cu(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [Cu(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function Su(e) {
+function Cu(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var Cu = class {
+var wu = class {
 	parser;
 	options;
 	name = Se;
@@ -5717,9 +5725,9 @@ var Cu = class {
 		if (!this.ours) return;
 		this.options.renderer && Gc(this.options.renderer);
 		let { json: e } = this.parser;
-		me(e), Object.assign(e, await Kl(e, (e, t) => this.read(e, t)));
+		me(e), Object.assign(e, await ql(e, (e, t) => this.read(e, t)));
 		let t = Ca(e), { stream: n } = this.options, r = t.timeline?.groups[0]?.file ? n?.readFile : n?.readGroups;
-		(!t.timeline || r) && (this.views = t.views, t.timeline && t.shown && !await ai("image/avif") ? this.lacks = new j("codec", "This browser decodes no AV1; use a newer browser. The first frame is shown.", "") : (this.scene = t, this.scene.shown || wu(e)));
+		(!t.timeline || r) && (this.views = t.views, t.timeline && t.shown && !await ai("image/avif") ? this.lacks = new j("codec", "This browser decodes no AV1; use a newer browser. The first frame is shown.", "") : (this.scene = t, this.scene.shown || Tu(e)));
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
@@ -5740,7 +5748,7 @@ var Cu = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (this.lacks && (e.userData.eigenfieldError = this.lacks), !t) return;
-		let n = Tu(e, this.parser), [r] = n;
+		let n = Eu(e, this.parser), [r] = n;
 		if (!r) throw M("/meshes/0", "no node shows it");
 		t.shown && kc(r.geometry, t.shown);
 		let i = async (e) => {
@@ -5755,11 +5763,11 @@ var Cu = class {
 		}
 		t.sheets && na(t.sheets, r.geometry);
 		let [s, c, l, u] = await Promise.all([
-			Promise.all(o ? [] : Ta(t).map((e) => Vl(e, i))),
+			Promise.all(o ? [] : Ta(t).map((e) => Hl(e, i))),
 			Ba(t, i),
 			o ? o.group.omega : Ja(t, i),
 			eo(t, i)
-		]), d = c.filter((e, n) => !t.heldOut[n]), f = new ou(Float64Array.from(d.flatMap((e) => io(t, e.centre))), u, t.extent[1] === 0), p = o ? Ta(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
+		]), d = c.filter((e, n) => !t.heldOut[n]), f = new su(Float64Array.from(d.flatMap((e) => io(t, e.centre))), u, t.extent[1] === 0), p = o ? Ta(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
 			scene: t,
 			info: no(t, c, p, f.grid, this.fileBytes(), Mc(r.geometry)),
 			meshes: n,
@@ -5767,12 +5775,12 @@ var Cu = class {
 			omega: l,
 			weights: f,
 			clip: o
-		}, h = o ? new zs(t, o.films) : Zl(t, i, s);
+		}, h = o ? new zs(t, o.films) : Ql(t, i, s);
 		e.userData.eigenfield = new fl(m, h, this.options);
 	}
 	openClip(e, t, n) {
 		let r = this.options.stream;
-		return Bl(e, t, n, ({ offset: e, length: t, file: n }, i) => n === null ? r.readGroups(e, i) : r.readFile(n, t, i));
+		return Vl(e, t, n, ({ offset: e, length: t, file: n }, i) => n === null ? r.readGroups(e, i) : r.readFile(n, t, i));
 	}
 	fileBytes() {
 		let { groups: e = [], sound: t = null } = this.scene?.timeline ?? {}, n = [...e, ...t ? [t] : []].reduce((e, t) => e + (t.file ? t.length : 0), 0);
@@ -5781,52 +5789,52 @@ var Cu = class {
 		return r.KHR_binary_glTF?.header?.length ?? i.buffers[0]?.byteLength ?? 0;
 	}
 };
-function wu(e) {
+function Tu(e) {
 	let [t] = e.nodes;
 	t && (t.mesh = 0), e.meshes = [{ primitives: [{
 		attributes: {},
 		material: 0
 	}] }], e.materials = [{ doubleSided: !0 }];
 }
-function Tu(e, t) {
+function Eu(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		Eu(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		Du(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function Eu(e) {
+function Du(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function Du(e, t = {}) {
+async function Ou(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
 	let r = new _l(), [i, a] = [new AbortController(), new AbortController()], o = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", o), i.signal.addEventListener("abort", () => a.abort());
-	let s = ju(e, r, a.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", o));
+	let s = Mu(e, r, a.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", o));
 	try {
 		let o = await Ks(r);
 		if (!Sa(o.json)) return {
-			gltf: await Au(r, o, s),
+			gltf: await ju(r, o, s),
 			field: null,
 			error: null
 		};
-		let c = await Ou(r, o, e instanceof ArrayBuffer ? r : ((e) => new Cl(e, r, o.length, () => a.abort(), i.signal))(e), typeof e == "string" ? new El(e, i.signal) : null, t);
+		let c = e instanceof ArrayBuffer ? r : ((e) => new Cl(e, r, o.length, () => a.abort(), i.signal))(e), l = t.files ? El(t.files) : null, u = await ku(r, o, c, typeof e == "string" ? new Dl(e, i.signal) : l, t);
 		n?.throwIfAborted();
-		let { eigenfield: l, eigenfieldError: u } = c.userData;
+		let { eigenfield: d, eigenfieldError: f } = u.userData;
 		return {
-			gltf: c,
-			field: l instanceof fl ? l : null,
-			error: u instanceof j ? u : null
+			gltf: u,
+			field: d instanceof fl ? d : null,
+			error: f instanceof j ? f : null
 		};
 	} catch (e) {
 		throw i.abort(), n?.throwIfAborted(), de(e);
 	}
 }
-async function Ou(e, t, n, r, i) {
+async function ku(e, t, n, r, i) {
 	let a = new ce(), o = (e, t = n) => async (n, r) => {
 		let i = await e + n;
 		return t.read(i, i + r);
@@ -5836,17 +5844,17 @@ async function Ou(e, t, n, r, i) {
 		total: t.length,
 		read: o(s, e),
 		readGroups: (...e) => o(t.groups())(...e),
-		readFile: (...e) => r?.read(...e) ?? Promise.reject(ku(e[0]))
+		readFile: (...e) => r?.read(...e) ?? Promise.reject(Au(e[0]))
 	};
-	return a.register((e) => new Cu(e, {
+	return a.register((e) => new wu(e, {
 		...i,
 		stream: c
 	})), a.parseAsync(t.text, "");
 }
-function ku(e) {
+function Au(e) {
 	return new j("unsupported", `The clip is a folder, and its file ${e} cannot be found from here; make one file of it, with \`eigenfield export\`.`, e);
 }
-async function Au(e, t, n) {
+async function ju(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -5858,25 +5866,25 @@ async function Au(e, t, n) {
 		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function ju(e, t, n, r) {
+async function Mu(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? Mu(e) : await Nu(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? Nu(e) : await Pu(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : Pu(t.received, e);
+			throw n.aborted ? e : Fu(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function Mu(e) {
+function Nu(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function Nu(e, t) {
+async function Pu(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -5887,7 +5895,7 @@ async function Nu(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function Pu(e, t) {
+function Fu(e, t) {
 	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { fl as EigenField, Cu as EigenfieldPlugin, Dc as Player, Lc as SHEETS, j as SceneError, Eo as defaultMemory, Du as loadEigenfield, so as novelCamera, fo as placeCamera, pe as refuseAddresses };
+export { fl as EigenField, wu as EigenfieldPlugin, Dc as Player, Lc as SHEETS, j as SceneError, Eo as defaultMemory, Ou as loadEigenfield, so as novelCamera, fo as placeCamera, pe as refuseAddresses };
