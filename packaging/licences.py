@@ -18,7 +18,7 @@ from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "licences.md"
-EXTRAS = "cluster", "gpu", "meshes", "photos", "raw", "renders", "s3"  # those of users
+EXTRAS = "arrays", "cluster", "gpu", "meshes", "photos", "raw", "renders", "s3"  # those of users
 PERMITTED = {
     "0BSD", "Apache-2.0", "Apache-2.0 WITH LLVM-exception", "BSD-2-Clause", "BSD-3-Clause", "CC0-1.0", "MIT", "MIT-0",
     "MIT-CMU", "PSF-2.0", "Zlib",

@@ -28,7 +28,7 @@ from eigenfield.calibration.charts.board import charuco
 from eigenfield.capture.writers.save import save_calibration
 from eigenfield.cli import VERBS, group
 from eigenfield.cli.encode import command as encode_command
-from support import charts
+from support import charts, light_fields
 from support.captures import write_array, write_capture
 from support.motion import K, film, photographed
 
@@ -177,6 +177,10 @@ def prepare(name: str, place: Path) -> None:
         write_array(place / "grid")
         film(place / "walk.mp4", 12)
         ef.export(ef.load(ROOT / "docs/scene.glb"), place / "quilt.png", kind="quilt", resolution=(96, 96))
+        light_fields.write_eslf(place / "flowers_eslf.png", light_fields.light_field(14, 14))
+        light_fields.write_toolbox(place / "Bikes__Decoded.mat", light_fields.light_field(7, 7))
+        (place / "buddha").mkdir()
+        light_fields.write_old_hci(place / "buddha/lf.h5", light_fields.light_field(3, 3))
     capture = write_capture(place / "capture")
     trimesh.load(capture / "proxy.ply", process=False).export(capture / "proxy.obj")
     if name != "captures":

@@ -21,6 +21,7 @@ from eigenfield.capture.readers.xml_tree import load_xml
 from eigenfield.cli import drawing
 from eigenfield.cli.capture_options import _parse_grid, _parse_layers
 from eigenfield.cli.common import pair_of_numbers
+from eigenfield.cli.export import _parse_quilt
 from eigenfield.core.camera_names import named_camera
 from eigenfield.core.errors import EigenfieldError
 from eigenfield.encoding.target import Target, parse_size
@@ -84,6 +85,7 @@ OPTIONS = {
     "pattern": (compile_pattern, "view_{row}_{col}*.png"),
     "primitive": (parse_primitive, "sphere:1,2,3,4"),
     "primitive plane": (parse_primitive, "plane:1,2,3,0,0,1,4"),
+    "quilt": (as_option(_parse_quilt), "8x6"),
     "reference": (lambda text: named_camera(text, NAMES, "reference"), "a.png"),
     "resolution": (as_option(pair_of_numbers("WxH")), "640x480"),
     "target-size": (lambda text: Target(size=parse_size(text)).check(), "1.5MB"),

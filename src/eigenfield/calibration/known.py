@@ -81,7 +81,8 @@ def _read_entries(path: Path, photos: PhotoSet) -> Mapping[str, LensEntry]:
     if path.is_file() and is_storage(path):
         return {name_key(name): entry for name, entry in read_opencv_intrinsics(path).items()}
     formats = tuple(row for row in FORMATS if row.read_cameras is not None)
-    claim = claim_of_file(path, formats) if path.is_file() else detect_format(path, formats, OpenOptions())
+    find = claim_of_file if path.is_file() else detect_format
+    claim = find(path, formats, OpenOptions())
     if claim is None or claim.format.read_cameras is None:
         raise CaptureError(
             "calibration-missing",

@@ -13,8 +13,10 @@ from eigenfield.capture.messages import list_names
 from eigenfield.capture.passed_over import describe_passed_over, refuse_foreign
 from eigenfield.capture.photographs.kinds import MESH_KIND, OTHER_KINDS, VIDEO_EXTENSIONS
 from eigenfield.capture.readers import colmap, transforms
+from eigenfield.capture.readers.array5d import ARRAY_ENDINGS, find_array, read_array
 from eigenfield.capture.readers.bundler import find_bundler, find_unlisted, read_bundler
 from eigenfield.capture.readers.deepview import DEEPVIEW_FILE, find_deepview, read_deepview
+from eigenfield.capture.readers.eslf import find_eslf, is_eslf, read_eslf
 from eigenfield.capture.readers.folder import find_photographs, read_photographs
 from eigenfield.capture.readers.grid_names import find_grid_names, read_grid_names
 from eigenfield.capture.readers.hci import find_hci, read_hci
@@ -26,6 +28,7 @@ from eigenfield.capture.readers.nvm import find_nvm, read_nvm
 from eigenfield.capture.readers.opencv import find_opencv, opencv_content, read_opencv
 from eigenfield.capture.readers.positions import find_positions, read_positions
 from eigenfield.capture.readers.projections import find_projections, read_projections
+from eigenfield.capture.readers.quilt import find_quilt, parse_quilt_name, read_quilt
 from eigenfield.capture.readers.realitycapture import find_realitycapture, read_realitycapture
 from eigenfield.capture.readers.stanford import find_stanford, read_stanford
 from eigenfield.capture.readers.strecha import find_strecha, read_strecha
@@ -53,7 +56,7 @@ class Format:
         read_cameras: From what `find` returned and the folder of the photographs to the calibration.
         read_names: From what `find` returned and the caller's options to the arrangement.
         endings: Of file names that may be named directly as a calibration of this format.
-        uses: Those of "grid", "frame", "walk_frames" and "pattern" that the reader uses.
+        uses: Those of "grid", "quilt", "frame", "walk_frames" and "pattern" that the reader uses.
         cameras: Whether it may yield cameras at all.
     """
 
@@ -92,8 +95,9 @@ def _name_format(
     *uses: str,
     rank: int = RANK_NAMES,
     cameras: bool = False,
+    endings: tuple[str, ...] = (),
 ) -> Format:
-    return Format(name, title, rank, find, read_names=read, uses=uses, cameras=cameras)
+    return Format(name, title, rank, find, read_names=read, uses=uses, cameras=cameras, endings=endings)
 
 
 FORMATS = (
@@ -119,6 +123,10 @@ FORMATS = (
     _name_format("grid", "grid names (*_RR_CC: row, column)", find_grid_names, read_grid_names, "grid", "pattern"),
     _name_format("numbered", "numbered frames with --grid", lambda folder: None, read_numbered, "grid",
                  rank=RANK_ON_REQUEST),  # it must be asked for
+    _name_format("quilt", "quilt: a row of views in one picture", find_quilt, read_quilt, "quilt"),
+    _name_format("eslf", "lenslet picture of a plenoptic camera", find_eslf, read_eslf, "grid"),
+    _name_format("array", "array of row, column, y, x and channel (.mat, HDF5)", find_array, read_array, "grid",
+                 endings=ARRAY_ENDINGS),
     _name_format("video", "one video a camera", find_videos, read_videos, "frame", rank=RANK_ANY),
     _name_format("walk", "one video of a walk", find_walk, read_walk, "walk_frames", rank=RANK_ANY),
     _name_format("folder", "plain folder of photographs", find_photographs, read_photographs, rank=RANK_ANY),
@@ -208,13 +216,18 @@ def _relative_name(found: Path, folder: Path) -> str:
     return one_line(found.relative_to(folder).as_posix() if found.is_relative_to(folder) else str(found))
 
 
-def claim_of_file(path: Path, formats: tuple[Format, ...]) -> Claim:
-    """The format of a file that is named: a calibration, or the video of a walk.
+def claim_of_file(path: Path, formats: tuple[Format, ...], options: OpenOptions) -> Claim:
+    """The format of a file that is named: a calibration, the video of a walk, or all views in one file.
 
     Raises CaptureError: `calibration-unknown`, `calibration-foreign`, `format-ambiguous`.
     """
     if FORMATS_BY_NAME["walk"] in formats and path.name.lower().endswith(VIDEO_EXTENSIONS):
         return Claim(FORMATS_BY_NAME["walk"], path)
+    if FORMATS_BY_NAME["quilt"] in formats and is_photograph_file(path):
+        if options.quilt is not None or parse_quilt_name(path) is not None:
+            return Claim(FORMATS_BY_NAME["quilt"], path)
+        if is_eslf(path):
+            return Claim(FORMATS_BY_NAME["eslf"], path)
     if len(formats) > 1 and path.name == DEEPVIEW_FILE and find_deepview(path.parent) == path:
         return Claim(FORMATS_BY_NAME["deepview"], path)
     if len(formats) > 1:
@@ -246,7 +259,7 @@ def _not_a_calibration(path: Path) -> CaptureError:
     remedy += ", or a folder with one"
     if is_photograph_file(path):
         message = "is one photograph, and no calibration"
-        remedy = f"name the folder of all photographs: {shell_word(path.parent)}"
+        remedy = f"name the folder of all photographs: {shell_word(path.parent)}, or say --quilt COLUMNSxROWS"
     elif kind is not None:
         head = read_head(path)
         what = recognise(head) or kind.what

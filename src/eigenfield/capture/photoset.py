@@ -15,6 +15,8 @@ from eigenfield.core.brief import brief_repr
 from eigenfield.core.camera import Camera
 from eigenfield.core.observations import Photograph
 
+UNPACKED_FORMATS = ("video", "walk", "quilt", "eslf", "array")  # whose photographs are taken out of other files
+
 
 @dataclass(frozen=True)
 class Shot:

@@ -20,7 +20,7 @@ from eigenfield.capture.pairing import pair_photographs
 from eigenfield.capture.passed_over import describe_passed_over
 from eigenfield.capture.photographs.exr import choose_exposure
 from eigenfield.capture.photographs.kinds import VIDEO_EXTENSIONS, is_linear
-from eigenfield.capture.photoset import Capture, PhotoSet
+from eigenfield.capture.photoset import UNPACKED_FORMATS, Capture, PhotoSet
 from eigenfield.capture.readers.grid_names import compile_pattern
 from eigenfield.capture.readers.video import is_video_rig, read_videos
 from eigenfield.capture.unread import describe_unread
@@ -112,7 +112,7 @@ def find_claim(path: Path, formats: tuple[Format, ...], options: OpenOptions) ->
         refuse_address(path)
         raise CaptureError("capture-missing", "does not exist", path=path, remedy="check the path")
     if path.is_file():
-        return claim_of_file(path, formats)
+        return claim_of_file(path, formats, options)
     if len(formats) == 1 and formats[0].read_names is not None:  # asked for: taken at the word
         return Claim(formats[0], path)
     return detect_format(path, formats, options)
@@ -120,7 +120,7 @@ def find_claim(path: Path, formats: tuple[Format, ...], options: OpenOptions) ->
 
 def _refuse_unused(claim: Claim, options: OpenOptions) -> None:
     """Options that would change nothing are an error: who gives one expects something of it."""
-    for name in ("grid", "frame", "walk_frames", "pattern"):
+    for name in ("grid", "quilt", "frame", "walk_frames", "pattern"):
         if getattr(options, name) is not None and name not in claim.format.uses:
             option = name.replace("_", "-")
             raise OptionError(
@@ -202,7 +202,7 @@ def _unread_lines(opened: Capture) -> list[str]:
     """Lines about files beside the photographs; beside a calibration, or videos, only other photographs are missed."""
     folders = {opened.root, opened.root / IMAGES_FOLDER, *(source.path.parent for source in opened.sources)}
     return describe_unread(
-        folders, photographs_only=opened.light_field is not None or opened.format in ("video", "walk")
+        folders, photographs_only=opened.light_field is not None or opened.format in UNPACKED_FORMATS
     )
 
 

@@ -26,13 +26,22 @@ if TYPE_CHECKING:
 BY_HAND = ("refine", "background", "primitives", "fit_spheres")
 
 
-def _parse_grid(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[int, int] | None:
-    if value is None:
-        return None
-    match = re.fullmatch(r"([1-9][0-9]{0,5})[xX×]([1-9][0-9]{0,5})", value)
-    if match is None:
-        raise OptionError("grid-unknown", f"--grid {value} is no grid", remedy="say ROWSxCOLUMNS, as 17x17")
-    return int(match[1]), int(match[2])
+def _pair(name: str, code: str, remedy: str) -> Callable[..., tuple[int, int] | None]:
+    """A click callback: AxB, both at least 1. OptionError with the code where it is none."""
+
+    def parse(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[int, int] | None:
+        if value is None:
+            return None
+        match = re.fullmatch(r"([1-9][0-9]{0,5})[xX×]([1-9][0-9]{0,5})", value)
+        if match is None:
+            raise OptionError(code, f"--{name} {value} is no {name}", remedy=remedy)
+        return int(match[1]), int(match[2])
+
+    return parse
+
+
+_parse_grid = _pair("grid", "grid-unknown", "say ROWSxCOLUMNS, as 17x17")
+_parse_quilt = _pair("quilt", "quilt", "say COLUMNSxROWS, as 8x6")
 
 
 def _parse_layers(context: click.Context, parameter: click.Parameter, value: str | None) -> int | None:
@@ -45,7 +54,7 @@ def _parse_layers(context: click.Context, parameter: click.Parameter, value: str
 
 def place_options(*only: str) -> Decorator:
     """The options of `OpenOptions`, or some of them."""
-    return field_options(OpenOptions, only=only or None, grid=_parse_grid)
+    return field_options(OpenOptions, only=only or None, grid=_parse_grid, quilt=_parse_quilt)
 
 
 def surface_options(*only: str) -> Decorator:

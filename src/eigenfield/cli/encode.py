@@ -60,7 +60,7 @@ GROUPS = {  # of options in the help, those of every day first; the empty one ha
     "Common options": ("output", "draft", "look", "preset", "target_size", "proxy", "calibration", "grid", "without",
                        "overwrite"),
     "What the capture is": (
-        "format", "pattern", "frame", "walk_frames", "masks", "reference", "metres_per_unit",
+        "format", "quilt", "pattern", "frame", "walk_frames", "masks", "reference", "metres_per_unit",
     ),
     "Clips": ("clip", "offset", "rate", "group", "audio", "target_bitrate"),
     "Quality and size": (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,12 @@ from click.core import ParameterSource
 from eigenfield.cli.common import PATH, common_options, note, pair_of_numbers
 from eigenfield.cli.drawing import ClipTime, flight_options, parse_place, picture_options, residual_option, time_option
 from eigenfield.cli.progress import progress_bars
+
+
+def _parse_quilt(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[int, int] | str | None:
+    if value is None or (re.fullmatch(r"[a-z0-9]+(-[a-z]+)?", value) and not re.search(r"\dx\d", value)):
+        return value
+    return pair_of_numbers("COLUMNSxROWS: 8x6, or the name of a display")(context, parameter, value)
 
 
 @click.command(
@@ -27,7 +34,9 @@ Examples:
   eigenfield export scene.glb -o mesh.obj
   eigenfield export scene.glb -o textures --as obj
   eigenfield export scene.glb -o maps --as maps
-  eigenfield export scene.glb -o quilt.png --as quilt --resolution 420x560
+  eigenfield export scene.glb -o quilt.png --as quilt --quilt go
+  eigenfield export scene.glb -o quilt.mp4 --as quilt --quilt 8x6 --path circle
+  eigenfield export scene.glb -o views --as views --grid 9x9
   eigenfield export scene.glb -o capture --as colmap
   eigenfield export clip.glb -o clip --as folder
   eigenfield export clip -o clip.glb --as glb
@@ -42,7 +51,7 @@ Examples:
     metavar="PATH",
     help="A file or a folder; a file's ending says what is made, if --as does not.",
 )
-@click.option("--as", "kind", metavar="html|mp4|png|glb|obj|maps|quilt|colmap|folder|app", help="What is made.")
+@click.option("--as", "kind", metavar="html|mp4|png|glb|obj|maps|quilt|views|colmap|folder|app", help="What is made.")
 @click.option(
     "--title",
     metavar="TEXT",
@@ -63,9 +72,15 @@ Examples:
 @click.option("--url", metavar="URL", help="Where the page will be, for links to it (html).")
 @click.option(
     "--quilt",
-    callback=pair_of_numbers("COLUMNSxROWS: 8x6"),
-    metavar="CxR",
-    help="Columns and rows of views (quilt).  [default: 8x6]",
+    callback=_parse_quilt,
+    metavar="CxR|DISPLAY",
+    help="Columns and rows of views, or go, portrait, 16, 16-portrait, 32, 32-portrait, 65 (quilt).  [default: 8x6]",
+)
+@click.option(
+    "--grid",
+    callback=pair_of_numbers("ROWSxCOLUMNS: 9x9"),
+    metavar="RxC",
+    help="Rows and columns of views (views).  [default: 9x9, or 9 in a line]",
 )
 @click.option(
     "--spread",
@@ -94,7 +109,8 @@ def command(
     glb     the mesh with its mean, or the texture of --at, for any glTF viewer
     obj     NAME.obj with the mean as its texture; into a folder: with the eigen textures
     maps    a texture map for each encoded camera, in a folder
-    quilt   the views side by side for a Looking Glass display, a .png
+    quilt   the views side by side for a Looking Glass display, a .png, or a film of them, an .mp4
+    views   a grid of drawn views with the names of the HCI benchmark, in a folder
     colmap  re-drawn photographs with a COLMAP model, in a folder
     folder  a clip whose groups are files beside it; glb makes it one file again
     app     a folder for a web server: a page that opens files, with any number of SCENEs to choose from

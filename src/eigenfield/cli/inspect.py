@@ -35,7 +35,10 @@ SCHEMA = "eigenfield.inspect/1"
 NEIGHBOUR_MAX_STOPS = 0.3  # of exposure
 SIZES_MAX_SPREAD = 0.02  # of the greatest, up to which sizes differ by what a program cut off
 MORE_PHOTOGRAPHS = "take photographs nearer to each other"
-MORE_VIEWS = {"walk": "ask for more --walk-frames, or walk more slowly", "video": "put more cameras there"}
+MORE_VIEWS = {
+    "walk": "ask for more --walk-frames, or walk more slowly", "video": "put more cameras there",
+    "quilt": "draw more views into the quilt",
+}  # fmt: skip
 
 
 @click.command(
@@ -298,8 +301,9 @@ def _next_commands(report: dict[str, Any], capture: Path, place: OpenOptions, pr
     """Commands that make sense now, with the options that this one had, most useful first."""
     if report["refused"] is not None:
         return []
-    grid = None if place.grid is None else "x".join(map(str, place.grid))
-    given: dict[str, Any] = {**vars(replace(place, also=None)), "grid": grid, "strict": None, "proxy": proxy}
+    pairs = {"grid": place.grid, "quilt": place.quilt}
+    shapes = {name: None if pair is None else "x".join(map(str, pair)) for name, pair in pairs.items()}
+    given: dict[str, Any] = {**vars(replace(place, also=None)), **shapes, "strict": None, "proxy": proxy}
     said = [
         f"--{name.replace('_', '-')} {shell_word(value) if isinstance(value, Path) else shlex.quote(str(value))}"
         for name, values in given.items()

@@ -32,11 +32,17 @@ class OpenOptions(Options):
     format: str | None = option(
         "Read the capture as this format, where several fit: "
         "transforms, colmap, llff, middlebury, strecha, bundler, nvm, metashape, opencv, "
-        "realitycapture, deepview, projections, positions, hci, stanford, grid, numbered, video, "
-        "walk or folder.",
+        "realitycapture, deepview, projections, positions, hci, stanford, grid, numbered, quilt, "
+        "eslf, array, video, walk or folder.",
         metavar="NAME",
     )
-    grid: tuple[int, int] | None = option("Numbered photographs: R rows of C columns.", metavar="RxC")
+    grid: tuple[int, int] | None = option(
+        "Numbered photographs: R rows of C columns; of a lenslet picture or an array: the middle R x C views.",
+        metavar="RxC",
+    )
+    quilt: tuple[int, int] | None = option(
+        "One picture is a quilt of C columns and R rows of views, where its name does not say it.", metavar="CxR"
+    )
     pattern: str | None = option(
         "Where names have row and column: view_{row}_{col}.png; * is any text.", metavar="NAME"
     )
@@ -75,5 +81,9 @@ class OpenOptions(Options):
         if self.rate is not None and not 0 < self.rate <= RATE_MAX:
             raise OptionError("rate-unknown", f"--rate {self.rate:g} is none", remedy=f"say up to {RATE_MAX}")
         object.__setattr__(self, "offset", tuple(self.offset))
-        as_tuple = None if self.grid is None else (int(self.grid[0]), int(self.grid[1]))
-        object.__setattr__(self, "grid", as_tuple)
+        if self.quilt is not None and min(self.quilt) < 1:
+            remedy = "say columns and rows, both at least 1"
+            raise OptionError("quilt", f"{self.quilt} is no quilt", remedy=remedy)
+        for name in ("grid", "quilt"):
+            pair = getattr(self, name)
+            object.__setattr__(self, name, None if pair is None else (int(pair[0]), int(pair[1])))

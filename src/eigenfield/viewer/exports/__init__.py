@@ -15,11 +15,13 @@ from eigenfield.viewer.exports.guests import write_guests_page
 from eigenfield.viewer.exports.maps import write_maps
 from eigenfield.viewer.exports.names import file_names
 from eigenfield.viewer.exports.obj import write_obj, write_obj_folder
-from eigenfield.viewer.exports.quilt import quilt_of, write_quilt
+from eigenfield.viewer.exports.quilt import QUILT_DEVICES, quilt_of, write_quilt
+from eigenfield.viewer.exports.views import write_views
 from eigenfield.viewer.page import write_page
 
 __all__ = [
     "OPTIONS",
+    "QUILT_DEVICES",
     "export",
     "file_names",
     "quilt_of",
@@ -34,4 +36,5 @@ __all__ = [
     "write_obj_folder",
     "write_page",
     "write_quilt",
+    "write_views",
 ]

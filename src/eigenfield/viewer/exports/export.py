@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
@@ -12,6 +11,7 @@ from typing import Any, TypeGuard
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.capture.readers.quilt import parse_quilt_name
 from eigenfield.core.arguments import checked
 from eigenfield.core.clip import Clip
 from eigenfield.core.errors import OptionError
@@ -39,24 +39,28 @@ from eigenfield.viewer.exports.guests import guests_files, write_guests_page
 from eigenfield.viewer.exports.maps import write_maps
 from eigenfield.viewer.exports.obj import obj_files, write_obj, write_obj_folder
 from eigenfield.viewer.exports.quilt import quilt_of, write_quilt
+from eigenfield.viewer.exports.quilt_film import write_quilt_clip, write_quilt_film
+from eigenfield.viewer.exports.views import write_views
 from eigenfield.viewer.page import write_page
 
 PICTURE_OPTIONS = {"resolution", "background", "weights", "filter", "textures", "samples", "renderer"}
+FILM_OPTIONS = "path", "frames", "fps"
 OPTIONS = {  # of each kind, beside the options of all
     "html": {"title", "metres_per_unit", "at", "laboratory", "url"},
-    "mp4": PICTURE_OPTIONS | {"path", "frames", "fps"},
+    "mp4": PICTURE_OPTIONS | {*FILM_OPTIONS},
     "png": PICTURE_OPTIONS | {"path", "frames"},
     "glb": {"at", "image", "draco", "metres_per_unit"},
     "obj": {"textures"},
     "maps": {"textures"},
-    "quilt": PICTURE_OPTIONS | {"quilt", "spread"},
+    "quilt": PICTURE_OPTIONS | {"quilt", "spread", *FILM_OPTIONS},
+    "views": PICTURE_OPTIONS | {"grid"},
     "colmap": PICTURE_OPTIONS | {"path", "frames", "residual"},
     "folder": set(),
     "app": {"title"},
 }
-ENDINGS = {"html": (".html", ".htm"), "mp4": (".mp4",), "png": (".png",), "glb": (".glb",), "quilt": (".png",)}
+ENDINGS = {"html": (".html", ".htm"), "mp4": (".mp4",), "png": (".png",), "glb": (".glb",),
+           "quilt": (".png", ".mp4")}  # fmt: skip
 FILE_ENDINGS = (".html", ".htm", ".mp4", ".png", ".jpg", ".jpeg", ".glb", ".gltf", ".ply", ".zip")
-QUILT_NAME = re.compile(r"_qs\d+x\d+a[\d.]+$")
 FLIGHT_DEFAULT_PATH, FLIGHT_FPS = "circle", 30
 
 
@@ -76,16 +80,16 @@ def export(
     Args:
         scene: The scene or the clip, or its file; for "app" the files of as many scenes as it offers, or none.
         output: A file or a folder.
-        kind: "html", "mp4", "png" (single pictures), "glb", "obj", "maps", "quilt", "colmap", "folder" (a clip whose
-            groups are files) or "app"; None: by the output's name.
+        kind: "html", "mp4", "png" (single pictures), "glb", "obj", "maps", "quilt", "views", "colmap", "folder" (a
+            clip whose groups are files) or "app"; None: by the output's name.
         time: Seconds, of a clip, of which the nearest frame is exported; None: a page plays it, a glb of a clip whose
             groups are files is the clip as one file, and other kinds refuse it.
         overwrite: Whether existing files, and folders that an export wrote, are replaced.
         progress: Reports each picture; by default a bar in a notebook.
         options: Of the kind (`OPTIONS`): fields of `RenderJob` for pictures; `path` and `frames` (`path_points`) and
             `fps` of a flight; `title`, `metres_per_unit`, `at`, `laboratory` and `url` of a page (`write_guests_page`);
-            `at`, `image`, `draco` and `metres_per_unit` of a glb (`write_glb`); `quilt` (columns, rows), `spread`;
-            `residual`.
+            `at`, `image`, `draco` and `metres_per_unit` of a glb (`write_glb`); `quilt` (columns and rows, or a
+            display) and `spread` (`quilt_of`); `grid` of views (`write_views`); `residual`.
 
     Returns:
         The file or folder that was written, and what it holds, for people.
@@ -107,7 +111,7 @@ def export(
         raise OptionError("scenes", f"{len(scenes)} scenes for {chosen}", remedy="name one; --as app takes several")
     (scene,) = scenes
     points = None
-    if chosen in ("mp4", "png") or "path" in options:
+    if chosen in ("mp4", "png") or "path" in options or (chosen == "quilt" and _is_film(output)):
         points = path_points(options.get("path", FLIGHT_DEFAULT_PATH), options.get("frames", FLIGHT_FRAMES))
     files = guests_files(output) if chosen == "html" and not options.get("laboratory") else [output]
     _refuse(chosen, obj_files(output) if _is_obj(output) else files, points, overwrite)
@@ -122,6 +126,10 @@ def export(
     if chosen == "html" and time is None and isinstance(loaded, Clip):  # the page plays it
         options["glb"] = encode_scene(scene) if isinstance(scene, Scene | Clip) else one_file(scene)
         time = loaded.timeline.first
+    if chosen == "quilt" and time is None and isinstance(loaded, Clip) and _is_film(output):
+        if "frames" in options:
+            raise OptionError("frames", "a clip says how many pictures there are", remedy="leave --frames out")
+        return write_quilt_clip(loaded, output, overwrite=overwrite, progress=progress, **options)
     job = RenderJob(as_scene(loaded, time), **drawn)
     return _write(chosen, job, points, output, options, overwrite, progress)
 
@@ -168,14 +176,20 @@ def _write_clip_folder(scene: Scene | Clip | str | os.PathLike[str], output: Pat
     return output, f"scene.glb, and a file for each of {count} groups; put it on a web server"
 
 
+def _is_film(output: Path) -> bool:
+    return output.suffix.lower() == ".mp4"
+
+
 def _refuse(kind: str, files: Sequence[Path], points: NDArray[np.float64] | None, overwrite: bool) -> None:
     """Refuse existing outputs, before any work; a quilt's name is known only with its scene."""
     output = files[-1]
     if kind not in ENDINGS and not _is_obj(output):
         refuse_folder(output, overwrite)
+    elif kind == "quilt":
+        return
     elif points is not None:
         refuse_flight(output, len(points), overwrite)
-    elif kind != "quilt":
+    else:
         for file in files:
             refuse_existing(file, overwrite)
 
@@ -187,6 +201,7 @@ def _write(
     """Write the export; where, and what was written."""
     scene = job.scene
     how: dict[str, Any] = {"overwrite": overwrite, "progress": progress}
+    fps = Fraction(options.get("fps", FLIGHT_FPS))
     if kind == "html":
         laboratory = options.pop("laboratory", False)
         if laboratory:
@@ -209,13 +224,20 @@ def _write(
         return output, f"{len(scene.rig.encoded)} texture maps"
     if kind == "quilt":
         quilt = quilt_of(scene, options.get("quilt"), job.resolution, options.get("spread", 1.0))
+        if points is not None:
+            frames = ((job, (float(x), float(y))) for x, y in points)
+            path = write_quilt_film(frames, len(points), quilt, output, fps, **how)
+            return path, f"{len(points)} quilts of {quilt.columns * quilt.rows} views"
         path = write_quilt(job, quilt, output, **how)
         return path, f"{quilt.columns * quilt.rows} views of {quilt.width}x{quilt.height}"
+    if kind == "views":
+        rows, columns = write_views(job, output, grid=options.get("grid"), **how)
+        return output, f"{rows}x{columns} views with HCI's names, and parameters.cfg"
     if kind == "colmap":
         write_colmap(job, output, points=points, residual=options.get("residual", False), **how)
         return output, f"{len(scene.rig.names) if points is None else len(points)} pictures and a COLMAP model"
     assert points is not None
-    write_flight(job, points, output, Fraction(options.get("fps", FLIGHT_FPS)), **how)
+    write_flight(job, points, output, fps, **how)
     return output, f"{len(points)} pictures"
 
 
@@ -229,14 +251,15 @@ def _chosen_kind(output: Path, kind: str | None, numbered: bool) -> str:
     if kind is not None and kind not in OPTIONS:
         raise OptionError("output-kind", f"no export is called {kind}", remedy=f"use one of {', '.join(OPTIONS)}")
     if kind is None:
-        if ending == ".png" and not numbered and not QUILT_NAME.search(output.stem):
+        if ending == ".png" and not numbered and parse_quilt_name(output) is None:
             raise OptionError(
                 "output-kind",
                 f"{output}: one .png may be many things",
                 remedy="put %04d into its name for the pictures of a path, or say --as quilt; "
                 "`eigenfield render SCENE -o view.png` draws one view",
             )
-        by_ending = {".html": "html", ".htm": "html", ".mp4": "mp4", ".glb": "glb", ".obj": "obj",
+        film = "mp4" if parse_quilt_name(output) is None else "quilt"
+        by_ending = {".html": "html", ".htm": "html", ".mp4": film, ".glb": "glb", ".obj": "obj",
                      ".png": "png" if numbered else "quilt"}  # fmt: skip
         if ending not in by_ending:
             raise OptionError(
@@ -246,7 +269,7 @@ def _chosen_kind(output: Path, kind: str | None, numbered: bool) -> str:
             )
         return by_ending[ending]
     if kind in ENDINGS and ending not in ENDINGS[kind]:
-        raise OptionError("output-kind", f"{output}: {kind} is a file", remedy=f"name it {ENDINGS[kind][0]}")
+        raise OptionError("output-kind", f"{output}: {kind} is a file", remedy=f"name it {' or '.join(ENDINGS[kind])}")
     if kind == "png" and not numbered:
         raise OptionError("output-kind", f"{output}: a path makes many pictures", remedy="put %04d into its name")
     if kind == "quilt" and numbered:
@@ -267,7 +290,12 @@ def _check(kind: str, output: Path, given: dict[str, Any]) -> None:
         )
     if kind == "colmap" and "frames" in given and "path" not in given:
         raise OptionError("frames", "--frames needs --path", remedy="give a path, or leave it out")
-    if kind == "mp4" and given.get("background", ()) is None:
+    if kind == "quilt" and not _is_film(output):
+        for name in FILM_OPTIONS:
+            if name in given:
+                remedy = "name an .mp4, or leave it out"
+                raise OptionError("unused-option", f"--{name} is not for one quilt", remedy=remedy)
+    if kind in ("mp4", "quilt") and _is_film(output) and given.get("background", ()) is None:
         raise OptionError("background", "a film cannot be transparent", remedy="name a colour, or write .png pictures")
     check_scale(given.get("metres_per_unit"))
     if kind == "glb":

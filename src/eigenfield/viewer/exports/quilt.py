@@ -6,29 +6,26 @@ player how to cut it: `_qs8x6a0.75` is 8 columns of 6 rows whose views are shown
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.capture.readers.quilt import parse_quilt_name
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
-from eigenfield.core.proxy import opaque_mesh
 from eigenfield.core.scene import Scene
-from eigenfield.imaging.raster import rasterise_view
-from eigenfield.rendering import RenderJob, ViewWeights, at_resolution, novel_camera, view_weights
+from eigenfield.rendering import RenderJob, ViewWeights, view_weights
 from eigenfield.rendering.render_jobs import png
 from eigenfield.runtime.files import write_bytes
+from eigenfield.viewer.exports.parallel import ParallelCameras, parallel_cameras
 
 QUILT_COLUMNS, QUILT_ROWS = 8, 6
 QUILT_SIDE_PX = 4096  # that every player takes: by default views are made smaller than the cameras' to fit
 QUILT_MAX_SIDE_PX = 16384
 QUILT_MAX_TILES = 64  # in a row, and in a column
-QUILT_MIN_COSINE = 0.7  # between the array's X and the cameras' own x axis
-QUILT_SUFFIX = re.compile(r"_qs([1-9]\d?)x([1-9]\d?)a(\d+(?:\.\d+)?)$")
 
 
 @dataclass(frozen=True)
@@ -36,8 +33,9 @@ class Quilt:
     """The shape of a quilt.
 
     Attributes:
-        width: Of a view, in pixels.
+        width: Of a tile, in pixels.
         spread: Part of the array's width that the views cover, 0..1.
+        display: Width of the display by its height, which its views have; None: that of a tile.
     """
 
     columns: int
@@ -45,27 +43,56 @@ class Quilt:
     width: int
     height: int
     spread: float = 1.0
+    display: float | None = None
+
+    @property
+    def aspect(self) -> float:
+        """Width of a view by its height, as it is shown."""
+        return self.width / self.height if self.display is None else self.display
 
     @property
     def suffix(self) -> str:
         """What a file's name ends in."""
-        return f"_qs{self.columns}x{self.rows}a{self.width / self.height:.4g}"
+        return f"_qs{self.columns}x{self.rows}a{self.aspect:.4g}"
+
+
+# Columns, rows, tile and display as Looking Glass' own toolkit has them (github.com/Looking-Glass/LKG-Toolkit,
+# HardCodedLKGDeviceTemplates.cs); tiles have whole pixels
+QUILT_DEVICES = {
+    "go": Quilt(11, 6, 372, 682, display=9 / 16),
+    "portrait": Quilt(8, 6, 420, 560, display=3 / 4),
+    "16": Quilt(7, 7, 857, 857, display=16 / 9),
+    "16-portrait": Quilt(11, 6, 545, 1000, display=9 / 16),
+    "32": Quilt(7, 7, 1170, 1170, display=16 / 9),
+    "32-portrait": Quilt(11, 6, 744, 1364, display=9 / 16),
+    "65": Quilt(8, 9, 1024, 910, display=16 / 9),
+}
 
 
 def quilt_of(
-    scene: Scene, grid: tuple[int, int] | None = None, resolution: tuple[int, int] | None = None, spread: float = 1.0
+    scene: Scene,
+    grid: tuple[int, int] | str | None = None,
+    resolution: tuple[int, int] | None = None,
+    spread: float = 1.0,
 ) -> Quilt:
     """The shape of a scene's quilt.
 
     Args:
-        grid: (columns, rows). Default: 8 x 6.
-        resolution: (width, height) of a view. Default: the reference camera's shape, no larger than it is, so that the
-            quilt has at most 4096 pixels a side.
+        grid: (columns, rows), or the name of a display, one of `QUILT_DEVICES`. Default: 8 x 6.
+        resolution: (width, height) of a tile. Default: the display's, or the reference camera's shape, no larger than
+            it is, so that the quilt has at most 4096 pixels a side.
         spread: Part of the array's width, 0..1.
 
     Raises:
         OptionError: `quilt`, `spread`.
     """
+    device = None
+    if isinstance(grid, str):
+        device = QUILT_DEVICES.get(grid)
+        if device is None:
+            remedy = f"say COLUMNSxROWS, or one of {', '.join(QUILT_DEVICES)}"
+            raise OptionError("quilt", f"no display is called {grid}", remedy=remedy)
+        grid, resolution = (device.columns, device.rows), resolution or (device.width, device.height)
     columns, rows = grid or (QUILT_COLUMNS, QUILT_ROWS)
     if not (1 <= columns <= QUILT_MAX_TILES and 1 <= rows <= QUILT_MAX_TILES):
         raise OptionError(
@@ -82,7 +109,7 @@ def quilt_of(
             f"{columns}x{rows} views of {width}x{height}",
             remedy=f"keep the quilt within {QUILT_MAX_SIDE_PX}x{QUILT_MAX_SIDE_PX} pixels",
         )
-    return Quilt(columns, rows, width, height, spread)
+    return Quilt(columns, rows, width, height, spread, None if device is None else device.display)
 
 
 def quilt_file(output: Path, quilt: Quilt) -> Path:
@@ -91,11 +118,11 @@ def quilt_file(output: Path, quilt: Quilt) -> Path:
     Raises:
         OptionError: `quilt-name`: the name has a suffix of another shape.
     """
-    said = QUILT_SUFFIX.search(output.stem)
+    said = parse_quilt_name(output)
     if said is None:
         return output.with_name(f"{output.stem}{quilt.suffix}{output.suffix}")
-    aspect = quilt.width / quilt.height
-    if (int(said[1]), int(said[2])) != (quilt.columns, quilt.rows) or abs(float(said[3]) - aspect) > 0.01 * aspect:
+    off = 1 if said.aspect is None else abs(said.aspect / quilt.aspect - 1)
+    if (said.columns, said.rows) != (quilt.columns, quilt.rows) or off > 0.01:
         raise OptionError(
             "quilt-name",
             f"{output.name} is not what is made: {quilt.suffix}",
@@ -114,7 +141,15 @@ def write_quilt(
         OutputError: The file cannot be written.
     """
     path = quilt_file(output, quilt)
-    views = quilt_views(job, quilt)
+    whole = draw_quilt(job, quilt, quilt_views(job, quilt), progress)
+    write_bytes(path, png(whole), overwrite=overwrite)
+    return path
+
+
+def draw_quilt(
+    job: RenderJob, quilt: Quilt, views: list[tuple[Camera, ViewWeights]], progress: Progress | None = None
+) -> NDArray[np.uint8]:
+    """(H, W, 1 to 4) uint8: the tiles of a quilt's views, in their places. OptionError as `Renderer.draw`."""
     plain = replace(job, resolution=None)
     drawn = plain.each(lambda view: plain.pixels(*view), views)
     whole: NDArray[np.uint8] | None = None
@@ -125,61 +160,36 @@ def write_quilt(
         top, left = (quilt.rows - 1 - row) * quilt.height, column * quilt.width
         whole[top : top + quilt.height, left : left + quilt.width] = tile
     assert whole is not None
-    write_bytes(path, png(whole), overwrite=overwrite)
-    return path
+    return whole
 
 
-def quilt_views(job: RenderJob, quilt: Quilt) -> list[tuple[Camera, ViewWeights]]:
-    """The quilt's cameras and their view weights, from left to right along the middle of the array.
+def quilt_views(
+    job: RenderJob, quilt: Quilt, at: tuple[float, float] = (0.0, 0.0), cameras: ParallelCameras | None = None
+) -> list[tuple[Camera, ViewWeights]]:
+    """The quilt's cameras and their view weights, from left to right along the array.
 
-    All look the same way, with their x axis along the array's X. Principal points are shifted so that the point in the
-    middle of the picture, at the median depth of what the array's middle sees, stays in the middle: it is shown in the
-    plane of the display.
+    What the array's middle sees in the middle of the picture, at its median depth, is shown in the plane of the
+    display.
+
+    Args:
+        at: The viewpoint around which they stand. As much of its X counts as `spread` leaves.
+        cameras: Those of another picture of the same film; None: the scene's own.
 
     Raises:
         OptionError: `quilt-array`: the cameras do not stand side by side, or see nothing.
     """
-    scene, plane = job.scene, job.scene.rig.view_plane
-    base = at_resolution(novel_camera(scene, (0.0, 0.0)), (quilt.width, quilt.height))
-    right = plane.right
-    if base.R[0] @ right < QUILT_MIN_COSINE:
-        raise OptionError(
-            "quilt-array",
-            "the cameras do not stand side by side before the scene",
-            remedy="a quilt needs an array that looks one way",
-        )
-    forward = base.R[2] - (base.R[2] @ right) * right
-    forward = forward / np.linalg.norm(forward)
-    R = np.stack([right, np.cross(forward, right), forward])
-    middle = base.R.T @ np.linalg.inv(base.K) @ (quilt.width / 2, quilt.height / 2, 1.0)
-    towards = R @ middle
-    depth = _median_depth(scene, _camera_towards(base, R, base.centre, middle))
-    focus = base.centre + middle * (depth / towards[2])
-    places = np.linspace(-quilt.spread, quilt.spread, quilt.columns * quilt.rows)
-    return [
-        (
-            _camera_towards(base, R, plane.point(x, 0.0), focus - plane.point(x, 0.0)),
-            view_weights(scene, (float(x), 0.0), job.weights),
-        )
-        for x in places.tolist()
-    ]
+    plane = job.scene.rig.view_plane
+    cameras = quilt_cameras(job.scene, quilt) if cameras is None else cameras
+    places = at[0] * (1 - quilt.spread) + np.linspace(-quilt.spread, quilt.spread, quilt.columns * quilt.rows)
+    views = []
+    for x in places.tolist():
+        camera = cameras.at(plane.point(x, at[1]))
+        scale = np.diag([quilt.width / camera.width, quilt.height / camera.height, 1.0])
+        squeezed = replace(camera, K=scale @ camera.K, width=quilt.width, height=quilt.height)
+        views.append((squeezed, view_weights(job.scene, (x, at[1]), job.weights)))
+    return views
 
 
-def _camera_towards(
-    base: Camera, R: NDArray[np.float64], centre: NDArray[np.float64], direction: NDArray[np.float64]
-) -> Camera:
-    """A camera at `centre` with axes R and the focal lengths of `base`, which sees `direction` in its middle."""
-    x, y, z = R @ direction
-    fx, fy = base.K[0, 0], base.K[1, 1]
-    K = np.array([[fx, 0, base.width / 2 - fx * x / z], [0, fy, base.height / 2 - fy * y / z], [0, 0, 1]])
-    return Camera(K, R, -R @ centre, base.width, base.height)
-
-
-def _median_depth(scene: Scene, camera: Camera) -> float:
-    """Of what the camera sees, along its z. Raises OptionError `quilt-array` where it sees nothing."""
-    near = rasterise_view(opaque_mesh(scene.proxy), camera).inverse_depth
-    if not near.any():
-        raise OptionError(
-            "quilt-array", "the array's middle sees nothing of the scene", remedy="a quilt needs a surface before it"
-        )
-    return float(1 / np.median(near[near > 0]))
+def quilt_cameras(scene: Scene, quilt: Quilt) -> ParallelCameras:
+    """Cameras with square pixels, of the shape that the display shows."""
+    return parallel_cameras(scene, (max(1, round(quilt.height * quilt.aspect)), quilt.height))
