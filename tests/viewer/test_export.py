@@ -41,6 +41,8 @@ KINDS = {  # output, options, and a file that must be there
     "maps": ("maps", ["--as", "maps"], "maps/view_03.png"),
     "quilt": ("q.png", ["--as", "quilt", "--quilt", "3x2"], "q_qs3x2a1.2.png"),
     "colmap": ("capture", ["--as", "colmap"], "capture/sparse/0/points3D.bin"),
+    "splats": ("splats.glb", ["--as", "splats", "--splats", 300], "splats.glb"),
+    "usdz": ("scene.usdz", [], "scene.usdz"),
     "folder": ("clip", ["--as", "folder"], "clip/groups/00001.eftg"),
     "app": ("open", ["--as", "app"], "open/samples/scene.glb"),
 }

@@ -39,6 +39,8 @@ from eigenfield.viewer.exports.guests import guests_files, write_guests_page
 from eigenfield.viewer.exports.maps import write_maps
 from eigenfield.viewer.exports.obj import obj_files, write_obj, write_obj_folder
 from eigenfield.viewer.exports.quilt import quilt_of, write_quilt
+from eigenfield.viewer.exports.splats import check_splats, write_splats
+from eigenfield.viewer.exports.usdz import check_usd, write_usdz
 from eigenfield.viewer.page import write_page
 
 PICTURE_OPTIONS = {"resolution", "background", "weights", "filter", "textures", "samples", "renderer"}
@@ -51,11 +53,16 @@ OPTIONS = {  # of each kind, beside the options of all
     "maps": {"textures"},
     "quilt": PICTURE_OPTIONS | {"quilt", "spread"},
     "colmap": PICTURE_OPTIONS | {"path", "frames", "residual"},
+    "splats": {"splats", "metres_per_unit"},
+    "usdz": {"metres_per_unit"},
     "folder": set(),
     "app": {"title"},
 }
-ENDINGS = {"html": (".html", ".htm"), "mp4": (".mp4",), "png": (".png",), "glb": (".glb",), "quilt": (".png",)}
-FILE_ENDINGS = (".html", ".htm", ".mp4", ".png", ".jpg", ".jpeg", ".glb", ".gltf", ".ply", ".zip")
+ENDINGS = {
+    "html": (".html", ".htm"), "mp4": (".mp4",), "png": (".png",), "glb": (".glb",), "quilt": (".png",),
+    "splats": (".glb", ".spz"), "usdz": (".usdz",),
+}  # fmt: skip
+FILE_ENDINGS = (".html", ".htm", ".mp4", ".png", ".jpg", ".jpeg", ".glb", ".gltf", ".ply", ".zip", ".spz", ".usdz")
 QUILT_NAME = re.compile(r"_qs\d+x\d+a[\d.]+$")
 FLIGHT_DEFAULT_PATH, FLIGHT_FPS = "circle", 30
 
@@ -76,8 +83,8 @@ def export(
     Args:
         scene: The scene or the clip, or its file; for "app" the files of as many scenes as it offers, or none.
         output: A file or a folder.
-        kind: "html", "mp4", "png" (single pictures), "glb", "obj", "maps", "quilt", "colmap", "folder" (a clip whose
-            groups are files) or "app"; None: by the output's name.
+        kind: "html", "mp4", "png" (single pictures), "glb", "obj", "maps", "quilt", "colmap", "splats", "usdz",
+            "folder" (a clip whose groups are files) or "app"; None: by the output's name.
         time: Seconds, of a clip, of which the nearest frame is exported; None: a page plays it, a glb of a clip whose
             groups are files is the clip as one file, and other kinds refuse it.
         overwrite: Whether existing files, and folders that an export wrote, are replaced.
@@ -85,7 +92,7 @@ def export(
         options: Of the kind (`OPTIONS`): fields of `RenderJob` for pictures; `path` and `frames` (`path_points`) and
             `fps` of a flight; `title`, `metres_per_unit`, `at`, `laboratory` and `url` of a page (`write_guests_page`);
             `at`, `image`, `draco` and `metres_per_unit` of a glb (`write_glb`); `quilt` (columns, rows), `spread`;
-            `residual`.
+            `splats` (`write_splats`); `residual`.
 
     Returns:
         The file or folder that was written, and what it holds, for people.
@@ -111,7 +118,8 @@ def export(
         points = path_points(options.get("path", FLIGHT_DEFAULT_PATH), options.get("frames", FLIGHT_FRAMES))
     files = guests_files(output) if chosen == "html" and not options.get("laboratory") else [output]
     _refuse(chosen, obj_files(output) if _is_obj(output) else files, points, overwrite)
-    if chosen == "glb" and not isinstance(scene, Scene | Clip) and output.exists() and output.samefile(scene):
+    named = None if isinstance(scene, Scene | Clip) else scene
+    if chosen in ("glb", "splats") and named is not None and output.exists() and output.samefile(named):
         raise OptionError("output-kind", f"{output} is the scene itself", remedy="name another file")
     if chosen == "folder":
         return _write_clip_folder(scene, output, overwrite)
@@ -211,6 +219,13 @@ def _write(
         quilt = quilt_of(scene, options.get("quilt"), job.resolution, options.get("spread", 1.0))
         path = write_quilt(job, quilt, output, **how)
         return path, f"{quilt.columns * quilt.rows} views of {quilt.width}x{quilt.height}"
+    if kind == "splats":
+        count, decibels = write_splats(scene, output, **how, **options)
+        size = f"{count:,} Gaussians, {output.stat().st_size / 1e6:.1f} MB"
+        return output, f"{size}; PSNR {decibels:.1f} dB beside what the scene draws"
+    if kind == "usdz":
+        write_usdz(scene, output, overwrite=overwrite, **options)
+        return output, f"{output.stat().st_size / 1e6:.1f} MB, for Quick Look"
     if kind == "colmap":
         write_colmap(job, output, points=points, residual=options.get("residual", False), **how)
         return output, f"{len(scene.rig.names) if points is None else len(points)} pictures and a COLMAP model"
@@ -237,7 +252,7 @@ def _chosen_kind(output: Path, kind: str | None, numbered: bool) -> str:
                 "`eigenfield render SCENE -o view.png` draws one view",
             )
         by_ending = {".html": "html", ".htm": "html", ".mp4": "mp4", ".glb": "glb", ".obj": "obj",
-                     ".png": "png" if numbered else "quilt"}  # fmt: skip
+                     ".png": "png" if numbered else "quilt", ".spz": "splats", ".usdz": "usdz"}  # fmt: skip
         if ending not in by_ending:
             raise OptionError(
                 "output-kind",
@@ -272,6 +287,10 @@ def _check(kind: str, output: Path, given: dict[str, Any]) -> None:
     check_scale(given.get("metres_per_unit"))
     if kind == "glb":
         check_image(given.get("image", "png"), given.get("draco", False))
+    if kind == "splats":
+        check_splats(output, given.get("splats"))
+    if kind == "usdz":
+        check_usd()
     if "url" in given and given.get("laboratory"):
         raise OptionError("unused-option", "--url is not for --laboratory", remedy="leave it out")
     if not str(given.get("url", "https:")).startswith(("https:", "http:")):
