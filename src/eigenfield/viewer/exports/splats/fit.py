@@ -27,7 +27,7 @@ from eigenfield.viewer.exports.splats.place import place_gaussians
 
 FIT_PIXELS = 8_000_000  # in all pictures that the colours are fitted to
 FIT_MIN_CAMERAS, FIT_MAX_CAMERAS = 9, 16
-FIT_ROUNDS = 10
+FIT_ROUNDS = 6
 HARMONICS_RIDGE = 2e-4  # of the weight of a Gaussian: what holds degrees 1 and 2 back where cameras do not tell them
 HARMONICS_MOST = 0.96  # of a coefficient of these: files of 8 bits hold less than 1
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +41,11 @@ class Gaussians:
     def colours(self, basis: NDArray[np.float32]) -> NDArray[np.float32]:
         """(N, 3) their colours, 0..1, where `basis` (N, k) are the harmonics of the directions they are seen in."""
         return np.clip(np.einsum("nk,nkc->nc", basis, self.harmonics) + np.float32(0.5), 0, 1)
+
+
+def joined(parts: Sequence[Gaussians]) -> Gaussians:
+    """Several as one."""
+    return Gaussians(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Gaussians)))
 
 
 @dataclass(frozen=True, eq=False)

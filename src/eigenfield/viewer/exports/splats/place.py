@@ -2,13 +2,14 @@
 
 The texels that cameras see are divided into cells, one a Gaussian, by Lloyd's iteration ("Least squares quantization in
 PCM", 1982) over place and colour, so that cells keep to one side of an edge. A Gaussian has the middle, the shape and
-the mean colour of its cell.
+the mean colour of its cell. Between such Gaussians a little of what is behind shows: behind
+opaque surfaces there are therefore some larger ones.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -26,14 +27,18 @@ from eigenfield.rendering import mean_texture
 from eigenfield.rendering.software.drawing import make_surface
 from eigenfield.runtime.parallel import threads
 from eigenfield.viewer.exports.maps import alpha_added
-from eigenfield.viewer.exports.splats.gaussians import SH_ZERO, Gaussians
+from eigenfield.viewer.exports.splats.gaussians import SH_ZERO, Gaussians, joined
 
 DEFAULT_PIXELS = 2  # of one picture, for a Gaussian
 DETAIL_FLOOR = 0.02  # added to the differences between texels: how many Gaussians an even surface gets
 DETAIL_POWER = 1.0  # of these, in the number of Gaussians
 COLOUR_TEXELS = 16.0  # a colour's whole range, as a distance between texels
 LLOYD_ROUNDS = 4
-CELL_SIGMAS = 1.9  # of a cell's standard deviations, in that of its Gaussian: neighbours overlap
+CELL_SIGMAS = 1.7  # of a cell's standard deviations, in that of its Gaussian: neighbours overlap
+BACKING_PART = 0.12  # of all Gaussians: large ones behind opaque surfaces, that show between the others
+BACKING_SIGMAS = 1.9
+BACKING_DISTANCE_SIGMAS = 1.5  # behind the surface
+BACKING_MIN_OPACITY = 0.9
 SPLAT_THICKNESS_RATIO = 0.05  # of the shorter side
 SEEN_MIN_PX = 0.02  # of a camera's pixels, that a texel answers for: what is seen less gets no Gaussian
 SOBEL_SUM = 8  # of the filter, for a difference of one from texel to texel
@@ -61,6 +66,10 @@ class Texels:
     colours: NDArray[np.float32]
     density: NDArray[np.float64]
 
+    def part(self, kept: NDArray[np.bool_], density: NDArray[np.float64]) -> Texels:
+        """Those of a mask (n,), with another density."""
+        return Texels(self.places[kept], self.faces[kept], self.seen[kept], self.colours[kept], density)
+
 
 def place_gaussians(scene: Scene, cameras: Sequence[Camera], count: int | None = None) -> Gaussians:
     """Gaussians with the colours of the mean.
@@ -72,11 +81,24 @@ def place_gaussians(scene: Scene, cameras: Sequence[Camera], count: int | None =
     texels = _seen_texels(scene, cameras)
     if count is None:
         count = min(max(1, int(texels.seen.sum()) // DEFAULT_PIXELS), SPLATS_MOST)
-    chart = vertex_components(scene.proxy.mesh.faces, len(scene.proxy.mesh.vertices))
-    places = np.column_stack([texels.places, CHART_DISTANCE * chart[scene.proxy.mesh.faces[texels.faces, 0]]])
-    features = np.column_stack([places, COLOUR_TEXELS * texels.colours])
+    solid = texels.colours[:, 3] > BACKING_MIN_OPACITY
+    behind = int(BACKING_PART * count) if solid.any() else 0
+    made = [_laid(scene, texels, count - behind, CELL_SIGMAS)]
+    if behind:
+        back = _laid(scene, texels.part(solid, texels.seen[solid]), behind, BACKING_SIGMAS)
+        away = back.positions - np.mean([camera.centre for camera in cameras], axis=0)
+        away *= BACKING_DISTANCE_SIGMAS * back.scales[:, :1] / np.linalg.norm(away, axis=1, keepdims=True)
+        made.append(replace(back, positions=back.positions + away))
+    return joined(made)
+
+
+def _laid(scene: Scene, texels: Texels, count: int, sigmas: float) -> Gaussians:
+    """At most `count` Gaussians on the surface, of `sigmas` times the standard deviations of their cells."""
+    mesh = scene.proxy.mesh
+    chart = vertex_components(mesh.faces, len(mesh.vertices))[mesh.faces[texels.faces, 0]]
+    features = np.column_stack([texels.places, CHART_DISTANCE * chart, COLOUR_TEXELS * texels.colours])
     cell = _cells(features, texels.density, _first_sites(texels, count))
-    return _gaussians_of(scene.proxy.mesh, scene.appearance.atlas, texels, cell)
+    return _gaussians_of(mesh, scene.appearance.atlas, texels, cell, sigmas)
 
 
 def _seen_texels(scene: Scene, cameras: Sequence[Camera]) -> Texels:
@@ -151,7 +173,9 @@ def _cells(features: NDArray[np.float64], density: NDArray[np.float64], first: N
     return np.unique(cell, return_inverse=True)[1].reshape(-1)
 
 
-def _gaussians_of(mesh: Mesh, atlas: tuple[int, int], texels: Texels, cell: NDArray[np.int64]) -> Gaussians:
+def _gaussians_of(
+    mesh: Mesh, atlas: tuple[int, int], texels: Texels, cell: NDArray[np.int64], sigmas: float
+) -> Gaussians:
     area = np.bincount(cell).astype(np.float64)
 
     def mean(values: NDArray[np.floating]) -> NDArray[np.float64]:
@@ -165,10 +189,10 @@ def _gaussians_of(mesh: Mesh, atlas: tuple[int, int], texels: Texels, cell: NDAr
     corners, slopes = _faces_in_space(mesh, atlas, texels.faces[nearest])
     positions = corners[:, :, 0] + (slopes @ (middle - corners[:, :2, 1])[..., None])[..., 0]
     variances, axes = np.linalg.eigh(covariance)
-    spread = slopes @ (axes * (CELL_SIGMAS * np.sqrt(variances))[:, None])
+    spread = slopes @ (axes * (sigmas * np.sqrt(variances))[:, None])
     left, scales, _ = np.linalg.svd(spread, full_matrices=False)
     normal = np.cross(left[:, :, 0], left[:, :, 1])
-    overlap = 2 * np.pi * CELL_SIGMAS**2 * np.sqrt(np.linalg.det(covariance)) / area
+    overlap = 2 * np.pi * sigmas**2 * np.sqrt(np.linalg.det(covariance)) / area
     colours = mean(texels.colours)
     opacity = 1 - (1 - np.minimum(colours[:, 3], FULL_OPACITY)) ** (1 / overlap)
     return Gaussians(
