@@ -18,7 +18,7 @@ from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "licences.md"
-EXTRAS = "arrays", "cluster", "gpu", "meshes", "photos", "raw", "renders", "s3"  # those of users
+EXTRAS = "arrays", "cluster", "gpu", "meshes", "photos", "raw", "renders", "s3", "splats", "usd"  # those of users
 PERMITTED = {
     "0BSD", "Apache-2.0", "Apache-2.0 WITH LLVM-exception", "BSD-2-Clause", "BSD-3-Clause", "CC0-1.0", "MIT", "MIT-0",
     "MIT-CMU", "PSF-2.0", "Zlib",
@@ -26,6 +26,7 @@ PERMITTED = {
 EXCEPTIONS = {
     "asyncssh": "EPL-2.0 or GPL-2.0-or-later: it comes only by the extra `cluster`, and is loaded only for `ssh:HOST`",
     "pillow-jxl-plugin": "GPL-3.0-or-later: it comes only by the extra `photos`, and is loaded only to read JPEG XL",
+    "usd-core": "LicenseRef-TOST-1.0, Apache-2.0 with other words on trademarks: it comes only by the extra `usd`",
 }
 # what metadata say in words, or not at all
 WORDS = {

@@ -10,7 +10,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
 
 from eigenfield.core.proxy import Proxy
 from eigenfield.gltf import save
-from eigenfield.viewer.exports import write_glb
+from eigenfield.viewer.exports import write_glb, write_splats
 from support.clips import numbered_clip
 from support.coded_scenes import coded_scene
 from support.scenes import bumpy_square, tiny_scene
@@ -21,7 +21,7 @@ SHAPES = [(3, 3), (1, 2), (6, 2), (3, 0)]  # channels, eigen textures
 
 def main(folder: Path) -> None:
     """Write every combination, one mesh that needs long indices, scenes of which everything is coded or that have
-    sheets, exports for other viewers, and a clip."""
+    sheets, exports for other viewers, Gaussians, and a clip."""
     folder.mkdir(parents=True, exist_ok=True)
     for codec in ("png", "webp", "avif"):
         for channels, textures in SHAPES:
@@ -37,6 +37,8 @@ def main(folder: Path) -> None:
     for image, draco in (("png", False), ("jpeg", True), ("webp", False)):
         write_glb(coded_scene(), folder / f"plain-{image}.glb", at=(0.5, 0), image=image, draco=draco, overwrite=True)
     write_glb(soft_scene(), folder / "plain-sheets.glb", overwrite=True)
+    for name, scene in (("splats", coded_scene()), ("splats-sheets", soft_scene())):
+        write_splats(scene, folder / f"{name}.glb", splats=2000, overwrite=True)
     save(numbered_clip(), folder / "clip.glb", overwrite=True)
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from support import coded_scenes, composed, patched, pinholes, sheet_scenes, viewer_clips, viewer_scenes
+from support import coded_scenes, composed, patched, pinholes, sheet_scenes, splat_scenes, viewer_clips, viewer_scenes
 from support.browsers import CHROMIUM, OTHERS, lacks
 
 WEB = Path(__file__).parents[2] / "web"
@@ -52,6 +52,7 @@ def folder(tmp_path_factory):
     composed.write(made)
     coded_scenes.write(made)
     sheet_scenes.write(made)
+    splat_scenes.write(made)
     pinholes.write(made)
     patched.write(made)
     return made

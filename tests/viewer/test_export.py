@@ -42,6 +42,8 @@ KINDS = {  # output, options, and a file that must be there
     "quilt": ("q.png", ["--as", "quilt", "--quilt", "3x2"], "q_qs3x2a1.2.png"),
     "views": ("grid", ["--as", "views", "--grid", "1x3"], "grid/input_Cam002.png"),
     "colmap": ("capture", ["--as", "colmap"], "capture/sparse/0/points3D.bin"),
+    "splats": ("splats.glb", ["--as", "splats", "--splats", 300], "splats.glb"),
+    "usdz": ("scene.usdz", [], "scene.usdz"),
     "folder": ("clip", ["--as", "folder"], "clip/groups/00001.eftg"),
     "app": ("open", ["--as", "app"], "open/samples/scene.glb"),
 }

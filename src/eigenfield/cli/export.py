@@ -38,6 +38,8 @@ Examples:
   eigenfield export scene.glb -o quilt.mp4 --as quilt --quilt 8x6 --path circle
   eigenfield export scene.glb -o views --as views --grid 9x9
   eigenfield export scene.glb -o capture --as colmap
+  eigenfield export scene.glb -o splats.glb --as splats --splats 50000
+  eigenfield export scene.glb -o scene.usdz
   eigenfield export clip.glb -o clip --as folder
   eigenfield export clip -o clip.glb --as glb
   eigenfield export scene.glb other.glb -o open --as app"""
@@ -51,13 +53,17 @@ Examples:
     metavar="PATH",
     help="A file or a folder; a file's ending says what is made, if --as does not.",
 )
-@click.option("--as", "kind", metavar="html|mp4|png|glb|obj|maps|quilt|views|colmap|folder|app", help="What is made.")
+@click.option(
+    "--as", "kind", metavar="html|mp4|png|glb|obj|maps|quilt|views|colmap|splats|usdz|folder|app", help="What is made."
+)
 @click.option(
     "--title",
     metavar="TEXT",
     help="Of the page (html, app).  [default: the output's name, of scene.html its folder's; eigenfield]",
 )
-@click.option("--metres-per-unit", type=float, metavar="M", help="Metres in one unit of the capture (html, glb).")
+@click.option(
+    "--metres-per-unit", type=float, metavar="M", help="Metres in one unit of the capture (html, glb, splats, usdz)."
+)
 @click.option(
     "--at",
     callback=parse_place,
@@ -90,6 +96,7 @@ Examples:
     metavar="0..1",
     help="Part of the array's width that the views span (quilt).",
 )
+@click.option("--splats", type=int, metavar="N", help="Gaussians, at most (splats).  [default: one for two pixels]")
 @time_option
 @flight_options
 @picture_options
@@ -112,6 +119,8 @@ def command(
     quilt   the views side by side for a Looking Glass display, a .png, or a film of them, an .mp4
     views   a grid of drawn views with the names of the HCI benchmark, in a folder
     colmap  re-drawn photographs with a COLMAP model, in a folder
+    splats  Gaussians, a .glb with KHR_gaussian_splatting or an .spz
+    usdz    the mesh with its mean, for Quick Look
     folder  a clip whose groups are files beside it; glb makes it one file again
     app     a folder for a web server: a page that opens files, with any number of SCENEs to choose from
     """

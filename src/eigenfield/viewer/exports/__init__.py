@@ -1,4 +1,5 @@
-"""A scene for other programs: a page, a video, meshes with textures, texture maps, a quilt, photographs with a model.
+"""A scene for other programs: a page, a video, meshes with textures, texture maps, a quilt, photographs with a model,
+Gaussians.
 
 Each kind is a module. What is written is whole or absent; existing files stay unless `overwrite` says otherwise.
 """
@@ -16,6 +17,8 @@ from eigenfield.viewer.exports.maps import write_maps
 from eigenfield.viewer.exports.names import file_names
 from eigenfield.viewer.exports.obj import write_obj, write_obj_folder
 from eigenfield.viewer.exports.quilt import QUILT_DEVICES, quilt_of, write_quilt
+from eigenfield.viewer.exports.splats import write_splats
+from eigenfield.viewer.exports.usdz import write_usdz
 from eigenfield.viewer.exports.views import write_views
 from eigenfield.viewer.page import write_page
 
@@ -36,5 +39,7 @@ __all__ = [
     "write_obj_folder",
     "write_page",
     "write_quilt",
+    "write_splats",
+    "write_usdz",
     "write_views",
 ]

@@ -40,6 +40,8 @@ from eigenfield.viewer.exports.maps import write_maps
 from eigenfield.viewer.exports.obj import obj_files, write_obj, write_obj_folder
 from eigenfield.viewer.exports.quilt import quilt_of, write_quilt
 from eigenfield.viewer.exports.quilt_film import write_quilt_clip, write_quilt_film
+from eigenfield.viewer.exports.splats import check_splats, write_splats
+from eigenfield.viewer.exports.usdz import check_usd, write_usdz
 from eigenfield.viewer.exports.views import write_views
 from eigenfield.viewer.page import write_page
 
@@ -55,12 +57,16 @@ OPTIONS = {  # of each kind, beside the options of all
     "quilt": PICTURE_OPTIONS | {"quilt", "spread", *FILM_OPTIONS},
     "views": PICTURE_OPTIONS | {"grid"},
     "colmap": PICTURE_OPTIONS | {"path", "frames", "residual"},
+    "splats": {"splats", "metres_per_unit"},
+    "usdz": {"metres_per_unit"},
     "folder": set(),
     "app": {"title"},
 }
-ENDINGS = {"html": (".html", ".htm"), "mp4": (".mp4",), "png": (".png",), "glb": (".glb",),
-           "quilt": (".png", ".mp4")}  # fmt: skip
-FILE_ENDINGS = (".html", ".htm", ".mp4", ".png", ".jpg", ".jpeg", ".glb", ".gltf", ".ply", ".zip")
+ENDINGS = {
+    "html": (".html", ".htm"), "mp4": (".mp4",), "png": (".png",), "glb": (".glb",), "quilt": (".png", ".mp4"),
+    "splats": (".glb", ".spz"), "usdz": (".usdz",),
+}  # fmt: skip
+FILE_ENDINGS = (".html", ".htm", ".mp4", ".png", ".jpg", ".jpeg", ".glb", ".gltf", ".ply", ".zip", ".spz", ".usdz")
 FLIGHT_DEFAULT_PATH, FLIGHT_FPS = "circle", 30
 
 
@@ -80,8 +86,8 @@ def export(
     Args:
         scene: The scene or the clip, or its file; for "app" the files of as many scenes as it offers, or none.
         output: A file or a folder.
-        kind: "html", "mp4", "png" (single pictures), "glb", "obj", "maps", "quilt", "views", "colmap", "folder" (a
-            clip whose groups are files) or "app"; None: by the output's name.
+        kind: "html", "mp4", "png" (single pictures), "glb", "obj", "maps", "quilt", "views", "colmap", "splats",
+            "usdz", "folder" (a clip whose groups are files) or "app"; None: by the output's name.
         time: Seconds, of a clip, of which the nearest frame is exported; None: a page plays it, a glb of a clip whose
             groups are files is the clip as one file, and other kinds refuse it.
         overwrite: Whether existing files, and folders that an export wrote, are replaced.
@@ -89,7 +95,7 @@ def export(
         options: Of the kind (`OPTIONS`): fields of `RenderJob` for pictures; `path` and `frames` (`path_points`) and
             `fps` of a flight; `title`, `metres_per_unit`, `at`, `laboratory` and `url` of a page (`write_guests_page`);
             `at`, `image`, `draco` and `metres_per_unit` of a glb (`write_glb`); `quilt` (columns and rows, or a
-            display) and `spread` (`quilt_of`); `grid` of views (`write_views`); `residual`.
+            display) and `spread` (`quilt_of`); `grid` of views (`write_views`); `splats` (`write_splats`); `residual`.
 
     Returns:
         The file or folder that was written, and what it holds, for people.
@@ -115,7 +121,8 @@ def export(
         points = path_points(options.get("path", FLIGHT_DEFAULT_PATH), options.get("frames", FLIGHT_FRAMES))
     files = guests_files(output) if chosen == "html" and not options.get("laboratory") else [output]
     _refuse(chosen, obj_files(output) if _is_obj(output) else files, points, overwrite)
-    if chosen == "glb" and not isinstance(scene, Scene | Clip) and output.exists() and output.samefile(scene):
+    named = None if isinstance(scene, Scene | Clip) else scene
+    if chosen in ("glb", "splats") and named is not None and output.exists() and output.samefile(named):
         raise OptionError("output-kind", f"{output} is the scene itself", remedy="name another file")
     if chosen == "folder":
         return _write_clip_folder(scene, output, overwrite)
@@ -233,6 +240,13 @@ def _write(
     if kind == "views":
         rows, columns = write_views(job, output, grid=options.get("grid"), **how)
         return output, f"{rows}x{columns} views with HCI's names, and parameters.cfg"
+    if kind == "splats":
+        count, decibels = write_splats(scene, output, **how, **options)
+        size = f"{count:,} Gaussians, {output.stat().st_size / 1e6:.1f} MB"
+        return output, f"{size}; PSNR {decibels:.1f} dB beside what the scene draws"
+    if kind == "usdz":
+        write_usdz(scene, output, overwrite=overwrite, **options)
+        return output, f"{output.stat().st_size / 1e6:.1f} MB, for Quick Look"
     if kind == "colmap":
         write_colmap(job, output, points=points, residual=options.get("residual", False), **how)
         return output, f"{len(scene.rig.names) if points is None else len(points)} pictures and a COLMAP model"
@@ -260,7 +274,7 @@ def _chosen_kind(output: Path, kind: str | None, numbered: bool) -> str:
             )
         film = "mp4" if parse_quilt_name(output) is None else "quilt"
         by_ending = {".html": "html", ".htm": "html", ".mp4": film, ".glb": "glb", ".obj": "obj",
-                     ".png": "png" if numbered else "quilt"}  # fmt: skip
+                     ".png": "png" if numbered else "quilt", ".spz": "splats", ".usdz": "usdz"}  # fmt: skip
         if ending not in by_ending:
             raise OptionError(
                 "output-kind",
@@ -300,6 +314,10 @@ def _check(kind: str, output: Path, given: dict[str, Any]) -> None:
     check_scale(given.get("metres_per_unit"))
     if kind == "glb":
         check_image(given.get("image", "png"), given.get("draco", False))
+    if kind == "splats":
+        check_splats(output, given.get("splats"))
+    if kind == "usdz":
+        check_usd()
     if "url" in given and given.get("laboratory"):
         raise OptionError("unused-option", "--url is not for --laboratory", remedy="leave it out")
     if not str(given.get("url", "https:")).startswith(("https:", "http:")):

@@ -68,7 +68,7 @@ def write_glb(
     picture = _picture(to_codes(finish(drawn)), image)
     buffer = Buffer()
     write = _write_draco if draco else _write_plain
-    primitives = [write(part, buffer) for part in _parts(scene.proxy)]
+    primitives = [write(part, buffer) for part in mesh_parts(scene.proxy)]
     view = buffer.view(picture)
     scale = (scene.provenance.metres_per_unit or 1.0) if metres_per_unit is None else float(metres_per_unit)
     gltf = _gltf(scene, scale, image, view) | {
@@ -100,7 +100,7 @@ def check_image(image: str, draco: bool) -> None:
             raise OptionError("draco-missing", "DracoPy is not installed", remedy=remedy) from None
 
 
-def _parts(proxy: Proxy) -> list[Mesh]:
+def mesh_parts(proxy: Proxy) -> list[Mesh]:
     """The mesh, or that of each sheet, back to front."""
     if proxy.sheets is None:
         return [proxy.mesh]
