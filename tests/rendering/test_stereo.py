@@ -94,6 +94,12 @@ def test_the_reach_is_the_angle_of_the_array(scene):
     assert apart == pytest.approx(2 * np.degrees(np.arctan(0.25 * 0.8 / 3)))
 
 
+def test_by_default_the_eyes_are_a_fifth_of_the_array_apart_and_at_most_three_degrees(scene):
+    assert Eyes.of(scene, "side-by-side").reach(scene)[2] == pytest.approx(3)
+    far = wall(scene, 30.0, 40.0)
+    assert Eyes.of(far, "side-by-side").part == 0.2
+
+
 def test_half_a_sphere_has_each_direction_where_it_lies(scene):
     """By longitude and latitude: the wall's paint, in the direction of the pixel."""
     side = 256
@@ -224,7 +230,8 @@ def test_a_picture_and_a_path_and_the_reach_in_degrees(run, file, tmp_path):
     assert run("render", file, *words, "-o", tmp_path / "b%d.png").code == 0
     with Image.open(tmp_path / "b1.png") as picture:
         assert picture.size == (64, 96)
-    assert run("render", file, *words[:-1], "vr180", "-o", tmp_path / "c.mp4").code == 0
+    code, _, err = run("render", file, *words[:-1], "vr180", "-o", tmp_path / "c.mp4")
+    assert code == 0 and "photographs fill 52 x 40 of 180 degrees" in err
     assert b"sv3d" in (tmp_path / "c.mp4").read_bytes()
     assert run("render", file, "--camera", "view_0_0", "--stereo", "vr180", "--background", "transparent",
                "--resolution", "64x64", "-o", tmp_path / "d.png").code == 0  # fmt: skip

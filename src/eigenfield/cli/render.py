@@ -153,7 +153,7 @@ def _render_stereo(
     from eigenfield.gltf import load, load_clip
     from eigenfield.rendering import FLIGHT_FRAMES, RenderJob, path_points, viewpoint
     from eigenfield.rendering.render_jobs import png, refuse_flight
-    from eigenfield.rendering.stereo import STEREO_BASELINE, Baseline, Eyes, write_stereo
+    from eigenfield.rendering.stereo import Baseline, Eyes, write_stereo
     from eigenfield.runtime.files import write_bytes
 
     layout, baseline = stereo
@@ -169,12 +169,11 @@ def _render_stereo(
         first = load(scene, seconds)
     else:
         first = clip.scene(float(clip.timeline.times[numbers.start]))
-    eyes = Eyes.of(first, layout, Baseline(*(baseline or (STEREO_BASELINE, False))))
+    eyes = Eyes.of(first, layout, None if baseline is None else Baseline(*baseline))
     if points is None:
         centre = viewpoint(first, **place)[0].centre
         points = [place["at"] or tuple(first.rig.view_plane.coordinates([centre])[0].tolist())] * len(numbers or [0])
-    width, height, apart = eyes.reach(first)
-    said = f"the array reaches {width:.1f} x {height:.1f} degrees, the eyes are {apart:.1f} apart"
+    said = eyes.said(first)
     if numbers is None and path is None:
         write_bytes(output, png(eyes.pixels(RenderJob(first, **picture), points[0])), overwrite=overwrite)
         return said

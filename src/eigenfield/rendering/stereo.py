@@ -32,7 +32,7 @@ from eigenfield.runtime.files import is_numbered
 from eigenfield.runtime.parallel import parallel_stream
 
 STEREO_LAYOUTS = ("side-by-side", "top-bottom", "vr180")  # vr180: side by side
-STEREO_BASELINE = 0.2  # of the array's width
+STEREO_PART, STEREO_DEGREES = 0.2, 3.0  # the most of the array's width, and as an angle, where nobody says a baseline
 STEREO_MIN_COSINE = 0.7  # between the array's X and the cameras' own x axis
 VR180_SIDE_STEP_PX, VR180_MAX_SIDE_PX = 16, 2880  # of one eye's picture
 
@@ -86,8 +86,12 @@ class Eyes:
     depth: float
 
     @staticmethod
-    def of(scene: Scene, layout: str, baseline: Baseline) -> Eyes:
+    def of(scene: Scene, layout: str, baseline: Baseline | None = None) -> Eyes:
         """The eyes for a scene, or for all frames of the clip that it is of.
+
+        Args:
+            layout: One of `STEREO_LAYOUTS`.
+            baseline: Default: what is easy on the eyes, and within the array.
 
         Raises:
             OptionError: `stereo`: there is no such layout, or the cameras do not stand side by side before something;
@@ -107,13 +111,30 @@ class Eyes:
         if not near.any():
             message = "the array's middle sees nothing of the scene"
             raise OptionError("stereo", message, remedy="stereo needs a surface before it")
-        return Eyes(layout, baseline.part(scene), axes, float(1 / np.median(near[near > 0])))
+        depth, extent = float(1 / np.median(near[near > 0])), float(scene.rig.view_plane.extent[0])
+        if baseline is None:
+            easy = depth * math.tan(math.radians(STEREO_DEGREES / 2))
+            baseline = Baseline(min(STEREO_PART, easy / extent) if extent else STEREO_PART)
+        return Eyes(layout, baseline.part(scene), axes, depth)
 
     def reach(self, scene: Scene) -> tuple[float, float, float]:
         """Degrees, seen from what has no parallax: of the array's width and height, and between the eyes."""
         width, height = (2 * math.degrees(math.atan(extent / self.depth)) for extent in scene.rig.view_plane.extent)
         eyes = 2 * math.degrees(math.atan(self.part * float(scene.rig.view_plane.extent[0]) / self.depth))
         return width, height, eyes
+
+    def said(self, scene: Scene) -> str:
+        """The reach of the array in words; of half a sphere also how much of it the photographs fill."""
+        width, height, apart = self.reach(scene)
+        words = f"the array reaches {width:.1f} x {height:.1f} degrees, the eyes are {apart:.1f} apart"
+        if self.layout != "vr180":
+            return words
+        seen = novel_camera(scene, (0.0, 0.0))
+        sides = (
+            2 * math.degrees(math.atan(side / (2 * f)))
+            for side, f in ((seen.width, seen.K[0, 0]), (seen.height, seen.K[1, 1]))
+        )
+        return words + "; photographs fill {:.0f} x {:.0f} of 180 degrees".format(*sides)
 
     def pixels(self, job: RenderJob, at: tuple[float, float]) -> NDArray[np.uint8]:
         """(H, W, 1 to 4) uint8 of both eyes, the left one left or above.
