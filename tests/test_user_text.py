@@ -23,6 +23,7 @@ from eigenfield.cli.capture_options import _parse_grid, _parse_layers
 from eigenfield.cli.common import pair_of_numbers
 from eigenfield.core.camera_names import named_camera
 from eigenfield.core.errors import EigenfieldError
+from eigenfield.core.rights import Rights
 from eigenfield.encoding.target import Target, parse_size
 from eigenfield.evaluation import read_circles
 from eigenfield.proxy.primitives.shapes import parse_primitive
@@ -85,6 +86,7 @@ OPTIONS = {
     "primitive": (parse_primitive, "sphere:1,2,3,4"),
     "primitive plane": (parse_primitive, "plane:1,2,3,0,0,1,4"),
     "reference": (lambda text: named_camera(text, NAMES, "reference"), "a.png"),
+    "rights": (lambda text: Rights(title=text), "My scene"),
     "resolution": (as_option(pair_of_numbers("WxH")), "640x480"),
     "target-size": (lambda text: Target(size=parse_size(text)).check(), "1.5MB"),
 }

@@ -155,7 +155,7 @@ stereo_options = together(
     click.option("--stereo", metavar="side-by-side|top-bottom|vr180",
                  help="Two eyes in one picture, the left one left or above; vr180: on half a sphere each."),
     click.option("--baseline", callback=_parse_baseline, metavar="B",
-                 help="Between the eyes: a part of the array's width, or a length: 63mm.  [default: 0.2, or 3 degrees]"),
+                 help="Between the eyes, a part of the array's width, or a length, 63mm.  [default: 0.2, 3 degrees]"),
 )  # fmt: skip
 time_option = click.option(
     "--time",
