@@ -18,7 +18,7 @@ const APART = 0.02; // of the array's size, and of rotations' entries, up to whi
 const SHARED = 0.5; // of the cameras of the scene that has fewer, from which on two scenes are of one capture
 const OUT_OF_STEP = 0.3; // seconds by which a clip that plays may be ahead of the other
 
-export interface Beside {
+export interface SecondScene {
   open(source: Source): Promise<void>;
   close(): void;
   /** It is here, with all of its textures, or will not come. */
@@ -39,7 +39,7 @@ export interface BesideEvents {
   say(text: string): void;
 }
 
-export function createBeside(session: Session, stage: Stage, config: Config, events: BesideEvents): Beside {
+export function createBeside(session: Session, stage: Stage, config: Config, events: BesideEvents): SecondScene {
   const { changed, request, say } = events;
   let opened: Promise<void> = Promise.resolve();
   let agreed: { first: Scene; same: boolean } | null = null;

@@ -1,7 +1,7 @@
 // One frame: which camera sees it, with what weights, and what lies over it.
 
 import { type EigenField, type Frame, placeCamera } from "eigenfield-three";
-import type { Beside } from "./beside";
+import type { SecondScene } from "./beside";
 import type { Captured } from "./captured";
 import { WHOLE } from "./mode";
 import type { Detail } from "./pace";
@@ -22,7 +22,7 @@ export function createPainter(
   stage: Stage,
   places: Places,
   captured: Captured,
-  beside: Beside,
+  beside: SecondScene,
 ): Painter {
   let frame = WHOLE;
 
