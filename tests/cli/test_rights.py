@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import base64
 import json
+import re
 from dataclasses import replace
 
 import pytest
@@ -10,7 +12,9 @@ from PIL import Image
 
 from eigenfield.core.rights import Rights
 from eigenfield.gltf import load, save
+from eigenfield.gltf.container import parse_glb
 from support.captures import write_capture
+from support.clips import numbered_clip
 from support.scenes import tiny_scene
 
 ARTIST, COPYRIGHT, MAKE, MODEL, GPS = 0x013B, 0x8298, 0x010F, 0x0110, 0x8825
@@ -78,3 +82,20 @@ def test_a_page_is_called_as_its_scene_and_offers_it(run, tmp_path):
     assert run("export", scene, "-o", page, "--no-download", "--laboratory", "--overwrite").code == 0
     assert '"download":false' in page.read_text(encoding="utf-8")
     assert run("export", scene, "-o", tmp_path / "a.mp4", "--no-download").code == 2
+
+
+def test_pages_hold_a_file_that_still_says_it(run, tmp_path):
+    said = Rights(title="Stones", author="Ada", licence="CC0", source="https://example.org")
+    scene, clip = tmp_path / "scene.glb", tmp_path / "clip.glb"
+    save(replace(tiny_scene(), rights=said), scene, codec="png")
+    save(replace(numbered_clip((2, 1)), rights=said), clip)
+    assert run("export", scene, clip, "--as", "app", "-o", tmp_path / "open").code == 0
+    assert load(tmp_path / "open/samples/scene.glb").rights == said
+    assert load(tmp_path / "open/samples/clip.glb", 0.0).rights == said
+    for file in (scene, clip):
+        assert run("export", file, "-o", tmp_path / "page.html", "--overwrite").code == 0
+        (held,) = re.findall('id="eigenfield-scene">([^<]*)<', (tmp_path / "page.html").read_text(encoding="utf-8"))
+        (tmp_path / "held.glb").write_bytes(base64.b64decode(held))
+        assert load(tmp_path / "held.glb", 0.0).rights == said
+    assert run("export", clip, "--time", "0", "-o", tmp_path / "frame.glb").code == 0
+    assert parse_glb((tmp_path / "frame.glb").read_bytes()).json["asset"]["copyright"] == "Ada, CC0"
