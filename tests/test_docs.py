@@ -190,6 +190,7 @@ def prepare(name: str, place: Path) -> None:
     if name == "viewer":
         shutil.copytree(capture, place / "photographs")
         ef.save(ef.encode(capture, proxy=capture / "proxy.ply", fit="none"), place / "scene.glb")
+        shutil.copy(place / "scene.glb", place / "smaller.glb")
     elif name in ("exports", "publish", "measure-and-compare", "scene-as-numpy"):
         for one in ("tarot", "fern", *([] if name == "measure-and-compare" else ["scene"])):
             shutil.copy(ROOT / "docs/scene.glb", place / f"{one}.glb")

@@ -24,6 +24,7 @@ from eigenfield.cli.common import pair_of_numbers
 from eigenfield.cli.export import _parse_quilt
 from eigenfield.core.camera_names import named_camera
 from eigenfield.core.errors import EigenfieldError
+from eigenfield.core.rights import Rights
 from eigenfield.encoding.target import Target, parse_size
 from eigenfield.evaluation import read_circles
 from eigenfield.proxy.primitives.shapes import parse_primitive
@@ -87,6 +88,7 @@ OPTIONS = {
     "primitive plane": (parse_primitive, "plane:1,2,3,0,0,1,4"),
     "quilt": (as_option(_parse_quilt), "8x6"),
     "reference": (lambda text: named_camera(text, NAMES, "reference"), "a.png"),
+    "rights": (lambda text: Rights(title=text), "My scene"),
     "resolution": (as_option(pair_of_numbers("WxH")), "640x480"),
     "target-size": (lambda text: Target(size=parse_size(text)).check(), "1.5MB"),
 }

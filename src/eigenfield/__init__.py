@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from eigenfield.core.mesh import Mesh as Mesh
     from eigenfield.core.open_options import OpenOptions as OpenOptions
     from eigenfield.core.progress import Progress as Progress
+    from eigenfield.core.rights import Rights as Rights
     from eigenfield.encoding import EncodeOptions as EncodeOptions
     from eigenfield.encoding import Target as Target
     from eigenfield.evaluation import evaluate as evaluate
@@ -75,6 +76,7 @@ _HOME = {  # a room, or a name in a room where that is another
     "Progress": "core.progress",
     "ProxyError": "core.errors",
     "Reconstruction": "reconstruction.whole",
+    "Rights": "core.rights",
     "Scene": "api",
     "SurfaceOptions": "reconstruction",
     "Target": "encoding",

@@ -247,6 +247,12 @@ def test_a_list_says_sizes_as_the_command_line_does(tmp_path):
     assert job.options.target == ef.Target(size=300_000)
 
 
+def test_a_list_says_whose_the_scenes_are(tmp_path):
+    (tmp_path / "list.toml").write_text('[options]\nauthor = "Ada"\n[[capture]]\npath = "a"\ntitle = "A jar"\n')
+    (job,) = read_jobs(tmp_path / "list.toml", {"licence": "CC0"})
+    assert job.options.rights == ef.Rights(title="A jar", author="Ada", licence="CC0")
+
+
 def test_a_folder_of_captures(tmp_path):
     for name in ("b10", "b9", ".hidden", "b-scenes", "²"):
         (tmp_path / name).mkdir()

@@ -13,6 +13,7 @@ writes into FOLDER
     one.glb, four.glb   with that many textures, the first of scene.glb
     grey.glb            one channel, 5 textures
     names.glb           camera names that want to be HTML
+    rights.glb          a title, an author, a licence and a source (`RIGHTS`), of which the title wants to be HTML
     plain.glb           a glTF file without eigen textures
     newer.glb, needs.glb, truncated.glb, damaged.glb, no-json.glb, not-ours.bin
     photographed.glb    scene.glb with cameras named as the files of capture/
@@ -46,6 +47,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
+from eigenfield.core.rights import Rights
 from eigenfield.core.scene import Scene
 from eigenfield.core.viewplane import find_grid, fit_view_plane
 from eigenfield.gltf import save
@@ -55,6 +57,12 @@ from support.scenes import bumpy_square, encoded_triangles, float_basis, smooth_
 WIDTH, HEIGHT = 320, 240
 SIDE = 128
 PLACES = ((0.0, 0.0), (0.37, -0.21), (-0.93, 0.71))
+RIGHTS = Rights(
+    title='A "stone" & <img src=x onerror=alert(1)>',
+    author="Ada " + "and a long list of others " * 12,
+    licence="CC BY 4.0",
+    source="https://example.org/stone",
+)
 SUBPIXELS = 16  # in which Chromium's software GPU places vertices: 4 bits, the fewest that OpenGL ES allows
 FREE = ((0.35, -0.2, -1.9), (-0.6, 0.3, -4.5))  # eyes before and behind the view plane z = -3
 
@@ -192,6 +200,7 @@ def write(folder: Path) -> None:
         codec="png",
         overwrite=True,
     )
+    save(replace(plain, rights=RIGHTS), folder / "rights.glb", codec="png", overwrite=True)
     _bad_files(folder)
     _capture(folder / "capture", ef.load(folder / "scene.glb"))
     pictures = [*references(folder, "scene.glb"), *references(folder, "line.glb", PLACES[:2])]

@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
+import eigenfield as ef
 from eigenfield.capture import match_photographs, open_capture
-from eigenfield.core.errors import CaptureError
+from eigenfield.core.errors import CaptureError, FormatError, OptionError
 from eigenfield.gltf import outline
 from eigenfield.viewer import Photographs, Server, make_manifest, page, photographs
 from support.captures import write_capture
@@ -191,3 +192,19 @@ def test_the_command_says_when_the_network_can_see_it(scene):
     with command(scene, "--no-browser", "--host", "0.0.0.0") as process:
         port_of(process)
         assert "anyone on the network" in process.stderr.readline()
+
+
+def test_a_second_scene_is_served_beside_the_first(scene, tmp_path):
+    second = tmp_path / "small.GLB"
+    second.write_bytes(scene.read_bytes())
+    with ef.view(scene, second, browser=False) as running, Client(running.port) as client:
+        assert client.request("/second.glb").body == outline(scene)[1]
+        page = client.request("/").body.decode()
+        assert '"beside":{"names":["scene","small"],"scene":"second.glb"' in page and '"photographs"' not in page
+    with ef.view(ef.load(scene), ef.load(second), browser=False) as running, Client(running.port) as client:
+        assert '"names":["A","B"]' in client.request("/").body.decode()
+    with pytest.raises(OptionError) as caught:
+        ef.view(scene, second, browser=False, grid=(3, 3))
+    assert caught.value.code == "no-capture" and "a second scene is named" in str(caught.value)
+    with pytest.raises(FormatError):
+        ef.view(scene, tmp_path / "none.glb", browser=False)

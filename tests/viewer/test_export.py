@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import errno
 import json
 import os
@@ -170,7 +171,8 @@ def test_a_page_that_opens_files_needs_no_scene_and_other_exports_need_one(run, 
     assert not (tmp_path / "open" / "samples").exists()
     for arguments, says in (
         (["-o", tmp_path / "a.html"], "0 scenes for html; name one"),
-        (["a.glb", "b.glb", "-o", tmp_path / "a.html"], "2 scenes for html; name one"),
+        (["a.glb", "b.glb", "-o", tmp_path / "a.mp4"], "2 scenes for mp4; name one"),
+        (["a.glb", "b.glb", "c.glb", "-o", tmp_path / "a.html"], "3 scenes for html; name one"),
         ([tmp_path / "missing.glb", "-o", tmp_path / "b", "--as", "app"], "does not exist"),
         (["-o", tmp_path / "b", "--as", "app", "--laboratory"], "--laboratory is not for app"),
     ):
@@ -446,3 +448,19 @@ def test_without_dracopy_a_line_says_what_to_install(export, monkeypatch):
     code, err = export("a.glb", "--draco")
     assert code == 2 and "pip install 'eigenfield[meshes]'" in err and err.count("\n") == 1
     assert list(export.place.iterdir()) == []
+
+
+def test_two_scenes_make_one_page_that_has_both(run, tmp_path):
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        save(tiny_scene(textures=2 if folder == "a" else 1), tmp_path / folder / "scene.glb", codec="png")
+    first, second, page = tmp_path / "a/scene.glb", tmp_path / "b/scene.glb", tmp_path / "page.html"
+    for more in ([], ["--laboratory", "--overwrite"]):
+        assert run("export", first, second, "-o", page, *more).code == 0
+        text = page.read_text(encoding="utf-8")
+        assert '"beside":{"names":["a/scene","b/scene"]' in text
+        for name, file in (("scene", first), ("beside", second)):
+            (held,) = re.findall(f'id="eigenfield-{name}">([^<]*)<', text)
+            assert base64.b64decode(held) == file.read_bytes()
+    code, _, err = run("export", first, tmp_path / "none.glb", "-o", page, "--overwrite")
+    assert code == 2 and "none.glb: does not exist" in err and page.read_text(encoding="utf-8") == text

@@ -71,7 +71,7 @@ test("no words of ours: a bar that loads, a title of 5,000 letters that is cut, 
     assert.equal(await page.evaluate(() => document.scrollingElement.scrollHeight), height);
     assert.ok(await page.locator(".progress p").isHidden());
     const names = await page.locator(".tools button:visible").evaluateAll((all) => all.map((one) => one.ariaLabel));
-    assert.deepEqual(names, ["First view", "Copy a link to this view", "Full screen"]);
+    assert.deepEqual(names, ["First view", "Copy a link to this view", "Copy embed code", "Download the scene", "Full screen"]);
     assert.doesNotMatch(await page.locator("body").innerText(), /eigen|laboratory|camera|texture/i);
     await close();
   }

@@ -145,7 +145,7 @@ test("?ui=0 shows the picture alone, ?ui=plain a title and the way to the labora
   assert.deepEqual(await shown(), [false, false]);
   assert.ok(await page.locator("dialog").isHidden());
   const names = await page.locator(".tools button:visible").evaluateAll((all) => all.map((one) => one.ariaLabel));
-  assert.deepEqual(names, ["First view", "Copy a link to this view", "Full screen", "Laboratory"]);
+  assert.deepEqual(names, ["First view", "Copy a link to this view", "Copy embed code", "Download the scene", "Full screen", "Laboratory"]);
   const laboratory = page.getByRole("button", { name: "Laboratory" });
   await laboratory.click();
   assert.deepEqual(await shown(), [true, true]);

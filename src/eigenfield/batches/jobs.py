@@ -15,6 +15,7 @@ from eigenfield.capture.readers.text import excerpt
 from eigenfield.core.arguments import in_words, kind_in_words, matches
 from eigenfield.core.errors import EigenfieldError, OptionError
 from eigenfield.core.open_options import OpenOptions
+from eigenfield.core.rights import Rights
 from eigenfield.encoding import SURFACE_NAMES, EncodeOptions, Target
 from eigenfield.encoding.estimated import surface_to_make
 from eigenfield.encoding.target import parse_bitrate, parse_size
@@ -25,9 +26,10 @@ from eigenfield.viewer.exports.names import file_name
 
 PLACE_KEYS = tuple(one.name for one in fields(OpenOptions) if one.name not in ("strict", "work"))
 PATH_KEYS = ("calibration", "masks")  # of PLACE_KEYS
+RIGHTS_KEYS = tuple(one.name for one in fields(Rights))
 TARGET_KEYS = tuple(f"target_{one.name}" for one in fields(Target))
-OPTION_KEYS = tuple(one.name for one in fields(EncodeOptions) if one.name not in ("target", "keep_maps"))
-ALL_KEYS = (*PLACE_KEYS, "proxy", *SURFACE_NAMES, "blind", *TARGET_KEYS, *OPTION_KEYS)
+OPTION_KEYS = tuple(one.name for one in fields(EncodeOptions) if one.name not in ("target", "rights", "keep_maps"))
+ALL_KEYS = (*PLACE_KEYS, "proxy", *SURFACE_NAMES, "blind", *TARGET_KEYS, *RIGHTS_KEYS, *OPTION_KEYS)
 TYPES = {"name": str, "proxy": str | os.PathLike[str], "blind": bool}  # of what no value of options checks
 WHOLE_NUMBER_LIMIT = 2**63  # of TOML
 ERROR_MAX_CHARACTERS = 160
@@ -193,10 +195,15 @@ def _checked(given: dict[str, Any], base: Path) -> CaptureJob:
     if isinstance(given.get("target_bitrate"), str):
         given["target_bitrate"] = parse_bitrate(given["target_bitrate"])
     target = Target(**{key.removeprefix("target_"): value for key, value in _some(given, TARGET_KEYS).items()})
+    rights = Rights(**_some(given, RIGHTS_KEYS))
     named = _some(given, OPTION_KEYS)
     if isinstance(named.get("atlas"), list):
         named["atlas"] = tuple(named["atlas"])
-    options = EncodeOptions(**named, target=None if target == Target() else target)
+    options = EncodeOptions(
+        **named,
+        target=None if target == Target() else target,
+        rights=None if rights == Rights() else rights,
+    )
     if place.clip is None:
         options.refuse_clip_options()
     surface = surface_to_make(

@@ -54,7 +54,8 @@ def command(
     from eigenfield.runtime.objects import address_of
 
     started = time.monotonic()
-    shared = {name: value for name, value in options.items() if value not in (None, (), "auto")}
+    named = {name.removeprefix("rights_"): value for name, value in options.items()}  # as on the command line
+    shared = {name: value for name, value in named.items() if value not in (None, (), "auto")}
     given = source[0] if len(source) == 1 else list(source)
     try:
         with progress_bars(quiet) as progress:

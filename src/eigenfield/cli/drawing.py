@@ -102,6 +102,14 @@ def parse_place(context: click.Context, parameter: click.Parameter, value: str |
     return x, y
 
 
+def _parse_baseline(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[float, bool] | None:
+    """Fields of `rendering.stereo.Baseline`."""
+    found = re.fullmatch(r"(\d{1,9}\.?\d{0,9}|\.\d{1,9}) *(mm|cm|m|)", (value or "").strip())
+    if value is not None and found is None:
+        raise click.BadParameter("a part of the array's width, as 0.2, or a length, as 63mm")
+    return None if found is None else (float(found[1]) * {"mm": 1e-3, "cm": 1e-2}.get(found[2], 1.0), bool(found[2]))
+
+
 def _parse_colour(context: click.Context, parameter: click.Parameter, value: str) -> tuple[float, ...] | None:
     if value == "transparent":
         return None
@@ -142,6 +150,12 @@ flight_options = together(
     click.option("--frames", type=int, metavar="N", help="Pictures of a path.  [default: 120]"),
     click.option("--fps", callback=_parse_rate, default=DEFAULT_FPS, show_default=True, metavar="F",
                  help="Pictures a second."),
+)  # fmt: skip
+stereo_options = together(
+    click.option("--stereo", metavar="side-by-side|top-bottom|vr180",
+                 help="Two eyes in one picture, the left one left or above; vr180: on half a sphere each."),
+    click.option("--baseline", callback=_parse_baseline, metavar="B",
+                 help="Between the eyes, a part of the array's width, or a length, 63mm.  [default: 0.2, 3 degrees]"),
 )  # fmt: skip
 time_option = click.option(
     "--time",

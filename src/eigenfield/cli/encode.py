@@ -70,6 +70,7 @@ GROUPS = {  # of options in the help, those of every day first; the empty one ha
     "Estimated cameras and mesh": (
         "surface", "layers", "refine", "background", "primitives", "fit_spheres", "triangles",
     ),
+    "Rights": ("rights_title", "rights_author", "rights_licence", "rights_source"),
     "How it runs": ("work", "threads", "workers", "cluster", "quiet", "progress"),
     "Other options": (),
     "The paper's way: texture maps instead of a fit": (

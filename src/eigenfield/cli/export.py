@@ -26,6 +26,7 @@ Examples:
   eigenfield export scene.glb -o scene.html
   eigenfield export scene.glb -o scene.html --title "My scene" --url https://example.org/scene.html
   eigenfield export scene.glb -o scene.html --laboratory
+  eigenfield export large.glb small.glb -o compare.html
   eigenfield export scene.glb -o flight.mp4 --path spiral --frames 240
   eigenfield export scene.glb -o 'frames/%04d.png' --background transparent
   eigenfield export scene.glb -o plain.glb --as glb
@@ -59,7 +60,7 @@ Examples:
 @click.option(
     "--title",
     metavar="TEXT",
-    help="Of the page (html, app).  [default: the output's name, of scene.html its folder's; eigenfield]",
+    help="Of the page (html, app).  [default: the scene's own, or the output's name; of an app eigenfield]",
 )
 @click.option(
     "--metres-per-unit", type=float, metavar="M", help="Metres in one unit of the capture (html, glb, splats, usdz)."
@@ -75,6 +76,7 @@ Examples:
 )
 @click.option("--draco", is_flag=True, help="Compress the mesh (glb).")
 @click.option("--laboratory", is_flag=True, help="A page for those who measure, with panel and tools (html).")
+@click.option("--no-download", is_flag=True, help="Leave out the button that saves the scene as a file (html).")
 @click.option("--url", metavar="URL", help="Where the page will be, for links to it (html).")
 @click.option(
     "--quilt",
@@ -110,7 +112,8 @@ def command(
     """Write SCENE, or the frame of a clip at --time, for other programs.
 
     \b
-    html    one page with viewer and scene, which opens by double click, and its poster, a .jpg
+    html    one page with viewer and scene, which opens by double click, and its poster, a .jpg; of two SCENEs a page
+            that compares them
     mp4     a fly-through (--path, else a circle)
     png     its single pictures, where the output's name has %04d
     glb     the mesh with its mean, or the texture of --at, for any glTF viewer
@@ -130,7 +133,7 @@ def command(
     given: dict[str, Any] = {
         name: value for name, value in options.items() if source(name) is ParameterSource.COMMANDLINE
     }
-    if time is not None and len(scenes) == 1:
+    if time is not None and len(scenes) in (1, 2):
         given["time"] = time.in_clip(scenes[0])
     with progress_bars(quiet) as progress:
         made, what = export(scenes, output, kind, overwrite=overwrite, progress=progress, **given)

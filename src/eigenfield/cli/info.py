@@ -100,6 +100,7 @@ def _facts(
             "up": plane.up.tolist(),
         },
         "axes": AXES_TEXT,
+        "rights": {name: text for name, text in vars(layout.rights).items() if text},
         "settings": layout.settings,
         "scores": layout.scores,
     }
@@ -142,11 +143,12 @@ def _plane_facts(plane: PlaneLayout) -> dict[str, Any]:
 
 
 def text_lines(facts: dict[str, Any]) -> list[str]:
-    """At most 19 lines of what a file holds; `--json` has all of it."""
+    """At most 20 lines of what a file holds; `--json` has all of it."""
     total = facts["bytes"]["total"]
     shares = ((name, count) for name, count in facts["bytes"].items() if count and name != "total")
     lines = [f"bytes         {', '.join(f'{name} {count:,} ({count / total:.0%})' for name, count in shares)}"]
     lines += clip_lines(facts["clip"]) if "clip" in facts else []
+    lines += [f"rights        {_short(facts['rights'])}"] if facts["rights"] else []
     cameras, proxy = facts["cameras"], facts["proxy"]
     sizes = [f"{entry['count']} of {_size(entry['size'])}" for entry in cameras["sizes"]]
     lines.append(

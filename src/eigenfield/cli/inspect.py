@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import shlex
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -19,7 +20,7 @@ from eigenfield.cli.common import (
     note,
 )
 from eigenfield.cli.progress import progress_bars
-from eigenfield.core.errors import EigenfieldError, OptionError, one_line
+from eigenfield.core.errors import CaptureError, EigenfieldError, OptionError, one_line
 from eigenfield.core.open_options import OpenOptions
 from eigenfield.core.shell import shell_word
 
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from eigenfield.capture import Capture, GridLayout, LightField, PhotoSet
     from eigenfield.capture.lightfield import View
     from eigenfield.capture.survey import CameraArray
-    from eigenfield.core.errors import CaptureError
     from eigenfield.core.mesh import Mesh
 
 SCHEMA = "eigenfield.inspect/1"
@@ -193,6 +193,7 @@ def describe(capture: Capture, damaged: list[CaptureError], fewest: int = 3) -> 
         low, high = np.min(list(sizes), axis=0), np.max(list(sizes), axis=0)
         alike = bool(((high - low) <= SIZES_MAX_SPREAD * high).all())
         (notes if alike else problems).append(f"the photographs have {len(sizes)} different sizes")
+    notes += _credit_notes(capture)
     if len(capture) < fewest:
         bare = count_phrase(capture.sources, "photograph is", "photographs are")
         what = f"{len(views)} photographs with a camera are" if capture.light_field is not None else bare
@@ -227,6 +228,25 @@ def describe(capture: Capture, damaged: list[CaptureError], fewest: int = 3) -> 
         "verdict": None,
         "footage": None,
     }
+
+
+def _credit_notes(capture: Capture) -> list[str]:
+    """A line that offers what the first photograph says of its author and rights, which no file gets unasked."""
+    from eigenfield.capture.photographs.exif import read_credit
+    from eigenfield.capture.photographs.read import read_header
+    from eigenfield.core.rights import fault_of
+
+    said: tuple[str | None, str | None] = (None, None)
+    if capture.sources:
+        path = capture.sources[0].path
+        with contextlib.suppress(CaptureError, OSError):
+            said = read_credit(path, read_header(path))
+    words = [
+        f"{option} {shlex.quote(text)}"
+        for option, text in zip(("--author", "--licence"), said, strict=True)
+        if text is not None and fault_of(text) is None
+    ]
+    return [f"the photographs say whose they are: encode {' '.join(words)} would keep it"] if words else []
 
 
 def _neighbours(capture: Capture, pairs: Sequence[NeighbourPair]) -> dict[str, Any]:

@@ -18,6 +18,7 @@ from eigenfield.core.open_options import OpenOptions
 Examples:
   eigenfield view scene.glb
   eigenfield view scene.glb capture/
+  eigenfield view scene.glb smaller.glb
   eigenfield view scene.glb --no-browser --port 8000"""
 )
 @click.argument("scene", type=PATH)
@@ -48,6 +49,8 @@ def command(
     quiet: bool,
 ) -> None:
     """Look around in SCENE, in a browser, beside the photographs of CAPTURE if it is given.
+
+    A second .glb in place of CAPTURE is compared with SCENE: one eye sees both, with a divider between them.
 
     The address goes to standard output. Only this machine can open it, unless --host says otherwise, and
     nothing is fetched from elsewhere. Ctrl-C ends it, with exit code 0.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from eigenfield.core.rights import RIGHTS_MAX_CHARACTERS
+
 EXTENSION = "EIGENFIELD_eigen_textures"
 VERSION = "1.11"  # of the format without its codecs; a reader takes any 1.x
 
@@ -25,6 +27,7 @@ MAX_CAMERAS = 100_000
 MAX_CAMERA_SIDE = 65_535  # pixels
 MAX_CAMERA_PIXELS = 2**29
 MAX_NAME = 1_024  # characters of a camera's name
+MAX_RIGHTS = RIGHTS_MAX_CHARACTERS  # of a title, an author, a licence, a source
 MAX_NAMES = 2**25  # bytes of coded names, inflated
 MAX_VERTICES = 2**26
 MAX_TRIANGLES = 2**27

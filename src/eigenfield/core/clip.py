@@ -24,6 +24,7 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.payloads import Payloads
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
+from eigenfield.core.rights import Rights
 from eigenfield.core.scene import Scene
 
 
@@ -162,6 +163,7 @@ class Clip:
         timeline: When frames are shown.
         groups: As many frames in all as the timeline has.
         audio: None: it is silent.
+        rights: Title, author, licence and source, as far as somebody said them.
     """
 
     rig: Rig
@@ -171,6 +173,7 @@ class Clip:
     scores: Mapping[str, Any] = field(default_factory=dict)
     generator: str = ""
     audio: Audio | None = None
+    rights: Rights = field(default_factory=Rights)
 
     __repr__ = brief_repr
 
@@ -187,7 +190,15 @@ class Clip:
         group = self.groups.group(index)
         proxy, appearance = group.of_frame(number - starts[index])
         payloads = group.payloads if proxy.mesh is group.proxy.mesh else group.payloads.without("mesh")
-        return Scene(proxy, self.rig, appearance, self.settings, generator=self.generator, payloads=payloads)
+        return Scene(
+            proxy,
+            self.rig,
+            appearance,
+            self.settings,
+            generator=self.generator,
+            payloads=payloads,
+            rights=self.rights,
+        )
 
 
 def _check_shape(what: str, found: NDArray[Any], first: NDArray[Any]) -> None:

@@ -21,6 +21,7 @@ from eigenfield.core.payloads import Payloads
 from eigenfield.core.provenance import Provenance
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
+from eigenfield.core.rights import Rights
 
 T = TypeVar("T")
 
@@ -81,6 +82,7 @@ class Scene:
         payloads: What mesh, opacity, cameras, means, eigen textures, weights and the picture for other viewers were
             coded to, each under the key of its content. `save` writes them byte for byte for parts that are unchanged,
             and codes the others. Parts that are not coded, or that a file holds as plain numbers, have none.
+        rights: Title, author, licence and source, as far as somebody said them.
     """
 
     proxy: Proxy
@@ -91,6 +93,7 @@ class Scene:
     generator: str = ""
     residual: Residual | None = None
     payloads: Payloads = field(default_factory=Payloads)
+    rights: Rights = field(default_factory=Rights)
     _derived: dict[str, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @property

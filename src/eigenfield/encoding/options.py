@@ -11,6 +11,7 @@ from typing import TypedDict, TypeVar
 
 from eigenfield.core.errors import OptionError
 from eigenfield.core.fields import Options, document_options, option, options_of
+from eigenfield.core.rights import Rights
 from eigenfield.encoding.target import Target
 
 T = TypeVar("T")
@@ -170,6 +171,7 @@ class EncodeOptions(Options):
         "Of a clip: how long what is decoded by itself lasts, in seconds (1.5s) or frames (30).  [default: 1s]",
         metavar="LENGTH",
     )
+    rights: Rights | None = option("Title, author, licence and source (`Rights`).", parts=Rights)
     keep_maps: str | os.PathLike[str] | None = option(
         "Also write every texture map and its visibility as PNG.", metavar="DIR"
     )

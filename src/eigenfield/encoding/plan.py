@@ -17,6 +17,7 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import CalibratedObservations, cameras_of
 from eigenfield.core.payloads import Payloads, mesh_key, size_of
 from eigenfield.core.proxy import Proxy
+from eigenfield.core.rights import Rights
 from eigenfield.core.scene import Scene
 from eigenfield.core.version import __version__
 from eigenfield.encoding.atlas import texels_per_pixel
@@ -135,6 +136,7 @@ class EncodePlan:
             settings=self.settings(textures, own),
             generator=f"eigenfield {__version__}",
             payloads=self.payloads | (payloads or {}),
+            rights=self.options.rights or Rights(),
         )
         return made if self.options.fallback is None else with_fallback(made, self.options.fallback)
 

@@ -19,6 +19,7 @@ from eigenfield.core.errors import FormatError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Payload, Payloads, cameras_key, mesh_key
 from eigenfield.core.rig import Rig
+from eigenfield.core.rights import Rights
 from eigenfield.core.scene import Residual
 from eigenfield.core.viewplane import ViewPlane
 from eigenfield.gltf import layout_geometry as geometry
@@ -29,6 +30,7 @@ from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.layout_planes import PlaneLayout, check_colours, read_matrix, read_planes
 from eigenfield.gltf.layout_residual import read_residual
 from eigenfield.gltf.layout_sheets import SheetsLayout, check_sheets, read_sheets
+from eigenfield.gltf.rights import read_rights
 from eigenfield.gltf.source import ByteSource
 from eigenfield.gltf.streams import FEATURES, LATEST, minor
 from eigenfield.gltf.strict_json import Value, quote
@@ -61,6 +63,7 @@ class Surroundings:
     settings: Mapping[str, Any]
     scores: Mapping[str, Any]
     generator: str
+    rights: Rights
 
     @property
     def rig(self) -> Rig:
@@ -179,8 +182,9 @@ def read_surroundings(
     generator = attempt(lambda: extension["generator"].text() if extension.has("generator") else "") or ""
     version = extension["version"].text()
     return Surroundings(
-        version, mesh, mesh_payload, cameras, view_plane, triangles, reference, to_rgb, settings, scores, generator
-    )
+        version, mesh, mesh_payload, cameras, view_plane, triangles, reference, to_rgb, settings, scores, generator,
+        read_rights(document, findings),
+    )  # fmt: skip
 
 
 def _read_mesh(document: Document, extension: Value) -> tuple[Mesh, Payload | None]:

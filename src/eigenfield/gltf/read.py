@@ -154,6 +154,7 @@ def _scene(
         generator=layout.generator,
         residual=layout.residual,
         payloads=payloads,
+        rights=layout.rights,
     )
 
 

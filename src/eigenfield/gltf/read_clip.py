@@ -219,7 +219,9 @@ def _clip_of(layout: ClipLayout, place: ByteSource | Path) -> Clip:
             log.warning("%s: the clip is silent (%s)", error.message, error.remedy)
         else:
             raise
-    return Clip(layout.rig, layout.timeline, groups, layout.settings, layout.scores, layout.generator, audio)
+    return Clip(
+        layout.rig, layout.timeline, groups, layout.settings, layout.scores, layout.generator, audio, layout.rights
+    )
 
 
 def _stored(

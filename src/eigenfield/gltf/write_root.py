@@ -14,6 +14,7 @@ from eigenfield.core.version import __version__
 from eigenfield.gltf import packed
 from eigenfield.gltf.buffer import Buffer
 from eigenfield.gltf.coded_pictures import shortest_decimals
+from eigenfield.gltf.rights import with_rights
 from eigenfield.gltf.write_geometry import NODE_DIGITS, PACKED_NODE_DIGITS, write_nodes, write_primitive
 
 
@@ -73,7 +74,7 @@ def write_root(
     if not drawn:
         del nodes[0]["mesh"]
     named = partial(_named, plain)
-    return {
+    made = {
         "asset": {"version": "2.0", **({"generator": f"eigenfield {__version__}"} if plain else {})},
         "extensionsUsed": [*(["KHR_materials_unlit"] if drawn else []), limits.EXTENSION],
         "extensions": {limits.EXTENSION: extension},
@@ -86,3 +87,4 @@ def write_root(
         "bufferViews": buffer.views,
         "buffers": [{"byteLength": buffer.length}],
     }
+    return with_rights(made, scene.rights)

@@ -167,7 +167,7 @@ def write_flight(
         OutputError: A file cannot be written.
     """
     if is_numbered(output):
-        _write_numbered(job.along(job.png, points, progress), len(points), output, overwrite)
+        write_numbered(job.along(job.png, points, progress), len(points), output, overwrite)
     else:
         write_video(output, job.along(job.rgb, points, progress), fps, overwrite=overwrite)
 
@@ -202,7 +202,7 @@ def write_clip_flight(
     made = map(draw, jobs) if one_thread else parallel_stream(draw, jobs)
     made = track(made, "drawing", len(frames), progress)
     if numbered:
-        _write_numbered(made, len(frames), output, overwrite)
+        write_numbered(made, len(frames), output, overwrite)
     else:
         audio, sound = clip.audio, None
         if audio is not None and fps == clip.timeline.rate:
@@ -210,7 +210,8 @@ def write_clip_flight(
         write_video(output, made, fps, sound=sound, overwrite=overwrite)
 
 
-def _write_numbered(pictures: Iterator[bytes], count: int, output: Path, overwrite: bool) -> None:
+def write_numbered(pictures: Iterator[bytes], count: int, output: Path, overwrite: bool) -> None:
+    """Write so many pictures as files that appear together; output: a .png whose name has a %04d."""
     with atomic_files(numbered_files(output, count), overwrite=overwrite) as places:
         for place, data in zip(places, pictures, strict=True):
             place.write_bytes(data)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.imaging.colour import LUMA_BT709
+from eigenfield.rendering.spherical import with_boxes
 from eigenfield.runtime.files import atomic_writer
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ def write_video(
     fps: Fraction,
     *,
     sound: tuple[bytes, float] | None = None,
+    boxes: bytes = b"",
     overwrite: bool = False,
 ) -> None:
     """Write pictures as H.264 in an .mp4, which appears whole or not at all.
@@ -40,35 +42,48 @@ def write_video(
         pictures: (H, W, 3) uint8, of one size.
         fps: Pictures a second.
         sound: An Ogg file of Opus, kept as it is, and the second of it with which the first picture is shown.
+        boxes: What the description of the pictures ends with (`spherical.vr_boxes`).
 
     Raises:
         OutputError: The file cannot be written.
     """
     import av
 
-    with atomic_writer(path, overwrite=overwrite) as file, av.open(file, "w", format="mp4") as container:
-        stream, number = None, -1
-        heard = None if sound is None else _Sound(container, *sound)
-        for number, picture in enumerate(pictures):
-            planes = yuv420(picture)
-            if stream is None:
-                height, width = planes[0].shape
-                stream = container.add_stream("libx264", rate=fps, options=VIDEO_ENCODER_OPTIONS)
-                stream.width, stream.height, stream.pix_fmt = width, height, "yuv420p"
-                context = stream.codec_context
-                context.thread_count = VIDEO_ENCODER_THREADS
-                context.color_primaries = context.color_trc = context.colorspace = VIDEO_BT709
-                context.color_range = VIDEO_LIMITED_RANGE
-            stacked = np.concatenate([plane.reshape(-1) for plane in planes])
-            frame = av.VideoFrame.from_ndarray(stacked.reshape(-1, planes[0].shape[1]), format="yuv420p")
-            frame.color_primaries = frame.color_trc = frame.colorspace = VIDEO_BT709
-            frame.color_range = VIDEO_LIMITED_RANGE
-            frame.pts, frame.time_base = number, 1 / fps
-            container.mux(stream.encode(frame))
-            if heard is not None:
-                heard.mux((number + 1) / fps)
-        if stream is not None:
-            container.mux(stream.encode(None))
+    with atomic_writer(path, overwrite=overwrite) as file:
+        film = io.BytesIO() if boxes else file
+        with av.open(film, "w", format="mp4") as container:
+            _encode(container, pictures, fps, sound)
+        if isinstance(film, io.BytesIO):
+            file.write(with_boxes(film.getvalue(), boxes))
+
+
+def _encode(
+    container: OutputContainer, pictures: Iterable[NDArray[np.uint8]], fps: Fraction, sound: tuple[bytes, float] | None
+) -> None:
+    import av
+
+    stream, number = None, -1
+    heard = None if sound is None else _Sound(container, *sound)
+    for number, picture in enumerate(pictures):
+        planes = yuv420(picture)
+        if stream is None:
+            height, width = planes[0].shape
+            stream = container.add_stream("libx264", rate=fps, options=VIDEO_ENCODER_OPTIONS)
+            stream.width, stream.height, stream.pix_fmt = width, height, "yuv420p"
+            context = stream.codec_context
+            context.thread_count = VIDEO_ENCODER_THREADS
+            context.color_primaries = context.color_trc = context.colorspace = VIDEO_BT709
+            context.color_range = VIDEO_LIMITED_RANGE
+        stacked = np.concatenate([plane.reshape(-1) for plane in planes])
+        frame = av.VideoFrame.from_ndarray(stacked.reshape(-1, planes[0].shape[1]), format="yuv420p")
+        frame.color_primaries = frame.color_trc = frame.colorspace = VIDEO_BT709
+        frame.color_range = VIDEO_LIMITED_RANGE
+        frame.pts, frame.time_base = number, 1 / fps
+        container.mux(stream.encode(frame))
+        if heard is not None:
+            heard.mux((number + 1) / fps)
+    if stream is not None:
+        container.mux(stream.encode(None))
 
 
 class _Sound:

@@ -10,9 +10,10 @@ from dataclasses import dataclass
 
 from eigenfield.core.version import __version__
 from eigenfield.gltf.source import ByteSource, HeldBytes
-from eigenfield.viewer.page import page_html, static_file
+from eigenfield.viewer.page import Beside, page_html, static_file
 from eigenfield.viewer.photographs import Photographs
 
+SECOND_FILE = "second.glb"
 SCENE_TYPE = "model/gltf-binary"
 BYTES_TYPE = "application/octet-stream"
 JAVASCRIPT_TYPE = "text/javascript; charset=utf-8"
@@ -52,6 +53,7 @@ def make_manifest(
     metres_per_unit: float | None = None,
     seconds_left: Callable[[], float | None] | None = None,
     beside: Mapping[str, ByteSource] | None = None,
+    second: Beside | None = None,
 ) -> Manifest:
     """The page, its files, the scene, and a picture for each photograph: path to what makes the content.
 
@@ -64,6 +66,7 @@ def make_manifest(
         seconds_left: The scene is a draft: about when the whole scene takes its place, None where that is not known.
             The page asks for it, and opens anew where there is no such answer any longer.
         beside: Files of a clip beside its own, by name.
+        second: A scene to compare with.
 
     Raises:
         OutputError: `viewer-build`: the page was not built.
@@ -76,9 +79,13 @@ def make_manifest(
         config["photographs"] = {name: f"photographs/{index}" for index, name in photographs.names.items()}
     if seconds_left is not None:
         config["draft"] = "draft"
+    if second is not None:
+        config["beside"] = {"names": second.names, "scene": SECOND_FILE, "bytes": len(second.glb)}
     fixed = {f"/{name}": Content.of(type, static_file(name)) for name, type in STATIC_TYPES.items()}
     fixed["/"] = Content.of("text/html; charset=utf-8", page_html(config))
     fixed["/scene.glb"] = scene
+    if second is not None:
+        fixed[f"/{SECOND_FILE}"] = Content.of(SCENE_TYPE, second.glb)
     fixed |= {f"/{name}": Content(BYTES_TYPE, data, _own_tag()) for name, data in (beside or {}).items()}
     manifest: dict[str, Callable[[], Content]] = {path: _answer_fixed(content) for path, content in fixed.items()}
     if seconds_left is not None:

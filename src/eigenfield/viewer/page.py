@@ -6,8 +6,9 @@ import base64
 import hashlib
 import html
 import json
+import os
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -48,7 +49,8 @@ def page_html(config: Mapping[str, Any], head: str = ICON_ELEMENT) -> bytes:
     Args:
         config: JSON object, all keys optional: title, scene (URL), bytes, embedded, photographs (camera name to URL),
             metresPerUnit, version, start (X, Y), ui, url, samples (name, url, bytes, picture each), worker (URL), draft
-            (URL that says when the whole scene comes).
+            (URL that says when the whole scene comes), beside (names of both, scene (URL), bytes), download (whether
+            the page offers its own scene as a file).
         head: Elements in place of the page's icon, which is none.
 
     Raises:
@@ -73,6 +75,31 @@ class Guests:
     url: str | None = None
 
 
+@dataclass(frozen=True)
+class Beside:
+    """A second scene, right of a divider, where the page's own is left of it.
+
+    Attributes:
+        names: Of both, for people.
+        glb: The file of the second.
+    """
+
+    names: tuple[str, str]
+    glb: bytes
+
+    @staticmethod
+    def of(scenes: Sequence[object], glb: bytes) -> Beside:
+        """The second of two scenes, which are named by their files, and by their folders too where those are alike."""
+        paths = [
+            Path(one) if isinstance(one, str | os.PathLike) else Path(name)
+            for one, name in zip(scenes, "AB", strict=True)
+        ]
+        names = [path.stem for path in paths]
+        if names[0] == names[1]:
+            names = [f"{path.absolute().parent.name}/{path.stem}" for path in paths]
+        return Beside((names[0], names[1]), glb)
+
+
 def single_file(
     glb: bytes,
     *,
@@ -80,6 +107,8 @@ def single_file(
     metres_per_unit: float | None = None,
     start: tuple[float, float] | None = None,
     guests: Guests | None = None,
+    no_download: bool = False,
+    beside: Beside | None = None,
 ) -> bytes:
     """The viewer and a scene as one page that needs nothing else, from file:// too; the same bytes for the same input.
 
@@ -89,6 +118,8 @@ def single_file(
         metres_per_unit: Metres in one unit of the capture, for headsets.
         start: The first view, on the view plane. Default: the reference camera's.
         guests: Of a page for guests. Default: a page with panel and tools.
+        no_download: Whether the page does not offer the scene as a file.
+        beside: A second scene.
 
     Raises:
         OutputError: `viewer-build`.
@@ -96,6 +127,10 @@ def single_file(
     config: dict[str, Any] = {"title": title, "embedded": True, "bytes": len(glb), "version": __version__}
     if start is not None:
         config["start"] = list(start)
+    if no_download:
+        config["download"] = False
+    if beside is not None:
+        config["beside"] = {"names": beside.names, "bytes": len(beside.glb)}
     head = poster = ""
     if guests is not None:
         config["ui"] = "plain"
@@ -113,13 +148,13 @@ def single_file(
         f"default-src 'none'; script-src '{_hash(script)}'; style-src '{_hash(style)}'; img-src blob: data:; "
         "media-src blob:; connect-src blob: data:; base-uri 'none'; form-action 'none'"
     )
-    scene = base64.b64encode(glb).decode("ascii")
     page = _text("index.html")
     page = _replace_once(page, STYLE_ELEMENT, lambda _: f"<style>{style}</style>")
     page = _replace_once(page, SCRIPT_ELEMENT, lambda _: "")  # it comes behind the poster, which else waits for it
     meta = f'<meta http-equiv="Content-Security-Policy" content="{policy}">'
     page = _replace_once(page, HEAD_ELEMENT, lambda found: f"{found}\n{meta}{head}")
-    data = f'<script type="application/octet-stream" id="eigenfield-scene">{scene}</script>'
+    data = _inline_bytes(glb, "eigenfield-scene")
+    data += "" if beside is None else _inline_bytes(beside.glb, "eigenfield-beside")
     return _encode(_configure(page, config, f'{data}\n<script type="module">{script}</script>', poster))
 
 
@@ -131,6 +166,8 @@ def write_page(
     metres_per_unit: float | None = None,
     at: tuple[float, float] | None = None,
     glb: bytes | None = None,
+    no_download: bool = False,
+    beside: Beside | None = None,
     overwrite: bool = False,
 ) -> None:
     """Write a page that opens by double click and needs no network: viewer and scene in one file.
@@ -138,10 +175,12 @@ def write_page(
     The residual, which the viewer does not show, is left out. Payloads are not coded anew.
 
     Args:
-        title: Of the page. Default: `page_title`.
+        title: Of the page. Default: the scene's own, or else `page_title`.
         metres_per_unit: Metres in one unit of the capture, for headsets.
         at: The first view, on the view plane. Default: the reference camera's.
         glb: The file that the page holds, of a clip whose first frame the scene is. Default: the scene's own.
+        no_download: Whether the page does not offer the scene as a file.
+        beside: A second scene.
 
     Raises:
         OptionError: `viewpoint`: `at` is outside the array.
@@ -151,8 +190,9 @@ def write_page(
     if at is not None:
         viewpoint(scene, at=at)  # refuses what is outside
     glb = encode_scene(replace(scene, residual=None)) if glb is None else glb
-    title = page_title(output) if title is None else title
-    data = single_file(glb, title=title, metres_per_unit=metres_per_unit, start=at)
+    title = (scene.rights.title or page_title(output)) if title is None else title
+    how: dict[str, Any] = {"metres_per_unit": metres_per_unit, "start": at, "no_download": no_download}
+    data = single_file(glb, title=title, beside=beside, **how)
     write_bytes(output, data, overwrite=overwrite)
 
 
@@ -183,6 +223,11 @@ def json_for_html(value: Any) -> str:
     """JSON in ASCII that ends no script element and begins no comment, whatever its strings hold."""
     text = json.dumps(value, allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+
+
+def _inline_bytes(data: bytes, name: str) -> str:
+    text = base64.b64encode(data).decode("ascii")
+    return f'<script type="application/octet-stream" id="{name}">{text}</script>'
 
 
 def _inline_script(text: str) -> str:

@@ -13,11 +13,12 @@ from eigenfield.core.arguments import checked
 from eigenfield.core.clip import Clip
 from eigenfield.core.errors import FormatError, OptionError
 from eigenfield.core.scene import Scene, check_scale
-from eigenfield.gltf import encode_scene, load_clip, outline, stores_clip, without_residual
+from eigenfield.gltf import encode_scene, load_clip, one_file, outline, stores_clip, without_residual
 from eigenfield.gltf.clip_forms import files_beside
 from eigenfield.gltf.source import ByteSource, StoredBytes, scene_file
 from eigenfield.runtime.objects import find_objects
 from eigenfield.viewer.manifest import make_manifest
+from eigenfield.viewer.page import Beside
 from eigenfield.viewer.photographs import Photographs
 from eigenfield.viewer.server import LOOPBACK, Server
 
@@ -27,7 +28,7 @@ log = logging.getLogger("eigenfield.viewer")
 @checked
 def view(
     scene: Scene | Clip | str | os.PathLike[str],
-    capture: str | os.PathLike[str] | LightField | PhotoSet | None = None,
+    capture: str | os.PathLike[str] | LightField | PhotoSet | Scene | Clip | None = None,
     *,
     host: str = LOOPBACK,
     port: int = 0,
@@ -43,7 +44,7 @@ def view(
     Args:
         scene: The scene or the clip, or its file; a plain glTF file is shown as it is.
         capture: Photographs of the scene, not of a clip, which are shown beside it: their folder, or what `open_any`
-            returns.
+            returns. Or a second scene or clip, or its .glb: one eye sees both, with a divider between them.
         host: Name or address to listen on; any other than this machine's own lets the network see the scene.
         port: To listen on; 0: one that is free.
         browser: Whether a browser is opened; `address` of the result is where the page is.
@@ -61,6 +62,14 @@ def view(
     given = {name: value for name, value in place.items() if value is not None}
     name = "scene.glb" if isinstance(scene, Scene | Clip) else Path(scene).name
     photographs, beside = None, dict[str, ByteSource]()
+    second = None
+    if isinstance(capture, Scene | Clip) or (
+        isinstance(capture, str | os.PathLike) and os.fspath(capture).lower().endswith(".glb")
+    ):
+        if given:
+            message = f"--{next(iter(given)).replace('_', '-')} is for a capture, and a second scene is named"
+            raise OptionError("no-capture", message, remedy="leave it out")
+        second, capture = Beside.of((scene, capture), _second_file(capture)), None
     try:
         loaded, data = _opened(scene)
         beside = files_beside(loaded) if isinstance(loaded, Clip) and not isinstance(scene, Clip) else beside
@@ -78,7 +87,7 @@ def view(
                 message = "a clip has no photographs beside it: they would be of one instant"
                 raise OptionError("clip-photographs", message, path=name, remedy="leave the capture out")
             photographs = _photographs(loaded, capture, given)
-    server = Server(make_manifest(data, name, photographs, metres_per_unit, beside=beside), host, port)
+    server = Server(make_manifest(data, name, photographs, metres_per_unit, beside=beside, second=second), host, port)
     server.start()
     if browser and not webbrowser.open(server.address):
         log.warning("no browser was found: open %s in one", server.address)
@@ -96,6 +105,13 @@ def _opened(scene: Scene | Clip | str | os.PathLike[str]) -> tuple[Scene | Clip,
         return clip, StoredBytes(file, 0, file.stat().st_size)
     loaded, data = outline(scene)
     return loaded, without_residual(data)
+
+
+def _second_file(scene: Scene | Clip | str | os.PathLike[str]) -> bytes:
+    """The file of the scene that another one is compared with."""
+    if isinstance(scene, Scene | Clip):
+        return without_residual(encode_scene(scene))
+    return one_file(scene) if stores_clip(scene) else without_residual(outline(scene)[1])
 
 
 def _photographs(

@@ -21,12 +21,14 @@ import { Value, type Json, type JsonObject } from "./json.js";
 import * as limits from "./limits.js";
 import { readColours, readPlanes, type Plane, type Still } from "./planes.js";
 import type { CamerasJson, Feature, PatternJson, SceneJson, ViewPlaneJson } from "./schema.js";
+import { readRights, type Rights } from "./rights.js";
 import { readSheets, type Sheets } from "./sheets.js";
 import { readTimeline, type Timeline } from "./timeline.js";
 
 export interface SceneDocument {
   version: string;
   generator: string;
+  rights: Rights;
   planes: Plane[];
   colours: [number, number, number][]; // R, G, B of the value 1 of each channel of all planes
   names: string[] | Stream<"names">; // as many as `heldOut`
@@ -109,6 +111,7 @@ export function readDocument(json: Json): SceneDocument {
   return {
     version,
     generator: generator.exists ? generator.text(limits.MAX_NAME) : "",
+    rights: readRights(json),
     planes,
     colours,
     names,

@@ -7,6 +7,7 @@ import type { Grid } from "./grid.js";
 import type { JsonObject } from "./json.js";
 import * as limits from "./limits.js";
 import type { Basis } from "./planes.js";
+import type { Rights } from "./rights.js";
 import type { CodedWeights } from "./weight-decoder.js";
 
 const SHORTEST = 1e-6; // of focal lengths, in pixels
@@ -39,6 +40,7 @@ export interface ViewPlane {
 export interface SceneInfo {
   version: string;
   generator: string;
+  rights: Rights;
   names: string[];
   heldOut: boolean[];
   reference: number;
@@ -64,6 +66,7 @@ export interface SceneInfo {
   triangles: number;
   mixedColours: boolean; // a view has the exposures of the cameras around it, by its weights, and not the common one
   sheets: number; // that are drawn one over the other; 0: the mesh is one opaque surface
+  inFiles: boolean; // of a clip: its groups are files beside it
   facesPlane: boolean; // the cameras look across the view plane; else weights by the ray make no sense
 }
 
@@ -274,6 +277,7 @@ export function sceneInfo(
   return {
     version: scene.version,
     generator: scene.generator,
+    rights: scene.rights,
     names: cameras.map(({ name }) => name),
     heldOut: scene.heldOut,
     reference: scene.reference,
@@ -293,6 +297,7 @@ export function sceneInfo(
     ...mesh,
     mixedColours: scene.colour !== null && !("type" in scene.colour),
     sheets: scene.sheets?.faces.length ?? 0,
+    inFiles: scene.timeline?.groups.some(({ file }) => file !== null) ?? false,
     facesPlane: Math.abs(dot(forward, normal)) > 0.7,
   };
 }

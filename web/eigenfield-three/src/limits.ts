@@ -19,6 +19,7 @@ export const MAX_CAMERAS = 100_000;
 export const MAX_CAMERA_SIDE = 65_535;
 export const MAX_CAMERA_PIXELS = 2 ** 29;
 export const MAX_NAME = 1_024;
+export const MAX_RIGHTS = 1_000; // characters of a title, an author, a licence, a source
 export const MAX_NAMES = 2 ** 25; // bytes of coded names, inflated
 export const MAX_VERTICES = 2 ** 26;
 export const MAX_TRIANGLES = 2 ** 27;

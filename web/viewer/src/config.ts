@@ -14,6 +14,13 @@ export interface Sample {
   picture: string | null; // URL of what it shows
 }
 
+/** A second scene beside the page's own. */
+export interface Other {
+  names: [string, string]; // of both, for people
+  scene: string | null; // URL; null: base64 text in #eigenfield-beside
+  bytes: number | null;
+}
+
 export interface Config {
   title: string | null;
   scene: string | null; // URL, relative to the page
@@ -29,7 +36,9 @@ export interface Config {
   poster: string | null; // URL of a picture that is shown until the scene is there
   ownView: boolean; // the address names no view: the page may show its first one as it likes
   samples: readonly Sample[]; // which a page without a scene offers
+  beside: Other | null;
   draft: string | null; // URL that says when the whole scene comes: this one is a draft
+  download: boolean; // the page's own scene may be saved as a file
   worker: string | null; // URL of the service worker that keeps the page for times without a network
   memory: number | null; // GPU bytes the page may use; null: by the device
 }
@@ -44,6 +53,7 @@ export function readConfig(page: Document, address: URL): Config {
     const value = given[key];
     return typeof value === "number" && Number.isFinite(value) && value > 0 ? value : null;
   };
+  const url = text("url");
   const photographs = given["photographs"];
   const start: unknown[] = Array.isArray(given["start"]) ? given["start"] : [];
   const [x, y] = start.map((value) => (typeof value === "number" && Math.abs(value) <= 1 ? value : undefined));
@@ -56,7 +66,7 @@ export function readConfig(page: Document, address: URL): Config {
     title: text("title"),
     scene: text("scene"),
     bytes: positive("bytes"),
-    url: web(text("url")),
+    url: url !== null && isWeb(url) ? url : null,
     embedded: given["embedded"] === true,
     photographs: new Map(
       isObject(photographs)
@@ -78,15 +88,28 @@ export function readConfig(page: Document, address: URL): Config {
         }]
         : [],
     ),
+    beside: otherOf(given["beside"]),
     draft: text("draft"),
+    download: given["download"] !== false,
     worker: text("worker"),
     memory: megabytes > 0 && Number.isFinite(megabytes) ? megabytes * 1e6 : null,
   };
 }
 
-/** The scene inside the page, or null where there is none. */
-export function embeddedScene(page: Document): Blob | null {
-  const text = page.getElementById("eigenfield-scene")?.textContent?.trim();
+function otherOf(value: unknown): Other | null {
+  if (!isObject(value)) return null;
+  const { names, scene, bytes } = value;
+  const [first, second]: unknown[] = Array.isArray(names) ? names : [];
+  if (typeof first !== "string" || typeof second !== "string") return null;
+  return {
+    names: [first, second], scene: typeof scene === "string" ? scene : null,
+    bytes: typeof bytes === "number" ? bytes : null,
+  };
+}
+
+/** A scene inside the page, or null where there is none. */
+export function embeddedScene(page: Document, id = "eigenfield-scene"): Blob | null {
+  const text = page.getElementById(id)?.textContent?.trim();
   return text ? fromBase64(text) : null;
 }
 
@@ -103,10 +126,8 @@ export function fromBase64(text: string): Blob {
   return new Blob(pieces);
 }
 
-/** An address that people can open, or null. */
-function web(url: string | null): string | null {
-  return url !== null && /^https?:/i.test(url) && URL.canParse(url) ? url : null;
-}
+/** Whether it is an address that people can open. */
+export const isWeb = (text: string): boolean => /^https?:/i.test(text) && URL.canParse(text);
 
 function parse(text: string): Record<string, unknown> {
   try {

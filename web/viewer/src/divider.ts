@@ -1,4 +1,4 @@
-// The line between the drawing, left of it, and the photograph: a hand or the arrow keys move it.
+// The line between the drawing, left of it, and the photograph or a second scene: a hand or the arrow keys move it.
 
 import { element } from "./dom";
 import { words } from "./language";
@@ -15,7 +15,7 @@ export interface Divider {
 
 export function createDivider(viewer: Viewer): Divider {
   const root = element("div", {
-    class: "divider", role: "slider", tabindex: "0", hidden: "", "aria-label": words("divider"), "aria-valuemin": "0",
+    class: "divider", role: "slider", tabindex: "0", hidden: "", "aria-valuemin": "0",
     "aria-valuemax": "100",
   });
   const set = (part: number): void => viewer.set({ divider: clamp(part, 0, 1) });
@@ -35,7 +35,10 @@ export function createDivider(viewer: Viewer): Divider {
     root,
     tick: () => {
       const { divider } = viewer.options();
-      root.hidden = divider === null || !viewer.photographShown();
+      const second = viewer.beside() !== null && !viewer.photographShown();
+      root.hidden = divider === null || !(viewer.photographShown() || viewer.beside()?.scene);
+      root.classList.toggle("scenes", second);
+      root.setAttribute("aria-label", words(second ? "dividerScenes" : "divider"));
       if (divider === null) return;
       const { left, top, width, height } = viewer.frame();
       const percent = (part: number): string => `${(100 * part).toFixed(3)}%`;

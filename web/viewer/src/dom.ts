@@ -51,6 +51,8 @@ export const ICONS = {
   next: "M9.5 6l6 6-6 6",
   fullscreen: "M4 9V4h5M15 4h5v5M20 15v5h-5M9 20H4v-5",
   share: "M12 4v11M8 8l4-4 4 4M6 12H4.5v8h15v-8H18",
+  embed: "M8.5 7.5 4 12l4.5 4.5M15.5 7.5 20 12l-4.5 4.5M13.5 6l-3 12",
+  download: "M12 4v11M8 11l4 4 4-4M5 19.5h14",
   info: "M12 3.5a8.5 8.5 0 1 0 0 17 8.5 8.5 0 0 0 0-17ZM12 11v5.5M12 7.6v.4",
   close: "M6 6l12 12M18 6 6 18",
   play: "M8 5.5v13l10.5-6.5z",

@@ -1,6 +1,7 @@
 // The information panel: what the file is, what it says of itself, and what it costs here.
 
 import type { EigenField, Fallback, Player, SceneInfo } from "eigenfield-three";
+import { isWeb } from "./config";
 import { element } from "./dom";
 import { limitationWords, words } from "./language";
 import { bytes, figure, shown, whole } from "./text";
@@ -31,6 +32,7 @@ export function createInfo(viewer: Viewer): Info {
         ...section(words("quality"), quality(field.info)),
         ...section(words("bytes"), sizes(field.info)),
         ...section(words("sceneFacts"), facts(field.info)),
+        ...section(words("rights"), rights(field.info)),
         ...section(words("here"), [
           [words("gpuMemory"), bytes(field.gpuBytes)],
           [words("eigenTexturesHere"), words("outOf", { part: field.loaded, whole: field.total })],
@@ -45,6 +47,15 @@ export function createInfo(viewer: Viewer): Info {
 /** What one wants to know first: how near it comes to its photographs, what it takes here, and where a clip is. */
 export function briefly({ info, gpuBytes, player }: EigenField): HTMLElement {
   return rowsOf([...imageQuality(info), [words("gpuMemory"), bytes(gpuBytes)], ...(player ? whereIn(player) : [])]);
+}
+
+/** Bytes and the best known score, for a label. */
+export function shortly(info: SceneInfo): string {
+  const scores = info.scores;
+  const [own, between] = [figure(scores, "image", "encoded", "psnr"), figure(scores, "between", "psnr")];
+  const parts = own === null ? [] : [shown(own, 1, "\u00a0dB")];
+  if (own === null && between !== null) parts.push(words("aboutValue", { value: shown(between, 1, "\u00a0dB") }));
+  return [bytes(info.bytes.total), ...parts].join(" · ");
 }
 
 /** Why a clip is shown without some of it. */
@@ -71,8 +82,20 @@ function section(title: string, rows: Rows): Node[] {
 
 function rowsOf(rows: Rows): HTMLElement {
   const row = ([name, value]: [string, string]): HTMLElement =>
-    element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, value));
+    element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, linked(value)));
   return element("table", {}, ...rows.map(row));
+}
+
+/** A text that is an address leads there. */
+function linked(text: string): HTMLElement | string {
+  return isWeb(text) ? element("a", { href: text, target: "_blank", rel: "noopener noreferrer" }, text) : text;
+}
+
+function rights({ rights: { title, author, licence, source } }: SceneInfo): Rows {
+  const rows: Rows = [
+    [words("title"), title], [words("author"), author], [words("licence"), licence], [words("source"), source],
+  ];
+  return rows.filter(([, text]) => text !== "");
 }
 
 /** PSNR and SSIM of a kind of picture, where the file has them. */

@@ -2,10 +2,12 @@
 
 import { createApi } from "./api";
 import { createCameraMap } from "./camera-map";
+import { createCompared } from "./compared";
 import { readConfig, type Ui } from "./config";
 import { confine, leadElsewhere } from "./confine";
 import { createDivider } from "./divider";
 import { button, element, ICONS } from "./dom";
+import { downloadScene } from "./download";
 import { createDraft } from "./draft";
 import { takeFiles } from "./files";
 import { createHelp } from "./help";
@@ -22,7 +24,7 @@ import { createPlaybar } from "./playbar";
 import { posterShown, takePoster } from "./poster";
 import { saveScreenshot } from "./screenshot";
 import { createShare } from "./share";
-import { namedSource } from "./source";
+import { besideSource, namedSource } from "./source";
 import { keepAddress } from "./url";
 import { createViewer, type Viewer } from "./viewer";
 import { createHeadset } from "./xr";
@@ -70,6 +72,7 @@ function start(): void {
   const panel = createPanel(viewer);
   const map = createCameraMap(viewer);
   const divider = createDivider(viewer);
+  const compared = createCompared(viewer);
   const playbar = createPlaybar(viewer);
   const help = createHelp(config.version);
   const headset = createHeadset(viewer, () => update());
@@ -92,10 +95,15 @@ function start(): void {
   const shoot = button(words("savePicture"), ICONS.camera, () => saveScreenshot(viewer), "P");
   const share = createShare(viewer);
   const home = button(words("firstView"), ICONS.home, viewer.home, words("keyHome"));
-  for (const one of [home, share.root, fullscreen, headset.root, laboratory]) one.classList.add("plain");
+  const download = button(words("download"), ICONS.download, () => {
+    const source = viewer.scene()?.source;
+    if (source) downloadScene(source);
+  });
+  const plain = [home, share.link, share.embed, download, fullscreen, headset.root, laboratory];
+  for (const one of plain) one.classList.add("plain");
   const tools = element(
     "div", { class: "tools", role: "toolbar", "aria-label": words("tools") },
-    home, orbit, lean, shoot, share.root,
+    home, orbit, lean, shoot, share.link, share.embed, download,
     button(words("openFile"), ICONS.open, chooser.choose), button(words("controls"), ICONS.help, help.toggle, "H"),
     fullscreen, headset.root, fold, laboratory,
   );
@@ -108,13 +116,14 @@ function start(): void {
     showPanel(ui === "full" && !matchMedia(SMALL).matches);
   };
   const poster = takePoster(document, config.poster);
-  stageArea.append(...(poster ? [poster] : []), divider.root, ...overlays.roots, draft, share.said, map.root, playbar.root, tools);
+  stageArea.append(...(poster ? [poster] : []), divider.root, ...compared.roots, ...overlays.roots, draft, share.said, map.root, playbar.root, tools);
   document.body.append(stageArea, panel.root, help.root, chooser.root);
 
   const update = (): void => {
     document.body.dataset["status"] = viewer.status();
     panel.update();
     overlays.update();
+    compared.update();
     map.update();
     playbar.update();
     orbit.setAttribute("aria-pressed", String(viewer.modeName() === "orbit"));
@@ -123,8 +132,10 @@ function start(): void {
     lean.setAttribute("aria-pressed", String(tilt.on()));
     for (const one of [home, shoot, fold]) one.hidden = viewer.scene() === null;
     laboratory.hidden = !config.laboratory || viewer.status() === "empty";
-    const source = viewer.scene()?.source;
-    share.root.hidden = !share.possible || !source || (!source.own && source.from instanceof Blob);
+    const { source, field } = viewer.scene() ?? {};
+    share.link.hidden = !share.possible || !source || (!source.own && source.from instanceof Blob);
+    share.embed.hidden = share.link.hidden;
+    download.hidden = !config.download || source?.own !== true || field?.info.inFiles === true;
     const title = viewer.scene()?.source.name;
     if (title !== undefined) name(title);
   };
@@ -166,6 +177,8 @@ function start(): void {
   update();
   const source = namedSource(config, document, address);
   const opened = source && viewer.open(source);
+  const other = source?.own ? besideSource(config, document) : null;
+  if (other) void viewer.openBeside(other);
   if (config.worker !== null) keepOffline(config.worker, opened?.then(() => viewer.scene()?.source.from));
 }
 

@@ -1,17 +1,13 @@
 // Opening a scene, what arrives of it and when, and its end; a graphics context that is lost and comes back.
 
-import { Vector2, Vector3 } from "three";
-import type { GLTF } from "three/addons/loaders/GLTFLoader.js";
 import { type EigenField, type Loaded, loadEigenfield, SceneError } from "eigenfield-three";
 import type { Config } from "./config";
 import { confine } from "./confine";
 import { pluginWords, words } from "./language";
-import { createOrbitMode, type Surroundings } from "./orbit-mode";
-import { createPlaneMode } from "./plane-mode";
-import type { Message, Scene, Session } from "./session";
+import { sceneOf } from "./scene-of";
+import type { Message, Session } from "./session";
 import type { Source } from "./source";
 import type { Stage } from "./stage";
-import { extentOf, surroundingsOf } from "./surroundings";
 
 export interface Opening {
   open(source: Source): Promise<void>;
@@ -42,19 +38,14 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
   const put = (source: Source, { gltf, field, error }: Loaded): void => {
     close();
     stage.put(gltf.scene, field !== null);
-    gltf.scene.updateWorldMatrix(true, true);
-    const around = field ? surroundingsOf(field) : plainSurroundings(gltf);
     const said = error && described(error, null);
-    const scene: Scene = {
-      source, gltf, field, around, lacks: said?.text ?? null,
-      plane: field?.info.facesPlane ? createPlaneMode(field) : null,
-      orbit: createOrbitMode(field?.mesh ?? gltf.scene, around),
-    };
+    const scene = sceneOf(source, { gltf, field, error }, said?.text ?? null);
     if (field && config.metresPerUnit !== null && source.own) field.info.metresPerUnit = config.metresPerUnit;
     Object.assign(session, { scene, status: "ready", mode: scene.plane ? "plane" : "orbit" });
     session.message = said;
-    Object.assign(session.options, { eigen: 0, count: Infinity, view: "picture", divider: null });
     events.opened();
+    const divider = session.beside ? 0.5 : null;
+    Object.assign(session.options, { eigen: 0, count: Infinity, view: "picture", divider });
     scene.plane?.step(10);
     changed();
   };
@@ -154,14 +145,8 @@ function ended(field: EigenField): Promise<void> {
   });
 }
 
-function plainSurroundings(gltf: GLTF): Surroundings {
-  const { centre, radius } = extentOf(gltf.scene);
-  const tangents = new Vector2(0.4, 0.4);
-  return { up: new Vector3(0, 1, 0), centre, radius, tangents, focus: null, framed: false, beyond: () => 0 };
-}
-
 /** `source`: what could not be opened, where nothing of it arrived. */
-function described(error: unknown, source: Source | null): Message {
+export function described(error: unknown, source: Source | null): Message {
   const message = error instanceof Error ? error.message : String(error);
   if (!(error instanceof SceneError)) return { text: message, code: null, detail: null };
   const { code } = error;

@@ -47,7 +47,8 @@ export function createOverlays(viewer: Viewer, choose: () => void): Overlays {
   );
   const tag = element("p", { class: "tag", hidden: "" });
   const titleText = element("span");
-  const title = element("p", { class: "title" }, titleText);
+  const credit = element("small", {});
+  const title = element("p", { class: "title" }, titleText, credit);
   const hint = element("p", { class: "hint", hidden: "" }, words("hint"));
 
   const update = (): void => {
@@ -79,7 +80,9 @@ export function createOverlays(viewer: Viewer, choose: () => void): Overlays {
     dismiss.hidden = status !== "ready";
     invitation.hidden = status !== "empty";
     titleText.textContent = scene?.source.name ?? viewer.config.title ?? "";
-    title.hidden = titleText.textContent === "";
+    const { author = "", licence = "" } = field?.info.rights ?? {};
+    credit.textContent = [author, licence].filter(Boolean).join(" · ");
+    title.hidden = titleText.textContent === "" && credit.textContent === "";
     tick();
   };
   const tick = (): void => {

@@ -1,6 +1,7 @@
 // One frame: which camera sees it, with what weights, and what lies over it.
 
-import { type Frame, placeCamera } from "eigenfield-three";
+import { type EigenField, type Frame, placeCamera } from "eigenfield-three";
+import type { SecondScene } from "./beside";
 import type { Captured } from "./captured";
 import { WHOLE } from "./mode";
 import type { Detail } from "./pace";
@@ -16,7 +17,13 @@ export interface Painter {
   frame(): Frame;
 }
 
-export function createPainter(session: Session, stage: Stage, places: Places, captured: Captured): Painter {
+export function createPainter(
+  session: Session,
+  stage: Stage,
+  places: Places,
+  captured: Captured,
+  beside: SecondScene,
+): Painter {
   let frame = WHOLE;
 
   /** 0 among the captured views, 1 where nothing of them is left. */
@@ -37,10 +44,11 @@ export function createPainter(session: Session, stage: Stage, places: Places, ca
       frame = place();
       const picture = captured.picture();
       const { scene, options } = session;
-      const field = scene?.field;
-      if (field) {
-        field.camera = session.captured;
-        field.exposure = session.captured;
+      // On the plane both ways mean the same; one set of weights needs no map and is the paper's to the last digit.
+      const onPlane = session.mode === "plane" && scene?.plane?.at().dolly === 0;
+      const set = (field: EigenField, captured: number | null): void => {
+        field.camera = captured;
+        field.exposure = captured;
         field.count = options.count;
         field.eigen = options.eigen;
         field.mixing = options.mixing;
@@ -48,12 +56,20 @@ export function createPainter(session: Session, stage: Stage, places: Places, ca
         field.coarser = scale > 0.7 ? 1 : scale > 0.3 ? 2 : 4;
         field.photograph = picture;
         field.view = options.view === "error" && !picture ? "picture" : options.view;
-        // On the plane both ways mean the same; one set of weights needs no map and is the paper's to the last digit.
-        const onPlane = session.mode === "plane" && scene.plane?.at().dolly === 0;
         field.weightMode = onPlane || !field.info.facesPlane ? "eye" : options.weights;
+      };
+      if (scene?.field) set(scene.field, session.captured);
+      const second = session.beside?.scene;
+      if (second?.field) {
+        const index = second.field.info.names.indexOf(scene?.field?.info.names[session.captured ?? -1] ?? "");
+        set(second.field, index < 0 ? null : index);
       }
       // Beside the frame the surface was seen by few cameras, and ends raggedly.
       if (session.photographShown && picture) stage.compare(frame, picture, options.divider);
+      else if (second && options.divider !== null) {
+        beside.keepStep();
+        stage.split(frame, options.divider, (camera) => beside.place(camera, frame));
+      }
       else stage.draw(frame === WHOLE ? null : frame, session.fades ? blurred() : 0);
     },
   };

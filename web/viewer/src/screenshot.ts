@@ -1,6 +1,6 @@
 // The picture as it is on the screen, as a PNG file.
 
-import { element } from "./dom";
+import { save } from "./download";
 import type { Viewer } from "./viewer";
 
 export function saveScreenshot(viewer: Viewer): void {
@@ -12,9 +12,6 @@ export function saveScreenshot(viewer: Viewer): void {
   const place = captured === null ? `${x.toFixed(2)} ${y.toFixed(2)}` : scene.field?.info.names[captured];
   const name = `${scene.source.name} ${place ?? ""}`.replaceAll(/[^\p{L}\p{N}._+-]+/gu, "-").slice(0, 100);
   viewer.stage.canvas.toBlob((blob) => {
-    if (!blob) return;
-    const url = URL.createObjectURL(blob);
-    element("a", { href: url, download: `${name}.png` }).click();
-    setTimeout(() => URL.revokeObjectURL(url), 10_000);
+    if (blob) save(blob, `${name}.png`);
   }, "image/png");
 }

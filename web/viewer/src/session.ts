@@ -33,6 +33,7 @@ export interface Message {
 
 export interface Session {
   scene: Scene | null;
+  beside: { source: Source; scene: Scene | null } | null; // a second scene, right of the divider; null: it is on its way
   status: Status;
   message: Message | null;
   progress: Progress;
@@ -47,6 +48,7 @@ export interface Session {
 export function emptySession(): Session {
   return {
     scene: null,
+    beside: null,
     status: "empty",
     message: null,
     progress: { loaded: 0, total: null },

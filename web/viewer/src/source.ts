@@ -25,6 +25,12 @@ export function namedSource(config: Config, page: Document, address: URL): Sourc
   return null;
 }
 
+/** The scene beside the page's own, or null. */
+export function besideSource({ beside }: Config, page: Document): Source | null {
+  const from = beside && (beside.scene ?? embeddedScene(page, "eigenfield-beside"));
+  return beside && from ? { name: beside.names[1], from, bytes: beside.bytes, own: true } : null;
+}
+
 export function fileSource(file: File): Source {
   return { name: withoutSuffix(file.name), from: file, bytes: file.size, own: false };
 }

@@ -22,6 +22,10 @@ export interface Stage {
   draw(only: Frame | null, blurred: number): void;
   /** A picture that fills `frame`; left of `divider`, in parts of the frame's width, the scene. */
   compare(frame: Frame, picture: Texture, divider: number | null): void;
+  /** A second scene, which `split` alone draws; null: none. */
+  setBeside(object: Object3D | null): void;
+  /** Left of `divider`, in parts of the frame's width, the scene; right of it the second one, as `place` puts a camera. */
+  split(frame: Frame, divider: number, place: (camera: PerspectiveCamera) => Frame): void;
   resize(width: number, height: number): void;
   /** Device pixels a CSS pixel of the full picture. */
   ratio(): number;
@@ -44,8 +48,11 @@ export function createStage(canvas: HTMLCanvasElement): Stage {
   const lamp = new DirectionalLight(0xffffff, 1.6);
   lamp.position.set(0.5, 1, 0.8);
   lights.add(lamp);
-  scene.add(root, lights);
+  const other = new Group();
+  other.visible = false;
+  scene.add(root, other, lights);
   const camera = new PerspectiveCamera();
+  const aside = new PerspectiveCamera();
   const photograph = createPhotographQuad();
   const blur = createBlur();
   const background = { colour: "#000000", coded: true };
@@ -103,6 +110,21 @@ export function createStage(canvas: HTMLCanvasElement): Stage {
       const right = { ...frame, left: frame.left + part * frame.width, width: (1 - part) * frame.width };
       within(right, () => photograph.draw(renderer, picture, frame));
     },
+    setBeside: (object) => {
+      for (const one of [...other.children]) discard(one);
+      other.clear();
+      if (object) other.add(object);
+    },
+    split: (frame, divider, place) => {
+      renderer.clear();
+      const at = frame.left + divider * frame.width;
+      const left = between(frame, 0, at);
+      if (left.width > 0) within(left, () => renderer.render(scene, camera));
+      const right = between(place(aside), at, 1);
+      [root.visible, other.visible] = [false, true];
+      if (right.width > 0) within(right, () => renderer.render(scene, aside));
+      [root.visible, other.visible] = [true, false];
+    },
     resize: (width, height) => {
       Object.assign(size, { width: Math.max(width, 1), height: Math.max(height, 1) });
       renderer.setPixelRatio(ratio() * scale);
@@ -126,6 +148,12 @@ export function createStage(canvas: HTMLCanvasElement): Stage {
       return { width, height, data };
     },
   };
+}
+
+/** The part of a frame from one column of the canvas to another. */
+function between(frame: Frame, from: number, to: number): Frame {
+  const left = Math.max(frame.left, from);
+  return { ...frame, left, width: Math.max(Math.min(frame.left + frame.width, to) - left, 0) };
 }
 
 /** A picture over a part of the canvas, its numbers as they are. */

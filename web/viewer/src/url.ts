@@ -63,7 +63,8 @@ export function hashOf(viewer: Viewer): string {
   if (player && !player.playing) parts.set("t", short(player.time));
   if (scene?.plane) parts.set("mode", viewer.modeName());
   if (viewer.photographShown()) parts.set("photograph", "1");
-  if (viewer.photographShown() && options.divider !== null) parts.set("divider", short(options.divider));
+  const divided = viewer.photographShown() || viewer.beside() !== null;
+  if (divided && options.divider !== null) parts.set("divider", short(options.divider));
   if (Number.isFinite(options.count)) parts.set("n", String(options.count));
   if (options.view !== "picture") parts.set("view", options.view);
   if (options.view === "eigen") parts.set("eigen", String(options.eigen + 1));

@@ -2,6 +2,7 @@
 // page all act through this; each of its parts is in a file of its own.
 
 import type { Frame } from "eigenfield-three";
+import { createBeside } from "./beside";
 import { type CameraOrder } from "./camera-order";
 import { createCaptured } from "./captured";
 import type { Config } from "./config";
@@ -16,7 +17,9 @@ import { createPhotographs } from "./photographs";
 import { createPainter } from "./painter";
 import { createPlayback, type Playback } from "./playback";
 import { createPlaces } from "./places";
-import { emptySession, type Message, type ModeName, type Progress, type Scene, type Status } from "./session";
+import {
+  emptySession, type Message, type ModeName, type Progress, type Scene, type Session, type Status,
+} from "./session";
 import type { Source } from "./source";
 import { createStage, type Stage } from "./stage";
 import { createSway } from "./sway";
@@ -26,6 +29,8 @@ export interface Viewer extends Omit<Frames, "changed" | "touch" | "rested">, Pl
   readonly stage: Stage;
   readonly config: Config;
   scene(): Scene | null;
+  /** What is beside it, right of the divider. */
+  beside(): Session["beside"];
   status(): Status;
   message(): Message | null;
   say(text: string): void;
@@ -59,7 +64,7 @@ export interface Viewer extends Omit<Frames, "changed" | "touch" | "rested">, Pl
   hasPhotograph(): boolean;
   photographShown(): boolean;
   showPhotograph(shown: boolean): void;
-  /** The photograph beside the drawing, with a divider between them; or no divider. */
+  /** The photograph or the second scene beside the drawing, with a divider between them; or no divider. */
   divide(): void;
   /** Nobody has moved or set anything yet, and the page shows its own first view. */
   untouched(): boolean;
@@ -69,6 +74,7 @@ export interface Viewer extends Omit<Frames, "changed" | "touch" | "rested">, Pl
   moving(): Mode | null;
   frame(): Frame;
   open(source: Source): Promise<void>;
+  openBeside(source: Source): Promise<void>;
   /** Everything is loaded, drawn in full, and still. */
   settled(): Promise<void>;
 }
@@ -104,7 +110,8 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
       return act(...given);
     };
   };
-  const painter = createPainter(session, stage, places, captured);
+  const beside = createBeside(session, stage, config, { changed, request: frames.request, say });
+  const painter = createPainter(session, stage, places, captured, beside);
 
   const edges = createWireframe();
   const showEdges = (): void => {
@@ -115,6 +122,7 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
   const opening = createOpening(session, stage, config, {
     changed,
     opened: () => {
+      if (session.scene?.source.own !== true) beside.close();
       movement.home();
       showEdges();
       clips.opened();
@@ -138,15 +146,17 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
     if (wish.wireframe !== undefined) showEdges();
     if (wish.divider != null) {
       options.divider = clamp(wish.divider, 0, 1);
-      captured.showPhotograph(true);
+      if (!session.beside) captured.showPhotograph(true);
     }
     if (options.view === "error") captured.findError();
     changed();
   };
   const settled = async (): Promise<void> => {
     await opening.done();
+    await beside.done();
     sway.settle();
     await clips.stopped();
+    await beside.stopped();
     await frames.rested(photographs.pending);
   };
 
@@ -158,6 +168,7 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
     say,
     settled,
     scene: () => session.scene,
+    beside: () => session.beside,
     status: () => session.status,
     message: () => session.message,
     dismiss: () => {
@@ -194,7 +205,10 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
     hasPhotograph: captured.hasPhotograph,
     photographShown: () => session.photographShown,
     showPhotograph: moves(captured.showPhotograph),
-    divide: moves(() => set({ divider: session.photographShown && options.divider !== null ? null : 0.5 })),
+    divide: moves(() => {
+      const divided = (session.beside !== null || session.photographShown) && options.divider !== null;
+      set({ divider: divided ? null : 0.5 });
+    }),
     untouched: sway.untouched,
     hold: sway.stop,
     player: clips.player,
@@ -213,6 +227,7 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
     }),
     frame: painter.frame,
     open: opening.open,
+    openBeside: beside.open,
     suspend: () => {
       sway.end();
       captured.leave();

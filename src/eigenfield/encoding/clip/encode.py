@@ -21,6 +21,7 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import CalibratedObservations
 from eigenfield.core.progress import Progress, begin_step
 from eigenfield.core.proxy import MovingProxy, Proxy
+from eigenfield.core.rights import Rights
 from eigenfield.core.version import __version__
 from eigenfield.encoding.clip.backmost import settle_backmost
 from eigenfield.encoding.clip.digest import footage_digest
@@ -105,7 +106,7 @@ def encode_clip(
     def groups_of(asked: EncodeOptions) -> Groups:
         runs = _runs(footage, proxy, asked, length, work, progress)
         meshes = [[_plan_digest(run.plan), None if run.moving is None else run.moving.digest] for run in runs]
-        return Groups(footage, tuple(runs), stage_key([digest, asked, meshes], SCENE_ROOMS), work)
+        return Groups(footage, tuple(runs), stage_key([digest, replace(asked, rights=None), meshes], SCENE_ROOMS), work)
 
     with Stages(None if work is None else work / "clip") as stages:
         groups = groups_of(asked)
@@ -129,7 +130,7 @@ def encode_clip(
         payloads=plan.payloads,
         sheets=None if plan.proxy.sheets is None else plan.proxy.sheets.faces,
     )
-    return replace(clip, audio=audio)
+    return replace(clip, audio=audio, rights=asked.rights or Rights())
 
 
 def _reach_target(

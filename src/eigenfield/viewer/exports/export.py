@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, TypeGuard
@@ -43,12 +44,12 @@ from eigenfield.viewer.exports.quilt_film import write_quilt_clip, write_quilt_f
 from eigenfield.viewer.exports.splats import check_splats, write_splats
 from eigenfield.viewer.exports.usdz import check_usd, write_usdz
 from eigenfield.viewer.exports.views import write_views
-from eigenfield.viewer.page import write_page
+from eigenfield.viewer.page import Beside, write_page
 
 PICTURE_OPTIONS = {"resolution", "background", "weights", "filter", "textures", "samples", "renderer"}
 FILM_OPTIONS = "path", "frames", "fps"
 OPTIONS = {  # of each kind, beside the options of all
-    "html": {"title", "metres_per_unit", "at", "laboratory", "url"},
+    "html": {"title", "metres_per_unit", "at", "laboratory", "url", "no_download"},
     "mp4": PICTURE_OPTIONS | {*FILM_OPTIONS},
     "png": PICTURE_OPTIONS | {"path", "frames"},
     "glb": {"at", "image", "draco", "metres_per_unit"},
@@ -84,7 +85,8 @@ def export(
     """Write a scene for other programs, as `eigenfield export` does.
 
     Args:
-        scene: The scene or the clip, or its file; for "app" the files of as many scenes as it offers, or none.
+        scene: The scene or the clip, or its file; for "html" up to two of them, which the page compares; for "app" the
+            files of as many scenes as it offers, or none.
         output: A file or a folder.
         kind: "html", "mp4", "png" (single pictures), "glb", "obj", "maps", "quilt", "views", "colmap", "splats",
             "usdz", "folder" (a clip whose groups are files) or "app"; None: by the output's name.
@@ -93,9 +95,10 @@ def export(
         overwrite: Whether existing files, and folders that an export wrote, are replaced.
         progress: Reports each picture; by default a bar in a notebook.
         options: Of the kind (`OPTIONS`): fields of `RenderJob` for pictures; `path` and `frames` (`path_points`) and
-            `fps` of a flight; `title`, `metres_per_unit`, `at`, `laboratory` and `url` of a page (`write_guests_page`);
-            `at`, `image`, `draco` and `metres_per_unit` of a glb (`write_glb`); `quilt` (columns and rows, or a
-            display) and `spread` (`quilt_of`); `grid` of views (`write_views`); `splats` (`write_splats`); `residual`.
+            `fps` of a flight; `title`, `metres_per_unit`, `at`, `laboratory`, `url` and `no_download` of a page
+            (`write_guests_page`); `at`, `image`, `draco` and `metres_per_unit` of a glb (`write_glb`); `quilt`
+            (columns and rows, or a display) and `spread` (`quilt_of`); `grid` of views (`write_views`); `splats`
+            (`write_splats`); `residual`.
 
     Returns:
         The file or folder that was written, and what it holds, for people.
@@ -113,9 +116,10 @@ def export(
         raise OptionError("unused-option", f"--time is not for {chosen}", remedy="leave it out")
     if chosen == "app":
         return _write_app(scenes, output, overwrite, progress, **options)
-    if len(scenes) != 1:
-        raise OptionError("scenes", f"{len(scenes)} scenes for {chosen}", remedy="name one; --as app takes several")
-    (scene,) = scenes
+    if len(scenes) != 1 and not (chosen == "html" and len(scenes) == 2):
+        remedy = "name one; --as html takes two, to compare them, and --as app several"
+        raise OptionError("scenes", f"{len(scenes)} scenes for {chosen}", remedy=remedy)
+    scene = scenes[0]
     points = None
     if chosen in ("mp4", "png") or "path" in options or (chosen == "quilt" and _is_film(output)):
         points = path_points(options.get("path", FLIGHT_DEFAULT_PATH), options.get("frames", FLIGHT_FRAMES))
@@ -130,8 +134,10 @@ def export(
         return _write_one_file(scene, output, overwrite)
     drawn = {name: value for name, value in options.items() if name in PICTURE_OPTIONS}
     loaded = scene if isinstance(scene, Scene | Clip) else load_any(scene)
+    if len(scenes) == 2:
+        options["beside"] = Beside.of(scenes, _page_file(scenes[1], time))
     if chosen == "html" and time is None and isinstance(loaded, Clip):  # the page plays it
-        options["glb"] = encode_scene(scene) if isinstance(scene, Scene | Clip) else one_file(scene)
+        options["glb"] = _page_file(scene, time)
         time = loaded.timeline.first
     if chosen == "quilt" and time is None and isinstance(loaded, Clip) and _is_film(output):
         if "frames" in options:
@@ -158,6 +164,14 @@ def _write_app(
     write_app(samples, output, overwrite=overwrite, progress=progress, **options)
     offered = f", with {', '.join(sample.name for sample in samples)} to choose from" if samples else ""
     return output, f"a page that opens files{offered}; put it on a web server"
+
+
+def _page_file(scene: Scene | Clip | str | os.PathLike[str], time: float | None) -> bytes:
+    """The file that a page holds: a scene without its residual; of a clip all of it, or its frame at a time."""
+    loaded = scene if isinstance(scene, Scene | Clip) else load_any(scene)
+    if time is None and isinstance(loaded, Clip):
+        return encode_scene(scene) if isinstance(scene, Scene | Clip) else one_file(scene)
+    return encode_scene(replace(as_scene(loaded, time), residual=None))
 
 
 def _is_in_files(scene: Scene | Clip | str | os.PathLike[str]) -> TypeGuard[str | os.PathLike[str]]:

@@ -24,6 +24,7 @@ from eigenfield.core.version import __version__
 from eigenfield.gltf.accessors import FLOAT
 from eigenfield.gltf.buffer import Buffer
 from eigenfield.gltf.container import glb_blocks, json_bytes
+from eigenfield.gltf.rights import with_rights
 from eigenfield.gltf.write_geometry import NODE_DIGITS, bounds_of, index_type, write_nodes, write_primitive
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.imaging.png import png_bytes
@@ -81,7 +82,7 @@ def write_glb(
     gltf["extensionsUsed"] = ["KHR_materials_unlit", *required]
     if required:
         gltf["extensionsRequired"] = required
-    blocks = glb_blocks(json_bytes(gltf), b"".join(buffer.parts), output)
+    blocks = glb_blocks(json_bytes(with_rights(gltf, scene.rights)), b"".join(buffer.parts), output)
     write_bytes(output, b"".join(blocks), overwrite=overwrite)
 
 

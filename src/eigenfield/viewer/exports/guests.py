@@ -6,6 +6,7 @@ import html
 import io
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from urllib.parse import quote, urljoin
 
 from PIL import Image
@@ -15,7 +16,7 @@ from eigenfield.core.scene import Scene
 from eigenfield.gltf import encode_scene
 from eigenfield.rendering import RenderJob, at_resolution, viewpoint
 from eigenfield.runtime.files import atomic_files
-from eigenfield.viewer.page import SAID_MAX_CHARACTERS, Guests, page_title, single_file
+from eigenfield.viewer.page import SAID_MAX_CHARACTERS, Beside, Guests, page_title, single_file
 
 POSTER_MAX_WIDTH_PX = 1200  # what those who show links recommend
 POSTER_QUALITY = 85
@@ -57,6 +58,8 @@ def write_guests_page(
     at: tuple[float, float] | None = None,
     url: str | None = None,
     glb: bytes | None = None,
+    no_download: bool = False,
+    beside: Beside | None = None,
     overwrite: bool = False,
 ) -> str:
     """Write NAME.html, which shows the scene and has neither panel nor tools, and NAME.jpg, its poster; both or none.
@@ -64,11 +67,13 @@ def write_guests_page(
     The page holds its poster too. The file is for crawlers, which follow addresses only and run no scripts.
 
     Args:
-        title: Of the page. Default: `page_title`.
+        title: Of the page. Default: the scene's own, or else `page_title`.
         metres_per_unit: Metres in one unit of the capture, for headsets.
         at: The first view, on the view plane. Default: the reference camera's.
         url: Where the page will be, for links to it. Default: its name, which most crawlers do not follow.
         glb: The file that the page holds, of a clip whose first frame the scene is. Default: the scene's own.
+        no_download: Whether the page does not offer the scene as a file.
+        beside: A second scene.
 
     Returns:
         The HTML that shows the page within another one.
@@ -77,7 +82,7 @@ def write_guests_page(
         OptionError: `not-a-picture`; `viewpoint`: `at` is outside the array.
         OutputError: `viewer-build`; a file cannot be written.
     """
-    title = page_title(output) if title is None else title
+    title = (scene.rights.title or page_title(output)) if title is None else title
     channels = scene.appearance.channels
     if channels not in PICTURE_CHANNELS:
         raise OptionError(
@@ -100,7 +105,8 @@ def write_guests_page(
     }
     glb = encode_scene(replace(scene, residual=None)) if glb is None else glb
     guests = Guests(poster, tags, url)
-    page = single_file(glb, title=title, metres_per_unit=metres_per_unit, start=at, guests=guests)
+    how: dict[str, Any] = {"metres_per_unit": metres_per_unit, "start": at, "no_download": no_download}
+    page = single_file(glb, title=title, guests=guests, beside=beside, **how)
     with atomic_files(targets, overwrite=overwrite) as (picture, document):
         picture.write_bytes(poster)
         document.write_bytes(page)

@@ -67,7 +67,7 @@ function ve(e, t) {
 			0
 		]),
 		...N("colr", [
-			...be("nclx"),
+			...F("nclx"),
 			0,
 			2,
 			0,
@@ -77,15 +77,15 @@ function ve(e, t) {
 			128
 		])
 	]), c = N("ftyp", [
-		...be("avif"),
+		...F("avif"),
 		...P(0),
-		...be("avifmif1miafMA1B")
+		...F("avifmif1miafMA1B")
 	]), l = (t) => N("meta", [
 		...P(0),
 		...N("hdlr", [
 			...P(0),
 			...P(0),
-			...be("pict"),
+			...F("pict"),
 			...Array(13).fill(0)
 		]),
 		...N("pitm", [
@@ -121,7 +121,7 @@ function ve(e, t) {
 				1,
 				0,
 				0,
-				...be("av01"),
+				...F("av01"),
 				0
 			])
 		]),
@@ -140,7 +140,7 @@ function ve(e, t) {
 		...c,
 		...l(u),
 		...P(8 + e.byteLength),
-		...be("mdat")
+		...F("mdat")
 	], f = new Uint8Array(u + e.byteLength);
 	return f.set(d), f.set(new Uint8Array(e), u), f.buffer;
 }
@@ -165,7 +165,7 @@ function ye(e, t) {
 function N(e, t) {
 	return [
 		...P(8 + t.length),
-		...be(e),
+		...F(e),
 		...t
 	];
 }
@@ -177,11 +177,11 @@ function P(e) {
 		0
 	].map((t) => e >>> t & 255);
 }
-function be(e) {
+function F(e) {
 	return Array.from(e, (e) => e.charCodeAt(0));
 }
 // eigenfield-three/src/inflate.ts
-async function xe(e, t, n, r) {
+async function be(e, t, n, r) {
 	let i = [], a = 0, o = new Blob([e]).stream().pipeThrough(new DecompressionStream(t)).getReader();
 	try {
 		for (let e = await o.read(); !e.done && a <= n; e = await o.read()) i.push(e.value), a += e.value.length;
@@ -194,11 +194,11 @@ async function xe(e, t, n, r) {
 	return s;
 }
 // eigenfield-three/src/limits.ts
-var Se = "EIGENFIELD_eigen_textures", Ce = 64 * 2 ** 20, F = 16384, we = 16384, Te = 1024, Ee = 2 ** 27, De = 4096, Oe = 8 * 2 ** 30, I = 1e5, ke = 65535, Ae = 2 ** 29, L = 1024, je = 2 ** 25, Me = 2 ** 26, Ne = 2 ** 27, Pe = 8192, Fe = 2 ** 24, Ie = 2 ** 25, Le = 2 ** 20, Re = 2 ** 16, ze = 2 ** 30, Be = 1024, Ve = 2 ** 22, He = 2 ** 28, Ue = 2 ** 31 - 1, We = 2 ** 28, Ge = 1e30, R = 65536, Ke = 126, qe = 64, Je = 0, Ye = 1, Xe = 2, Ze = 24, Qe = 44, $e = 21, et = 26214, tt = 4, nt = Float64Array.from({ length: 4095 }, (e, t) => Math.round(R / (1 + Math.exp((2047 - t) / 256)))), rt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), it = Float64Array.from({ length: 127 }, (e, t) => Math.round(R / (t + 1.5)));
-function z(e) {
-	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + z(Math.floor(e / 4294967296));
+var xe = "EIGENFIELD_eigen_textures", Se = 64 * 2 ** 20, I = 16384, Ce = 16384, we = 1024, Te = 2 ** 27, Ee = 4096, De = 8 * 2 ** 30, L = 1e5, Oe = 65535, ke = 2 ** 29, R = 1024, Ae = 2 ** 25, je = 2 ** 26, Me = 2 ** 27, Ne = 8192, Pe = 2 ** 24, Fe = 2 ** 25, Ie = 2 ** 20, Le = 2 ** 16, Re = 2 ** 30, ze = 1024, Be = 2 ** 22, Ve = 2 ** 28, He = 2 ** 31 - 1, Ue = 2 ** 28, We = 1e30, z = 65536, Ge = 126, Ke = 64, qe = 0, Je = 1, Ye = 2, Xe = 24, Ze = 44, Qe = 21, $e = 26214, et = 4, tt = Float64Array.from({ length: 4095 }, (e, t) => Math.round(z / (1 + Math.exp((2047 - t) / 256)))), nt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), rt = Float64Array.from({ length: 127 }, (e, t) => Math.round(z / (t + 1.5)));
+function B(e) {
+	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + B(Math.floor(e / 4294967296));
 }
-var at = class {
+var it = class {
 	bytes;
 	low = 0;
 	high = 4294967295;
@@ -208,49 +208,49 @@ var at = class {
 	seen;
 	weights;
 	constructor(e, t, n) {
-		this.bytes = e, this.probability = new Uint16Array(t * qe).fill(R / 2), this.seen = new Uint8Array(t * qe), this.weights = new Float64Array(n * qe * 3).fill(et);
-		for (let e = 0; e < tt; e++) this.code = this.code * 256 + this.next();
+		this.bytes = e, this.probability = new Uint16Array(t * Ke).fill(z / 2), this.seen = new Uint8Array(t * Ke), this.weights = new Float64Array(n * Ke * 3).fill($e);
+		for (let e = 0; e < et; e++) this.code = this.code * 256 + this.next();
 	}
 	checkEnd(e) {
-		if (this.at > this.bytes.length + tt) throw ue(e);
+		if (this.at > this.bytes.length + et) throw ue(e);
 	}
 	flag(e, t, n, r) {
 		return this.node(e, t, n, r, 0) === 1;
 	}
 	raw(e) {
 		let t = 0;
-		for (let n = 0; n < e; n++) t = t * 2 + this.split(R / 2);
+		for (let n = 0; n < e; n++) t = t * 2 + this.split(z / 2);
 		return t;
 	}
 	integer(e, t, n, r) {
 		let i = this.magnitude(e, t, n, r);
-		return i === 0 ? 0 : this.node(e, t, n, r, Ye) ? -i : i;
+		return i === 0 ? 0 : this.node(e, t, n, r, Je) ? -i : i;
 	}
 	magnitude(e, t, n, r) {
-		if (!this.node(e, t, n, r, Je)) return 0;
+		if (!this.node(e, t, n, r, qe)) return 0;
 		let i = 0;
-		for (; i < $e && this.node(e, t, n, r, Xe + i);) i += 1;
+		for (; i < Qe && this.node(e, t, n, r, Ye + i);) i += 1;
 		if (i < 2) return i + 1;
 		let a = 1;
 		for (let o = i - 2; o >= 0; o--) {
 			let s;
-			s = o === i - 2 ? this.node(e, t, n, r, Ze + i) : o === i - 3 ? this.node(e, t, n, r, Qe + 2 * Math.min(i, 9) + (a & 1)) : this.split(R / 2), a = a * 2 + s;
+			s = o === i - 2 ? this.node(e, t, n, r, Xe + i) : o === i - 3 ? this.node(e, t, n, r, Ze + 2 * Math.min(i, 9) + (a & 1)) : this.split(z / 2), a = a * 2 + s;
 		}
 		return a + 1;
 	}
 	node(e, t, n, r, i) {
-		return this.bit(e * qe + i, t * qe + i, n * qe + i, (r * qe + i) * 3);
+		return this.bit(e * Ke + i, t * Ke + i, n * Ke + i, (r * Ke + i) * 3);
 	}
 	bit(e, t, n, r) {
-		let { probability: i, weights: a } = this, o = rt[i[e] >> 4], s = rt[i[t] >> 4], c = rt[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / R), u = nt[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? R - u : -u;
+		let { probability: i, weights: a } = this, o = nt[i[e] >> 4], s = nt[i[t] >> 4], c = nt[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / z), u = tt[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? z - u : -u;
 		return a[r] += o * f >> 14, a[r + 1] += s * f >> 14, a[r + 2] += c * f >> 14, this.learn(e, d), this.learn(t, d), this.learn(n, d), d;
 	}
 	learn(e, t) {
 		let [n, r] = [this.probability[e], this.seen[e]];
-		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * it[r] / R), r < Ke && (this.seen[e] = r + 1);
+		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * rt[r] / z), r < Ge && (this.seen[e] = r + 1);
 	}
 	split(e) {
-		let t = this.low + Math.floor((this.high - this.low) * e / R), n = +(this.code <= t);
+		let t = this.low + Math.floor((this.high - this.low) * e / z), n = +(this.code <= t);
 		for (n ? this.high = t : this.low = t + 1; !((this.low ^ this.high) >>> 24);) this.low = this.low << 8 >>> 0, this.high = (this.high << 8 | 255) >>> 0, this.code = (this.code << 8 | this.next()) >>> 0;
 		return n;
 	}
@@ -258,26 +258,26 @@ var at = class {
 		return this.bytes[this.at++] ?? 0;
 	}
 };
-function B(e, t, n, r = 1) {
+function V(e, t, n, r = 1) {
 	if (e.length < t) throw ue(n);
 	if (e[0] !== r) throw M(n, `coded numbers of version ${e[0]}`);
 	return new DataView(e.buffer, e.byteOffset, e.byteLength);
 }
-function ot(e, t, n, r) {
+function at(e, t, n, r) {
 	if (t > n || t > 16 * e.length + 1024) throw M(r, `${t} numbers announced`);
 }
 // eigenfield-three/src/table-decoder.ts
-var st = 12, ct = 1, lt = 3, ut = 312, dt = lt * ut, ft = 938, pt = 24, mt = 16, ht = 1722, gt = 1726, _t = 4, vt = 5;
+var ot = 12, st = 1, ct = 3, lt = 312, ut = ct * lt, dt = 938, ft = 24, pt = 16, mt = 1722, ht = 1726, gt = 4, _t = 5;
+function vt(e) {
+	return new it(e, ht, 21);
+}
 function yt(e) {
-	return new at(e, gt, 21);
+	return e.flag(ut, ut, ut, ct) ? 2 : e.flag(937, 937, 937, ct) ? st : 0;
 }
 function bt(e) {
-	return e.flag(dt, dt, dt, lt) ? 2 : e.flag(937, 937, 937, lt) ? ct : 0;
+	return Math.min(B(e), 11);
 }
-function xt(e) {
-	return Math.min(z(e), 11);
-}
-function St(e, t, n, r) {
+function xt(e, t, n, r) {
 	let i = new Float64Array(n.length), a = n.length / t, o = (e, n, r) => n < 0 || r < 0 || r >= t ? 0 : e[n * t + r], s = 0;
 	for (let c = 0; c < a; c++) for (let a = 0; a < t; a++) {
 		let [l, u] = [o(i, c, a - 1), o(i, c - 1, a)], [d, f] = [o(i, c - 1, a - 1), o(i, c - 1, a + 1)], [p, m, h] = [
@@ -285,32 +285,32 @@ function St(e, t, n, r) {
 			0,
 			s
 		];
-		r === ct ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
-		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * ut, y = e.integer(v + xt(m) * st + xt(g), v + 144 + xt(m + h), v + 144 + 24 + _ * st + xt(g + Math.abs(l)), r);
+		r === st ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
+		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * lt, y = e.integer(v + bt(m) * ot + bt(g), v + 144 + bt(m + h), v + 144 + 24 + _ * ot + bt(g + Math.abs(l)), r);
 		i[c * t + a] = p + y, s = Math.abs(y);
 	}
 	return i;
 }
-function Ct(e, t, n, r) {
+function St(e, t, n, r) {
 	let i = new Float64Array(t * n), a = new Float64Array(n);
 	for (let o = 0; o < t; o++) {
 		let t = 0;
 		for (let s = 0; s < n; s++) {
-			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(z(a[s]), 23), d = Math.min(z(t), 23), f = e.integer(ft + l * pt + u, ft + (mt + l) * pt + d, 1706 + l, vt + l);
+			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(B(a[s]), 23), d = Math.min(B(t), 23), f = e.integer(dt + l * ft + u, dt + (pt + l) * ft + d, 1706 + l, _t + l);
 			i[o * n + s] = c + f, t = Math.abs(f), a[s] = Math.floor((a[s] + t + 1) / 2);
 		}
 	}
 	return i;
 }
-function wt(e, t, n, r) {
+function Ct(e, t, n, r) {
 	let i = new Float64Array(t).fill(-1), a = new Uint8Array(n), [o, s, c] = [
 		0,
 		1,
 		0
 	];
 	for (let l = 0; l < t; l++) {
-		if (s = +!!e.flag(ht + s, ht + s, 1724, _t), !s) continue;
-		let t = o + e.integer(1725, 1725, 1725, _t);
+		if (s = +!!e.flag(mt + s, mt + s, 1724, gt), !s) continue;
+		let t = o + e.integer(1725, 1725, 1725, gt);
 		if (!(t >= 0 && t < n) || a[t]) throw M(r, "a grid with a camera out of place");
 		a[t] = 1, i[l] = t, o = t + 1, c += 1;
 	}
@@ -318,20 +318,20 @@ function wt(e, t, n, r) {
 	return i;
 }
 // eigenfield-three/src/camera-decoder.ts
-var Tt = 130, V = 11, Et = 1, Dt = 2, Ot = 2, kt = 44 * I + 1024;
+var wt = 130, Tt = 11, Et = 1, Dt = 2, Ot = 2, kt = 44 * L + 1024;
 async function At(e, t) {
 	if (e[0] !== Ot) throw M(t, `version ${e[0]}`);
-	let n = await xe(Uint8Array.from(e.subarray(1)), "deflate-raw", kt, t);
+	let n = await be(Uint8Array.from(e.subarray(1)), "deflate-raw", kt, t);
 	return jt(Uint8Array.from([1, ...n]), t);
 }
 function jt(e, t) {
-	let n = B(e, Tt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Et) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
+	let n = V(e, wt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Et) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
 	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw M(t, "cameras that cannot be");
 	if (i > 1e5 || a && o * s < i) throw M(t, `${i} cameras`);
-	ot(e, Math.max(V * i, o * s), V * I, t);
-	let l = Tt + (a ? 132 : 0);
-	B(e, l, t);
-	let u = (e, t) => a ? n.getFloat32(Tt + 4 * (e * V + t), !0) : 0, d = yt(e.subarray(l)), f = a ? wt(d, o * s, i, t) : null, p = Ct(d, i, V, (r & Dt) !== 0);
+	at(e, Math.max(Tt * i, o * s), Tt * L, t);
+	let l = wt + (a ? 132 : 0);
+	V(e, l, t);
+	let u = (e, t) => a ? n.getFloat32(wt + 4 * (e * Tt + t), !0) : 0, d = vt(e.subarray(l)), f = a ? Ct(d, o * s, i, t) : null, p = St(d, i, Tt, (r & Dt) !== 0);
 	d.checkEnd(t);
 	let m = {
 		intrinsics: new Float32Array(5 * i),
@@ -342,14 +342,14 @@ function jt(e, t) {
 		0,
 		0,
 		...c.subarray(12)
-	], g = Nt(c[3], c[4], c[5], c[6]), _ = new Float64Array(V), v = 0;
+	], g = Nt(c[3], c[4], c[5], c[6]), _ = new Float64Array(Tt), v = 0;
 	for (let e = 0; e < (f ? f.length : i); e++) {
 		let t = f ? f[e] : e;
 		if (t < 0) continue;
 		let [n, r] = f ? [Math.floor(e / s), e % s] : [0, 0];
-		for (let e = 0; e < V; e++) {
+		for (let e = 0; e < Tt; e++) {
 			let t = c[e < 5 ? 0 : e < 8 ? 1 : 2], i = u(0, e) + u(1, e) * n + u(2, e) * r;
-			_[e] = p[v * V + e] * t + h[e] + i;
+			_[e] = p[v * Tt + e] * t + h[e] + i;
 		}
 		Mt(_, g, m, t), v += 1;
 	}
@@ -644,7 +644,7 @@ function gn(e, t, n, r, i) {
 		t[3 * a + 1],
 		t[3 * o],
 		t[3 * o + 1]
-	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? tn : -.8, _ = 1 << i >> 1, v = pn((l + d) * .5 + g * m) + _ >> i, y = pn((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(z(Math.floor((p * p + m * m) / b)), 23), S = Math.min(z(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, cn), T = Math.min(z(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(rn + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, ln);
+	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? tn : -.8, _ = 1 << i >> 1, v = pn((l + d) * .5 + g * m) + _ >> i, y = pn((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(B(Math.floor((p * p + m * m) / b)), 23), S = Math.min(B(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, cn), T = Math.min(B(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(rn + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, ln);
 	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + O << i, i === 0) return;
 	let k = mn(t, a, i) + 4 * mn(t, o, i);
 	if (e.flag(an + k, 913 + mn(t, s, i), 917 + c, fn)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
@@ -652,10 +652,10 @@ function gn(e, t, n, r, i) {
 function _n(e, t, n, { a: r, b: i, o: a }) {
 	let o = 0;
 	for (let e = 0; e < 3; e++) o += (t[3 * i + e] - t[3 * r + e]) ** 2;
-	let s = Math.min(z(o), 43), c = 0;
+	let s = Math.min(B(o), 43), c = 0;
 	for (let o = 0; o < 3; o++) {
 		let l = pn(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, nn + o * 24 + c, 116 + o * nn + s, un);
-		t[3 * n + o] = l + u, c = Math.min(z(Math.abs(u)), 23);
+		t[3 * n + o] = l + u, c = Math.min(B(Math.abs(u)), 23);
 	}
 }
 function vn(e, t, n, r, i) {
@@ -702,7 +702,7 @@ function Fn(e, t, n, r, i) {
 		if (l >= t) throw M(i, "more places than announced");
 		return l++;
 	}, p = () => {
-		let t = e.raw(z(l - 1));
+		let t = e.raw(B(l - 1));
 		if (t >= l) throw M(i, "a place that is not there yet");
 		return t;
 	}, m = () => {
@@ -855,7 +855,7 @@ function Xn(e, t, n, r, i, a, o) {
 		}
 		if (c < 0) {
 			if (e.flag(Wn + s, Wn + s, Wn + Rn, qn)) return -1;
-			if (c = e.raw(z(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
+			if (c = e.raw(B(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
 		}
 		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? Bn : Vn);
 		return c;
@@ -865,7 +865,7 @@ function Xn(e, t, n, r, i, a, o) {
 		l.kinds[t] = 1;
 		let n = v;
 		if (v = t, n >= 0 && e.flag(U + 2, U + 2, U + 2, Jn)) {
-			let n = e.raw(z(t - 1));
+			let n = e.raw(B(t - 1));
 			if (n >= t || l.kinds[n] !== 1) throw M(o, "a map that is not there");
 			return l.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
 		}
@@ -942,7 +942,7 @@ function ur(e, t, n, r) {
 			}
 		}
 		let y = 13, b = t > 0 ? u(t - 1) : 0, x = b;
-		g > 0 && (y = Math.min(z(v - _), 12), b = h / g, x = Math.min(Math.max(fr(s), p), m));
+		g > 0 && (y = Math.min(B(v - _), 12), b = h / g, x = Math.min(Math.max(fr(s), p), m));
 		let S = b, [C, w, T] = [
 			o[3 * t],
 			o[3 * t + 1],
@@ -961,7 +961,7 @@ function ur(e, t, n, r) {
 			}
 		}
 		let E = cr(x, b), [ee, D] = [lr(S - E), lr(b - E)], O = e.integer(nr + ee * $n + D, nr + 169 + y * tr + f, nr + 169 + 280 + ee * er + y, ar), k = E + O;
-		i[3 * t + 2] = k, f = Math.min(z(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
+		i[3 * t + 2] = k, f = Math.min(B(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
 	}
 }
 function dr(e, t, n) {
@@ -1007,13 +1007,13 @@ function pr(e, t, n, r, i) {
 			if (!Number.isFinite(u) || !Number.isFinite(d)) continue;
 			p += u, m += d, h += 1;
 			let v = Math.abs(l[2 * r] - l[2 * s]) + Math.abs(l[2 * r + 1] - l[2 * s + 1]);
-			_ = Math.max(_, z(v));
+			_ = Math.max(_, B(v));
 		}
 		g < 0 && (g = d), d = t;
 		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = rr + 144;
 		for (let n = 0; n < 2; n++) {
 			let r = e.integer(rr + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], or + n);
-			l[2 * t + n] = cr(y[n], 0) + r, u[n] = Math.min(z(Math.abs(r)), 23);
+			l[2 * t + n] = cr(y[n], 0) + r, u[n] = Math.min(B(Math.abs(r)), 23);
 		}
 	}
 	return l;
@@ -1040,7 +1040,7 @@ function xr(e, t) {
 	return Sr(e, t, gr);
 }
 function Sr(e, t, n) {
-	let r = B(e, hr, t, n), [i, a, o] = [
+	let r = V(e, hr, t, n), [i, a, o] = [
 		r.getUint8(1),
 		r.getUint8(2),
 		r.getUint8(3)
@@ -1049,9 +1049,9 @@ function Sr(e, t, n) {
 		8,
 		12
 	].map((e) => r.getUint32(e, !0)), u = Float64Array.from({ length: 16 }, (e, t) => r.getFloat64(16 + 8 * t, !0));
-	if (s > Me || l > Me || c > Ne) throw M(t, `${l} vertices and ${c} faces`);
-	if (ot(e, Math.max(s, c, l), Ne, t), i > 1 || o > yr * i || a < 1 || a > vr || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
-	let d = new at(e.subarray(hr), ir, 16), f = Fn(d, s, c, {
+	if (s > je || l > je || c > Me) throw M(t, `${l} vertices and ${c} faces`);
+	if (at(e, Math.max(s, c, l), Me, t), i > 1 || o > yr * i || a < 1 || a > vr || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
+	let d = new it(e.subarray(hr), ir, 16), f = Fn(d, s, c, {
 		flat: i === 1,
 		fine: o
 	}, t);
@@ -1091,7 +1091,7 @@ function wr(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) 
 	};
 }
 function Tr(e, t) {
-	let n = (e) => Math.abs(e) <= Ge;
+	let n = (e) => Math.abs(e) <= We;
 	if (!e.positions.every(n) || !e.uv.every(n)) throw M(t, "positions or texture coordinates that are not finite");
 	return e;
 }
@@ -1114,14 +1114,14 @@ var Er = 11, Dr = 2 ** 20, Or = 8, [kr, Ar] = [7, 8], jr = 12, [Mr, Nr, Pr, Fr] 
 	decoded = 0;
 	constructor(e, t, n) {
 		this.mesh = t, this.where = n;
-		let r = B(e, Er, n), i = t.places.length / 3, a = r.getUint32(5, !0);
+		let r = V(e, Er, n), i = t.places.length / 3, a = r.getUint32(5, !0);
 		this.frames = r.getUint16(9, !0);
 		let o = Er + this.frames;
 		if (r.getUint32(1, !0) !== i || a > i) throw M(n, `${a} vertices that move, of another mesh`);
-		if (this.frames < 1 || this.frames > 1024 || this.frames * a > Ie) throw M(n, `${a} vertices that move in ${this.frames} frames`);
-		if (B(e, o, n), this.flags = e.slice(Er, o), this.flags.some((e) => e > kr + Ar)) throw M(n, "frames that cannot be");
-		if (ot(e, this.flags.reduce((e, t) => e + (t & 1) + (t >> 1 & 1) + (t >> 2 & 1), 0) * a, 3 * Ie, n), this.moving = new Int32Array(a), this.steps = new Int32Array(a && 3 * a * (2 + this.frames)), this.off = new Int32Array(3 * a), this.around = Kr(t.places, t.indices), !a) return;
-		this.decoder = new at(e.subarray(o), zr, Vr);
+		if (this.frames < 1 || this.frames > 1024 || this.frames * a > Fe) throw M(n, `${a} vertices that move in ${this.frames} frames`);
+		if (V(e, o, n), this.flags = e.slice(Er, o), this.flags.some((e) => e > kr + Ar)) throw M(n, "frames that cannot be");
+		if (at(e, this.flags.reduce((e, t) => e + (t & 1) + (t >> 1 & 1) + (t >> 2 & 1), 0) * a, 3 * Fe, n), this.moving = new Int32Array(a), this.steps = new Int32Array(a && 3 * a * (2 + this.frames)), this.off = new Int32Array(3 * a), this.around = Kr(t.places, t.indices), !a) return;
+		this.decoder = new it(e.subarray(o), zr, Vr);
 		let s = Gr(this.decoder, i, this.around);
 		if (s.reduce((e, t) => e + t, 0) !== a) throw M(n, "other vertices that move");
 		this.around = this.start(s);
@@ -1195,7 +1195,7 @@ function Ur(e, t, n) {
 	];
 }
 function Wr(e) {
-	return Math.min(z(e), 11);
+	return Math.min(B(e), 11);
 }
 function Gr(e, t, { near: n, starts: r }) {
 	let i = new Uint8Array(t), a = 0;
@@ -1230,9 +1230,9 @@ function Kr(e, t) {
 	};
 }
 // eigenfield-three/src/name-decoder.ts
-var qr = 4 * L;
+var qr = 4 * R;
 async function Jr(e, t, n) {
-	let r = Math.min(je, qr * t), i = await xe(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
+	let r = Math.min(Ae, qr * t), i = await be(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
 	if (a === 0 || !Number.isInteger(a)) throw M(n, `${i.length} bytes of ${t} names`);
 	let o = new TextDecoder("utf-8", {
 		fatal: !0,
@@ -1365,7 +1365,7 @@ function ri(e, t, n) {
 	if (n && (i !== n[0] || a !== n[1])) throw M(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
 	if (t.codec.bits !== 8 && t.codec.bits !== o) throw M(t.where, `no picture of ${t.codec.bits} bits`);
 	let s = i * a;
-	if (!s || i > 16384 || a > 32768 || s > Ee) throw M(t.where, `a picture of ${i} x ${a}`);
+	if (!s || i > 16384 || a > 32768 || s > Te) throw M(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
 var ii = async (e, t, n) => {
@@ -1437,9 +1437,9 @@ async function li(e, t, n) {
 // eigenfield-three/src/triangle-decoder.ts
 var ui = 5;
 function di(e, t) {
-	let n = B(e, ui, t).getUint32(1, !0);
-	ot(e, 3 * n, 6 * I, t);
-	let r = yt(e.subarray(ui)), i = Ct(r, n, 3, !0);
+	let n = V(e, ui, t).getUint32(1, !0);
+	at(e, 3 * n, 6 * L, t);
+	let r = vt(e.subarray(ui)), i = St(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
 	if (!a.every((e) => e >= 0 && e < 1e5)) throw M(t, "triangles of cameras that there cannot be");
@@ -1448,12 +1448,12 @@ function di(e, t) {
 // eigenfield-three/src/weight-decoder.ts
 var fi = 14, pi = 2 ** 20;
 function mi(e, t) {
-	let n = B(e, fi, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
+	let n = V(e, fi, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
 	if (n.getUint8(1) > 1 || i === 0) throw M(t, "weights of no camera, or of an unknown kind");
-	ot(e, o * s * Math.max(a, 1), We, t), B(e, fi + 4 * a, t);
+	at(e, o * s * Math.max(a, 1), Ue, t), V(e, fi + 4 * a, t);
 	let c = o * s;
 	if (c < i) throw M(t, "a grid with too few cells");
-	let l = yt(e.subarray(fi + 4 * a)), u = r ? wt(l, c, i, t) : null, d = u !== null && i === c, f = [
+	let l = vt(e.subarray(fi + 4 * a)), u = r ? Ct(l, c, i, t) : null, d = u !== null && i === c, f = [
 		0,
 		1,
 		2
@@ -1461,7 +1461,7 @@ function mi(e, t) {
 	for (let e = 0; e < a; e++) {
 		let r = n.getFloat32(fi + 4 * e, !0);
 		if (!(r > 0 && r < Infinity)) throw M(t, "a step that is not positive");
-		let i = bt(l), h = St(l, s, f[i], i);
+		let i = yt(l), h = xt(l, s, f[i], i);
 		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw M(t, `numbers of component ${e} that cannot be`);
 		f[i] = h;
 		let g = i === 2 ? hi(h, o, s) : h;
@@ -1594,7 +1594,7 @@ var W = {
 	weights: "weights-1"
 };
 function yi(e, t, n) {
-	let r = t.exists ? t.text(L) : n, i = Object.hasOwn(W, r) ? W[r] : null;
+	let r = t.exists ? t.text(R) : n, i = Object.hasOwn(W, r) ? W[r] : null;
 	if (i?.kind === e) return i;
 	throw new j("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
 }
@@ -1636,7 +1636,7 @@ var G = class e {
 		if (this.raw.length > e) throw this.wrong(`longer than ${e} characters`);
 		return this.raw;
 	}
-	number(e = -Ge, t = Ge) {
+	number(e = -We, t = We) {
 		if (typeof this.raw != "number") throw this.wrong("no number");
 		if (!(this.raw >= e && this.raw <= t)) throw this.wrong(`${this.raw} is not in ${e}..${t}`);
 		return this.raw;
@@ -1646,7 +1646,7 @@ var G = class e {
 		if (!Number.isInteger(n)) throw this.wrong(`${n} is no whole number`);
 		return n;
 	}
-	numbers(e, t = -Ge, n = Ge) {
+	numbers(e, t = -We, n = We) {
 		let r = this.items(e);
 		if (r.length !== e) throw this.wrong(`${e} numbers are needed`);
 		return r.map((e) => e.number(t, n));
@@ -1680,7 +1680,7 @@ function Oi(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
-	return e.key("bufferViews").items(F).map((e) => {
+	return e.key("bufferViews").items(I).map((e) => {
 		let t = e.key("byteOffset"), r = e.key("byteStride");
 		e.key("buffer").integer(0, 0);
 		let i = {
@@ -1696,7 +1696,7 @@ function ki(e) {
 	return (t) => t.integer(0, e.length - 1);
 }
 function Ai(e, t) {
-	let n = e.key("accessors"), r = n.exists ? n.items(F) : [];
+	let n = e.key("accessors"), r = n.exists ? n.items(I) : [];
 	return (e, n, i, a) => {
 		let o = r[e.integer(0, r.length - 1)];
 		if (!o) throw e.wrong("no such accessor");
@@ -1706,7 +1706,7 @@ function Ai(e, t) {
 		if (o.key("sparse").exists) throw o.wrong("sparse");
 		let c = o.key("normalized");
 		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = Di[n] ?? 1, u = o.key("count").integer(1, We);
+		let l = Di[n] ?? 1, u = o.key("count").integer(1, Ue);
 		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
 		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
 		if (!f) throw o.wrong("no such buffer view");
@@ -1747,10 +1747,10 @@ var Pi = 8, Fi = 16, Ii = "av1-10bit-2";
 function Li(e, t) {
 	return new j("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function Ri(e, t = we) {
+function Ri(e, t = Ce) {
 	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
 	if (!n || !r) throw e.wrong("two numbers are needed");
-	if (n * r > Ee) throw e.wrong(`more than ${Ee} texels`);
+	if (n * r > Te) throw e.wrong(`more than ${Te} texels`);
 	return [n, r];
 }
 function zi(e, t, n, r, i) {
@@ -1771,8 +1771,8 @@ function zi(e, t, n, r, i) {
 			s += t[0] * t[1] * e * n, c += r;
 		}
 	}
-	if (c > 4096) throw e.key("planes").wrong(`more than ${De} textures`);
-	if (s > Oe) throw e.key("planes").wrong("too large when it is decoded");
+	if (c > 4096) throw e.key("planes").wrong(`more than ${Ee} textures`);
+	if (s > De) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
 function Bi(e, t) {
@@ -1830,7 +1830,7 @@ function Vi(e, t, n, r, i, a = !1) {
 	};
 }
 function Hi(e) {
-	let t = e.key("mimeType").text(L);
+	let t = e.key("mimeType").text(R);
 	if (!bi(t)) throw e.key("mimeType").wrong("an unknown type");
 	let n = e.key("bits"), r = n.exists ? n.integer(1, Fi) : Pi, i = bi(t, r);
 	if (!i) throw n.wrong(`${r} bits of ${t}`);
@@ -1839,8 +1839,8 @@ function Hi(e) {
 	return o;
 }
 function Ui(e, t, n) {
-	let r = e.key("at").items(De * t).map((e) => {
-		let [t = 0, n = 0] = e.numbers(2, 0, Pe);
+	let r = e.key("at").items(Ee * t).map((e) => {
+		let [t = 0, n = 0] = e.numbers(2, 0, Ne);
 		if (!Number.isInteger(t) || !Number.isInteger(n)) throw e.wrong("no whole numbers");
 		return [t, n];
 	});
@@ -1947,7 +1947,7 @@ function Zi(e, t) {
 function Qi(e, t, n) {
 	if (!e.exists) return null;
 	if (t.codec.bits === Pi) throw e.wrong(`of a mean of ${Pi} bits`);
-	let r = Ri(e.key("size"), Te), i = yi("picture", e.key("codec"), "png");
+	let r = Ri(e.key("size"), we), i = yi("picture", e.key("codec"), "png");
 	if (i !== W.png) throw e.key("codec").wrong("no PNG");
 	return {
 		view: n(e.key("bufferView")),
@@ -1959,13 +1959,13 @@ function Qi(e, t, n) {
 	};
 }
 function $i(e, t, n, r, i) {
-	let a = Ri(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Ri(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, we) : [];
+	let a = Ri(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Ri(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, Ce) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
 	let d = e.where;
 	if (e.key("film").exists) {
 		let n = Ui(e, t, a), { textures: r } = n;
-		if (r > 4096) throw e.wrong(`more than ${De} textures`);
+		if (r > 4096) throw e.wrong(`more than ${Ee} textures`);
 		return {
 			size: a,
 			grid: c,
@@ -1976,14 +1976,14 @@ function $i(e, t, n, r, i) {
 			where: d
 		};
 	}
-	let f = 0, p = e.key("picture"), m = p.exists ? p.object() : {}, h = e.key("textures").items(De).map((e) => {
+	let f = 0, p = e.key("picture"), m = p.exists ? p.object() : {}, h = e.key("textures").items(Ee).map((e) => {
 		let n = new G({
 			...m,
 			...e.object()
-		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, De) : 1;
+		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, Ee) : 1;
 		return f += o, Vi(n, t, o, a, i);
 	});
-	if (f > 4096) throw e.wrong(`more than ${De} textures`);
+	if (f > 4096) throw e.wrong(`more than ${Ee} textures`);
 	let g = e.key("codedWeights"), _ = f ? g.exists ? ji("weights", g, i) : r(e.key("weights"), "SCALAR", [wi], n * f) : null;
 	return {
 		size: a,
@@ -1998,12 +1998,39 @@ function $i(e, t, n, r, i) {
 function ea(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
-	if (n * i > Ee) throw e.wrong(`more than ${Ee} texels`);
+	if (n * i > Te) throw e.wrong(`more than ${Te} texels`);
+}
+// eigenfield-three/src/rights.ts
+var ta = "KHR_xmp_json_ld", na = /[\p{Cc}\p{Cs}\p{Zl}\p{Zp}\u202a-\u202e\u2066-\u2069]/u;
+function ra(e) {
+	let t = aa(e, "asset", "extensions", ta, "packet"), n = aa(e, "extensions", ta, "packets"), r = Array.isArray(n) && typeof t == "number" ? n[t] : void 0, i = (e) => {
+		let t = ia(aa(r, e)) ?? "";
+		return [...t].length > 1e3 || na.test(t) ? "" : t;
+	};
+	return {
+		title: i("dc:title"),
+		author: i("dc:creator"),
+		licence: i("dc:rights"),
+		source: i("dc:source")
+	};
+}
+function ia(e) {
+	let t = aa(e, "@list") ?? aa(e, "@set");
+	if (Array.isArray(t) && t.every((e) => typeof e == "string")) return t.join(", ");
+	let n = typeof e == "string" ? e : aa(e, "rdf:_1", "@value");
+	return typeof n == "string" ? n : null;
+}
+function aa(e, ...t) {
+	for (let n of t) {
+		if (typeof e != "object" || !e || Array.isArray(e) || !Object.hasOwn(e, n)) return;
+		e = e[n];
+	}
+	return e;
 }
 // eigenfield-three/src/sheets.ts
-function ta(e, t) {
+function oa(e, t) {
 	if (!e.exists) return null;
-	let n = e.key("faces").items(32).map((e) => e.integer(1, Ne));
+	let n = e.key("faces").items(32).map((e) => e.integer(1, Me));
 	if (!n.length) throw e.key("faces").wrong("no sheet");
 	return {
 		faces: n,
@@ -2011,7 +2038,7 @@ function ta(e, t) {
 		where: e.where
 	};
 }
-function na({ faces: e, where: t }, { index: n, attributes: r }) {
+function sa({ faces: e, where: t }, { index: n, attributes: r }) {
 	let i = e.reduce((e, t) => e + t, 0), a = (n?.count ?? 0) / 3;
 	if (i !== a) throw M(`${t}/faces`, `the sheets have ${i} triangles, the mesh has ${a}`);
 	let o = new Uint8Array(r.position?.count ?? 0), s = 0;
@@ -2024,46 +2051,46 @@ function na({ faces: e, where: t }, { index: n, attributes: r }) {
 	});
 }
 // eigenfield-three/src/timeline.ts
-var ra = 64, K = 16, ia = "audio/ogg", aa = "sound.opus", oa = /^[0-9a-f]{64}$/;
-function sa(e, t, n) {
-	let r = [...fa(t), ...n ? [n] : []];
+var ca = 64, K = 16, la = "audio/ogg", ua = "sound.opus", da = /^[0-9a-f]{64}$/;
+function fa(e, t, n) {
+	let r = [..._a(t), ...n ? [n] : []];
 	if (!e.exists) {
 		let e = r.find(({ part: e }) => e);
 		if (e) throw M(e.where, "a texture in a film, and no timeline");
 		return null;
 	}
-	let [i = 1, a = 1] = e.key("rate").numbers(2, 1, Ue), o = i / a;
+	let [i = 1, a = 1] = e.key("rate").numbers(2, 1, He), o = i / a;
 	if (!(Number.isInteger(i) && Number.isInteger(a)) || o > 1e3 || o < 1 / 1e3) throw e.key("rate").wrong("no rate");
-	let s = e.key("first"), c = e.key("films").items(4).map(la), l = e.key("frames").integer(1, Le);
-	pa(r, c);
+	let s = e.key("first"), c = e.key("films").items(4).map(ma), l = e.key("frames").integer(1, Ie);
+	va(r, c);
 	let u = new Set([...t.map(({ mean: e }) => e), n].map((e) => c[e?.part?.film ?? -1]));
 	for (let e of c) e.opacity = e === c[n?.part?.film ?? -1], e.detail = !u.has(e);
-	let d = da(e, l);
+	let d = ga(e, l);
 	return {
 		rate: o,
 		first: s.exists ? s.number() : 0,
 		frames: l,
 		films: c,
 		groups: d,
-		sound: ca(e, d)
+		sound: pa(e, d)
 	};
 }
-function ca(e, t) {
+function pa(e, t) {
 	let n = e.key("audio");
 	if (!n.exists) return null;
-	if (n.key("mimeType").text(64) !== ia) throw n.key("mimeType").wrong(`no ${ia}`);
-	let r = t.at(-1), i = r.file === null ? null : aa, a = i ? 0 : ua(n.key("offset"), r.offset + r.length), o = n.key("first"), s = n.key("length").integer(1, He);
+	if (n.key("mimeType").text(64) !== la) throw n.key("mimeType").wrong(`no ${la}`);
+	let r = t.at(-1), i = r.file === null ? null : ua, a = i ? 0 : ha(n.key("offset"), r.offset + r.length), o = n.key("first"), s = n.key("length").integer(1, Ve);
 	return {
-		mimeType: ia,
+		mimeType: la,
 		first: o.exists ? o.number() : 0,
 		offset: a,
 		length: s,
 		file: i
 	};
 }
-function la(e) {
-	let t = yi("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, ra, Pe);
-	if (n % ra || r % ra || n * r > Fe) throw e.key("size").wrong(`a film of ${n} x ${r}`);
+function ma(e) {
+	let t = yi("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, ca, Ne);
+	if (n % ca || r % ca || n * r > Pe) throw e.key("size").wrong(`a film of ${n} x ${r}`);
 	return {
 		codec: t,
 		size: [n, r],
@@ -2072,17 +2099,17 @@ function la(e) {
 		where: e.where
 	};
 }
-function ua(e, t) {
+function ha(e, t) {
 	let n = e.integer(t, 2 ** 53 - 1);
 	if (n % 4) throw e.wrong("no multiple of 4");
 	return n;
 }
-function da(e, t) {
+function ga(e, t) {
 	let [n, r] = [0, 0], i = e.key("groupFiles");
 	if (i.exists && i.raw !== !0) throw i.wrong("not true");
-	let a = e.key("groups").items(Re).map((e, t) => {
-		let a = i.exists ? `groups/${String(t).padStart(5, "0")}.eftg` : null, o = e.key("frames").integer(1, Be), s = e.key("length").integer(1, ze), c = a ? 0 : ua(e.key("offset"), r), l = e.key("sha256").text(64);
-		if (!oa.test(l)) throw e.key("sha256").wrong("no SHA-256");
+	let a = e.key("groups").items(Le).map((e, t) => {
+		let a = i.exists ? `groups/${String(t).padStart(5, "0")}.eftg` : null, o = e.key("frames").integer(1, ze), s = e.key("length").integer(1, Re), c = a ? 0 : ha(e.key("offset"), r), l = e.key("sha256").text(64);
+		if (!da.test(l)) throw e.key("sha256").wrong("no SHA-256");
 		return [n, r] = [n + o, c + s], {
 			first: n - o,
 			frames: o,
@@ -2096,10 +2123,10 @@ function da(e, t) {
 	if (n !== t) throw e.key("groups").wrong(`${n} frames in groups, and ${t} in all`);
 	return a;
 }
-function fa(e) {
+function _a(e) {
 	return e.flatMap(({ mean: e, bases: t }) => [e, ...t.flatMap((e) => e.pictures)]);
 }
-function pa(e, t) {
+function va(e, t) {
 	let n = t.map(({ size: e }) => new Uint8Array(e[0] * e[1] / K ** 2));
 	for (let { part: r, where: i } of e) {
 		let e = r && t[r.film];
@@ -2116,10 +2143,10 @@ function pa(e, t) {
 		}
 	}
 }
-function ma({ rate: e, first: t, frames: n }, r) {
+function ya({ rate: e, first: t, frames: n }, r) {
 	return Math.min(Math.max(Math.floor((r - t) * e + .5), 0), n - 1);
 }
-function ha({ rate: e, first: t }, n) {
+function ba({ rate: e, first: t }, n) {
 	return t + n / e;
 }
 function q({ groups: e }, t) {
@@ -2131,7 +2158,7 @@ function q({ groups: e }, t) {
 	return n;
 }
 // eigenfield-three/src/document.ts
-var ga = [
+var xa = [
 	"groupFiles",
 	"namePattern",
 	"noFallback",
@@ -2143,73 +2170,74 @@ var ga = [
 	"stacks",
 	"timeline",
 	"toRGB"
-], _a = Object.values(W).flatMap(({ needs: e }) => e ?? []), va = /* @__PURE__ */ new Set([...ga, ..._a]), ya = 64, ba = 9, xa = 10 ** ba;
-function Sa(e) {
+], Sa = Object.values(W).flatMap(({ needs: e }) => e ?? []), Ca = /* @__PURE__ */ new Set([...xa, ...Sa]), wa = 64, Ta = 9, Ea = 10 ** Ta;
+function Da(e) {
 	let t = new G(e, "");
 	try {
-		return t.key("extensions").key(Se).exists;
+		return t.key("extensions").key(xe).exists;
 	} catch {
 		return !1;
 	}
 }
-function Ca(e) {
-	let t = new G(e, ""), n = t.key("extensions").key(Se), r = Ea(n), i = Oi(t), a = Ai(t, i), o = ki(i);
-	Da(t);
-	let s = Aa(t, o), c = n.key("cameras"), { count: l, names: u } = ja(c, o), d = Pa(c, l), f = d.filter((e) => !e).length, p = zi(n, f, s, a, o), m = Bi(n, p), h = c.key("colour"), g = c.key("codedColour");
+function Oa(e) {
+	let t = new G(e, ""), n = t.key("extensions").key(xe), r = ja(n), i = Oi(t), a = Ai(t, i), o = ki(i);
+	Ma(t);
+	let s = Fa(t, o), c = n.key("cameras"), { count: l, names: u } = Ia(c, o), d = za(c, l), f = d.filter((e) => !e).length, p = zi(n, f, s, a, o), m = Bi(n, p), h = c.key("colour"), g = c.key("codedColour");
 	if ((h.exists || g.exists) && m.length < 3) throw h.wrong("needs three channels");
-	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), [x, S] = [n.key("mesh"), n.key("timeline")], C = ta(n.key("sheets"), o);
+	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), [x, S] = [n.key("mesh"), n.key("timeline")], C = oa(n.key("sheets"), o);
 	return {
 		version: r,
-		generator: b.exists ? b.text(L) : "",
+		generator: b.exists ? b.text(R) : "",
+		rights: ra(e),
 		planes: p,
 		colours: m,
 		names: u,
 		heldOut: d,
 		reference: n.key("reference").integer(0, l - 1),
-		calibration: Fa(c, l, a, o),
-		sizes: Ia(c, l, a),
+		calibration: Ba(c, l, a, o),
+		sizes: Va(c, l, a),
 		colour: g.exists ? ji("weights", g, o) : h.exists ? a(h, "SCALAR", [wi], 6 * l) : null,
-		...La(_),
-		triangles: y.exists ? ji("triangles", y, o) : v.exists ? ka(a(v, "SCALAR", [Si, Ci], null), 2 * I) : null,
-		settings: Ra(n.key("settings")),
-		scores: Ra(n.key("scores")),
+		...Ha(_),
+		triangles: y.exists ? ji("triangles", y, o) : v.exists ? Pa(a(v, "SCALAR", [Si, Ci], null), 2 * L) : null,
+		settings: Ua(n.key("settings")),
+		scores: Ua(n.key("scores")),
 		views: i,
 		mesh: x.exists || S.exists ? ji("mesh", x, o) : null,
 		sheets: C,
-		shown: x.exists && !t.key("meshes").exists ? null : wa(t, a),
+		shown: x.exists && !t.key("meshes").exists ? null : ka(t, a),
 		preview: s,
-		timeline: sa(S, p, C && C.opacity.mean)
+		timeline: fa(S, p, C && C.opacity.mean)
 	};
 }
-function wa(e, t) {
+function ka(e, t) {
 	let n = e.key("meshes").at(0).key("primitives").at(0), r = n.key("mode");
 	if (r.exists && r.integer(0, 6) !== 4) throw r.wrong("no triangles");
 	let [i, a] = [n.key("attributes"), n.key("indices")];
 	return {
-		position: Oa(t(i.key("POSITION"), "VEC3", [wi], null), Me),
-		uv: Oa(t(i.key("TEXCOORD_0"), "VEC2", [wi], null), Me),
-		indices: ka(t(a, "SCALAR", [
+		position: Na(t(i.key("POSITION"), "VEC3", [wi], null), je),
+		uv: Na(t(i.key("TEXCOORD_0"), "VEC2", [wi], null), je),
+		indices: Pa(t(a, "SCALAR", [
 			xi,
 			Si,
 			Ci
-		], null), Ne)
+		], null), Me)
 	};
 }
-function Ta({ planes: e, sheets: t }) {
+function Aa({ planes: e, sheets: t }) {
 	return t ? [...e, t.opacity] : e;
 }
-function Ea(e) {
-	let t = e.key("version").text(L);
+function ja(e) {
+	let t = e.key("version").text(R);
 	if (!/^1\.\d+$/.test(t)) throw new j("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
-	for (let e of n.exists ? n.items(F) : []) {
-		let t = e.text(L);
-		if (!va.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
+	for (let e of n.exists ? n.items(I) : []) {
+		let t = e.text(R);
+		if (!Ca.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
-function Da(e) {
-	let t = e.key("nodes").items(F), n = Array(t.length).fill(!1);
+function Ma(e) {
+	let t = e.key("nodes").items(I), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
 		for (let e of r.exists ? r.items(t.length) : []) {
@@ -2218,64 +2246,64 @@ function Da(e) {
 			n[r] = !0;
 		}
 	}
-	for (let r of e.key("scenes").items(F)) {
+	for (let r of e.key("scenes").items(I)) {
 		let e = r.key("nodes");
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
-function Oa(e, t) {
+function Na(e, t) {
 	if (e.count > t) throw M(e.where, `more than ${t}`);
 	return e;
 }
-function ka(e, t) {
+function Pa(e, t) {
 	if (e.count % 3) throw M(e.where, "torn triangles");
-	return Oa(e, 3 * t);
+	return Na(e, 3 * t);
 }
-function Aa(e, t) {
+function Fa(e, t) {
 	let n = e.key("images");
 	if (!n.exists) return null;
 	let r = n.at(0).key("bufferView");
 	return r.exists ? t(r) : null;
 }
-function ja(e, t) {
+function Ia(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
-		count: n.key("count").integer(1, I),
+		count: n.key("count").integer(1, L),
 		names: ji("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? Na(r) : i.items(I).map((e) => e.text(L));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? Ra(r) : i.items(L).map((e) => e.text(R));
 	if (!a.length) throw i.wrong("no cameras");
-	let o = Ma(a);
+	let o = La(a);
 	if (o) throw i.wrong(o);
 	return {
 		count: a.length,
 		names: a
 	};
 }
-function Ma(e) {
+function La(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
-function Na(e) {
-	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, I));
+function Ra(e) {
+	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, L));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
-	let r = e.key("parts").items(ya).map((e) => {
-		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(L))];
+	let r = e.key("parts").items(wa).map((e) => {
+		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(R))];
 		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
 		if (a.exists) {
-			let e = a.items(i).map((e) => e.text(L));
+			let e = a.items(i).map((e) => e.text(R));
 			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
 			return [r, e];
 		}
-		let [o, s] = [e.key("first").integer(0, xa), e.key("step").integer(0, xa)], c = e.key("digits").integer(1, ba);
+		let [o, s] = [e.key("first").integer(0, Ea), e.key("step").integer(0, Ea)], c = e.key("digits").integer(1, Ta);
 		return [r, Array.from({ length: i }, (e, t) => String(o + s * t).padStart(c, "0"))];
 	});
 	return Array.from({ length: t * n }, (t, i) => {
 		let a = [Math.floor(i / n), i % n], o = r.map(([e, t]) => t[a[e] ?? 0]).join("");
-		if (o.length > 1024) throw e.wrong(`names of more than ${L} characters`);
+		if (o.length > 1024) throw e.wrong(`names of more than ${R} characters`);
 		return o;
 	});
 }
-function Pa(e, t) {
+function za(e, t) {
 	let n = Array(t).fill(!1), r = e.key("heldOut");
 	if (!r.exists) return n;
 	for (let e of r.items(t)) {
@@ -2286,21 +2314,21 @@ function Pa(e, t) {
 	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
 	return n;
 }
-function Fa(e, t, n, r) {
+function Ba(e, t, n, r) {
 	let i = e.key("coded");
 	return i.exists ? ji("cameras", i, r) : {
 		intrinsics: n(e.key("intrinsics"), "SCALAR", [wi], 5 * t),
 		poses: n(e.key("poses"), "SCALAR", [wi], 12 * t)
 	};
 }
-function Ia(e, t, n) {
+function Va(e, t, n) {
 	let r = e.key("size");
 	if (!r.exists) return n(e.key("sizes"), "SCALAR", [Ci], 2 * t);
-	let [i = 0, a = 0] = r.numbers(2, 1, ke);
+	let [i = 0, a = 0] = r.numbers(2, 1, Oe);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
-function La(e) {
+function Ha(e) {
 	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
 	for (let i of [
 		r(t, t) - 1,
@@ -2315,23 +2343,23 @@ function La(e) {
 		extent: [i, a]
 	};
 }
-function Ra(e) {
+function Ua(e) {
 	return e.exists ? e.object() : {};
 }
 // eigenfield-three/src/info.ts
-var za = 1e-6;
-async function Ba(e, t) {
+var Wa = 1e-6;
+async function Ga(e, t) {
 	let [n, { lenses: r, poses: i }, a, o] = await Promise.all([
-		Ha(e, t),
-		Wa(e, t),
-		Ga(e, t),
-		Va(e, t)
+		qa(e, t),
+		Ya(e, t),
+		Xa(e, t),
+		Ka(e, t)
 	]);
 	return n.map((t, n) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
-		if (!(s > za && c > za)) throw M(r.where, `focal lengths of "${t}"`);
-		let { R: f, t: p } = Ka([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
-		if (!m || !h || Math.max(m, h) > 65535 || m * h > Ae) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
+		if (!(s > Wa && c > Wa)) throw M(r.where, `focal lengths of "${t}"`);
+		let { R: f, t: p } = Za([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
+		if (!m || !h || Math.max(m, h) > 65535 || m * h > ke) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
 				s,
@@ -2348,13 +2376,13 @@ async function Ba(e, t) {
 				0,
 				1
 			]
-		], [_, v] = o ? qa([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
+		], [_, v] = o ? Qa([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
 		return {
 			name: t,
 			K: g,
 			R: f,
 			t: p,
-			centre: ao(f, p),
+			centre: uo(f, p),
 			width: m,
 			height: h,
 			gain: _,
@@ -2362,7 +2390,7 @@ async function Ba(e, t) {
 		};
 	});
 }
-async function Va({ colour: e, heldOut: t, views: n }, r) {
+async function Ka({ colour: e, heldOut: t, views: n }, r) {
 	if (!e || "type" in e) return e && Mi(e, n, r);
 	let { cameras: i, components: a, values: o } = await e.codec.decode(new Uint8Array(await r(e.view)), e.where);
 	if (a !== 6 || i !== t.filter((e) => !e).length) throw M(e.where, `${i} x ${a} colours`);
@@ -2376,25 +2404,25 @@ async function Va({ colour: e, heldOut: t, views: n }, r) {
 		0
 	] : [...o.subarray(6 * s, 6 * ++s)]));
 }
-async function Ha({ names: e, heldOut: t }, n) {
+async function qa({ names: e, heldOut: t }, n) {
 	if (Array.isArray(e)) return e;
-	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : Ma(r);
+	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : La(r);
 	if (i) throw M(e.where, i);
 	return r;
 }
-async function Ua(e, t, n) {
+async function Ja(e, t, n) {
 	return {
 		numbers: await Mi(e, t.views, n),
 		where: e.where
 	};
 }
-async function Wa(e, t) {
+async function Ya(e, t) {
 	let { calibration: n, heldOut: r } = e;
 	if ("intrinsics" in n) {
 		let { intrinsics: r, poses: i } = n;
 		return {
-			lenses: await Ua(r, e, t),
-			poses: await Ua(i, e, t)
+			lenses: await Ja(r, e, t),
+			poses: await Ja(i, e, t)
 		};
 	}
 	let { view: i, codec: a, where: o } = n, s = await a.decode(new Uint8Array(await t(i)), o), c = s.poses.length / 12;
@@ -2408,15 +2436,15 @@ async function Wa(e, t) {
 		poses: l(s.poses)
 	};
 }
-async function Ga(e, t) {
-	if (!Array.isArray(e.sizes)) return Ua(e.sizes, e, t);
+async function Xa(e, t) {
+	if (!Array.isArray(e.sizes)) return Ja(e.sizes, e, t);
 	let [n, r] = e.sizes;
 	return {
 		numbers: Uint32Array.from({ length: 2 * e.heldOut.length }, (e, t) => t % 2 ? r : n),
 		where: "its cameras' size"
 	};
 }
-function Ka(e, t, n) {
+function Za(e, t, n) {
 	let r = (t) => [
 		e[4 * t] ?? NaN,
 		e[4 * t + 1] ?? NaN,
@@ -2434,22 +2462,22 @@ function Ka(e, t, n) {
 		let a = Y(i[e], i[r]) - +(e === r);
 		if (!(Math.abs(a) <= 2e-4)) throw M(t, `the pose of "${n}" is no rotation`);
 	}
-	if (!(Y(oo(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
+	if (!(Y(fo(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
 	return {
 		R: i,
 		t: a
 	};
 }
-function qa(e, t, n) {
+function Qa(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
 	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw M(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
-async function Ja(e, t) {
+async function $a(e, t) {
 	let n = e.heldOut.filter((e) => !e).length;
-	return Ya(n, await Promise.all(J(e).map((r) => Xa(r, n, e, t))));
+	return eo(n, await Promise.all(J(e).map((r) => to(r, n, e, t))));
 }
-function Ya(e, t) {
+function eo(e, t) {
 	let n = t.reduce((e, { length: t }) => e + t, 0) / e, r = new Float32Array(e * n), i = 0;
 	for (let a of t) {
 		let t = a.length / e;
@@ -2458,29 +2486,29 @@ function Ya(e, t) {
 	}
 	return r;
 }
-async function Xa({ weights: e, count: t }, n, r, i) {
+async function to({ weights: e, count: t }, n, r, i) {
 	if (!e) return /* @__PURE__ */ new Float32Array();
 	if ("type" in e) return Mi(e, r.views, i);
 	let { view: a, codec: o, where: s } = e;
-	return Za(o.decode(new Uint8Array(await i(a)), s), n, t, s);
+	return no(o.decode(new Uint8Array(await i(a)), s), n, t, s);
 }
-function Za({ cameras: e, components: t, values: n }, r, i, a) {
+function no({ cameras: e, components: t, values: n }, r, i, a) {
 	if (e === r && t === i) return Ni(n, a);
 	throw M(a, `${e} x ${t} weights, and ${r} encoded cameras x ${i} textures`);
 }
 function J(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
 }
-function Qa(e) {
+function ro(e) {
 	return Math.max(0, ...J(e).map(({ count: e }) => e));
 }
-function $a(e, t) {
+function io(e, t) {
 	let n = [...t.slice(0, e.planes.length), ...J(e).map(({ grid: e }) => e)];
 	return [Math.max(...n.map(([e]) => e)), Math.max(...n.map(([, e]) => e))];
 }
-async function eo(e, t) {
+async function ao(e, t) {
 	if (!e.triangles) return /* @__PURE__ */ new Uint32Array();
-	let { where: n } = e.triangles, r = await to(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
+	let { where: n } = e.triangles, r = await oo(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
 		if (Math.max(t, a, o) >= i) throw M(n, `no encoded camera ${Math.max(t, a, o)}`);
@@ -2488,11 +2516,11 @@ async function eo(e, t) {
 	}
 	return r;
 }
-async function to(e, t, n) {
+async function oo(e, t, n) {
 	return "type" in e ? Uint32Array.from(await Mi(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
 }
-function no(e, t, n, r, i, a) {
-	let { right: o, up: s } = e, c = oo(o, s), l = [
+function so(e, t, n, r, i, a) {
+	let { right: o, up: s } = e, c = fo(o, s), l = [
 		0,
 		0,
 		0
@@ -2502,6 +2530,7 @@ function no(e, t, n, r, i, a) {
 	return {
 		version: e.version,
 		generator: e.generator,
+		rights: e.rights,
 		names: t.map(({ name: e }) => e),
 		heldOut: e.heldOut,
 		reference: e.reference,
@@ -2520,8 +2549,8 @@ function no(e, t, n, r, i, a) {
 		settings: e.settings,
 		scores: e.scores,
 		metresPerUnit: typeof u == "number" && u > 0 && u <= 1e30 ? u : null,
-		bytes: ro(e, i),
-		size: $a(e, n),
+		bytes: co(e, i),
+		size: io(e, n),
 		planes: e.planes.map(({ channels: e, bases: t }, r) => ({
 			channels: e,
 			mean: n[r] ?? [1, 1],
@@ -2534,11 +2563,12 @@ function no(e, t, n, r, i, a) {
 		...a,
 		mixedColours: e.colour !== null && !("type" in e.colour),
 		sheets: e.sheets?.faces.length ?? 0,
+		inFiles: e.timeline?.groups.some(({ file: e }) => e !== null) ?? !1,
 		facesPlane: Math.abs(Y(l, c)) > .7
 	};
 }
-function ro(e, t) {
-	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(Qa(e)).fill(0);
+function co(e, t) {
+	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(ro(e)).fill(0);
 	for (let { pictures: t } of J(e)) {
 		let e = 0;
 		for (let { view: n, textures: i } of t) {
@@ -2561,7 +2591,7 @@ function ro(e, t) {
 		textures: s
 	};
 }
-function io(e, t) {
+function lo(e, t) {
 	let { origin: n, extent: r } = e, i = [
 		t[0] - n[0],
 		t[1] - n[1],
@@ -2569,7 +2599,7 @@ function io(e, t) {
 	];
 	return [r[0] > 0 ? Y(i, e.right) / r[0] : 0, r[1] > 0 ? Y(i, e.up) / r[1] : 0];
 }
-function ao(e, t) {
+function uo(e, t) {
 	let n = (n) => -(e[0][n] * t[0] + e[1][n] * t[1] + e[2][n] * t[2]);
 	return [
 		n(0),
@@ -2580,7 +2610,7 @@ function ao(e, t) {
 function Y(e, t) {
 	return e[0] * t[0] + e[1] * t[1] + e[2] * t[2];
 }
-function oo(e, t) {
+function fo(e, t) {
 	return [
 		e[1] * t[2] - e[2] * t[1],
 		e[2] * t[0] - e[0] * t[2],
@@ -2588,7 +2618,7 @@ function oo(e, t) {
 	];
 }
 // eigenfield-three/src/cameras.ts
-function so(e, t, n) {
+function po(e, t, n) {
 	let { info: r } = e, i = r.cameras.filter((e, t) => !r.heldOut[t]), a = r.cameras[r.reference];
 	if (!a) throw RangeError(`no camera ${r.reference}`);
 	let { width: o, height: s } = a, c = [
@@ -2627,7 +2657,7 @@ function so(e, t, n) {
 	e.viewWeights(t, n, "delaunay").forEach((e, t) => {
 		let n = i[t];
 		if (!e || !n) return;
-		let r = co(n, o, s);
+		let r = mo(n, o, s);
 		for (let t of [
 			0,
 			1,
@@ -2638,7 +2668,7 @@ function so(e, t, n) {
 			2
 		]) t < 2 && (c[t][i] += e * r[t][i]), l[t][i] += e * n.R[t][i];
 	});
-	let u = uo(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [lo(t) * m[0], lo(n) * m[1]], _ = [
+	let u = go(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [ho(t) * m[0], ho(n) * m[1]], _ = [
 		0,
 		1,
 		2
@@ -2655,7 +2685,7 @@ function so(e, t, n) {
 		offset: null
 	};
 }
-function co({ K: e, width: t, height: n }, r, i) {
+function mo({ K: e, width: t, height: n }, r, i) {
 	let a = Math.max(r / t, i / n), [o, s] = [(r - a * t) / 2, (i - a * n) / 2];
 	return [
 		[
@@ -2675,16 +2705,16 @@ function co({ K: e, width: t, height: n }, r, i) {
 		]
 	];
 }
-function lo(e) {
+function ho(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function uo(e) {
+function go(e) {
 	let t = e;
 	for (let e = 0; e < 50; e++) {
 		let e = [
-			oo(t[1], t[2]),
-			oo(t[2], t[0]),
-			oo(t[0], t[1])
+			fo(t[1], t[2]),
+			fo(t[2], t[0]),
+			fo(t[0], t[1])
 		], n = Y(t[0], e[0]);
 		if (!(n > 1e-12)) break;
 		let r = t.map((t, r) => t.map((t, i) => (t + e[r][i] / n) / 2)), i = Math.max(...r.flatMap((e, n) => e.map((e, r) => Math.abs(e - t[n][r]))));
@@ -2692,24 +2722,24 @@ function uo(e) {
 	}
 	return t;
 }
-function fo(e, t, n, r, i = 1) {
+function _o(e, t, n, r, i = 1) {
 	let a = n.width / n.height, o = i * Math.min(1, a / r), s = i * Math.min(1, r / a), c = {
 		left: (1 - o) / 2,
 		top: (1 - s) / 2,
 		width: o,
 		height: s
 	};
-	return po(e, t, n), mo(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
+	return vo(e, t, n), yo(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
 }
-function po(e, t, n) {
+function vo(e, t, n) {
 	let { R: r, centre: i } = n, a = new x().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
 	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new A()), t.updateMatrixWorld(!0);
 }
-function mo(e, t, n, r) {
-	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = ho(e, n);
+function yo(e, t, n, r) {
+	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = bo(e, n);
 	t.near = d, t.far = f, t.projectionMatrix.set(l * i, -l * a, -(2 * r.left - 1 + l * o), 0, 0, u * s, -(1 - 2 * r.top - u * c), 0, 0, 0, -(f + d) / (f - d), -2 * f * d / (f - d), 0, 0, -1, 0), t.projectionMatrixInverse.copy(t.projectionMatrix).invert();
 }
-function ho(e, t) {
+function bo(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
@@ -2719,7 +2749,7 @@ function ho(e, t) {
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
 // eigenfield-three/src/exposure.ts
-function go(e) {
+function xo(e) {
 	let [t, n] = [[
 		1,
 		1,
@@ -2739,46 +2769,46 @@ function go(e) {
 	};
 }
 // eigenfield-three/src/memory.ts
-var _o = 4 / 3, vo = To({
+var So = 4 / 3, Co = Ao({
 	components: 4,
 	halves: !0
-}), yo = {
+}), wo = {
 	components: 4,
 	halves: !1
-}, bo = {
+}, To = {
 	components: 2,
 	halves: !1
-}, xo = {
+}, Eo = {
 	components: 2,
 	halves: !0
-}, So = 2 ** 20, Co = 1 / 64, wo = 34;
-function To({ components: e, halves: t }) {
+}, Do = 2 ** 20, Oo = 1 / 64, ko = 34;
+function Ao({ components: e, halves: t }) {
 	return (e > 2 ? 4 : e) * (t ? 2 : 1);
 }
-function Eo() {
+function jo() {
 	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
-	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && Do(e) ? Math.min(t ?? 4, 6) * 128 * So : Math.min(t ?? 8, 8) * 256 * So;
+	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && Mo(e) ? Math.min(t ?? 4, 6) * 128 * Do : Math.min(t ?? 8, 8) * 256 * Do;
 }
-function Do(e) {
+function Mo(e) {
 	return (e?.maxTouchPoints ?? 0) > 1;
 }
 function X([e, t], n) {
 	return [Math.ceil(e / n), Math.ceil(t / n)];
 }
-function Oo(e, t) {
+function No(e, t) {
 	let [n, r] = X(e, t);
 	return n * r;
 }
-function ko(e) {
+function Po(e) {
 	return Math.ceil(e / 4);
 }
-function Ao(e, t) {
-	return t * jo(e);
+function Fo(e, t) {
+	return t * Io(e);
 }
-function jo(e) {
+function Io(e) {
 	return Math.max(1, Math.ceil(e / 4));
 }
-function Mo(e) {
+function Lo(e) {
 	let { atlas: t, means: n, bases: r } = e, i = [
 		t,
 		...n.map(({ size: e }) => e),
@@ -2786,7 +2816,7 @@ function Mo(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-var No = [{
+var Ro = [{
 	meanDown: 1,
 	scaleDown: 1,
 	halves: !0
@@ -2809,14 +2839,14 @@ var No = [{
 	scaleDown: t * e,
 	halves: !1
 })))];
-function Po(e, t) {
-	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => Fo(e, t.meanDown) + e.geometry + Io(e, t, n), o = (n, r) => a(n, r) + zo(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = No.filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
+function zo(e, t) {
+	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => Bo(e, t.meanDown) + e.geometry + Vo(e, t, n), o = (n, r) => a(n, r) + Wo(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = Ro.filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
 	for (; !u && l > 0; l--) u = c.find((e) => o(e, l - 1));
-	u ??= No.at(-1);
-	let d = Bo({
+	u ??= Ro.at(-1);
+	let d = Go({
 		...u,
 		usable: l
-	}, e), f = Vo(d, e, t);
+	}, e), f = Ko(d, e, t);
 	return {
 		...u,
 		usable: l,
@@ -2825,58 +2855,58 @@ function Po(e, t) {
 		limitation: f
 	};
 }
-function Fo(e, t) {
+function Bo(e, t) {
 	let n = e.means.map(({ size: e, channels: n, tenBits: r, opacity: i }) => {
-		let a = i ? vo : 0;
-		return (To({
+		let a = i ? Co : 0;
+		return (Ao({
 			components: n,
 			halves: r
-		}) * ko(n) + a) * Oo(e, t);
-	}), r = Mo({
+		}) * Po(n) + a) * No(e, t);
+	}), r = Lo({
 		...e,
 		means: e.means.filter(({ opacity: e }) => !e)
 	}).map((n) => {
-		let r = n.join() === e.atlas.join() ? _o : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
-		return vo * Oo(n, t) * (r + +!!i);
+		let r = n.join() === e.atlas.join() ? So : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
+		return Co * No(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function Io({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
+function Vo({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
 	return e.reduce((e, a) => {
 		let o = Math.min(i, a.count);
 		if (!o) return e;
-		let s = t ? jo(o) * 129 * 129 * vo : 0;
-		return e + To({
+		let s = t ? Io(o) * 129 * 129 * Co : 0;
+		return e + Ao({
 			components: o,
 			halves: r && a.tenBits
-		}) * Ao(o, a.channels) * Oo(a.size, n) + s;
+		}) * Fo(o, a.channels) * No(a.size, n) + s;
 	}, 0);
 }
-function Lo({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
-	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = Ro([...a, ...o].map(({ size: e }) => e)), l = Math.floor(Co * i / (To(yo) * s)), u = [s, Math.min(c, Math.max(wo, l))], d = [...n > 1 ? a.map((e) => X(e.size, n)) : [], ...r > 1 ? o.map((e) => X(e.size, r)) : []];
+function Ho({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
+	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = Uo([...a, ...o].map(({ size: e }) => e)), l = Math.floor(Oo * i / (Ao(wo) * s)), u = [s, Math.min(c, Math.max(ko, l))], d = [...n > 1 ? a.map((e) => X(e.size, n)) : [], ...r > 1 ? o.map((e) => X(e.size, r)) : []];
 	return {
 		picture: {
 			size: u,
-			format: yo
+			format: wo
 		},
 		codes: [...a, ...o].some(({ tenBits: e }) => e) ? {
 			size: u,
-			format: bo
+			format: To
 		} : null,
 		smaller: d.length ? {
-			size: Ro(d),
-			format: xo
+			size: Uo(d),
+			format: Eo
 		} : null
 	};
 }
-function Ro(e) {
+function Uo(e) {
 	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
 }
-function zo(e, t, n) {
-	let r = Object.values(Lo(e, t, n)).map((e) => e ? To(e.format) * Oo(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(...Mo(e).map((e) => Oo(e, 1))) : 0;
+function Wo(e, t, n) {
+	let r = Object.values(Ho(e, t, n)).map((e) => e ? Ao(e.format) * No(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(...Lo(e).map((e) => No(e, 1))) : 0;
 	return [...r, i].reduce((e, t) => e + t, 0);
 }
-function Bo({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
+function Go({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 	let a = Math.max(0, ...i.bases.map(({ count: e }) => e)), o = [];
 	return e < a && o.push({
 		kind: "count",
@@ -2890,28 +2920,28 @@ function Bo({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 		percent: Math.round(100 / t)
 	}), o;
 }
-function Vo(e, t, n) {
+function Ko(e, t, n) {
 	if (!e.length) return null;
 	let r = e.map((e) => e.kind === "count" ? `${e.part} of ${e.whole} eigen textures are drawn` : e.kind === "bits" ? "eigen textures have 8 bits" : `${e.kind === "mean" ? "the mean texture has" : "eigen textures have"} ${e.percent} % of ${e.kind === "mean" ? "its" : "their"} width and height`), i = {
 		meanDown: 1,
 		scaleDown: 1,
 		halves: !0
-	}, a = Fo(t, 1) + Io(t, i, Infinity) + zo(t, i, n.memory) + t.geometry, o = a > n.memory ? `the scene needs ${Ho(a)} MB of graphics memory and ${Ho(n.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${Uo(r.join(", "))}: ${o}.`;
+	}, a = Bo(t, 1) + Vo(t, i, Infinity) + Wo(t, i, n.memory) + t.geometry, o = a > n.memory ? `the scene needs ${qo(a)} MB of graphics memory and ${qo(n.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${Jo(r.join(", "))}: ${o}.`;
 }
-function Ho(e) {
+function qo(e) {
 	return (e / 1e6).toFixed(+(e < 1e7));
 }
-function Uo(e) {
+function Jo(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var Wo = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\n#define REACH 2\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec2 beside;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nfloat codeOf(vec2 shift) { return shift.x + float(REACH) + float(2 * REACH + 1) * (shift.y + float(REACH)); }\nvec2 shiftOf(vec4 place) {\n  int code = int(place.w + 0.5) - 1;\n  return code < 0 ? vec2(0.0) : vec2(code % (2 * REACH + 1) - REACH, code / (2 * REACH + 1) - REACH);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec4 place = rayWeights || beside.x > 0.0 ? texelFetch(places, ivec2(gl_FragCoord.xy), 0) : vec4(0.0);\n  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);\n  own -= beside * shiftOf(place);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Go = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", Ko = 2, qo = `
+var Yo = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\n#define REACH 2\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec2 beside;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nfloat codeOf(vec2 shift) { return shift.x + float(REACH) + float(2 * REACH + 1) * (shift.y + float(REACH)); }\nvec2 shiftOf(vec4 place) {\n  int code = int(place.w + 0.5) - 1;\n  return code < 0 ? vec2(0.0) : vec2(code % (2 * REACH + 1) - REACH, code / (2 * REACH + 1) - REACH);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec4 place = rayWeights || beside.x > 0.0 ? texelFetch(places, ivec2(gl_FragCoord.xy), 0) : vec4(0.0);\n  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);\n  own -= beside * shiftOf(place);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Xo = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", Zo = 2, Qo = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${Go}${Wo}`, Jo = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", Yo = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nflat out vec2 shift;\nvoid main() {\n  point = onPlane;\n  shift = shifts[gl_InstanceID];\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shift, 0.0, 1.0);\n}\n", Xo = `${qo}
+${Xo}${Yo}`, $o = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", es = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nflat out vec2 shift;\nvoid main() {\n  point = onPlane;\n  shift = shifts[gl_InstanceID];\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shift, 0.0, 1.0);\n}\n", ts = `${Qo}
 in vec3 point;
 flat in vec2 shift;
 out vec4 place;
@@ -2919,12 +2949,12 @@ void main() {
   place = placeOf(point);
   place.w += codeOf(shift);
 }
-`, Zo = "sumTextures", Qo = "finerValue", $o = "finerOpacity";
-function es(n, r, i) {
+`, ns = "sumTextures", rs = "finerValue", is = "finerOpacity";
+function as(n, r, i) {
 	let o = new O({
 		glslVersion: h,
-		vertexShader: Jo,
-		fragmentShader: `${qo}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
+		vertexShader: $o,
+		fragmentShader: `${Qo}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
 		uniforms: {
 			rectangle: { value: new ae(...r) },
 			...i
@@ -2960,7 +2990,7 @@ function es(n, r, i) {
 	let c = new S(s, o);
 	return c.frustumCulled = !1, c;
 }
-function ts([e, t], n) {
+function os([e, t], n) {
 	return new oe(e, t, {
 		type: g,
 		depthBuffer: !1,
@@ -2969,29 +2999,29 @@ function ts([e, t], n) {
 		magFilter: n ? y : w
 	});
 }
-function ns(e, t) {
-	let n = oo(e.right, e.up), r = [
+function ss(e, t) {
+	let n = fo(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
 		t[2] - e.origin[2]
 	];
-	return [...io(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
+	return [...lo(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
 }
-function rs(t, n, r) {
+function cs(t, n, r) {
 	let { index: i } = t, a = t.getAttribute("position"), o = t.getAttribute("uv"), s = new Float32Array(3 * a.count), c = new Float32Array(2 * a.count);
-	for (let e = 0; e < a.count; e++) s.set(ns(n, [
+	for (let e = 0; e < a.count; e++) s.set(ss(n, [
 		a.getX(e),
 		a.getY(e),
 		a.getZ(e)
 	]), 3 * e), c.set([o.getX(e), o.getY(e)], 2 * e);
-	let l = Array.from({ length: 5 }, (e, t) => t - Ko), d = l.flatMap((e) => l.map((t) => new ie(t, e)));
+	let l = Array.from({ length: 5 }, (e, t) => t - Zo), d = l.flatMap((e) => l.map((t) => new ie(t, e)));
 	d.sort((e, t) => t.lengthSq() - e.lengthSq());
 	let f = new v();
 	f.setAttribute("position", new e(c, 2)), f.setAttribute("onPlane", new e(s, 3)), f.setIndex(i && new e(i.array, 1)), f.instanceCount = d.length, f.boundingSphere = new te();
 	let p = new O({
 		glslVersion: h,
-		vertexShader: Yo.replace("SHIFTS", String(d.length)),
-		fragmentShader: Xo,
+		vertexShader: es.replace("SHIFTS", String(d.length)),
+		fragmentShader: ts,
 		uniforms: {
 			texel: { value: new ie(2 / r.width, 2 / r.height) },
 			shifts: { value: d }
@@ -3010,19 +3040,19 @@ function rs(t, n, r) {
 		}
 	};
 }
-var is = new i(0), as = new i();
-function os(e, t, n) {
+var ls = new i(0), us = new i();
+function ds(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(as), e.setClearColor(is, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(as, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(us), e.setClearColor(ls, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(us, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/composer.ts
-var ss = {
+var fs = {
 	version: 0,
 	mean: !0,
 	opacity: 0,
@@ -3032,7 +3062,7 @@ var ss = {
 	eye: null,
 	places: 0,
 	maps: null
-}, cs = class {
+}, ps = class {
 	snaps;
 	surface;
 	plane;
@@ -3043,14 +3073,14 @@ var ss = {
 	camera = new n();
 	constructor(e, t, n, r, i, a, o) {
 		this.snaps = i, this.surface = a, this.plane = o;
-		let [s, ...c] = Mo({
+		let [s, ...c] = Lo({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), l = (e, n) => {
-			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => ds(t, i ? X(e, r) : null)), o = new k();
+			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => gs(t, i ? X(e, r) : null)), o = new k();
 			return a.forEach(({ quad: e }, t) => o.add(Object.assign(e, { renderOrder: t }))), {
-				target: ts(X(e, r), n),
+				target: os(X(e, r), n),
 				scene: o,
 				steps: a,
 				places: null
@@ -3058,7 +3088,7 @@ var ss = {
 		}, u = l(s ?? e, !0);
 		this.grids = c.map((e) => l(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = es(Qo, [
+			let t = as(rs, [
 				0,
 				0,
 				1,
@@ -3066,24 +3096,24 @@ var ss = {
 			], { coarse: { value: e.texture } });
 			u.scene.add(Object.assign(t, { renderOrder: u.scene.children.length }));
 		}
-		this.grids.push(u), this.opacity = n && ls(n, r);
+		this.grids.push(u), this.opacity = n && ms(n, r);
 	}
 	get texture() {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && ms(this.composed, n) || (this.composed = n, os(e, t, () => {
+		this.composed && ys(this.composed, n) || (this.composed = n, ds(e, t, () => {
 			n.opacity > this.opacityDrawn && this.drawOpacity(e, n.opacity);
 			for (let t of this.grids) {
 				(n.eye !== null && t.steps.some(({ part: e }) => e.basis) || this.snaps) && this.findPlaces(e, t, n.places);
-				for (let e of t.steps) fs(e, t.places?.target.texture ?? null, n);
+				for (let e of t.steps) _s(e, t.places?.target.texture ?? null, n);
 				this.draw(e, t.scene, t.target, this.opacityDrawn > 0 && t === this.grids.at(-1));
 			}
 		}));
 	}
 	dispose() {
-		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), us(n);
-		this.opacity?.target.dispose(), this.opacity && [this.opacity.sum, this.opacity.finer].forEach(us);
+		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), hs(n);
+		this.opacity?.target.dispose(), this.opacity && [this.opacity.sum, this.opacity.finer].forEach(hs);
 	}
 	drawOpacity(e, t) {
 		let [n, r] = [this.grids.at(-1), this.opacity];
@@ -3091,7 +3121,7 @@ var ss = {
 	}
 	findPlaces(e, t, n) {
 		if (t.places?.version === n) return;
-		let r = t.places?.target ?? ts([t.target.width, t.target.height], !1), { scene: i, free: a } = rs(this.surface.geometry, this.plane, r);
+		let r = t.places?.target ?? os([t.target.width, t.target.height], !1), { scene: i, free: a } = cs(this.surface.geometry, this.plane, r);
 		this.draw(e, i, r), a(), t.places = {
 			target: r,
 			version: n
@@ -3103,11 +3133,11 @@ var ss = {
 		r && i.colorMask(!0, !0, !0, !1), e.clear(!0, !1, !1), r && i.colorMask(!0, !0, !0, !0), e.render(t, this.camera);
 	}
 };
-function ls(e, t) {
-	let n = ts(X(e.grid, t), !1), r = ds(e, null);
-	for (let e of r) fs(e, null, ss);
+function ms(e, t) {
+	let n = os(X(e.grid, t), !1), r = gs(e, null);
+	for (let e of r) _s(e, null, fs);
 	let [i, a] = [new k(), new k()];
-	return i.add(...r.map(({ quad: e }) => e)), a.add(es($o, [
+	return i.add(...r.map(({ quad: e }) => e)), a.add(as(is, [
 		0,
 		0,
 		1,
@@ -3118,17 +3148,17 @@ function ls(e, t) {
 		finer: a
 	};
 }
-function us(e) {
+function hs(e) {
 	for (let { geometry: t, material: n } of e.children) t.dispose(), n.dispose();
 }
-function ds(e, t) {
+function gs(e, t) {
 	let [n, r, i, a] = e.rectangle, o = t && new ie(1 / ((i - n) * t[0]), 1 / ((a - r) * t[1])), s = e.colours.length, [c, l] = [e.scale.length / (4 * s), Math.floor(64 / s)], u = [];
 	for (let t = 0; t < c; t += l) {
 		let n = Array.from({ length: 64 }, (t, n) => new A(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), r = e.basis ? 1 : 4, i = es(Zo, e.rectangle, {
+		])), r = e.basis ? 1 : 4, i = as(ns, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(t * s / r) },
 			sharing: { value: r },
@@ -3153,31 +3183,31 @@ function ds(e, t) {
 	}
 	return u;
 }
-function fs({ part: e, first: t, groups: n, quad: r }, i, a) {
+function _s({ part: e, first: t, groups: n, quad: r }, i, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => ps(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => vs(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
 	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", i), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function ps(e, t, n, r) {
+function vs(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function ms(e, t) {
+function ys(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
 // eigenfield-three/src/maps.ts
-function hs(e, t, n, i, a) {
+function bs(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? jo(t) : 0;
+		u += e, d += t ? Io(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -3196,7 +3226,7 @@ function hs(e, t, n, i, a) {
 	return p.format = D, p.type = g, p.minFilter = p.magFilter = y, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
 }
 // eigenfield-three/src/eigen-weights.ts
-var gs = class {
+var xs = class {
 	info;
 	counts;
 	omega;
@@ -3228,12 +3258,12 @@ var gs = class {
 		if (n >= 0) return Float64Array.from(this.omega.subarray(n * this.total, (n + 1) * this.total));
 		let r = this.info.cameras[e];
 		if (!r) throw RangeError(`no camera ${e}`);
-		return this.at(...io(this.info.viewPlane, r.centre), t);
+		return this.at(...lo(this.info.viewPlane, r.centre), t);
 	}
 	maps(e, t) {
 		if (this.made?.mixing === e && this.made.usable === t) return this.made.texture;
 		this.dispose();
-		let n = hs(this.views, e, this.omega, this.counts, t);
+		let n = bs(this.views, e, this.omega, this.counts, t);
 		return this.made = {
 			texture: n,
 			mixing: e,
@@ -3243,20 +3273,20 @@ var gs = class {
 	dispose() {
 		this.made?.texture.dispose();
 	}
-}, _s = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", vs = {
+}, Ss = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", Cs = {
 	bilinear: 0,
 	bicubic: 1
-}, ys = {
+}, ws = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, bs = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", xs = bs.replace("void main", "invariant gl_Position;\nvoid main"), Ss = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", Cs = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", ws = `${Ss}
-${Go}${_s}
+}, Ts = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Es = Ts.replace("void main", "invariant gl_Position;\nvoid main"), Ds = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", Os = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", ks = `${Ds}
+${Xo}${Ss}
 uniform float shownGain;       // of the eigen texture around mid grey
 in vec2 surfaceUv;
 vec3 eigenColour(vec3 value) { return clamp(0.5 + shownGain * value, 0.0, 1.0); }
-`, Ts = `${ws}${Cs}
+`, As = `${ks}${Os}
 in vec3 surfacePlace;
 out vec4 fragment;
 void main() {
@@ -3266,7 +3296,7 @@ void main() {
   if (shown == 3) colour = errorColour(colour, surfacePlace);
   fragment = vec4(colour, 1.0);
 }
-`, Es = `${ws}
+`, js = `${ks}
 layout(location = 0) out vec4 fragment;
 layout(location = 1) out vec4 solid;
 vec3 threeBytes(float depth) {
@@ -3280,76 +3310,76 @@ void main() {
   float depth = (gl_FragCoord.z - gl_DepthRange.near) / gl_DepthRange.diff;
   solid = colour.a < 0.5 ? vec4(0.0) : vec4(threeBytes(depth), 1.0);
 }
-`, Ds = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", Os = {
+`, Ms = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", Ns = {
 	blending: a,
 	blendSrc: E,
 	blendDst: ee
-}, ks = {
+}, Ps = {
 	depthWrite: !1,
 	stencilWrite: !0,
 	stencilFunc: d,
 	stencilZPass: _
 };
-function As(e, t) {
+function Fs(e, t) {
 	let n = {
 		composed: { value: null },
 		finest: { value: 1 },
 		exposureScale: { value: new A(1, 1, 1) },
 		exposureBias: { value: new A() },
-		shown: { value: ys.picture },
+		shown: { value: ws.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new x() }
 	}, r = new O({
 		glslVersion: h,
-		vertexShader: t ? xs : bs,
-		fragmentShader: t ? Es : Ts,
+		vertexShader: t ? Es : Ts,
+		fragmentShader: t ? js : As,
 		uniforms: n,
-		defines: { BICUBIC: vs.bicubic },
+		defines: { BICUBIC: Cs.bicubic },
 		side: e ? u : m,
 		...t ? {
-			...Os,
-			...ks
+			...Ns,
+			...Ps
 		} : {}
 	});
 	return r.name = "eigen textures", r;
 }
-function js(e) {
+function Is(e) {
 	let { side: t } = e;
 	return new O({
 		name: "depth of sheets",
 		glslVersion: h,
-		vertexShader: xs,
-		fragmentShader: Ds,
+		vertexShader: Es,
+		fragmentShader: Ms,
 		colorWrite: !1,
 		side: t,
 		stencilWrite: !0,
 		stencilZPass: se
 	});
 }
-function Ms(e, t, n) {
-	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !Ns(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
+function Ls(e, t, n) {
+	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !Rs(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
 	u && (d.elements[13] = 1), e.toPhotograph.value.multiplyMatrices(d, l.multiply(c)), e.photograph.value = n;
 }
-function Ns(e) {
+function Rs(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
 // eigenfield-three/src/pieces.ts
-function Ps(e) {
+function zs(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
 // eigenfield-three/src/strength.ts
-var Fs = 128, Is = .98;
-async function Ls(e, t, n, r) {
+var Bs = 128, Vs = .98;
+async function Hs(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = qi(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Fs, Fs).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = qi(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Bs, Bs).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	return u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, Fs, Fs);
-		let { data: u } = d.getImageData(0, 0, Fs, Fs);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, Bs, Bs);
+		let { data: u } = d.getImageData(0, 0, Bs, Bs);
 		(l ? [
 			0,
 			1,
@@ -3358,15 +3388,15 @@ async function Ls(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), Ps(u), Rs(f);
+	}), zs(u), Us(f);
 }
-function Rs(e) {
+function Us(e) {
 	e.sort((e, t) => e - t);
-	let t = e[Math.floor(Is * e.length)] ?? 0;
+	let t = e[Math.floor(Vs * e.length)] ?? 0;
 	return t > 0 ? .45 / t : 1;
 }
 // eigenfield-three/src/film-textures.ts
-var zs = class {
+var Ws = class {
 	scene;
 	films;
 	filling = null;
@@ -3392,7 +3422,7 @@ var zs = class {
 	}
 	put(e) {
 		e.together(() => {
-			Ta(this.scene).forEach(({ mean: t }, n) => e.putMean(n, {
+			Aa(this.scene).forEach(({ mean: t }, n) => e.putMean(n, {
 				pieces: this.piecesOf(t),
 				precision: null
 			})), J(this.scene).forEach(({ pictures: [t] }, n) => {
@@ -3411,44 +3441,44 @@ var zs = class {
 	}
 	gainOf({ part: e, pieces: t, scale: n, zero: r }, i, a) {
 		let o = e && this.films[e.film];
-		return o ? Rs(Gt(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
+		return o ? Us(Gt(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
 			let s = t * i + o, c = Math.max(...(a[o] ?? [0]).map(Math.abs)) * (n[s] ?? 0);
-			return Vs(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
+			return Ks(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
 		})) : 1;
 	}
-}, Bs = 8;
-function Vs({ data: e, width: t, height: n, stride: r }) {
+}, Gs = 8;
+function Ks({ data: e, width: t, height: n, stride: r }) {
 	let i = [];
-	for (let a = 0; a < n; a += Bs) for (let n = 0; n < t; n += Bs) {
+	for (let a = 0; a < n; a += Gs) for (let n = 0; n < t; n += Gs) {
 		let t = a * r + 2 * n;
 		i.push(e[t] + 256 * e[t + 1]);
 	}
 	return i;
 }
 // eigenfield-three/src/container.ts
-var Hs = 1179937895, Us = 1313821514, Ws = 5130562, Gs = 1280591429;
-async function Ks(e) {
+var qs = 1179937895, Js = 1313821514, Ys = 5130562, Xs = 1280591429;
+async function Zs(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof j && t.code === "truncated" ? Zs(e.received === 0) : t;
+		throw t instanceof j && t.code === "truncated" ? nc(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== Hs) throw Zs(!1);
+	if (new DataView(t).getUint32(0, !0) !== qs) throw nc(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
 	if (r !== 2) throw new j("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
 	if (i < 20) throw M("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== Us) throw M("16", "it does not begin with JSON");
-	if (o > Ce) throw M("12", `${o} bytes of JSON`);
+	if (a.getUint32(4, !0) !== Js) throw M("16", "it does not begin with JSON");
+	if (o > Se) throw M("12", `${o} bytes of JSON`);
 	if (20 + o > i) throw M("12", "a chunk longer than the file");
-	let s = Js(await e.read(20, 20 + o)), c = (t, n) => () => qs(e, 20 + o, i, t, n);
+	let s = $s(await e.read(20, 20 + o)), c = (t, n) => () => Qs(e, 20 + o, i, t, n);
 	return {
 		length: i,
 		text: s,
-		json: Ys(s, "20"),
-		binary: c(Ws, "binary chunk"),
-		groups: c(Gs, "chunk of groups")
+		json: ec(s, "20"),
+		binary: c(Ys, "binary chunk"),
+		groups: c(Xs, "chunk of groups")
 	};
 }
-async function qs(e, t, n, r, i) {
+async function Qs(e, t, n, r, i) {
 	let a = t;
 	for (let t = 1; t < 64 && a + 8 <= n; t++) {
 		let t = new DataView(await e.read(a, a + 8)), i = t.getUint32(0, !0);
@@ -3458,22 +3488,22 @@ async function qs(e, t, n, r, i) {
 	}
 	throw M(String(t), `no ${i}`);
 }
-function Js(e) {
+function $s(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
 		throw M("20", "its JSON is not UTF-8");
 	}
 }
-function Ys(e, t) {
-	if (Xs(e) > 64) throw M(t, "its JSON is nested too deep");
+function ec(e, t) {
+	if (tc(e) > 64) throw M(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
 		throw M(t, "its JSON cannot be read");
 	}
 }
-function Xs(e) {
+function tc(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3484,11 +3514,11 @@ function Xs(e) {
 	}
 	return n;
 }
-function Zs(e) {
+function nc(e) {
 	return new j("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/groups.ts
-var Qs = 3, $s = 4, ec = class {
+var rc = 3, ic = 4, ac = class {
 	scene;
 	timeline;
 	mesh;
@@ -3500,16 +3530,16 @@ var Qs = 3, $s = 4, ec = class {
 	open(e) {
 		let t = this.kept.get(e) ?? this.opened(e);
 		t.catch(() => this.kept.get(e) === t && this.kept.delete(e)), this.kept.delete(e), this.kept.set(e, t);
-		for (let [e] of this.kept) this.kept.size > Qs && this.kept.delete(e);
+		for (let [e] of this.kept) this.kept.size > rc && this.kept.delete(e);
 		return t;
 	}
 	async begin() {
-		let e = this.placeOf(0), t = async (t) => new Uint8Array(await this.read(e, Math.min(t, e.length))), { head: n, at: r } = await ac(await t($s + rc(await t($s), e)), e), i = [
+		let e = this.placeOf(0), t = async (t) => new Uint8Array(await this.read(e, Math.min(t, e.length))), { head: n, at: r } = await uc(await t(ic + cc(await t(ic), e)), e), i = [
 			n.key("weights"),
 			n.key("mesh"),
 			n.key("motion"),
 			n.key("frames").at(0)
-		].reduce((e, { raw: t }) => e + ic(t), r);
+		].reduce((e, { raw: t }) => e + lc(t), r);
 		return this.build(0, await t(i), n, r, 1);
 	}
 	placeOf(e) {
@@ -3519,12 +3549,12 @@ var Qs = 3, $s = 4, ec = class {
 	}
 	async opened(e) {
 		let t = this.placeOf(e), n = new Uint8Array(await this.read(t, t.length));
-		await nc(n, t);
-		let { head: r, at: i } = await ac(n, t);
+		await sc(n, t);
+		let { head: r, at: i } = await uc(n, t);
 		return this.build(e, n, r, i, t.frames);
 	}
 	build(e, t, n, r, i) {
-		let a = this.placeOf(e), o = oc(t, r, a), s = this.weightsOf(n, o), c = this.meshOf(n, o), l = sc(n, o, c, a), { first: u, frames: d } = a, f = cc(n, a, this.timeline.films.length, o, i);
+		let a = this.placeOf(e), o = dc(t, r, a), s = this.weightsOf(n, o), c = this.meshOf(n, o), l = fc(n, o, c, a), { first: u, frames: d } = a, f = pc(n, a, this.timeline.films.length, o, i);
 		return {
 			index: e,
 			first: u,
@@ -3545,52 +3575,52 @@ var Qs = 3, $s = 4, ec = class {
 		return r;
 	}
 	weightsOf(e, t) {
-		let n = this.scene.heldOut.filter((e) => !e).length, r = uc(e.key("weights"), this.scene.planes.length);
-		return Ya(n, this.scene.planes.flatMap(({ bases: e }, i) => {
-			let a = r[i] && uc(r[i], e.length);
+		let n = this.scene.heldOut.filter((e) => !e).length, r = hc(e.key("weights"), this.scene.planes.length);
+		return eo(n, this.scene.planes.flatMap(({ bases: e }, i) => {
+			let a = r[i] && hc(r[i], e.length);
 			return e.map(({ count: e }, r) => {
 				let i = a[r];
-				return Za(W["weights-1"].decode(t(i), i.where), n, e, i.where);
+				return no(W["weights-1"].decode(t(i), i.where), n, e, i.where);
 			});
 		}));
 	}
 	scalesOf(e) {
 		let { planes: t } = this.scene;
 		return {
-			means: uc(e.key("means"), t.length).map((e, n) => lc(e, t[n].mean)),
-			bases: uc(e.key("bases"), t.length).flatMap((e, n) => {
+			means: hc(e.key("means"), t.length).map((e, n) => mc(e, t[n].mean)),
+			bases: hc(e.key("bases"), t.length).flatMap((e, n) => {
 				let { bases: r } = t[n];
-				return uc(e, r.length).map((e, t) => lc(e, r[t].pictures[0]));
+				return hc(e, r.length).map((e, t) => mc(e, r[t].pictures[0]));
 			})
 		};
 	}
 };
-function tc(e, { means: t, bases: n }) {
+function oc(e, { means: t, bases: n }) {
 	e.planes.forEach(({ mean: e }, n) => Object.assign(e, t[n])), J(e).forEach(({ pictures: [e] }, t) => e && Object.assign(e, n[t]));
 }
-async function nc(e, { sha256: t, file: n, where: r }) {
+async function sc(e, { sha256: t, file: n, where: r }) {
 	let i = globalThis.crypto?.subtle;
 	if (!i) return;
 	let a = new Uint8Array(await i.digest("SHA-256", e));
 	if (Array.from(a, (e) => e.toString(16).padStart(2, "0")).join("") !== t) throw M(n ?? r, "other bytes than its SHA-256 says");
 }
-function rc(e, { where: t }) {
-	if (e.length < $s) throw M(t, "no head");
+function cc(e, { where: t }) {
+	if (e.length < ic) throw M(t, "no head");
 	return new DataView(e.buffer).getUint32(0, !0);
 }
-function ic(e) {
-	return typeof e == "number" ? e : Array.isArray(e) ? e.reduce((e, t) => e + ic(t), 0) : 0;
+function lc(e) {
+	return typeof e == "number" ? e : Array.isArray(e) ? e.reduce((e, t) => e + lc(t), 0) : 0;
 }
-async function ac(e, { where: t }) {
-	let n = $s + rc(e, { where: t });
+async function uc(e, { where: t }) {
+	let n = ic + cc(e, { where: t });
 	if (n > e.length) throw M(t, "a head longer than the group");
-	let r = await xe(e.subarray($s, n), "deflate-raw", Ve, t);
+	let r = await be(e.subarray(ic, n), "deflate-raw", Be, t);
 	return {
-		head: new G(Ys(new TextDecoder("utf-8").decode(r), t), t),
+		head: new G(ec(new TextDecoder("utf-8").decode(r), t), t),
 		at: n
 	};
 }
-function oc(e, t, n) {
+function dc(e, t, n) {
 	let r = t;
 	return (t) => {
 		let i = r;
@@ -3598,29 +3628,29 @@ function oc(e, t, n) {
 		return e.subarray(i, r);
 	};
 }
-function sc(e, t, n, { frames: r }) {
+function fc(e, t, n, { frames: r }) {
 	let i = e.key("motion");
 	if (!i.exists) return null;
 	let a = W["motion-1"].decode(t(i), n, i.where);
 	if (a.frames !== r) throw i.wrong(`${a.frames} frames of ${r}`);
 	return a;
 }
-function cc(e, t, n, r, i) {
-	return uc(e.key("frames"), t.frames).slice(0, i).map((e) => uc(e, n).map((e) => r(e)));
+function pc(e, t, n, r, i) {
+	return hc(e.key("frames"), t.frames).slice(0, i).map((e) => hc(e, n).map((e) => r(e)));
 }
-function lc(e, { pieces: t, textures: n }) {
+function mc(e, { pieces: t, textures: n }) {
 	let r = e;
 	return {
 		scale: Yi(r.key("scale"), t, n),
 		zero: Yi(r.key("zero"), t, n)
 	};
 }
-function uc(e, t) {
+function hc(e, t) {
 	let n = e.items(t);
 	if (n.length !== t) throw e.wrong(`${t} entries are needed`);
 	return n;
 }
-var dc = 3, fc = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", pc = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform int first; // row of the picture with which the texture begins\nout vec4 stored;\nvoid main() {\n  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));\n}\n", mc = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", hc = `#version 300 es
+var gc = 3, _c = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", vc = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform int first; // row of the picture with which the texture begins\nout vec4 stored;\nvoid main() {\n  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));\n}\n", yc = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", bc = `#version 300 es
 precision highp float;
 precision highp int;
 uniform highp sampler2D picture; // values, and whether they are of a chart
@@ -3630,7 +3660,7 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec2 own = texelFetch(picture, at, 0).rg;
   vec2 sum = vec2(own.r * own.g, own.g);
-  for (int far = 1; far <= ${dc} && sum.y == 0.0; far++) {
+  for (int far = 1; far <= ${gc} && sum.y == 0.0; far++) {
     for (int y = -far; y <= far; y++) {
       for (int x = -far; x <= far; x++) {
         vec2 near = texelFetch(picture, clamp(at + ivec2(x, y), ivec2(0), size - 1), 0).rg;
@@ -3640,9 +3670,9 @@ void main() {
   }
   stored = vec4(sum.y > 0.0 ? sum.x / sum.y : own.r);
 }
-`, gc = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
+`, xc = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
 // eigenfield-three/src/parts.ts
-function _c(e, t, n) {
+function Sc(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -3652,7 +3682,7 @@ function _c(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = bc(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = Tc(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -3680,7 +3710,7 @@ function _c(e, t, n) {
 						a + e[1] / i[1]
 					],
 					colours: f,
-					...xc(l, u, h, n.halves && Ki(l)),
+					...Ec(l, u, h, n.halves && Ki(l)),
 					basis: {
 						ready: m,
 						column: o,
@@ -3688,17 +3718,17 @@ function _c(e, t, n) {
 					}
 				});
 			}
-			o += p, s += h ? jo(h) : 0;
+			o += p, s += h ? Io(h) : 0;
 		}
 	}), r;
 }
-function vc(e, t, n, r) {
-	_c(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
+function Cc(e, t, n, r) {
+	Sc(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
 		scale: t,
 		bias: n
 	}));
 }
-function yc({ planes: e, sheets: t }, { means: n, needs: r }) {
+function wc({ planes: e, sheets: t }, { means: n, needs: r }) {
 	let i = n[e.length], a = r.means[e.length]?.size;
 	return !t || !i || !a ? null : {
 		stored: i,
@@ -3714,11 +3744,11 @@ function yc({ planes: e, sheets: t }, { means: n, needs: r }) {
 			0,
 			0
 		]],
-		...bc(t.opacity),
+		...Tc(t.opacity),
 		basis: null
 	};
 }
-function bc({ mean: e, channels: t, precision: n }) {
+function Tc({ mean: e, channels: t, precision: n }) {
 	let { scale: r, zero: i } = e, a = n ? 4 : 1 / Ji(e, Ki([e])), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
@@ -3729,8 +3759,8 @@ function bc({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function xc(e, t, n, r) {
-	let i = e.flatMap((e) => Array(e.textures).fill(Ji(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * jo(n), c = {
+function Ec(e, t, n, r) {
+	let i = e.flatMap((e) => Array(e.textures).fill(Ji(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * Io(n), c = {
 		scale: new Float32Array(s),
 		bias: new Float32Array(s)
 	};
@@ -3741,7 +3771,7 @@ function xc(e, t, n, r) {
 	return c;
 }
 // eigenfield-three/src/player.ts
-var Sc = .25, Cc = 100, wc = 2, Tc = .25, Ec = .1, Dc = class extends f {
+var Dc = .25, Oc = 100, kc = 2, Ac = .25, jc = .1, Mc = class extends f {
 	timeline;
 	user;
 	first;
@@ -3783,7 +3813,7 @@ var Sc = .25, Cc = 100, wc = 2, Tc = .25, Ec = .1, Dc = class extends f {
 		return this.shown.number;
 	}
 	get time() {
-		return ha(this.timeline, this.shown.number);
+		return ba(this.timeline, this.shown.number);
 	}
 	get sought() {
 		return (this.following ?? this.goal ?? this.shown.position) % this.frames;
@@ -3828,7 +3858,7 @@ var Sc = .25, Cc = 100, wc = 2, Tc = .25, Ec = .1, Dc = class extends f {
 		this.plays && (this.plays = !1, this.clock = this.shown.position, this.sound?.rest(), this.ring.plain && this.begin(this.shown.position), this.dispatchEvent({ type: "change" }));
 	}
 	seek(e) {
-		return this.toFrame(ma(this.timeline, e));
+		return this.toFrame(ya(this.timeline, e));
 	}
 	toFrame(e) {
 		return this.toPosition(this.lap + Math.min(Math.max(Math.round(e), 0), this.frames - 1));
@@ -3840,7 +3870,7 @@ var Sc = .25, Cc = 100, wc = 2, Tc = .25, Ec = .1, Dc = class extends f {
 	}
 	update(e = performance.now()) {
 		if (this.disposed) return;
-		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, Sc);
+		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, Dc);
 		if (this.last = this.plays && this.goal === null ? e : null, this.goal === null && !this.plays) return;
 		this.goal === null ? (this.advance(t), this.sound?.follow(this.first + this.clock % this.frames / this.rate, this.pace)) : this.sound?.rest();
 		let n = this.ring.take(this.goal ?? Math.floor(this.clock));
@@ -3857,9 +3887,9 @@ var Sc = .25, Cc = 100, wc = 2, Tc = .25, Ec = .1, Dc = class extends f {
 	}
 	advance(e) {
 		let [t, n] = [this.clock, e * this.pace * this.rate], r = this.loop ? this.ring.reach : Math.min(this.ring.reach, this.end);
-		if (this.clock = Math.max(t, Math.min(t + n, r)), e > Ec) return;
+		if (this.clock = Math.max(t, Math.min(t + n, r)), e > jc) return;
 		let { watched: i } = this;
-		i.seconds += e, i.due += n, this.ring.busy && (i.short += n - (this.clock - t)), i.seconds < wc || (i.short > Tc * i.due && this.ring.leaveOut(), this.watch());
+		i.seconds += e, i.due += n, this.ring.busy && (i.short += n - (this.clock - t)), i.seconds < kc || (i.short > Ac * i.due && this.ring.leaveOut(), this.watch());
 	}
 	watch() {
 		this.watched = {
@@ -3889,7 +3919,7 @@ var Sc = .25, Cc = 100, wc = 2, Tc = .25, Ec = .1, Dc = class extends f {
 		}, this.user.show(e), this.note(e), this.goal !== null && t !== this.goal && this.following === null ? this.preview() : this.goal !== null && (this.goal = null, this.clock = t, this.following === null ? this.settle() : this.begin(this.following)), this.dispatchEvent({ type: "frame" });
 	}
 	preview() {
-		this.ring.previewsFrom = this.goal === null ? Infinity : performance.now() + Cc;
+		this.ring.previewsFrom = this.goal === null ? Infinity : performance.now() + Oc;
 	}
 	note({ films: e }) {
 		let t = [];
@@ -3914,8 +3944,8 @@ var Sc = .25, Cc = 100, wc = 2, Tc = .25, Ec = .1, Dc = class extends f {
 		let n = this.goal !== null && q(this.timeline, this.goal % this.frames);
 		n === !1 || t !== null && n !== t || (this.goal !== null && (this.clock = this.goal), this.goal = this.following = null, this.settle());
 	}
-}, Oc = 65535;
-function kc(e, t) {
+}, Nc = 65535;
+function Pc(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
 	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
 	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
@@ -3925,37 +3955,37 @@ function kc(e, t) {
 	}
 	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
 }
-async function Ac({ view: e, codec: t, where: n }, r) {
+async function Fc({ view: e, codec: t, where: n }, r) {
 	let i = t.decode(new Uint8Array(await r(e)), n);
 	if (!i.indices.length) throw M(n, "a mesh without faces");
 	return i;
 }
-function jc({ positions: n, uv: r, indices: i }) {
+function Ic({ positions: n, uv: r, indices: i }) {
 	let a = new t();
 	a.setAttribute("position", new e(n.slice(), 3)), a.setAttribute("uv", new e(r, 2));
-	let o = n.length / 3 <= Oc;
+	let o = n.length / 3 <= Nc;
 	return a.setIndex(new e(o ? Uint16Array.from(i) : i, 1)), a;
 }
-function Mc(e) {
+function Lc(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/footprint.ts
-var Nc = 256;
-function Pc(e, t, n) {
+var Rc = 256;
+function zc(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / Nc)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / Rc)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Fc(t, i.getX(e), i.getY(e), i.getZ(e))), l = Ic(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Bc(t, i.getX(e), i.getY(e), i.getZ(e))), l = Vc(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = Ic(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = Vc(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -3965,7 +3995,7 @@ function Pc(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function Fc({ K: e, R: t, t: n }, r, i, a) {
+function Bc({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -3973,12 +4003,12 @@ function Fc({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function Ic(e) {
+function Vc(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/sheet-stack.ts
-var Lc = "sheets", Rc = 16, zc = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Bc = `${Ss}${Cs}
+var Hc = "sheets", Uc = 16, Wc = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Gc = `${Ds}${Os}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -4003,7 +4033,7 @@ void main() {
   gl_FragDepth = depth;
   fragment = colour;
 }
-`, Vc = new ae(), Hc = class {
+`, Kc = new ae(), qc = class {
 	material;
 	scene = new k();
 	camera = new n();
@@ -4013,16 +4043,16 @@ void main() {
 	everywhere = new t();
 	target = null;
 	constructor(t) {
-		this.material = t, this.depth = js(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
+		this.material = t, this.depth = Is(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
 			let { materialIndex: o = 0 } = a, s = this.sheets.material.length / 2, c = s - 1 - (o >> 1);
 			e.getContext().depthRange(c / s, (c + 1) / s);
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
 		let { shown: n, photograph: r, toPhotograph: i } = t.uniforms;
 		this.screen = new O({
-			name: Lc,
+			name: Hc,
 			glslVersion: h,
-			vertexShader: zc,
-			fragmentShader: Bc,
+			vertexShader: Wc,
+			fragmentShader: Gc,
 			uniforms: {
 				shown: n,
 				photograph: r,
@@ -4036,7 +4066,7 @@ void main() {
 				toPlace: { value: new x() }
 			},
 			transparent: !0,
-			...Os
+			...Ns
 		});
 		let a = new Float32Array([
 			-1,
@@ -4052,7 +4082,7 @@ void main() {
 		this.everywhere.setAttribute("position", new e(a, 3));
 	}
 	get bytes() {
-		return this.target ? Rc * this.target.width * this.target.height : 0;
+		return this.target ? Uc * this.target.width * this.target.height : 0;
 	}
 	setGeometry(e, t) {
 		e.clearGroups();
@@ -4070,7 +4100,7 @@ void main() {
 	attach(e, t) {
 		for (let t of [e.material].flat()) t.visible = !1;
 		let n = new S(this.everywhere, this.screen);
-		n.name = Lc, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
+		n.name = Hc, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
 			t(n, i), this.draw(n, i, e);
 		}, e.add(n);
 	}
@@ -4081,18 +4111,18 @@ void main() {
 		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
 	}
 	draw(e, t, n) {
-		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Vc);
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Kc);
 		if (!a || !o) return;
-		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Uc(a, o));
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Jc(a, o));
 		let { target: s } = this;
-		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), os(e, t, () => {
+		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), ds(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
 		}), e.getContext().depthRange(0, 1);
 		let { uniforms: c } = this.screen;
 		this.set("sheets", s.textures[0]), this.set("solid", s.textures[1]), this.set("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
 	}
 };
-function Uc(e, t) {
+function Jc(e, t) {
 	let n = new l(e, t, re);
 	n.format = c;
 	let r = new oe(e, t, {
@@ -4106,7 +4136,7 @@ function Uc(e, t) {
 	return i && (i.type = ne), r;
 }
 // eigenfield-three/src/surface.ts
-var Wc = class {
+var Yc = class {
 	meshes;
 	faces;
 	reference;
@@ -4121,7 +4151,7 @@ var Wc = class {
 		if (!i) throw Error("a field needs a mesh");
 		this.mesh = i;
 		let a = [i.material].flat().some((e) => e.side !== m);
-		this.material = As(a, t !== null), this.stack = t && new Hc(this.material);
+		this.material = Fs(a, t !== null), this.stack = t && new qc(this.material);
 		for (let t of e) {
 			let e = (e, n) => r(e, n, t);
 			this.stack ? this.stack.attach(t, e) : (t.material = this.material, t.onBeforeRender = (t, n, r) => e(t, r));
@@ -4139,7 +4169,7 @@ var Wc = class {
 		if (n !== e) {
 			let { index: r, attributes: i } = e;
 			if (!r || !i.position || !i.uv) throw TypeError("A surface needs position, uv and an index.");
-			this.stack && t && na({
+			this.stack && t && sa({
 				faces: t,
 				where: "the geometry"
 			}, e), n.dispose();
@@ -4148,52 +4178,52 @@ var Wc = class {
 		e.boundingBox = e.boundingSphere = null, this.faces = t, this.version += 1, this.show(t);
 	}
 	show(e) {
-		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? Pc(this.geometry, this.reference, [1, 1]) : 0;
+		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? zc(this.geometry, this.reference, [1, 1]) : 0;
 	}
 	dispose() {
 		this.stack?.dispose(), this.material.dispose(), this.geometry.dispose();
 	}
 };
 // eigenfield-three/src/gpu.ts
-function Gc(e) {
+function Xc(e) {
 	let t = e.getContext();
 	if (!(t instanceof WebGL2RenderingContext)) throw new j("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
 	if ((t.getExtension("EXT_color_buffer_float") ?? t.getExtension("EXT_color_buffer_half_float")) || t.isContextLost()) return t;
 	throw new j("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
 }
-function Kc(e, t) {
+function Zc(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function qc(e, { components: t, halves: n }) {
+function Qc(e, { components: t, halves: n }) {
 	return t > 2 ? n ? e.RGBA16F : e.RGBA8 : t > 1 ? n ? e.RG16F : e.RG8 : n ? e.R16F : e.R8;
 }
-function Jc(e, [t, n], r, i, a) {
-	return Zc(e, e.TEXTURE_2D_ARRAY, () => {
-		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, qc(e, a), t, n, r);
+function $c(e, [t, n], r, i, a) {
+	return nl(e, e.TEXTURE_2D_ARRAY, () => {
+		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, Qc(e, a), t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function Yc(e, t, n, r) {
+function el(e, t, n, r) {
 	let { width: i, height: a } = n, o = r > 2 ? e.RGBA : r > 1 ? e.RG : e.RED;
-	Qc(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
+	rl(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
 }
-function Xc(e, [t, n], r) {
-	return Zc(e, e.TEXTURE_2D, () => {
-		e.texStorage2D(e.TEXTURE_2D, 1, qc(e, r), t, n);
+function tl(e, [t, n], r) {
+	return nl(e, e.TEXTURE_2D, () => {
+		e.texStorage2D(e.TEXTURE_2D, 1, Qc(e, r), t, n);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D, t, e.NEAREST);
 	});
 }
-function Zc(e, t, n) {
+function nl(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return Qc(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return rl(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function Qc(e, t, n, r) {
+function rl(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -4207,7 +4237,7 @@ function Qc(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-function $c(e, t, n) {
+function il(e, t, n) {
 	let r = e.createProgram();
 	for (let [i, a] of [[e.VERTEX_SHADER, t], [e.FRAGMENT_SHADER, n]]) {
 		let t = e.createShader(i);
@@ -4215,7 +4245,7 @@ function $c(e, t, n) {
 	}
 	return e.linkProgram(r), r;
 }
-function el(e, t, n, r) {
+function al(e, t, n, r) {
 	if (!n) {
 		r();
 		return;
@@ -4223,9 +4253,9 @@ function el(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), Qc(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), rl(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function tl(e, t) {
+function ol(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -4240,13 +4270,13 @@ function tl(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r && e.isProgram(r) ? r : null), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/charts.ts
-function nl(e, t) {
-	let n = $c(e, ...gc), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
+function sl(e, t) {
+	let n = il(e, ...xc), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
 		let { index: o } = t, s = t.getAttribute("uv"), c = Float32Array.from({ length: 2 * (o?.count ?? 0) }, (e, t) => {
 			let n = o?.getX(t >> 1) ?? 0;
 			return t % 2 ? s.getY(n) : s.getX(n);
 		}), [l, u] = [e.createVertexArray(), e.createBuffer()], d = e.getParameter(e.ARRAY_BUFFER_BINDING);
-		tl(e, () => {
+		ol(e, () => {
 			e.useProgram(n), e.bindVertexArray(l), e.bindBuffer(e.ARRAY_BUFFER, u), e.bufferData(e.ARRAY_BUFFER, c, e.STREAM_DRAW);
 			let t = e.getAttribLocation(n, "uv");
 			e.enableVertexAttribArray(t), e.vertexAttribPointer(t, 2, e.FLOAT, !1, 0, 0), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, a, 0), e.viewport(0, 0, ...i), e.colorMask(!0, !0, !0, !0), e.drawArrays(e.TRIANGLES, 0, c.length / 2);
@@ -4257,7 +4287,7 @@ function nl(e, t) {
 			let { geometry: r } = t;
 			if (i?.grid.join() !== n.join() || i.geometry !== r) {
 				e.deleteTexture(i?.texture ?? null);
-				let t = Xc(e, n, {
+				let t = tl(e, n, {
 					components: 1,
 					halves: !1
 				});
@@ -4275,7 +4305,7 @@ function nl(e, t) {
 	};
 }
 // eigenfield-three/src/packing.ts
-var rl = [
+var cl = [
 	"precisions",
 	"covered",
 	"factors",
@@ -4286,14 +4316,14 @@ var rl = [
 	"nodes",
 	"zero"
 ];
-function il(e, t, n, r) {
+function ll(e, t, n, r) {
 	let [i, a, o] = [
-		$c(e, fc, pc),
-		$c(e, fc, mc),
-		$c(e, fc, hc)
-	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && nl(e, r), u = !1, d = (t) => Object.fromEntries(rl.map((n) => [n, e.getUniformLocation(t, n)])), [f, p] = [d(i), d(a)], m = (t, n, r, i, a, o, s) => {
+		il(e, _c, vc),
+		il(e, _c, yc),
+		il(e, _c, bc)
+	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && sl(e, r), u = !1, d = (t) => Object.fromEntries(cl.map((n) => [n, e.getUniformLocation(t, n)])), [f, p] = [d(i), d(a)], m = (t, n, r, i, a, o, s) => {
 		let { picture: c, rows: l } = n, { size: u, corner: d, unit: f, codes: p } = i;
-		al(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
+		ul(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
 			0,
 			1,
 			2,
@@ -4305,33 +4335,33 @@ function il(e, t, n, r) {
 		h(t, n), e.colorMask(r === 0, r === 1, r === 2, r === 3);
 	}, _ = (r, s, d, _, v, y) => {
 		let { picture: b, row: x, rows: S } = r, [C, w] = v.size, T = C < b.width || w < S ? t.smaller : null, E = Math.max(1, Math.floor((T ? n - 2 : n) * w / S)), ee = u && s === t.codes, D = (T && l?.covered(v.grid)) ?? null;
-		el(e, 0, ee ? null : s, () => {
+		al(e, 0, ee ? null : s, () => {
 			for (let t = 0; t < w; t += E) {
 				let n = Math.min(E, w - t), o = Math.floor(t * S / w), s = Math.ceil((t + n) * S / w);
-				al(b) ? sl(e, b, x + o, s - o) : ol(e, b, x + o, s - o);
+				ul(b) ? fl(e, b, x + o, s - o) : dl(e, b, x + o, s - o);
 				let l = () => {
 					let s = T || y ? p : f;
 					e.useProgram(T || y ? a : i), e.bindVertexArray(c), e.uniform1i(s.precisions, +!!y), e.uniform1i(s.covered, T ? 2 : 0), e.uniform2i(s.nodes, y?.precision.width ?? 0, y?.precision.height ?? 0), e.uniform1f(s.zero, y?.zero ?? 0), T ? (h(T, null), e.colorMask(!0, !0, !0, !0)) : g(d, _), m(s, r, _.channel, v, o, t, n);
 				};
-				el(e, 2, D, () => {
-					ee ? l() : tl(e, l);
+				al(e, 2, D, () => {
+					ee ? l() : ol(e, l);
 				});
 			}
-		}), T && el(e, 0, T, () => tl(e, () => {
+		}), T && al(e, 0, T, () => ol(e, () => {
 			e.useProgram(o), e.bindVertexArray(c), e.uniform2i(e.getUniformLocation(o, "size"), C, w), g(d, _), e.viewport(0, 0, C, w), e.drawArrays(e.TRIANGLES, 0, 3);
 		}));
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let s = al(n.picture) ? t.codes : t.picture;
+			let s = ul(n.picture) ? t.codes : t.picture;
 			if (!s) return;
 			let c = () => i.forEach((e) => _(n, s, r, e, a, o));
-			o ? el(e, 1, t.precision, () => {
-				ol(e, o.precision, 0, o.precision.height), c();
+			o ? al(e, 1, t.precision, () => {
+				dl(e, o.precision, 0, o.precision.height), c();
 			}) : c();
 		},
 		together(n) {
-			el(e, 0, t.codes, () => tl(e, () => {
+			al(e, 0, t.codes, () => ol(e, () => {
 				u = !0;
 				try {
 					n();
@@ -4351,17 +4381,17 @@ function il(e, t, n, r) {
 		}
 	};
 }
-function al(e) {
+function ul(e) {
 	return "data" in e;
 }
-function ol(e, t, n, r) {
+function dl(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function sl(e, { data: t, width: n, stride: r }, i, a) {
+function fl(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
 // eigenfield-three/src/textures.ts
-var cl = class {
+var pl = class {
 	parts;
 	source;
 	surface;
@@ -4390,7 +4420,7 @@ var cl = class {
 			tenBits: Ki(t.pictures)
 		})));
 		this.layout = s;
-		let c = Ta(i).map(({ channels: e, mean: t }, n) => {
+		let c = Aa(i).map(({ channels: e, mean: t }, n) => {
 			let r = n === i.planes.length;
 			return {
 				size: o[n] ?? [1, 1],
@@ -4405,7 +4435,7 @@ var cl = class {
 			means: c,
 			bases: s,
 			rays: a.facesPlane,
-			geometry: ll(n.geometry)
+			geometry: ml(n.geometry)
 		}, this.means = c.map(() => new p()), this.bases = s.map(() => new p()), this.ready = s.map(({ count: e }) => Array(e).fill(!1)), this.stillVersions = c.map(() => 0);
 	}
 	get hasMeans() {
@@ -4419,7 +4449,7 @@ var cl = class {
 		return Math.min(t, ...e);
 	}
 	get bytes() {
-		return this.plan ? this.plan.bytes - this.needs.geometry + ll(this.surface.geometry) : 0;
+		return this.plan ? this.plan.bytes - this.needs.geometry + ml(this.surface.geometry) : 0;
 	}
 	get attached() {
 		return this.renderer !== null || this.disposed;
@@ -4449,7 +4479,7 @@ var cl = class {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		let n = Gc(e);
+		let n = Xc(e);
 		if (n.isContextLost()) return;
 		let { packer: r, plan: i } = this.makeRoom(n);
 		this.plan = i, this.packer = r, this.onPlan(i), await this.source.fill(this.filling(n, i, t)), t.aborted || this.onComplete();
@@ -4499,12 +4529,12 @@ var cl = class {
 		this.version += 1;
 	}
 	putMean(e, t, n, { pieces: r, precision: i }) {
-		let [a, o] = [this.means[n]?.sourceTexture, Ta(this.parts.scene)[n]], { size: s, tenBits: c } = this.needs.means[n] ?? {};
+		let [a, o] = [this.means[n]?.sourceTexture, Aa(this.parts.scene)[n]], { size: s, tenBits: c } = this.needs.means[n] ?? {};
 		if (!(a instanceof WebGLTexture) || !o || !s) return;
 		this.stillVersions[n] = this.version += 1;
 		let { mean: l, channels: u } = o, d = X(s, t.meanDown), [f] = r;
 		if (f && r.length === 1 && "close" in f.picture && !c && d.join() === s.join()) {
-			Yc(e, a, f.picture, u);
+			el(e, a, f.picture, u);
 			return;
 		}
 		let p = {
@@ -4538,25 +4568,25 @@ var cl = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs;
-		this.needs.geometry = ll(this.surface.geometry);
+		this.needs.geometry = ml(this.surface.geometry);
 		let r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
-		for (let i = this.options.memory ?? Eo();; i /= 2) {
-			let a = Po(this.needs, Kc(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => Jc(e, X(t, o), ko(n), !1, {
+		for (let i = this.options.memory ?? jo();; i /= 2) {
+			let a = zo(this.needs, Zc(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => $c(e, X(t, o), Po(n), !1, {
 				components: n,
 				halves: r
 			})), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return Jc(e, a ? X(t, s) : [1, 1], a ? Ao(a, n) : 1, u, {
+				return $c(e, a ? X(t, s) : [1, 1], a ? Fo(a, n) : 1, u, {
 					components: Math.max(1, a),
 					halves: l && i
 				});
-			})], f = Lo(this.needs, a, i), [p, m, h] = [
+			})], f = Ho(this.needs, a, i), [p, m, h] = [
 				f.picture,
 				f.codes,
 				f.smaller
-			].map((t) => t ? Xc(e, t.size, t.format) : null), g = Xc(e, Ro(r), yo);
+			].map((t) => t ? tl(e, t.size, t.format) : null), g = tl(e, Uo(r), wo);
 			if (p && g && (m || !f.codes) && (h || !f.smaller) && !d.includes(null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = d[t] ?? null), {
-				packer: il(e, {
+				packer: ll(e, {
 					picture: p,
 					codes: m ?? null,
 					precision: g,
@@ -4575,11 +4605,11 @@ var cl = class {
 		}
 	}
 };
-function ll({ attributes: e, index: t }) {
+function ml({ attributes: e, index: t }) {
 	return Object.values(e).reduce((e, t) => e + t.array.byteLength, 0) + (t?.array.byteLength ?? 0);
 }
 // eigenfield-three/src/field.ts
-var ul = 1.5, dl = .001, fl = class extends f {
+var hl = 1.5, gl = .001, _l = class extends f {
 	parts;
 	source;
 	mesh;
@@ -4616,7 +4646,7 @@ var ul = 1.5, dl = .001, fl = class extends f {
 	constructor(e, t, n = {}) {
 		super(), this.parts = e, this.source = t;
 		let { scene: r, info: i } = e, a = r.sheets?.faces ?? null;
-		this.surface = new Wc(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = Qa(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip && this.shape(e.clip.group, 0, e.clip.mesh, !1), this.textures = new cl(e, t, this.surface, n), this.complete = new Promise((e, t) => {
+		this.surface = new Yc(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = ro(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip && this.shape(e.clip.group, 0, e.clip.mesh, !1), this.textures = new pl(e, t, this.surface, n), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0), this.listen(), n.renderer && this.textures.attach(n.renderer);
 	}
@@ -4660,20 +4690,20 @@ var ul = 1.5, dl = .001, fl = class extends f {
 		this.textures.onPlan = (e) => {
 			let { scene: t } = this.parts;
 			this.freeComposers(), this.summed = {
-				parts: _c(t, this.textures, e),
-				opacity: yc(t, this.textures)
+				parts: Sc(t, this.textures, e),
+				opacity: wc(t, this.textures)
 			}, e.limitation && queueMicrotask(() => this.dispatchEvent({ type: "limited" }));
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return ul * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
+		return hl * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
 	}
 	weightsOf(e) {
 		let { scene: t, info: n, weights: r } = this.parts;
-		return new gs(n, J(t).map(({ count: e }) => e), e, r);
+		return new xs(n, J(t).map(({ count: e }) => e), e, r);
 	}
 	makePlayer({ timeline: e, ring: t, sound: n }) {
-		return new Dc(e, t, {
+		return new Mc(e, t, {
 			show: (e) => this.showFrame(e),
 			failed: (e) => this.dispatchEvent({
 				type: "error",
@@ -4682,22 +4712,22 @@ var ul = 1.5, dl = .001, fl = class extends f {
 		}, n);
 	}
 	showFrame({ number: e, group: t, films: n }) {
-		this.group && this.shape(t, e - t.first, this.group.mesh, this.group.motion !== null), t !== this.group && this.enter(t), this.plain = n.includes(null), this.source instanceof zs && this.source.show(n);
+		this.group && this.shape(t, e - t.first, this.group.mesh, this.group.motion !== null), t !== this.group && this.enter(t), this.plain = n.includes(null), this.source instanceof Ws && this.source.show(n);
 	}
 	shape({ mesh: e, motion: t }, n, r, i) {
 		if (this.surface.geometry !== this.moved || e === r && !t && !i) return;
-		let a = e === r ? this.moved : jc(e), o = a.getAttribute("position");
+		let a = e === r ? this.moved : Ic(e), o = a.getAttribute("position");
 		t ? t.place(n, o.array) : o.copyArray(e.positions), o.needsUpdate = !0, this.moved = a, this.surface.setGeometry(a);
 	}
 	enter(e) {
 		let { scene: t } = this.parts, { plan: n } = this.textures;
-		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), tc(t, e), n && vc(this.summed.parts, t, this.textures, n);
+		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), oc(t, e), n && Cc(this.summed.parts, t, this.textures, n);
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = hl(t, n), [i, a] = io(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
+		let r = bl(t, n), [i, a] = lo(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
 		this.setView(), this.setExposure(o, [i, a]);
-		let u = vs[this.filter];
+		let u = Cs[this.filter];
 		l.defines.BICUBIC !== u && (l.defines.BICUBIC = u, l.needsUpdate = !0), l.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
@@ -4706,7 +4736,7 @@ var ul = 1.5, dl = .001, fl = class extends f {
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
 		if (!s) {
 			let { parts: e, opacity: t } = this.summed;
-			s = new cs(i, e, t, o, this.coarser > 1, this.surface, a), this.composers.set(o, s);
+			s = new ps(i, e, t, o, this.coarser > 1, this.surface, a), this.composers.set(o, s);
 		}
 		s.compose(e, t, n);
 		let { composed: c, finest: l } = this.surface.material.uniforms;
@@ -4717,15 +4747,15 @@ var ul = 1.5, dl = .001, fl = class extends f {
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.surface.material.uniforms.shown.value, r = n === ys.eigen ? this.shownEigen : null;
+		let n = this.surface.material.uniforms.shown.value, r = n === ws.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			opacity: this.textures.opacityVersion,
 			only: r,
-			count: n === ys.mean || this.plain ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === ws.mean || this.plain ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && ns(this.info.viewPlane, t),
+			eye: t && ss(this.info.viewPlane, t),
 			places: t || this.coarser > 1 ? this.surface.version : 0,
 			maps: t && this.weights.maps(this.mixing, this.usable)
 		};
@@ -4733,7 +4763,7 @@ var ul = 1.5, dl = .001, fl = class extends f {
 	setExposure(e, t) {
 		let { cameras: n, heldOut: r, mixedColours: i, viewPlane: a } = this.info, o = this.exposure ?? (i || this.showsErrors ? e : null), s = o === null ? void 0 : n[o], c = [[s, 1]];
 		if (i && (o === null || r[o])) {
-			let e = s ? io(a, s.centre) : t, { camera: n, weight: r } = this.parts.weights.at(...e, this.mixing);
+			let e = s ? lo(a, s.centre) : t, { camera: n, weight: r } = this.parts.weights.at(...e, this.mixing);
 			c = [
 				0,
 				1,
@@ -4741,7 +4771,7 @@ var ul = 1.5, dl = .001, fl = class extends f {
 				3
 			].map((e) => [this.encoded[n[e] ?? 0], r[e] ?? 0]);
 		}
-		let { scale: l, bias: u } = go(c), { exposureScale: d, exposureBias: f } = this.surface.material.uniforms;
+		let { scale: l, bias: u } = xo(c), { exposureScale: d, exposureBias: f } = this.surface.material.uniforms;
 		d.value.fromArray(l), f.value.fromArray(u);
 	}
 	get showsErrors() {
@@ -4749,9 +4779,9 @@ var ul = 1.5, dl = .001, fl = class extends f {
 	}
 	setView() {
 		let { uniforms: e } = this.surface.material, t = this.showsErrors, n = this.view === "error" && !t ? "picture" : this.view, r = this.shownEigen;
-		e.shown.value = ys[n === "eigen" && (this.plain || r >= this.loaded) ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
+		e.shown.value = ws[n === "eigen" && (this.plain || r >= this.loaded) ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
 		let i = t && this.info.cameras[this.camera ?? 0];
-		i && this.photograph && Ms(e, i, this.photograph);
+		i && this.photograph && Ls(e, i, this.photograph);
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -4764,29 +4794,29 @@ var ul = 1.5, dl = .001, fl = class extends f {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= dl * Math.max(...r);
+		return Math.abs(i) <= gl * Math.max(...r);
 	}
 	fail(e) {
-		if (gl(e)) return;
+		if (xl(e)) return;
 		let t = de(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
 		this.dispatchEvent({
 			type: "error",
 			error: new j(t.code, r, t.where)
 		});
 	}
-}, pl = new x(), ml = new A();
-function hl(e, t) {
-	return ml.setFromMatrixPosition(e.matrixWorld).applyMatrix4(pl.copy(t.matrixWorld).invert()), [
-		ml.x,
-		ml.y,
-		ml.z
+}, vl = new x(), yl = new A();
+function bl(e, t) {
+	return yl.setFromMatrixPosition(e.matrixWorld).applyMatrix4(vl.copy(t.matrixWorld).invert()), [
+		yl.x,
+		yl.y,
+		yl.z
 	];
 }
-function gl(e) {
+function xl(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var _l = class {
+var Sl = class {
 	received = 0;
 	onPush = () => void 0;
 	chunks = [];
@@ -4831,7 +4861,7 @@ var _l = class {
 		return n.buffer;
 	}
 };
-async function vl(e, t, n) {
+async function Cl(e, t, n) {
 	let r = e.getReader();
 	for (n.addEventListener("abort", () => void r.cancel().catch(() => void 0));;) {
 		let { done: e, value: n } = await r.read();
@@ -4841,7 +4871,7 @@ async function vl(e, t, n) {
 	n.throwIfAborted(), t.end();
 }
 // eigenfield-three/src/ranges.ts
-var yl = 2 ** 20, bl = 2 ** 25, xl = 3, Sl = 500, Cl = class {
+var wl = 2 ** 20, Tl = 2 ** 25, El = 3, Dl = 500, Ol = class {
 	source;
 	arrival;
 	length;
@@ -4855,20 +4885,20 @@ var yl = 2 ** 20, bl = 2 ** 25, xl = 3, Sl = 500, Cl = class {
 	}
 	async read(e, t) {
 		let { arrival: n } = this;
-		if (t <= n.received || !this.begun || !this.parted && e <= n.received + yl) {
+		if (t <= n.received || !this.begun || !this.parted && e <= n.received + wl) {
 			let r = await n.read(e, t).catch((e) => {
-				if (this.signal.aborted || !(this.parted || this.begun && Tl(e))) throw e;
+				if (this.signal.aborted || !(this.parted || this.begun && Al(e))) throw e;
 			});
 			if (this.begun || this.limit(), r) return r;
 		}
 		if (this.giveUp(), this.source instanceof Blob) return this.slice(this.source, e, t);
 		let r = this.source;
-		return wl(this.signal, () => this.whole?.read(e, t) ?? this.fetch(r, e, t), () => this.whole === null);
+		return kl(this.signal, () => this.whole?.read(e, t) ?? this.fetch(r, e, t), () => this.whole === null);
 	}
 	limit() {
 		let { arrival: e } = this;
 		this.begun = !0, e.onPush = () => {
-			e.received >= bl && e.received < this.length && this.giveUp();
+			e.received >= Tl && e.received < this.length && this.giveUp();
 		}, e.onPush();
 	}
 	giveUp() {
@@ -4895,26 +4925,26 @@ var yl = 2 ** 20, bl = 2 ** 25, xl = 3, Sl = 500, Cl = class {
 		return a;
 	}
 	receive(e) {
-		let t = this.whole = new _l();
-		return vl(e, t, this.signal).catch((e) => t.fail(this.signal.aborted ? e : this.broken(t.received, e))), t;
+		let t = this.whole = new Sl();
+		return Cl(e, t, this.signal).catch((e) => t.fail(this.signal.aborted ? e : this.broken(t.received, e))), t;
 	}
 	broken(e, t) {
 		return new j("network", `The connection broke at byte ${e} of ${this.length} of the clip; it is tried again when it plays on.`, String(e), { cause: t });
 	}
 };
-async function wl(e, t, n = () => !0) {
+async function kl(e, t, n = () => !0) {
 	for (let r = 1;; r++) try {
 		return await t();
 	} catch (t) {
-		if (e.throwIfAborted(), r === xl || !Tl(t) || !n()) throw t;
-		await new Promise((e) => setTimeout(e, Sl * 2 ** (r - 1))), e.throwIfAborted();
+		if (e.throwIfAborted(), r === El || !Al(t) || !n()) throw t;
+		await new Promise((e) => setTimeout(e, Dl * 2 ** (r - 1))), e.throwIfAborted();
 	}
 }
-function Tl(e) {
+function Al(e) {
 	return e instanceof j && e.code === "network";
 }
 // eigenfield-three/src/beside.ts
-function El(e) {
+function jl(e) {
 	return { read: async (t, n, r) => {
 		let i = e.get(t);
 		if (!i) throw new j("damaged", `The folder has no file ${t}; copy the clip's whole folder.`, t);
@@ -4922,7 +4952,7 @@ function El(e) {
 		return i.slice(0, r).arrayBuffer();
 	} };
 }
-var Dl = class {
+var Ml = class {
 	scene;
 	signal;
 	arriving = /* @__PURE__ */ new Map();
@@ -4930,7 +4960,7 @@ var Dl = class {
 		this.scene = e, this.signal = t;
 	}
 	read(e, t, n) {
-		return wl(this.signal, async () => {
+		return kl(this.signal, async () => {
 			let r = this.arriving.get(e) ?? this.fetch(e, t);
 			try {
 				let i = await r.read(0, n);
@@ -4941,38 +4971,38 @@ var Dl = class {
 		});
 	}
 	fetch(e, t) {
-		let n = new _l();
+		let n = new Sl();
 		return this.arriving.set(e, n), this.receive(e, t, n).catch((t) => {
-			n.fail(this.signal.aborted || t instanceof j ? t : Ol(e, t));
+			n.fail(this.signal.aborted || t instanceof j ? t : Nl(e, t));
 		}), n;
 	}
 	async receive(e, t, n) {
 		let r = new URL(e, new URL(this.scene, document.baseURI)), { ok: i, status: a, headers: o, body: s } = await fetch(r, { signal: this.signal }), c = o.get("Content-Encoding") ? null : o.get("Content-Length"), l = i && c !== null && Number(c) !== t;
-		if (i && s && !l) return vl(s, n, this.signal);
-		throw await s?.cancel(), l ? M(e, `${c} bytes of ${t}`) : Ol(e, `The server answered ${a}`);
+		if (i && s && !l) return Cl(s, n, this.signal);
+		throw await s?.cancel(), l ? M(e, `${c} bytes of ${t}`) : Nl(e, `The server answered ${a}`);
 	}
 };
-function Ol(e, t) {
+function Nl(e, t) {
 	return new j("network", `The clip's file ${e} cannot be fetched; put it beside the clip's own. It is tried again when it plays on.`, e, { cause: t });
 }
 // eigenfield-three/src/film-pictures.ts
-var kl = {
+var Pl = {
 	mimeType: "video/AV1",
 	bits: 10
 };
-async function Al(e, t, n) {
+async function Fl(e, t, n) {
 	let r = {
 		view: -1,
-		codec: kl,
+		codec: Pl,
 		textures: 1,
 		pieces: 1,
 		where: n
 	}, i = await ci(ve(e.slice().buffer, n), r, t), a = i[0].picture;
 	if ("data" in a) return a;
 	let o = Ut(a, t);
-	return Ps(i), Wt(o, 4 * t[0], 4, t);
+	return zs(i), Wt(o, 4 * t[0], 4, t);
 }
-var jl = class {
+var Il = class {
 	size;
 	where;
 	user;
@@ -4993,7 +5023,7 @@ var jl = class {
 	}
 	decode(e, t, n) {
 		if (!n) return;
-		let { turn: r } = this, i = Al(e, this.size, this.where).then((e) => r === this.turn ? this.user.take(t, () => Promise.resolve(e)) : void 0).catch((e) => {
+		let { turn: r } = this, i = Fl(e, this.size, this.where).then((e) => r === this.turn ? this.user.take(t, () => Promise.resolve(e)) : void 0).catch((e) => {
 			r === this.turn && this.user.failed(e);
 		}).finally(() => {
 			this.decoding.delete(i), this.user.closed();
@@ -5009,11 +5039,11 @@ var jl = class {
 	dispose() {
 		this.reset();
 	}
-}, Ml = 8, Nl = 2, Pl = 2 / 3, Fl = /* @__PURE__ */ new Set([
+}, Ll = 8, Rl = 2, zl = 2 / 3, Bl = /* @__PURE__ */ new Set([
 	"damaged",
 	"truncated",
 	"network"
-]), Il = class {
+]), Vl = class {
 	timeline;
 	groups;
 	user;
@@ -5045,7 +5075,7 @@ var jl = class {
 		return this.decoders.reduce((e, t) => e + t.open, 0);
 	}
 	get reach() {
-		return Math.max(this.newestEnd, this.from) + Ml / 2;
+		return Math.max(this.newestEnd, this.from) + Ll / 2;
 	}
 	get busy() {
 		return this.decoders.some(({ busy: e }) => e);
@@ -5141,7 +5171,7 @@ var jl = class {
 		return e.every((e, t) => e !== null || !this.needs(t));
 	}
 	get hasRoom() {
-		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = this.keysAlone ? this.slots.size < Nl ? Infinity : 0 : Math.max(this.from, this.wanted) + Ml;
+		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = this.keysAlone ? this.slots.size < Rl ? Infinity : 0 : Math.max(this.from, this.wanted) + Ll;
 		return this.next < Math.min(n, t) && this.decoders.every(({ ready: e }, t) => e || !this.needs(t));
 	}
 	async feedAll() {
@@ -5157,7 +5187,7 @@ var jl = class {
 			}
 			this.fed = r;
 			let i = this.given?.index === r ? this.given : await this.groups.open(r), a = n - i.first, o = i.units[a] ?? [];
-			a >= i.frames * Pl && this.prepare((r + 1) % this.timeline.groups.length), i.motion?.read(a);
+			a >= i.frames * zl && this.prepare((r + 1) % this.timeline.groups.length), i.motion?.read(a);
 			let s = () => this.decoders.map((e, t) => [e, o[t]]).filter((e, t) => this.needs(t));
 			if (a === 0 && await Promise.all(s().map(([e, t]) => e.start(t))), e !== this.turn) return;
 			this.given = i, this.next = this.keysAlone ? t + i.frames : t + 1;
@@ -5191,7 +5221,7 @@ var jl = class {
 	fail(e) {
 		let t = e instanceof j && e.code === "codec" ? e : null;
 		if (t && !this.keysAlone) return this.thin(t);
-		if (!(e instanceof j) || !Fl.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(t ? this.keysAlone : e, null);
+		if (!(e instanceof j) || !Bl.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(t ? this.keysAlone : e, null);
 		let n = e.code === "damaged" && this.given?.index === this.fed && !this.tried.has(this.fed), r = this.startOf(Math.max(this.next - 1, 0));
 		this.halt();
 		for (let [e, t] of this.slots) this.isWhole(t.films) || this.forget(e, t);
@@ -5199,7 +5229,7 @@ var jl = class {
 	}
 	thin(e) {
 		for (let e of this.decoders) e.dispose();
-		this.keysAlone = e, this.meansAlone = !1, this.decoders = this.timeline.films.map(({ size: e, where: t }, n) => new jl(e, t, this.userOf(n))), this.stop(), this.next = this.startOf(this.from), this.user.thinned(), this.feed();
+		this.keysAlone = e, this.meansAlone = !1, this.decoders = this.timeline.films.map(({ size: e, where: t }, n) => new Il(e, t, this.userOf(n))), this.stop(), this.next = this.startOf(this.from), this.user.thinned(), this.feed();
 	}
 	rest() {
 		this.stop(), this.next = Infinity;
@@ -5225,7 +5255,7 @@ var jl = class {
 	reuseOne(e, { room: t }) {
 		t && this.rooms[e]?.push(t);
 	}
-}, Ll = .3, Rl = .2, zl = 2, Bl = class {
+}, Hl = .3, Ul = .2, Wl = 2, Gl = class {
 	place;
 	read;
 	changed;
@@ -5256,7 +5286,7 @@ var jl = class {
 		let r = e - this.place.first;
 		if (r < 0 || r >= n.duration) return n.pause();
 		let i = r - n.currentTime;
-		Math.abs(i) > Ll * Math.max(t, 1) ? n.seeking || (n.currentTime = r) : n.playbackRate = t * (1 + Math.min(Math.max(zl * i, -.2), Rl)), n.paused && !this.starting && this.start(n);
+		Math.abs(i) > Hl * Math.max(t, 1) ? n.seeking || (n.currentTime = r) : n.playbackRate = t * (1 + Math.min(Math.max(Wl * i, -.2), Ul)), n.paused && !this.starting && this.start(n);
 	}
 	rest() {
 		this.audio?.pause();
@@ -5281,62 +5311,62 @@ var jl = class {
 	}
 };
 // eigenfield-three/src/clip.ts
-async function Vl(e, t, n, r) {
-	let i = new ec(e, t, n, r), a = await i.begin();
-	a.motion?.read(0), tc(e, a);
-	let o = await Promise.all(t.films.map(({ size: e, where: t }, n) => Al(a.units[0][n], e, t))), { sound: s } = t;
+async function Kl(e, t, n, r) {
+	let i = new ac(e, t, n, r), a = await i.begin();
+	a.motion?.read(0), oc(e, a);
+	let o = await Promise.all(t.films.map(({ size: e, where: t }, n) => Fl(a.units[0][n], e, t))), { sound: s } = t;
 	return {
 		timeline: t,
 		group: a,
 		films: o,
 		mesh: n,
-		ring: (e) => new Il(t, i, e),
-		sound: s && ((e) => new Bl(s, () => r(s, s.length), e))
+		ring: (e) => new Vl(t, i, e),
+		sound: s && ((e) => new Gl(s, () => r(s, s.length), e))
 	};
 }
 // eigenfield-three/src/means.ts
-async function Hl(e, t) {
-	let { mean: n, meanSize: r } = e, i = e.precision && await Ul(await t(e.precision.view), e.precision);
+async function ql(e, t) {
+	let { mean: n, meanSize: r } = e, i = e.precision && await Jl(await t(e.precision.view), e.precision);
 	return {
 		pieces: await n.codec.decode(await t(n.view), n, r),
 		precision: i
 	};
 }
-async function Ul(e, t) {
+async function Jl(e, t) {
 	let { type: n } = Yr(e) ?? {}, { mimeType: r } = t.codec;
 	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
 	if (!i) throw M(t.where, "no picture");
 	return i.picture;
 }
-function Wl({ pieces: e, precision: t }) {
-	Ps(e), t?.close();
+function Yl({ pieces: e, precision: t }) {
+	zs(e), t?.close();
 }
 // eigenfield-three/src/packed.ts
-var Gl = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Kl = 4;
-async function ql(e, t) {
-	let n = new G(e, ""), r = n.key("extensions").key(Se), i = r.key("packed");
+var Xl = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Zl = 4;
+async function Ql(e, t) {
+	let n = new G(e, ""), r = n.key("extensions").key(xe), i = r.key("packed");
 	if (!i.exists) return e;
-	Ea(r);
+	ja(r);
 	let a = Oi(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < Kl) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, Kl)).getUint32(0, !0);
-	if (Kl + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new G(Ys(await Yl(await t(o.offset + Kl, s), i.where), i.where), i.where).object(), u = Jl(new G(c, `${i.where}/lengths`), o, Kl + s), { packed: d, ...f } = r.object();
+	if (!o || o.length < Zl) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, Zl)).getUint32(0, !0);
+	if (Zl + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new G(ec(await eu(await t(o.offset + Zl, s), i.where), i.where), i.where).object(), u = $l(new G(c, `${i.where}/lengths`), o, Zl + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
-		bufferViews: [...n.key("bufferViews").items(F).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
+		bufferViews: [...n.key("bufferViews").items(I).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
 		extensions: {
 			...n.key("extensions").object(),
-			[Se]: {
+			[xe]: {
 				...f,
 				...l
 			}
 		}
 	};
 }
-function Jl(e, t, n) {
-	let r = n, i = e.items(F).map((e) => {
+function $l(e, t, n) {
+	let r = n, i = e.items(I).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
 			buffer: 0,
@@ -5347,8 +5377,8 @@ function Jl(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function Yl(e, t) {
-	let n = new TextEncoder().encode(Gl), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function eu(e, t) {
+	let n = new TextEncoder().encode(Xl), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -5356,7 +5386,7 @@ async function Yl(e, t) {
 		~r,
 		~i
 	]), a.set(n, 5), a.set(new Uint8Array(e), 5 + n.length);
-	let o = await xe(a, "deflate-raw", n.length + Ce, t);
+	let o = await be(a, "deflate-raw", n.length + Se, t);
 	try {
 		return new TextDecoder("utf-8", {
 			fatal: !0,
@@ -5367,8 +5397,8 @@ async function Yl(e, t) {
 	}
 }
 // eigenfield-three/src/still-textures.ts
-var Xl = 3;
-function Zl(e) {
+var tu = 3;
+function nu(e) {
 	return J(e).flatMap((e, t) => {
 		let n = 0;
 		return e.pictures.map((r) => {
@@ -5382,27 +5412,27 @@ function Zl(e) {
 		});
 	}).sort((e, t) => e.first - t.first || e.number - t.number);
 }
-function Ql(e, t, n) {
-	let r = Zl(e), i = n, a = ({ basis: e, picture: n }) => {
+function ru(e, t, n) {
+	let r = nu(e), i = n, a = ({ basis: e, picture: n }) => {
 		let r = t(n.view).then((t) => n.codec.decode(t, n, e.size));
 		return r.catch(() => void 0), r;
 	};
 	return {
 		async fill(n) {
-			let { plan: o, signal: s } = n, c = i ?? await Promise.all(Ta(e).map((e) => Hl(e, t)));
+			let { plan: o, signal: s } = n, c = i ?? await Promise.all(Aa(e).map((e) => ql(e, t)));
 			i = null, c.forEach((e, t) => {
-				n.putMean(t, e), Wl(e);
+				n.putMean(t, e), Yl(e);
 			});
 			let l = r.filter(({ first: e }) => e < o.usable), u = [], d = 0;
 			try {
 				for (let { number: e, first: t, picture: r } of l) {
 					if (s.aborted) return;
-					for (let e of l.slice(d, d + Xl - u.length)) u.push(a(e)), d += 1;
+					for (let e of l.slice(d, d + tu - u.length)) u.push(a(e)), d += 1;
 					let i = await u[0] ?? [];
-					u.shift(), n.putTextures(e, t, i, r), Ps(i), n.announce();
+					u.shift(), n.putTextures(e, t, i, r), zs(i), n.announce();
 				}
 			} finally {
-				for (let e of u) e.then(Ps).catch(() => void 0);
+				for (let e of u) e.then(zs).catch(() => void 0);
 			}
 			n.end();
 		},
@@ -5410,41 +5440,41 @@ function Ql(e, t, n) {
 			let r = 0;
 			for (let { channels: i, bases: a } of e.planes) {
 				let o = e.colours.slice(r, r += i), s = a.find(({ count: e }) => e > n);
-				if (s) return Ls(s, n, o, t);
+				if (s) return Hs(s, n, o, t);
 			}
 			return Promise.resolve(1);
 		},
 		dispose() {
-			i?.forEach(Wl), i = null;
+			i?.forEach(Yl), i = null;
 		}
 	};
 }
 // eigenfield-three/src/grid.ts
-function $l(e) {
+function iu(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = eu(e, n, r) ?? (n === r ? null : eu(e, r, n));
+		let r = t / n, i = au(e, n, r) ?? (n === r ? null : au(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function eu(e, t, n) {
-	let [r, i] = [nu(e, 0), nu(e, 1)];
-	if (t === 1 && ru(i) > 0 || n === 1 && ru(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => iu(i, e) - iu(i, t));
+function au(e, t, n) {
+	let [r, i] = [su(e, 0), su(e, 1)];
+	if (t === 1 && cu(i) > 0 || n === 1 && cu(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => lu(i, e) - lu(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => iu(r, e) - iu(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => lu(r, e) - lu(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return tu(n, t, (e, t) => iu(r, o(t, e))) && tu(t, n, (e, t) => iu(i, o(e, t))) ? {
+	return ou(n, t, (e, t) => lu(r, o(t, e))) && ou(t, n, (e, t) => lu(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function tu(e, t, n) {
+function ou(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -5454,33 +5484,33 @@ function tu(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function nu(e, t) {
+function su(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function ru(e) {
+function cu(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var iu = (e, t) => e[t] ?? 0, au = 1e-6, ou = 32, su = class {
+var lu = (e, t) => e[t] ?? 0, uu = 1e-6, du = 32, fu = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = $l(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = iu(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(cu(e), this.isLine ? 0 : cu(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(pu(e), this.isLine ? 0 : pu(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => vu(e, t, this.places) : e === "bilinear" && this.grid ? bu(this.places, this.grid) : du(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => Cu(e, t, this.places) : e === "bilinear" && this.grid ? Tu(this.places, this.grid) : gu(this.places, this.triangles);
 	}
 };
-function cu(e) {
+function pu(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function lu(e) {
+function mu(e) {
 	let t = {
 		camera: [
 			0,
@@ -5500,7 +5530,7 @@ function lu(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function uu(e, t, n, r, i, a) {
+function hu(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -5508,49 +5538,49 @@ function uu(e, t, n, r, i, a) {
 		m
 	];
 }
-function du(e, t) {
+function gu(e, t) {
 	if (!t.length) {
-		let t = _u(e, gu(e));
-		return (n, r) => hu(n, r, e, t);
+		let t = Su(e, xu(e));
+		return (n, r) => bu(n, r, e, t);
 	}
-	let n = pu(e, t, 3), r = mu(t);
+	let n = vu(e, t, 3), r = yu(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * ou + $(i)] ?? []) {
+		for (let r of n[$(a) * du + $(i)] ?? []) {
 			let [n, l, u] = [
-				fu(t, r, 0),
-				fu(t, r, 1),
-				fu(t, r, 2)
-			], d = uu(i, a, e, n, l, u), f = Math.min(...d);
+				_u(t, r, 0),
+				_u(t, r, 1),
+				_u(t, r, 2)
+			], d = hu(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? hu(i, a, e, r) : lu(c.map((e, n) => [fu(t, o, n), e]));
+		return s < -1e-9 ? bu(i, a, e, r) : mu(c.map((e, n) => [_u(t, o, n), e]));
 	};
 }
-var fu = (e, t, n) => e[3 * t + n] ?? 0;
+var _u = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * ou)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * du)));
 }
-function pu(e, t, n) {
+function vu(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * ou + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * du + t]?.push(i);
 	}
 	return r;
 }
-function mu(e) {
+function yu(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [fu(e, n, r), fu(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [_u(e, n, r), _u(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -5559,7 +5589,7 @@ function mu(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function hu(e, t, n, r) {
+function bu(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -5574,12 +5604,12 @@ function hu(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return lu([[o, 1 - c], [s, c]]);
+	return mu([[o, 1 - c], [s, c]]);
 }
-function gu(e) {
+function xu(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function _u(e, t) {
+function Su(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -5600,7 +5630,7 @@ function _u(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function vu(e, t, n) {
+function Cu(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -5614,12 +5644,12 @@ function vu(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || yu(n, r, i, a) <= au) return hu(e, t, n, _u(n, [
+	if (a < 0 || wu(n, r, i, a) <= uu) return bu(e, t, n, Su(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = uu(e, t, n, r, i, a);
+	let [l, u, d] = hu(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -5635,15 +5665,15 @@ function vu(e, t, n) {
 		]
 	};
 }
-function yu(e, t, n, r) {
+function wu(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function bu(e, t) {
+function Tu(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = _u(e, gu(e));
-		return (n, r) => hu(n, r, e, t);
+		let t = Su(e, xu(e));
+		return (n, r) => bu(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -5652,7 +5682,7 @@ function bu(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = pu(e, o.flat(), 4), c = [];
+	let s = vu(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -5660,12 +5690,12 @@ function bu(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * ou + $(t)] ?? []) {
-			let s = o[a], c = s ? xu(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * du + $(t)] ?? []) {
+			let s = o[a], c = s ? Eu(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return hu(t, n, e, l);
-		let [a, c] = Su(t, n, e, r);
+		if (!r || i < -1e-9) return bu(t, n, e, l);
+		let [a, c] = Du(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -5677,7 +5707,7 @@ function bu(e, t) {
 		};
 	};
 }
-function xu(e, t, n, r) {
+function Eu(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -5685,7 +5715,7 @@ function xu(e, t, n, r) {
 	}
 	return i;
 }
-function Su(e, t, n, r) {
+function Du(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -5703,31 +5733,31 @@ function Su(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Cu(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [Cu(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Ou(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [Ou(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function Cu(e) {
+function Ou(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var wu = class {
+var ku = class {
 	parser;
 	options;
-	name = Se;
+	name = xe;
 	scene = null;
 	views = [];
 	lacks = null;
 	ours;
 	constructor(e, t = {}) {
-		this.parser = e, this.options = t, this.ours = Sa(e.json);
+		this.parser = e, this.options = t, this.ours = Da(e.json);
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
-		this.options.renderer && Gc(this.options.renderer);
+		this.options.renderer && Xc(this.options.renderer);
 		let { json: e } = this.parser;
-		me(e), Object.assign(e, await ql(e, (e, t) => this.read(e, t)));
-		let t = Ca(e), { stream: n } = this.options, r = t.timeline?.groups[0]?.file ? n?.readFile : n?.readGroups;
-		(!t.timeline || r) && (this.views = t.views, t.timeline && t.shown && !await ai("image/avif") ? this.lacks = new j("codec", "This browser decodes no AV1; use a newer browser. The first frame is shown.", "") : (this.scene = t, this.scene.shown || Tu(e)));
+		me(e), Object.assign(e, await Ql(e, (e, t) => this.read(e, t)));
+		let t = Oa(e), { stream: n } = this.options, r = t.timeline?.groups[0]?.file ? n?.readFile : n?.readGroups;
+		(!t.timeline || r) && (this.views = t.views, t.timeline && t.shown && !await ai("image/avif") ? this.lacks = new j("codec", "This browser decodes no AV1; use a newer browser. The first frame is shown.", "") : (this.scene = t, this.scene.shown || Au(e)));
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
@@ -5748,39 +5778,39 @@ var wu = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (this.lacks && (e.userData.eigenfieldError = this.lacks), !t) return;
-		let n = Eu(e, this.parser), [r] = n;
+		let n = ju(e, this.parser), [r] = n;
 		if (!r) throw M("/meshes/0", "no node shows it");
-		t.shown && kc(r.geometry, t.shown);
+		t.shown && Pc(r.geometry, t.shown);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
 			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ue(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await Ac(t.mesh, i), o = t.timeline && a && await this.openClip(t, t.timeline, a);
+		}, a = t.mesh && await Fc(t.mesh, i), o = t.timeline && a && await this.openClip(t, t.timeline, a);
 		if (a) {
-			let e = jc(a);
+			let e = Ic(a);
 			r.geometry.dispose();
 			for (let t of n) t.geometry = e;
 		}
-		t.sheets && na(t.sheets, r.geometry);
+		t.sheets && sa(t.sheets, r.geometry);
 		let [s, c, l, u] = await Promise.all([
-			Promise.all(o ? [] : Ta(t).map((e) => Hl(e, i))),
-			Ba(t, i),
-			o ? o.group.omega : Ja(t, i),
-			eo(t, i)
-		]), d = c.filter((e, n) => !t.heldOut[n]), f = new su(Float64Array.from(d.flatMap((e) => io(t, e.centre))), u, t.extent[1] === 0), p = o ? Ta(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
+			Promise.all(o ? [] : Aa(t).map((e) => ql(e, i))),
+			Ga(t, i),
+			o ? o.group.omega : $a(t, i),
+			ao(t, i)
+		]), d = c.filter((e, n) => !t.heldOut[n]), f = new fu(Float64Array.from(d.flatMap((e) => lo(t, e.centre))), u, t.extent[1] === 0), p = o ? Aa(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
 			scene: t,
-			info: no(t, c, p, f.grid, this.fileBytes(), Mc(r.geometry)),
+			info: so(t, c, p, f.grid, this.fileBytes(), Lc(r.geometry)),
 			meshes: n,
 			meanSizes: p,
 			omega: l,
 			weights: f,
 			clip: o
-		}, h = o ? new zs(t, o.films) : Ql(t, i, s);
-		e.userData.eigenfield = new fl(m, h, this.options);
+		}, h = o ? new Ws(t, o.films) : ru(t, i, s);
+		e.userData.eigenfield = new _l(m, h, this.options);
 	}
 	openClip(e, t, n) {
 		let r = this.options.stream;
-		return Vl(e, t, n, ({ offset: e, length: t, file: n }, i) => n === null ? r.readGroups(e, i) : r.readFile(n, t, i));
+		return Kl(e, t, n, ({ offset: e, length: t, file: n }, i) => n === null ? r.readGroups(e, i) : r.readFile(n, t, i));
 	}
 	fileBytes() {
 		let { groups: e = [], sound: t = null } = this.scene?.timeline ?? {}, n = [...e, ...t ? [t] : []].reduce((e, t) => e + (t.file ? t.length : 0), 0);
@@ -5789,52 +5819,52 @@ var wu = class {
 		return r.KHR_binary_glTF?.header?.length ?? i.buffers[0]?.byteLength ?? 0;
 	}
 };
-function Tu(e) {
+function Au(e) {
 	let [t] = e.nodes;
 	t && (t.mesh = 0), e.meshes = [{ primitives: [{
 		attributes: {},
 		material: 0
 	}] }], e.materials = [{ doubleSided: !0 }];
 }
-function Eu(e, t) {
+function ju(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		Du(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		Mu(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function Du(e) {
+function Mu(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function Ou(e, t = {}) {
+async function Nu(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new _l(), [i, a] = [new AbortController(), new AbortController()], o = () => {
+	let r = new Sl(), [i, a] = [new AbortController(), new AbortController()], o = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", o), i.signal.addEventListener("abort", () => a.abort());
-	let s = Mu(e, r, a.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", o));
+	let s = Lu(e, r, a.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", o));
 	try {
-		let o = await Ks(r);
-		if (!Sa(o.json)) return {
-			gltf: await ju(r, o, s),
+		let o = await Zs(r);
+		if (!Da(o.json)) return {
+			gltf: await Iu(r, o, s),
 			field: null,
 			error: null
 		};
-		let c = e instanceof ArrayBuffer ? r : ((e) => new Cl(e, r, o.length, () => a.abort(), i.signal))(e), l = t.files ? El(t.files) : null, u = await ku(r, o, c, typeof e == "string" ? new Dl(e, i.signal) : l, t);
+		let c = e instanceof ArrayBuffer ? r : ((e) => new Ol(e, r, o.length, () => a.abort(), i.signal))(e), l = t.files ? jl(t.files) : null, u = await Pu(r, o, c, typeof e == "string" ? new Ml(e, i.signal) : l, t);
 		n?.throwIfAborted();
 		let { eigenfield: d, eigenfieldError: f } = u.userData;
 		return {
 			gltf: u,
-			field: d instanceof fl ? d : null,
+			field: d instanceof _l ? d : null,
 			error: f instanceof j ? f : null
 		};
 	} catch (e) {
 		throw i.abort(), n?.throwIfAborted(), de(e);
 	}
 }
-async function ku(e, t, n, r, i) {
+async function Pu(e, t, n, r, i) {
 	let a = new ce(), o = (e, t = n) => async (n, r) => {
 		let i = await e + n;
 		return t.read(i, i + r);
@@ -5844,17 +5874,17 @@ async function ku(e, t, n, r, i) {
 		total: t.length,
 		read: o(s, e),
 		readGroups: (...e) => o(t.groups())(...e),
-		readFile: (...e) => r?.read(...e) ?? Promise.reject(Au(e[0]))
+		readFile: (...e) => r?.read(...e) ?? Promise.reject(Fu(e[0]))
 	};
-	return a.register((e) => new wu(e, {
+	return a.register((e) => new ku(e, {
 		...i,
 		stream: c
 	})), a.parseAsync(t.text, "");
 }
-function Au(e) {
+function Fu(e) {
 	return new j("unsupported", `The clip is a folder, and its file ${e} cannot be found from here; make one file of it, with \`eigenfield export\`.`, e);
 }
-async function ju(e, t, n) {
+async function Iu(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -5866,25 +5896,25 @@ async function ju(e, t, n) {
 		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function Mu(e, t, n, r) {
+async function Lu(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? Nu(e) : await Pu(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? Ru(e) : await zu(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : Fu(t.received, e);
+			throw n.aborted ? e : Bu(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function Nu(e) {
+function Ru(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function Pu(e, t) {
+async function zu(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -5895,7 +5925,7 @@ async function Pu(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function Fu(e, t) {
+function Bu(e, t) {
 	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { fl as EigenField, wu as EigenfieldPlugin, Dc as Player, Lc as SHEETS, j as SceneError, Eo as defaultMemory, Ou as loadEigenfield, so as novelCamera, fo as placeCamera, pe as refuseAddresses };
+export { _l as EigenField, ku as EigenfieldPlugin, Mc as Player, Hc as SHEETS, j as SceneError, jo as defaultMemory, Nu as loadEigenfield, po as novelCamera, _o as placeCamera, pe as refuseAddresses };
