@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 
 import av
 import cv2
@@ -16,6 +17,7 @@ from eigenfield.capture.readers.hci import read_parameters
 from eigenfield.core.errors import OptionError
 from eigenfield.core.viewplane import fit_view_plane
 from eigenfield.gltf import save
+from eigenfield.imaging.metrics import psnr
 from eigenfield.rendering import RenderJob, renderer_of, view_weights
 from eigenfield.viewer import exports
 from eigenfield.viewer.exports.parallel import parallel_cameras
@@ -140,3 +142,17 @@ def test_a_line_of_cameras_makes_a_line_of_views(tmp_path):
     ef.export(scene, tmp_path / "views", "views")
     opened = open_any(tmp_path / "views")
     assert opened.layout.shape == (1, 9) and len(opened) == 9
+
+
+@pytest.mark.slow
+def test_a_scene_of_a_quilt_draws_what_the_quilt_shows(tmp_path):
+    """A scene, its quilt, a scene of the quilt: cameras and mesh are estimated from twelve small views alone."""
+    source = Path(__file__).parents[2] / "docs/scene.glb"
+    path, _ = ef.export(source, tmp_path / "q.png", "quilt", quilt=(4, 3), resolution=(128, 96))
+    scene = ef.encode(path)
+    whole = cv2.imread(str(path))[..., ::-1].astype(np.float32) / 255
+    for view in (0, 5, 11):
+        row, column = 2 - view // 4, view % 4
+        tile = whole[96 * row : 96 * row + 96, 128 * column : 128 * column + 128]
+        drawn = ef.render(scene, camera=f"view_{view:04d}.png").image.clip(0, 1)
+        assert psnr(drawn, tile) > 31
