@@ -38,7 +38,7 @@ const PAGE = `<!doctype html>
   camera.projectionMatrixInverse.copy(camera.projectionMatrix).invert();
   const found = [];
   scene.traverse((object) => object.isGaussianSplat && found.push(object));
-  for (let turn = 0; turn < 3; turn++) await renderer.renderAsync(scene, camera);
+  for (let turn = 0; turn < 3; turn++) renderer.render(scene, camera);
   window.splats = found.map((object) => object.splatGeometry.getAttribute("position").count);
 </script>`;
 
@@ -50,7 +50,7 @@ test("three.js opens the Gaussians of a scene and draws them as the extension sa
   const view = JSON.parse(readFileSync(scenePath("splats.json"), "utf8"));
   const folders = [join(WEB, "node_modules/three"), scenePath("")];
   const server = await serve({ routes: { "/page.html": PAGE }, folders });
-  const { page, close } = await openPage(browser, `${server.url}/page.html`, { ...view, allowed: /renderAsync/ });
+  const { page, close } = await openPage(browser, `${server.url}/page.html`, view);
   await page.waitForFunction(() => window.splats);
   assert.equal((await page.evaluate(() => window.splats)).length, 1);
   const drawn = await canvasPixels(page);
