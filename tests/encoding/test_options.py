@@ -139,7 +139,7 @@ def test_every_option_has_help_and_is_one_of_the_command_line(run):
         assert one.help.endswith((".", "]")) and f"{name}: {' '.join(one.help.split())}" in EncodeOptions.__doc__
         parts = {name: one} if one.parts is None else {f"{name}_{part}": own for part, own in options_of(one.parts)}
         for part, own in parts.items():
-            assert offered[part].help == own.help and f"--{part.replace('_', '-')}" in said
+            assert offered[part].help == own.help and f"--{own.name or part.replace('_', '-')}" in said
 
 
 def test_options_are_known_before_anything_heavy_is_loaded():
