@@ -146,10 +146,10 @@ def test_a_baseline_in_metres_needs_a_scene_that_knows_them(scene):
 
 
 def test_cameras_around_a_thing_and_unknown_layouts_are_refused(scene):
-    for given, layout in ((viewer_scenes.around(), "vr180"), (scene, "anaglyph")):
+    for given, layout, code in ((viewer_scenes.around(), "vr180", "array-side"), (scene, "anaglyph", "stereo")):
         with pytest.raises(OptionError) as caught:
             Eyes.of(given, layout, Baseline(0.2))
-        assert caught.value.code == "stereo"
+        assert caught.value.code == code
 
 
 # ---- what players are told

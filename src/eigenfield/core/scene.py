@@ -167,6 +167,11 @@ class Scene:
         )
 
 
+def scale_of(scene: Scene, metres_per_unit: float | None) -> float:
+    """Metres in one unit of the world: as is said, else as the scene knows, else one."""
+    return (scene.provenance.metres_per_unit or 1.0) if metres_per_unit is None else float(metres_per_unit)
+
+
 def check_scale(metres_per_unit: float | None) -> None:
     """Raise OptionError `metres` unless the metres in one unit of the world are None or a positive, finite number."""
     if metres_per_unit is not None and not 0 < metres_per_unit < math.inf:

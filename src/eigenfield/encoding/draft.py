@@ -85,6 +85,7 @@ def make_draft(
         atlas=min(DRAFT_ATLAS, round(2 * np.sqrt(pixels))),
         metres_per_unit=options.metres_per_unit,
         reference=reference,
+        rights=options.rights,
     )
     scene = encode(small, proxy, plain, progress=_within(progress))
     recorded = {**scene.settings["photographs"], "pixels": sum(width * height for width, height in chosen.sizes)}

@@ -18,6 +18,7 @@ from eigenfield.core.clip import Clip
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
+from eigenfield.imaging.colour import as_rgb
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.imaging.png import png_bytes
 from eigenfield.rendering.opengl.renderer import OpenGLRenderer
@@ -79,8 +80,7 @@ class RenderJob(PictureOptions):
 
     def rgb(self, camera: Camera, weights: ViewWeights) -> NDArray[np.uint8]:
         """(H, W, 3) uint8 of `picture`; greys are repeated."""
-        image = self.picture(camera, weights).to_uint8()
-        return image if image.shape[2] == 3 else np.repeat(image, 3, axis=2)
+        return as_rgb(self.picture(camera, weights).to_uint8())
 
     def pixels(
         self, camera: Camera, weights: ViewWeights, colour: NDArray[np.float32] | None = None

@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
-from eigenfield.core.proxy import opaque_mesh
 from eigenfield.core.scene import Scene
-from eigenfield.imaging.raster import rasterise_view
+from eigenfield.imaging.colour import as_rgb
 from eigenfield.rendering.novel import novel_camera
+from eigenfield.rendering.parallel_cameras import camera_towards, parallel_cameras
 from eigenfield.rendering.render_jobs import RenderJob, png, write_numbered
 from eigenfield.rendering.software.renderer import at_resolution
 from eigenfield.rendering.spherical import vr_boxes
@@ -33,7 +33,6 @@ from eigenfield.runtime.parallel import parallel_stream
 
 STEREO_LAYOUTS = ("side-by-side", "top-bottom", "vr180")  # vr180: side by side
 STEREO_PART, STEREO_DEGREES = 0.2, 3.0  # the most of the array's width, and as an angle, where nobody says a baseline
-STEREO_MIN_COSINE = 0.7  # between the array's X and the cameras' own x axis
 VR180_SIDE_STEP_PX, VR180_MAX_SIDE_PX = 16, 2880  # of one eye's picture
 
 
@@ -94,28 +93,18 @@ class Eyes:
             baseline: Default: what is easy on the eyes, and within the array.
 
         Raises:
-            OptionError: `stereo`: there is no such layout, or the cameras do not stand side by side before something;
-                `baseline`.
+            OptionError: `stereo`: there is no such layout; `baseline`; as `parallel_cameras`.
         """
         if layout not in STEREO_LAYOUTS:
             remedy = f"use one of {', '.join(STEREO_LAYOUTS)}"
             raise OptionError("stereo", f"no stereo is called {layout}", remedy=remedy)
-        base, right = novel_camera(scene, (0.0, 0.0)), scene.rig.view_plane.right
-        if base.R[0] @ right < STEREO_MIN_COSINE:
-            message = "the cameras do not stand side by side before the scene"
-            raise OptionError("stereo", message, remedy="stereo needs an array that looks one way")
-        forward = base.R[2] - (base.R[2] @ right) * right
-        forward = forward / np.linalg.norm(forward)
-        axes = np.stack([right, np.cross(forward, right), forward])
-        near = rasterise_view(opaque_mesh(scene.proxy), base).inverse_depth
-        if not near.any():
-            message = "the array's middle sees nothing of the scene"
-            raise OptionError("stereo", message, remedy="stereo needs a surface before it")
-        depth, extent = float(1 / np.median(near[near > 0])), float(scene.rig.view_plane.extent[0])
+        middle = novel_camera(scene, (0.0, 0.0))
+        cameras = parallel_cameras(scene, (middle.width, middle.height))
+        depth, extent = cameras.depth, float(scene.rig.view_plane.extent[0])
         if baseline is None:
             easy = depth * math.tan(math.radians(STEREO_DEGREES / 2))
             baseline = Baseline(min(STEREO_PART, easy / extent) if extent else STEREO_PART)
-        return Eyes(layout, baseline.part(scene), axes, depth)
+        return Eyes(layout, baseline.part(scene), cameras.R, depth)
 
     def reach(self, scene: Scene) -> tuple[float, float, float]:
         """Degrees, seen from what has no parallax: of the array's width and height, and between the eyes."""
@@ -154,10 +143,7 @@ class Eyes:
         ray = seen.R.T @ np.linalg.inv(seen.K) @ (seen.width / 2, seen.height / 2, 1.0)
         focus = seen.centre + ray * (self.depth / (self.axes[2] @ ray))
         centre = scene.rig.view_plane.point(*eye)
-        dx, dy, dz = self.axes @ (focus - centre)
-        fx, fy = seen.K[0, 0], seen.K[1, 1]
-        K = np.array([[fx, 0, seen.width / 2 - fx * dx / dz], [0, fy, seen.height / 2 - fy * dy / dz], [0, 0, 1]])
-        camera = Camera(K, self.axes, -self.axes @ centre, seen.width, seen.height)
+        camera = camera_towards(seen, self.axes, centre, focus - centre)
         return replace(job, resolution=None).pixels(camera, view_weights(scene, eye, job.weights))
 
     def _half_sphere(self, job: RenderJob, middle: tuple[float, float], eye: tuple[float, float]) -> NDArray[np.uint8]:
@@ -223,5 +209,4 @@ def write_stereo(
     if is_numbered(output):
         write_numbered(map(png, drawn), count, output, overwrite)
         return
-    colours = (picture if picture.shape[2] == 3 else np.repeat(picture, 3, axis=2) for picture in drawn)
-    write_video(output, colours, fps, sound=sound, boxes=vr_boxes(eyes.layout), overwrite=overwrite)
+    write_video(output, map(as_rgb, drawn), fps, sound=sound, boxes=vr_boxes(eyes.layout), overwrite=overwrite)

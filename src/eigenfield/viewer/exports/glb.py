@@ -19,7 +19,7 @@ from eigenfield.core.arguments import checked
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.proxy import Proxy
-from eigenfield.core.scene import Scene
+from eigenfield.core.scene import Scene, scale_of
 from eigenfield.core.version import __version__
 from eigenfield.gltf.accessors import FLOAT
 from eigenfield.gltf.buffer import Buffer
@@ -71,7 +71,7 @@ def write_glb(
     write = _write_draco if draco else _write_plain
     primitives = [write(part, buffer) for part in mesh_parts(scene.proxy)]
     view = buffer.view(picture)
-    scale = (scene.provenance.metres_per_unit or 1.0) if metres_per_unit is None else float(metres_per_unit)
+    scale = scale_of(scene, metres_per_unit)
     gltf = _gltf(scene, scale, image, view) | {
         "meshes": [{"name": "proxy", "primitives": primitives}],
         "accessors": buffer.accessors,

@@ -18,9 +18,9 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
 from eigenfield.rendering import RenderJob, ViewWeights, view_weights
+from eigenfield.rendering.parallel_cameras import ParallelCameras, parallel_cameras
 from eigenfield.rendering.render_jobs import png
 from eigenfield.runtime.files import write_bytes
-from eigenfield.viewer.exports.parallel import ParallelCameras, parallel_cameras
 
 QUILT_COLUMNS, QUILT_ROWS = 8, 6
 QUILT_SIDE_PX = 4096  # that every player takes: by default views are made smaller than the cameras' to fit
@@ -137,7 +137,7 @@ def write_quilt(
     """Draw and write a quilt; returns the file's path, which has the suffix.
 
     Raises:
-        OptionError: `quilt-array`, `quilt-name`; as `Renderer.draw`.
+        OptionError: `array-side`, `quilt-name`; as `Renderer.draw`.
         OutputError: The file cannot be written.
     """
     path = quilt_file(output, quilt)
@@ -176,7 +176,7 @@ def quilt_views(
         cameras: Those of another picture of the same film; None: the scene's own.
 
     Raises:
-        OptionError: `quilt-array`: the cameras do not stand side by side, or see nothing.
+        OptionError: `array-side`: the cameras do not stand side by side, or see nothing.
     """
     plane = job.scene.rig.view_plane
     cameras = quilt_cameras(job.scene, quilt) if cameras is None else cameras

@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 
 from eigenfield.core.clip import Clip
 from eigenfield.core.progress import Progress, track
+from eigenfield.imaging.colour import as_rgb
 from eigenfield.rendering import RenderJob, path_points
+from eigenfield.rendering.parallel_cameras import ParallelCameras
 from eigenfield.rendering.video import write_video
 from eigenfield.runtime.files import refuse_existing
-from eigenfield.viewer.exports.parallel import ParallelCameras
 from eigenfield.viewer.exports.quilt import Quilt, draw_quilt, quilt_cameras, quilt_file, quilt_of, quilt_views
 
 
@@ -42,7 +43,7 @@ def write_quilt_film(
         sound: As of `write_video`.
 
     Raises:
-        OptionError: `quilt-array`, `quilt-name`; as `Renderer.draw`.
+        OptionError: `array-side`, `quilt-name`; as `Renderer.draw`.
         OutputError: The file cannot be written.
     """
     even = replace(quilt, width=quilt.width & ~1, height=quilt.height & ~1, display=quilt.aspect)
@@ -53,8 +54,7 @@ def write_quilt_film(
     def draw(job: RenderJob, at: tuple[float, float]) -> NDArray[np.uint8]:
         if not cameras:
             cameras.append(quilt_cameras(job.scene, even))
-        picture = draw_quilt(job, even, quilt_views(job, even, at, cameras[0]))
-        return picture if picture.shape[2] == 3 else np.repeat(picture, 3, axis=2)
+        return as_rgb(draw_quilt(job, even, quilt_views(job, even, at, cameras[0])))
 
     pictures = track((draw(job, at) for job, at in frames), "quilts", count, progress)
     write_video(path, pictures, fps, sound=sound, overwrite=overwrite)

@@ -10,7 +10,7 @@ import numpy as np
 from eigenfield.core.arguments import checked
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.scene import Scene
+from eigenfield.core.scene import Scene, scale_of
 from eigenfield.core.version import __version__
 from eigenfield.gltf.axes import capture_to_gltf
 from eigenfield.imaging.metrics import to_codes
@@ -38,7 +38,7 @@ def write_usdz(scene: Scene, output: Path, *, metres_per_unit: float | None = No
     """
     check_usd()
     codes = to_codes(alpha_added(scene)(mean_texture(scene)))
-    scale = (scene.provenance.metres_per_unit or 1.0) if metres_per_unit is None else float(metres_per_unit)
+    scale = scale_of(scene, metres_per_unit)
     with temporary_folder() as folder, atomic_files([output], overwrite=overwrite) as (place,):
         (folder / PICTURE_FILE).write_bytes(png_bytes(codes))
         _write_layer(scene, folder / LAYER_FILE, scale, codes.shape[2] == 4)

@@ -10,8 +10,8 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
 from eigenfield.rendering import RenderJob, view_weights
+from eigenfield.rendering.parallel_cameras import ParallelCameras, inverse_depths, parallel_cameras
 from eigenfield.viewer.exports.folder import atomic_folder, write_file, write_listing
-from eigenfield.viewer.exports.parallel import ParallelCameras, inverse_depths, parallel_cameras
 
 VIEWS_SIDE = 9  # rows and columns by default, HCI's own
 VIEWS_MAX_SIDE = 99
@@ -37,7 +37,7 @@ def write_views(
         grid: (rows, columns). Default: 9 x 9, or 9 in a line where the cameras stand in one.
 
     Raises:
-        OptionError: `views-grid`: no such grid fits into the array; `quilt-array`; as `Renderer.draw`.
+        OptionError: `views-grid`: no such grid fits into the array; `array-side`; as `Renderer.draw`.
         OutputError: The folder cannot be written.
     """
     scene, plane = job.scene, job.scene.rig.view_plane

@@ -12,6 +12,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
 from eigenfield.gltf.axes import capture_to_gltf
+from eigenfield.imaging.colour import as_rgb
 from eigenfield.imaging.sampling import distances_to, farthest_points
 from eigenfield.rendering import camera_weights, renderer_of
 from eigenfield.runtime.parallel import parallel_map
@@ -60,8 +61,7 @@ def _cameras(scene: Scene) -> list[int]:
 
 def _picture(scene: Scene, index: int) -> NDArray[np.float32]:
     """(H, W, 3) what a scene draws in a camera, on black."""
-    image = renderer_of(scene).draw(scene.rig.cameras[index], camera_weights(scene, index)).image.clip(0, 1)
-    return image if image.shape[2] == 3 else np.repeat(image, 3, axis=2)
+    return as_rgb(renderer_of(scene).draw(scene.rig.cameras[index], camera_weights(scene, index)).image.clip(0, 1))
 
 
 @dataclass(frozen=True, eq=False)

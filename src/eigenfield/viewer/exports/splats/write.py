@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from eigenfield.core.arguments import checked
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress
-from eigenfield.core.scene import Scene
+from eigenfield.core.scene import Scene, scale_of
 from eigenfield.core.version import __version__
 from eigenfield.gltf.accessors import FLOAT, UINT8
 from eigenfield.gltf.axes import capture_to_gltf
@@ -63,7 +63,7 @@ def write_splats(
     check_splats(output, splats)
     refuse_attributes(scene.appearance.channels)
     made, decibels = fit_gaussians(scene, splats, progress)
-    scale = (scene.provenance.metres_per_unit or 1.0) if metres_per_unit is None else float(metres_per_unit)
+    scale = scale_of(scene, metres_per_unit)
     turned = _turned(made, capture_to_gltf(scene.rig.view_plane), scale)
     if output.suffix.lower() == ".spz":
         with atomic_files([output], overwrite=overwrite) as (place,):

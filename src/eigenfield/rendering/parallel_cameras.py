@@ -1,4 +1,4 @@
-"""Cameras side by side that look one way and share a plane without parallax: for quilts and for grids of views."""
+"""Cameras side by side that look one way and share a plane without parallax: quilts, grids of views, two eyes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.proxy import opaque_mesh
 from eigenfield.core.scene import Scene
 from eigenfield.imaging.raster import rasterise_view
-from eigenfield.rendering import at_resolution, novel_camera
+from eigenfield.rendering.novel import novel_camera
+from eigenfield.rendering.software.renderer import at_resolution
 
 PARALLEL_MIN_COSINE = 0.7  # between the array's X and the cameras' own x axis
 
@@ -35,7 +36,7 @@ class ParallelCameras:
 
     def at(self, centre: NDArray[np.float64]) -> Camera:
         """The camera that stands in a place (3,) of the world."""
-        return _camera_towards(self.base, self.R, centre, self.focus - centre)
+        return camera_towards(self.base, self.R, centre, self.focus - centre)
 
 
 def parallel_cameras(scene: Scene, size: tuple[int, int], *, square: bool = False) -> ParallelCameras:
@@ -47,7 +48,7 @@ def parallel_cameras(scene: Scene, size: tuple[int, int], *, square: bool = Fals
         square: Whether both focal lengths are that of x.
 
     Raises:
-        OptionError: `quilt-array`: the cameras do not stand side by side, or see nothing.
+        OptionError: `array-side`: the cameras do not stand side by side, or see nothing.
     """
     base = at_resolution(novel_camera(scene, (0.0, 0.0)), size)
     if square:
@@ -57,19 +58,19 @@ def parallel_cameras(scene: Scene, size: tuple[int, int], *, square: bool = Fals
     right = scene.rig.view_plane.right
     if base.R[0] @ right < PARALLEL_MIN_COSINE:
         raise OptionError(
-            "quilt-array",
+            "array-side",
             "the cameras do not stand side by side before the scene",
-            remedy="this export needs an array that looks one way",
+            remedy="this needs an array that looks one way",
         )
     forward = base.R[2] - (base.R[2] @ right) * right
     forward = forward / np.linalg.norm(forward)
     R = np.stack([right, np.cross(forward, right), forward])
     middle = base.R.T @ np.linalg.inv(base.K) @ (base.width / 2, base.height / 2, 1.0)
     towards = R @ middle
-    near = inverse_depths(scene, _camera_towards(base, R, base.centre, middle))
+    near = inverse_depths(scene, camera_towards(base, R, base.centre, middle))
     if not len(near):
         raise OptionError(
-            "quilt-array", "the array's middle sees nothing of the scene", remedy="there must be a surface before it"
+            "array-side", "the array's middle sees nothing of the scene", remedy="there must be a surface before it"
         )
     depth = float(1 / np.median(near))
     return ParallelCameras(base, R, base.centre + middle * (depth / towards[2]), depth)
@@ -81,7 +82,7 @@ def inverse_depths(scene: Scene, camera: Camera) -> NDArray[np.float64]:
     return np.asarray(near[near > 0], np.float64)
 
 
-def _camera_towards(
+def camera_towards(
     base: Camera, R: NDArray[np.float64], centre: NDArray[np.float64], direction: NDArray[np.float64]
 ) -> Camera:
     """A camera at `centre` with axes R and the focal lengths of `base`, which sees `direction` in its middle."""

@@ -19,8 +19,8 @@ from eigenfield.core.viewplane import fit_view_plane
 from eigenfield.gltf import save
 from eigenfield.imaging.metrics import psnr
 from eigenfield.rendering import RenderJob, renderer_of, view_weights
+from eigenfield.rendering.parallel_cameras import parallel_cameras
 from eigenfield.viewer import exports
-from eigenfield.viewer.exports.parallel import parallel_cameras
 from eigenfield.viewer.exports.quilt import quilt_views
 from support.clips import numbered_clip
 from support.scenes import tiny_scene
