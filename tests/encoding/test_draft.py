@@ -62,8 +62,10 @@ def test_it_draws_the_photographs_from_smaller_ones(row, monkeypatch):
 
 def test_held_out_photographs_are_left_out_and_views_are_spread(row, monkeypatch):
     small(monkeypatch, max_views=4)
-    options = ef.EncodeOptions(hold_out="every:2", reference="view_03.png")
+    rights = ef.Rights(author="Ann", licence="CC BY 4.0")
+    options = ef.EncodeOptions(hold_out="every:2", reference="view_03.png", rights=rights)
     scene = make_draft(open_capture(row), row / "proxy.ply", options, None)
+    assert scene.rights == rights
     held = held_out_cameras("every:2", open_capture(row).names, np.zeros((9, 2)))
     shown = {name for name, out in zip(open_capture(row).names, held, strict=True) if not out}
     assert set(scene.rig.names) < shown and len(scene.rig.names) == 4
