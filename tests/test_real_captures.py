@@ -51,7 +51,7 @@ CAPTURES = {
         ["--calibration", "calibration/refined.json"], "../tarot_17x17_512/calibration/proxy.ply",
         ["--hold-out", "every:5", "-n", "7", "--fit", "none"], 31.0, 0.999,
     ),
-    "cube_colmap_mesh": ([], "proxy.obj", ["-n", "7", "--fit", "none"], 34.0, 0.90),
+    "cube_colmap_mesh": ([], "proxy.obj", ["-n", "7", "--fit", "none", "--triangles", "5000"], 34.0, 0.90),
 }  # fmt: skip
 
 

@@ -81,14 +81,14 @@ def test_a_file_in_place_of_the_folder_is_said(run, tmp_path, kind):
 
 @pytest.mark.slow
 def test_the_clip_is_good_at_its_own_size(run, tmp_path):
-    """Six frames of the thirty, which turn as far: what moves is drawn where it is."""
+    """Three frames of the thirty, which turn as far: what moves is drawn where it is."""
     folder = tmp_path / "demo-clip"
-    draw_demo_clip(folder / "footage", frames=6)
-    assert len(list((folder / "footage").glob("mesh_*.ply"))) == 6
-    assert len(list((folder / "footage").glob("cam_*/*.png"))) == 150
+    draw_demo_clip(folder / "footage", frames=3)
+    assert len(list((folder / "footage").glob("mesh_*.ply"))) == 3
+    assert len(list((folder / "footage").glob("cam_*/*.png"))) == 75
     done = run("demo", "--clip", "-o", folder)
     assert done.code == 0, done.err
     clip = load_clip(folder / "clip.glb")
-    assert clip.timeline.frames == 6 and len(clip.rig.names) == 25
+    assert clip.timeline.frames == 3 and len(clip.rig.names) == 25
     figures = json.loads((folder / "evaluation.json").read_text())
     assert figures["image"]["encoded"]["psnr"] > 32 and figures["image"]["held_out"]["psnr"] > 29

@@ -17,7 +17,7 @@ from PIL import Image
 from eigenfield.capture import open_capture
 from eigenfield.capture.overlay import draw_overlay, proxy_lines
 from eigenfield.capture.survey import corners_and_centre, find_focus, measure_array
-from eigenfield.cli.inspect import report_lines
+from eigenfield.cli.inspect_lines import report_lines
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, OptionError, OutputError
 from eigenfield.core.mesh import Mesh

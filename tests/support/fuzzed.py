@@ -1,4 +1,4 @@
-"""Tests of many generated inputs: a few of them in the fast suite, five hundred of each kind as slow tests, and each
+"""Tests of many generated inputs: a few of them in the fast suite, two hundred of each kind as slow tests, and each
 night as many as EIGENFIELD_FUZZ says."""
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-FEW, MANY = 12, int(os.environ.get("EIGENFIELD_FUZZ", "500"))
+FEW, MANY = 12, int(os.environ.get("EIGENFIELD_FUZZ", "200"))
 QUIET = {"suppress_health_check": list(HealthCheck)}
 
 

@@ -1,13 +1,13 @@
 // A clip that plays for long takes no more memory than after its first seconds.
 //
 // Environment:
-//   EIGENFIELD_SECONDS   how long it plays; else 40
+//   EIGENFIELD_SECONDS   how long it plays; else 20
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { sceneBytes, startLab } from "./harness.mjs";
 
-const SECONDS = Number(process.env.EIGENFIELD_SECONDS ?? 40);
+const SECONDS = Number(process.env.EIGENFIELD_SECONDS ?? 20);
 const EARLY = Math.min(10, SECONDS / 4); // seconds after which memory is what it is to stay
 const TURNED = 100; // frames after which it is: all groups were open, and what draws and decodes is compiled
 const SAMPLES = 5;
