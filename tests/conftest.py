@@ -13,7 +13,8 @@ from eigenfield.runtime.signals import STOP_SIGNALS
 from support.printed import check_printed
 from support.program import Ran, call
 
-settings.register_profile("eigenfield", deadline=None, max_examples=40)  # times of a busy machine say nothing
+EXAMPLES = int(os.environ.get("EIGENFIELD_EXAMPLES", "40"))  # of a property; each night as many as this says
+settings.register_profile("eigenfield", deadline=None, max_examples=EXAMPLES)  # times of a busy machine say nothing
 settings.load_profile("eigenfield")
 
 # Tests that run in the background, or under nohup, inherit signals that are ignored. The program leaves them so.
