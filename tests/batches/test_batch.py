@@ -53,6 +53,7 @@ def listed(capture, tmp_path):
     return tmp_path / "captures.toml"
 
 
+@pytest.mark.slow
 def test_clips_lie_beside_scenes_and_are_taken_up_again(capture, tmp_path):
     draw_demo_clip(tmp_path / "footage", rows=2, columns=3, size=48, frames=2)
     (tmp_path / "captures.toml").write_text(

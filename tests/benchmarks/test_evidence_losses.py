@@ -22,6 +22,8 @@ from support.captures import write_capture
 from support.planes import paint
 from support.scenes import row_grid
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def coded(tmp_path_factory):

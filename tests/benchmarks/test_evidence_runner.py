@@ -43,6 +43,7 @@ def test_a_step_is_done_once(tmp_path, capture):
     assert {"commit", "machine", "command", "date", "seconds"} <= set(first)
 
 
+@pytest.mark.slow
 def test_a_quick_figure_does_not_stand_for_a_full_one(tmp_path, capture):
     step(tmp_path, capture, lambda: {"value": 1}, Run(tmp_path, quick=True))
     assert step(tmp_path, capture, lambda: {"value": 2}, Run(tmp_path))["figures"] == {"value": 2}

@@ -35,6 +35,7 @@ def solved(scene: tuple[PhotoSet, LightField], tmp_path_factory: pytest.TempPath
         )
 
 
+@pytest.mark.slow
 def test_cameras_and_points_are_those_of_the_other_photographs(scene, solved):
     photos, _ = scene
     own = [0, 1, 3, 4]

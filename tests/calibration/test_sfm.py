@@ -324,6 +324,7 @@ def test_a_layout_is_needed_to_match_by_it():
 # the verb
 
 
+@pytest.mark.slow
 def test_the_verb_writes_what_inspect_and_open_capture_read(scene, tmp_path, run):
     photos, truth = scene
     (tmp_path / "K.txt").write_text("\n".join(" ".join(map(str, row)) for row in K))

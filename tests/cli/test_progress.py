@@ -274,6 +274,7 @@ def run_on_a_terminal(words: list[str]) -> str:
     return re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", shown.decode())
 
 
+@pytest.mark.slow
 def test_an_encode_says_its_cost_and_its_steps(fitted: tuple[Path, Path], tmp_path: Path) -> None:
     words = ["encode", str(fitted[0]), "--proxy", str(fitted[0] / "proxy.ply"), "-o", str(tmp_path / "out.glb")]
     shown = run_on_a_terminal([*words, "--preset", "small"])

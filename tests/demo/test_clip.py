@@ -23,6 +23,8 @@ from eigenfield.proxy import read_mesh
 from eigenfield.runtime.parallel import set_threads
 from support.folders import folder_digest
 
+pytestmark = pytest.mark.slow
+
 SIZE, FRAMES, COLUMNS = 128, 4, 3
 
 

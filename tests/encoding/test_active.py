@@ -72,6 +72,7 @@ def waving():
     return FootageInMemory(frames, [])
 
 
+@pytest.mark.slow
 def test_a_group_is_as_good_as_one_that_is_fitted_as_a_whole(waving, monkeypatch):
     options = EncodeOptions(quality=90)
     quick = encode_footage(waving, MESH, options, group="4")

@@ -86,6 +86,7 @@ def fine(two, tmp_path_factory):
 
 
 @pytest.mark.parametrize("kind", ["size", "psnr", "too little"])
+@pytest.mark.slow
 def test_a_target_is_reached_by_the_quality_or_the_nearest_is_taken(two, fine, kind, tmp_path):
     target = {"size": Target(size=fine), "psnr": Target(psnr=32.0), "too little": Target(size=1200)}[kind]
     clip = encode_footage(two, MESH, EncodeOptions(target=target), group="1", work=tmp_path / "work")
@@ -205,6 +206,7 @@ def test_without_a_fit_all_frames_of_a_group_share_the_decomposition_of_their_te
 
 
 @pytest.mark.parametrize("count", [None, pytest.param(2, marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_workers_make_the_same_groups(tmp_path, count):
     seen = footage(1.0, 0.8, 0.7, 0.7)
     alone = encode_footage(seen, MESH, OPTIONS, group="2")

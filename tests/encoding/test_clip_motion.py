@@ -22,6 +22,8 @@ from eigenfield.rendering import Renderer, camera_weights, view_weights
 from eigenfield.runtime.executor import open_executor
 from support.moving_plate import CAMERAS, filmed, staged
 
+pytestmark = pytest.mark.slow
+
 OPTIONS = EncodeOptions(quality=85, hold_out="every:4")
 HELD_OUT = 2, 6
 FRAMES = 6

@@ -19,6 +19,8 @@ from eigenfield.rendering import Renderer, camera_weights, view_weights
 from eigenfield.runtime.executor import open_executor
 from support.moving_sheet import CAMERAS, MIDDLE, chart_of_disc, filmed, sheets, true_opacity, wall
 
+pytestmark = pytest.mark.slow
+
 FRAMES = 8
 OPTIONS = EncodeOptions(quality=85, hold_out="every:4")
 HELD_OUT = tuple(range(2, len(CAMERAS), 4))

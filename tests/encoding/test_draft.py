@@ -148,6 +148,7 @@ class Told(StepProgress):
         pass
 
 
+@pytest.mark.slow
 def test_the_scene_takes_the_draft_s_place_at_the_same_address(row, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(command.webbrowser, "open", lambda address: True)
     progress = Told()

@@ -462,6 +462,7 @@ def test_options_that_do_not_go_with_a_fit(fitted, options, code):
     assert caught.value.code == code
 
 
+@pytest.mark.slow
 def test_presets_differ_in_bytes(fitted):
     folder, _ = fitted
     options = {"proxy": folder / "proxy.ply", "textures": 4, "fit": "photographs"}

@@ -111,6 +111,7 @@ def test_of_two_fits_the_better_is_kept(tmp_path, caplog, monkeypatch, asked):
         assert found <= asked.size and reached[1] >= reached[0]
 
 
+@pytest.mark.slow
 def test_a_target_far_from_the_preset_has_an_atlas_of_its_own(tmp_path, caplog):
     folder = write_capture(tmp_path / "nine")
     capture, proxy = open_capture(folder), folder / "proxy.ply"

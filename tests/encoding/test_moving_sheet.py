@@ -31,6 +31,8 @@ from support.passing import (
     write_planes,
 )
 
+pytestmark = pytest.mark.slow
+
 MIDDLE = 4  # of the nine cameras
 
 

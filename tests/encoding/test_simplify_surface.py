@@ -40,6 +40,7 @@ def count_of(mesh: Mesh, lambda_: float) -> int | None:
     return None if found is None else len(found.faces)
 
 
+@pytest.mark.slow
 def test_a_plane_keeps_next_to_nothing_and_waves_as_many_as_their_bytes_pay_for():
     found = [count_of(wavy(height), 7.5e-6) for height in (0.0, 0.05, 0.1)]
     assert all(found) and found == sorted(set(found))

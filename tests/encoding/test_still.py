@@ -124,6 +124,7 @@ def test_a_middle_frame_that_is_missing_and_cameras_that_are_not_known(passing, 
     assert np.abs(seen.pixels - better.photograph(4).pixels)[counts].mean() < 1 / 255
 
 
+@pytest.mark.slow
 def test_a_clip_without_a_mesh_goes_on_where_it_was_stopped(passing, tmp_path):
     class StoppedError(Exception):
         pass

@@ -42,6 +42,7 @@ def test_each_row_is_a_frame_and_has_each_photograph_beside_what_is_drawn(clip, 
     assert np.all(np.diff(means) > 0.005)
 
 
+@pytest.mark.slow
 def test_the_sheet_is_a_picture_and_replaces_none_unasked(clip, tmp_path):
     footage = write_footage(clip, tmp_path / "f")
     path = write_clip_sheet(clip, footage, tmp_path / "plots")

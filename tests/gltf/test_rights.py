@@ -80,6 +80,7 @@ def test_every_edit_keeps_it(file, tmp_path):
     assert outline(file)[0].rights == SAID
 
 
+@pytest.mark.slow
 def test_a_packed_file_keeps_it(tmp_path):
     save(replace(fitted_scene(), rights=SAID), tmp_path / "a.glb")
     assert "packed" in root_of(tmp_path / "a.glb")["extensions"][limits.EXTENSION]

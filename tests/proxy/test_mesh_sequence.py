@@ -21,6 +21,7 @@ def two_sheets(apart):
     return Mesh(vertices, faces)
 
 
+@pytest.mark.slow
 def test_vertices_are_found_again_after_cleaning_and_cutting_charts():
     meshes = [two_sheets(apart) for apart in (0.25, 0.5, 0.75)]
     (sequence,) = read_sequences(meshes, 3)

@@ -45,6 +45,7 @@ def whole(points):
     return poisson_surface(points)
 
 
+@pytest.mark.slow
 def test_poisson_is_the_same_twice_and_true(whole, points):
     again = poisson_surface(points)
     assert np.array_equal(again.vertices, whole.vertices) and np.array_equal(again.faces, whole.faces)

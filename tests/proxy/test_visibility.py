@@ -147,6 +147,7 @@ def test_the_surface_is_where_the_views_see_it_and_faces_them(views, cameras):
         assert (((view.camera.centre - middles) * mesh.face_normals()[seen]).sum(axis=1) > 0).mean() > 0.98
 
 
+@pytest.mark.slow
 def test_what_no_view_knows_is_closed_and_what_they_see_through_is_open(views):
     far = [rasterise_view(square(9, 3.0), view.camera).inverse_depth for view in views]
     hole, open_air = with_patch(views, [0] * len(views)), with_patch(views, far)

@@ -21,6 +21,8 @@ from eigenfield.reconstruction.whole import reconstruct
 from eigenfield.stereo import view_matrices
 from support.captures import write_array
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def photos(tmp_path_factory):

@@ -81,6 +81,7 @@ def test_workers_measure_the_same(run, fitted):
     assert not list(scene.parent.glob(".eigenfield-shared*"))
 
 
+@pytest.mark.slow
 def test_workers_make_the_same_texture_maps(run, tmp_path):
     folder = write_capture(tmp_path / "nine")
     words = ["--proxy", folder / "proxy.ply", "--max-angle", 15, "--textures", 2, "--atlas", 64, "-q"]

@@ -114,6 +114,7 @@ def test_on_the_plane_rays_meet_it_at_the_eye(context, loaded, at):
 
 
 @pytest.mark.parametrize("eye", [FREE[0], *(pytest.param(eye, marks=pytest.mark.slow) for eye in FREE[1:])])
+@pytest.mark.slow
 def test_off_the_plane_every_point_has_its_own_weights(context, loaded, eye):
     camera = free_camera(np.array(eye))
     drawn = OpenGLRenderer(loaded, filter="bilinear", context=context).draw(camera)

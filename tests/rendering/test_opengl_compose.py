@@ -82,6 +82,7 @@ def test_more_textures_than_one_draw_sums(context):
     "eye",
     [(0.35, -0.2, -1.9), *(pytest.param(eye, marks=pytest.mark.slow) for eye in [(-0.6, 0.3, -4.5), (0.1, 0.1, -3.0)])],
 )
+@pytest.mark.slow
 def test_each_texel_of_each_size_has_its_own_weights(context, eye):
     made = flat(layered_scene(), 0.0, 1.0)
     sizes = {size for plane in made.appearance.planes for size in plane.sizes}
@@ -94,6 +95,7 @@ def test_each_texel_of_each_size_has_its_own_weights(context, eye):
         assert np.abs(drawn - composed(made, own)).mean() > 2 * CLOSE
 
 
+@pytest.mark.slow
 def test_texels_beside_a_chart_have_its_weights_and_others_the_eyes(context):
     """A filter within the chart reads two texels beyond it."""
     eye, low, high = np.array([0.35, -0.2, -1.9]), 0.25, 0.75

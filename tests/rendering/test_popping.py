@@ -16,6 +16,8 @@ from eigenfield.demo import draw_demo_capture
 from eigenfield.gltf import save
 from eigenfield.rendering import novel_camera, renderer_of, view_weights
 
+pytestmark = pytest.mark.slow
+
 ACROSS = np.array([[-0.83, -0.61], [0.87, 0.72]])  # slanted: through no camera, along no row
 PIECE = np.array([[-0.2, -0.12], [0.3, 0.27]])  # of it, for the pictures
 

@@ -37,6 +37,7 @@ def counts(tmp_path):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="XDG_CACHE_HOME names the cache on Linux")
+@pytest.mark.slow
 def test_the_second_process_compiles_nothing(counts, tmp_path):
     assert counts(tmp_path / "cache") == (0, 1)
     assert counts(tmp_path / "cache") == (1, 0)

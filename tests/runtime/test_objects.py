@@ -235,6 +235,7 @@ def put_captures(tmp_path: Path, address: str) -> tuple[dict[str, object], Path]
     return {"proxy": str(proxy), "fit": "none", "textures": 2, "atlas": 64}, tmp_path / "captures"
 
 
+@pytest.mark.slow
 def test_a_batch_reads_captures_from_a_store_and_writes_scenes_there(store, tmp_path):
     options, captures = put_captures(tmp_path, "memory://lab")
     here = ef.batch(captures, tmp_path / "here", progress=None, **options)

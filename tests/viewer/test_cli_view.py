@@ -116,6 +116,7 @@ def port_of(process):
     [pytest.param(signal.SIGINT, marks=pytest.mark.slow), signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)],
     ids=lambda n: n.name,
 )
+@pytest.mark.slow
 def test_the_command_serves_until_it_is_stopped(scene, capture, number):
     with command(scene, capture, "--no-browser", "--metres-per-unit", "0.5") as process:
         port = port_of(process)
@@ -138,6 +139,7 @@ def test_the_command_keeps_what_it_checked(scene, tmp_path):
         assert client.request("/scene.glb").body == scene.read_bytes()
 
 
+@pytest.mark.slow
 def test_a_plain_gltf_file_is_shown_as_one(scene, capture, tmp_path):
     text, rest = glb_parts(scene.read_bytes())
     root = json.loads(text)
@@ -152,6 +154,7 @@ def test_a_plain_gltf_file_is_shown_as_one(scene, capture, tmp_path):
         assert process.wait(20) == 2 and "plain.glb" in process.stderr.readline()
 
 
+@pytest.mark.slow
 def test_the_command_opens_the_browser(scene, tmp_path, monkeypatch):
     """$BROWSER is called with the address."""
     seen = tmp_path / "seen"
@@ -188,6 +191,7 @@ def test_errors_of_the_command_are_one_line(scene, tmp_path, run):
             assert err.count("\n") == 1 and err.startswith("eigenfield: ") and part in err, err
 
 
+@pytest.mark.slow
 def test_the_command_says_when_the_network_can_see_it(scene):
     with command(scene, "--no-browser", "--host", "0.0.0.0") as process:
         port_of(process)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import gzip
 import io
 import logging
 import threading
@@ -100,6 +101,25 @@ def test_what_is_known_is_not_sent_again(client):
         again = client.request("/scene.glb", If_None_Match=known)
         assert (again.status, again.body, again.headers["ETag"]) == (304, b"", answer.headers["ETag"])
     assert client.request("/scene.glb", If_None_Match='"other"').status == 200
+
+
+@pytest.mark.parametrize("accepted", ["gzip", "deflate, GZIP;q=0.5", "br , x-gzip ; q=1.000"])
+def test_texts_are_packed_for_who_unpacks_them(client, accepted):
+    for path in ("/", "/viewer.js", "/viewer.css"):
+        plain, packed = client.request(path), client.request(path, Accept_Encoding=accepted)
+        assert gzip.decompress(packed.body) == plain.body and len(packed.body) == int(packed.headers["Content-Length"])
+        assert (packed.headers["Content-Encoding"], packed.headers["Vary"]) == ("gzip", "Accept-Encoding")
+        assert plain.headers["Vary"] == "Accept-Encoding" and "Content-Encoding" not in plain.headers
+        assert packed.headers["ETag"] != plain.headers["ETag"]
+        known = client.request(path, Accept_Encoding=accepted, If_None_Match=packed.headers["ETag"])
+        assert known.status == 304
+    assert "Content-Encoding" not in client.request("/scene.glb", Accept_Encoding=accepted).headers
+
+
+@pytest.mark.parametrize("accepted", ["", "identity", "gzip;q=0", "gzip;q=0.0", "gzipped", "gzip;q=x", "*"])
+def test_texts_are_sent_as_they_are_to_others(client, accepted):
+    answer = client.request("/viewer.js", Accept_Encoding=accepted)
+    assert "Content-Encoding" not in answer.headers and answer.body == client.request("/viewer.js").body
 
 
 @pytest.mark.parametrize(

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import gzip
 import hashlib
 import json
 import secrets
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from eigenfield.core.version import __version__
 from eigenfield.gltf.source import ByteSource, HeldBytes
@@ -31,16 +32,23 @@ class Content:
     Attributes:
         data: In memory, or in a file that is read for each answer.
         tag: The strong ETag, quotes included.
+        gzip: The same for clients that unpack gzip, with an ETag of its own; None: as it is for all.
     """
 
     type: str
     data: ByteSource
     tag: str
+    gzip: Content | None = None
 
     @staticmethod
     def of(type: str, data: bytes) -> Content:
         """Bytes with their ETag."""
         return Content(type, HeldBytes(data), f'"{hashlib.sha256(data).hexdigest()[:32]}"')
+
+    @staticmethod
+    def of_text(type: str, data: bytes) -> Content:
+        """Bytes that become much less when they are packed."""
+        return replace(Content.of(type, data), gzip=Content.of(type, gzip.compress(data, mtime=0)))
 
 
 Manifest = Mapping[str, Callable[[], Content]]
@@ -81,8 +89,8 @@ def make_manifest(
         config["draft"] = "draft"
     if second is not None:
         config["beside"] = {"names": second.names, "scene": SECOND_FILE, "bytes": len(second.glb)}
-    fixed = {f"/{name}": Content.of(type, static_file(name)) for name, type in STATIC_TYPES.items()}
-    fixed["/"] = Content.of("text/html; charset=utf-8", page_html(config))
+    fixed = {f"/{name}": Content.of_text(type, static_file(name)) for name, type in STATIC_TYPES.items()}
+    fixed["/"] = Content.of_text("text/html; charset=utf-8", page_html(config))
     fixed["/scene.glb"] = scene
     if second is not None:
         fixed[f"/{SECOND_FILE}"] = Content.of(SCENE_TYPE, second.glb)

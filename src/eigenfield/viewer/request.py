@@ -37,6 +37,7 @@ SEND_PIECE_BYTES = 256 * 1024  # of an answer, sent at a time
 TOKEN_PATTERN = rb"[!#$%&'*+.^_`|~0-9A-Za-z-]+"
 REQUEST_LINE = re.compile(TOKEN_PATTERN + rb" [^ \r\n]+ HTTP/[0-9]\.[0-9]\r\n")
 RANGE_HEADER = re.compile(r"bytes=\s*([0-9]{0,100})-([0-9]{0,100})\s*", re.IGNORECASE)
+GZIP_CODING = re.compile(r"(?:x-)?gzip\s*(?:;\s*q=([01](?:\.[0-9]{0,3})?)\s*)?", re.IGNORECASE)
 HEADER_LINE = re.compile(TOKEN_PATTERN + rb":[^\x00-\x08\x0a-\x1f]*\r\n")
 
 
@@ -251,6 +252,16 @@ def wanted_range(headers: Mapping[str, str], size: int, tag: str) -> tuple[int, 
     if int(first) >= size:
         raise _outside(size)
     return int(first), min(size, int(last) + 1) if last else size
+
+
+def takes_gzip(headers: Mapping[str, str]) -> bool:
+    """Whether Accept-Encoding (RFC 9110, section 12.5.3) names gzip, and does not refuse it by a weight of 0.
+
+    Args:
+        headers: By names in lower case.
+    """
+    codings = [GZIP_CODING.fullmatch(coding.strip()) for coding in headers.get("accept-encoding", "").split(",")]
+    return any(match is not None and float(match[1] or 1) > 0 for match in codings)
 
 
 def is_known(headers: Mapping[str, str], tag: str) -> bool:

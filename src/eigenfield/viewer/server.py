@@ -24,7 +24,7 @@ from typing import Any
 from eigenfield.core.errors import EigenfieldError, OptionError
 from eigenfield.gltf.source import ByteRange
 from eigenfield.viewer.manifest import Content, Manifest
-from eigenfield.viewer.request import RefusedError, StrictHandler, is_known, wanted_range
+from eigenfield.viewer.request import RefusedError, StrictHandler, is_known, takes_gzip, wanted_range
 
 log = logging.getLogger("eigenfield.viewer")
 
@@ -191,12 +191,16 @@ class _Answers(StrictHandler):
             raise RefusedError(413, "a request here has no body")
         if "expect" in headers:
             raise RefusedError(417, "nothing is expected here")
-        content = self._content()
+        content, coding = self._content(), {}
+        if content.gzip is not None:
+            coding["Vary"] = "Accept-Encoding"
+            if takes_gzip(headers):
+                content, coding["Content-Encoding"] = content.gzip, "gzip"
         if is_known(headers, content.tag):
-            self.reply(304, {"ETag": content.tag}, None)
+            self.reply(304, {"ETag": content.tag, **coding}, None)
             return
         size, status = content.data.size, 200
-        about = {"Content-Type": content.type, "ETag": content.tag, "Accept-Ranges": "bytes"}
+        about = {"Content-Type": content.type, "ETag": content.tag, "Accept-Ranges": "bytes", **coding}
         part = wanted_range(headers, size, content.tag) if self.command == "GET" else None
         first, last = part or (0, size)
         if part is not None:

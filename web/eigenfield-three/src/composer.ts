@@ -16,7 +16,7 @@ import {
 import type { ViewPlane } from "./info.js";
 import { gridsOf, smaller, type Size } from "./memory.js";
 import type { Part } from "./parts.js";
-import { FINER, FINER_OPACITY, LAYERS, SUM, makePlacing, makeQuad, makeTarget, within } from "./passes.js";
+import { FINER, FINER_OPACITY, LAYERS, SUM, makePlacing, makePlacingMaterial, makeQuad, makeTarget, within } from "./passes.js";
 import type { Surface } from "./surface.js";
 
 /** What is summed: everything that makes a difference to it. */
@@ -28,7 +28,7 @@ export interface Recipe {
   count: number;
   weights: Float64Array; // of all textures of all bases
   eye: [number, number, number] | null; // X, Y, height: each texel looks its weights up in `maps`
-  places: number; // version of the surface, which says where texels lie; 0 where nothing depends on it
+  places: number; // version of the surface since which texels lie as they do; 0 where nothing depends on it
   maps: DataArrayTexture | null;
 }
 
@@ -54,11 +54,17 @@ interface Step {
   quad: Quad;
 }
 
+interface Places {
+  target: WebGLRenderTarget;
+  material: RawShaderMaterial;
+  version: number; // of the surface
+}
+
 interface Grid {
   target: WebGLRenderTarget;
   scene: Scene;
   steps: Step[];
-  places: { target: WebGLRenderTarget; version: number } | null; // where its texels lie, once that is needed
+  places: Places | null; // where its texels lie, once that is needed
 }
 
 /** The opacity of sheets: summed into a target of its own, and from there brought to the atlas's size. */
@@ -131,6 +137,7 @@ export class Composer {
     for (const { target, places, scene } of this.grids) {
       target.dispose();
       places?.target.dispose();
+      places?.material.dispose();
       freeQuads(scene);
     }
     this.opacity?.target.dispose();
@@ -147,13 +154,15 @@ export class Composer {
     this.opacityDrawn = version;
   }
 
+  /** `version`: of the surface, from which on they are as they are now. */
   private findPlaces(renderer: WebGLRenderer, grid: Grid, version: number): void {
-    if (grid.places?.version === version) return;
+    if (grid.places && grid.places.version >= version) return;
     const target = grid.places?.target ?? makeTarget([grid.target.width, grid.target.height], false);
-    const { scene, free } = makePlacing(this.surface.geometry, this.plane, target);
-    this.draw(renderer, scene, target);
-    free();
-    grid.places = { target, version };
+    const material = grid.places?.material ?? makePlacingMaterial(target);
+    const placing = makePlacing(this.surface.geometry, this.plane, material);
+    this.draw(renderer, new Scene().add(placing), target);
+    placing.geometry.dispose();
+    grid.places = { target, material, version: this.surface.version };
   }
 
   /** `keep`: what the target has in its alpha stays there. */

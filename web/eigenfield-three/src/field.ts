@@ -308,7 +308,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
       count: shown === VIEWS.mean || this.plain ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
       weights,
       eye: eye && onPlane(this.info.viewPlane, eye),
-      places: eye || this.coarser > 1 ? this.surface.version : 0,
+      places: eye ? this.surface.version : this.coarser > 1 ? this.surface.laid : 0,
       maps: eye && this.weights.maps(this.mixing, this.usable),
     };
   }

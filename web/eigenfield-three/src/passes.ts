@@ -16,7 +16,6 @@ import {
   NoBlending,
   OneFactor,
   RawShaderMaterial,
-  Scene,
   Sphere,
   Vector2,
   Vector4,
@@ -121,13 +120,26 @@ export function onPlane(plane: ViewPlane, point: Vector): Vector {
   return [...planeCoordinates(plane, point), dot(from, normal) / (Math.max(...plane.extent) || 1)];
 }
 
-/** A scene that draws where each texel of a target lies. The mesh is drawn beside itself, too, for the texels beside
- * its charts; the nearest comes last, and stays. */
-export function makePlacing(
-  shape: BufferGeometry,
-  plane: ViewPlane,
-  target: WebGLRenderTarget,
-): { scene: Scene; free: () => void } {
+const STEPS = Array.from({ length: 2 * REACH + 1 }, (_, i) => i - REACH);
+const SHIFTS = STEPS.flatMap((y) => STEPS.map((x) => new Vector2(x, y))).sort((a, b) => b.lengthSq() - a.lengthSq());
+
+/** Draws where each texel of a target lies, as the mesh of `makePlacing`. */
+export function makePlacingMaterial(target: WebGLRenderTarget): RawShaderMaterial {
+  return new RawShaderMaterial({
+    glslVersion: GLSL3,
+    vertexShader: SPREAD.replace("SHIFTS", String(SHIFTS.length)),
+    fragmentShader: PLACE,
+    uniforms: { texel: { value: new Vector2(2 / target.width, 2 / target.height) }, shifts: { value: SHIFTS } },
+    side: DoubleSide,
+    blending: NoBlending,
+    depthTest: false,
+    depthWrite: false,
+  });
+}
+
+/** A shape laid out in the atlas. It is drawn beside itself, too, for the texels beside its charts; the nearest comes
+ * last, and stays. */
+export function makePlacing(shape: BufferGeometry, plane: ViewPlane, material: RawShaderMaterial): Mesh {
   const { index } = shape;
   const position = shape.getAttribute("position");
   const uv = shape.getAttribute("uv");
@@ -137,34 +149,15 @@ export function makePlacing(
     places.set(onPlane(plane, [position.getX(i), position.getY(i), position.getZ(i)]), 3 * i);
     coordinates.set([uv.getX(i), uv.getY(i)], 2 * i);
   }
-  const steps = Array.from({ length: 2 * REACH + 1 }, (_, i) => i - REACH);
-  const shifts = steps.flatMap((y) => steps.map((x) => new Vector2(x, y)));
-  shifts.sort((a, b) => b.lengthSq() - a.lengthSq());
   const geometry = new InstancedBufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(coordinates, 2));
   geometry.setAttribute("onPlane", new BufferAttribute(places, 3));
   geometry.setIndex(index && new BufferAttribute(index.array, 1));
-  geometry.instanceCount = shifts.length;
+  geometry.instanceCount = SHIFTS.length;
   geometry.boundingSphere = new Sphere();
-  const material = new RawShaderMaterial({
-    glslVersion: GLSL3,
-    vertexShader: SPREAD.replace("SHIFTS", String(shifts.length)),
-    fragmentShader: PLACE,
-    uniforms: { texel: { value: new Vector2(2 / target.width, 2 / target.height) }, shifts: { value: shifts } },
-    side: DoubleSide,
-    blending: NoBlending,
-    depthTest: false,
-    depthWrite: false,
-  });
   const spread = new Mesh(geometry, material);
   spread.frustumCulled = false;
-  const scene = new Scene();
-  scene.add(spread);
-  const free = (): void => {
-    geometry.dispose();
-    material.dispose();
-  };
-  return { scene, free };
+  return spread;
 }
 
 const black = new Color(0);

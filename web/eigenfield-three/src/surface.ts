@@ -14,6 +14,7 @@ export class Surface {
   readonly mesh: Mesh;
   readonly material: SurfaceMaterial;
   version = 0; // grows when it has another shape
+  laid = 0; // version at which it got its texture coordinates
   detail = 0; // of an atlas, along a side of the photographs' pixels
   private readonly stack: SheetStack | null; // null: one opaque surface
 
@@ -66,6 +67,7 @@ export class Surface {
     geometry.boundingBox = geometry.boundingSphere = null; // three.js makes them anew
     this.faces = faces;
     this.version += 1;
+    if (before !== geometry) this.laid = this.version;
     this.show(faces);
   }
 

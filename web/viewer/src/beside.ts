@@ -35,12 +35,13 @@ export interface BesideEvents {
   changed(): void;
   /** A frame is to be drawn. */
   request(): void;
+  touch(): void;
   /** A line for people. */
   say(text: string): void;
 }
 
 export function createBeside(session: Session, stage: Stage, config: Config, events: BesideEvents): SecondScene {
-  const { changed, request, say } = events;
+  const { changed, request, touch, say } = events;
   let opened: Promise<void> = Promise.resolve();
   let agreed: { first: Scene; same: boolean } | null = null;
 
@@ -62,7 +63,7 @@ export function createBeside(session: Session, stage: Stage, config: Config, eve
       stage.setBeside(loaded.gltf.scene);
       mine.scene = sceneOf(source, loaded, null);
       const player = field?.player;
-      player?.addEventListener("frame", request);
+      player?.addEventListener("frame", touch);
       if (player && !reducedMotion()) player.play();
       if (player?.sound) player.sound.muted = true;
       field?.addEventListener("texture", request);

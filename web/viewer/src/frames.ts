@@ -8,6 +8,8 @@ import type { Stage } from "./stage";
 export interface Frames {
   /** Something else is to be shown: a frame is drawn, and who listens hears of it once. */
   changed(): void;
+  /** A clip does something else, which the picture does not show yet. */
+  told(): void;
   request(): void;
   /** A hand moved something: the next frame shows movement even if nothing glides. */
   touch(): void;
@@ -26,11 +28,12 @@ export interface Frames {
   onDraw(listener: () => void): void;
 }
 
-/** movers: what moves, of which more may be added. paint: draws one frame. */
+/** movers: what moves, of which more may be added. plays: a clip brings pictures of its own. paint: draws one frame. */
 export function createFrames(
   session: Session,
   stage: Stage,
   movers: readonly Mover[],
+  plays: () => boolean,
   paint: (detail: Detail) => void,
 ): Frames {
   const changeListeners: (() => void)[] = [];
@@ -47,15 +50,21 @@ export function createFrames(
   };
   const loop = createLoop(
     movers,
-    ({ now, moves, follows }) => draw(pace.frame(now, moves, follows)),
+    plays,
+    ({ now, moves, follows, wanted }) => {
+      const next = pace.frame(now, moves, follows);
+      if (!wanted && next === detail) return false;
+      draw(next);
+      return true;
+    },
     () => {
       for (const done of restWaiters.splice(0)) done();
       for (const listener of drawListeners) listener();
     },
   );
   const pace = createPace(loop.request, () => session.options.filter, stage.ratio);
-  const changed = (): void => {
-    loop.request();
+  const told = (): void => {
+    loop.next();
     if (changePending) return;
     changePending = true;
     queueMicrotask(() => {
@@ -64,8 +73,14 @@ export function createFrames(
     });
   };
 
+  const changed = (): void => {
+    loop.request();
+    told();
+  };
+
   return {
     changed,
+    told,
     request: loop.request,
     touch: loop.touch,
     drawn: loop.frames,

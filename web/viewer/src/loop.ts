@@ -1,4 +1,5 @@
-// Frames on demand: one is drawn when something asked for it, and the next only while something still moves.
+// Frames on demand: one is drawn when something asked for it, and the next only while something still moves. While a clip
+// plays each frame of the browser passes through here, for what it tells of the machine, and most need no drawing.
 
 /** What moves from frame to frame, by itself or by a hand. */
 export interface Mover {
@@ -8,6 +9,8 @@ export interface Mover {
 
 export interface Loop {
   request(): void;
+  /** The next frame is looked at, and drawn if there is something else to be seen. */
+  next(): void;
   /** A hand moved something: the next frame shows movement even if nothing glides. */
   touch(): void;
   frames(): number; // drawn so far
@@ -25,12 +28,15 @@ export interface Moment {
   now: number; // milliseconds
   moves: boolean;
   follows: boolean; // the frame before asked for it
+  wanted: boolean; // there is something else to be seen than before
 }
 
-/** movers: all that move in every frame. draw: one frame. rested: all is still. */
+/** movers: all that move in every frame. plays: a clip brings pictures of its own. draw: one frame; whether it drew.
+ * rested: all is still. */
 export function createLoop(
   movers: readonly Mover[],
-  draw: (moment: Moment) => void,
+  plays: () => boolean,
+  draw: (moment: Moment) => boolean,
   rested: () => void,
 ): Loop {
   let handle: number | null = null;
@@ -38,6 +44,7 @@ export function createLoop(
   let drawn = 0;
   let paused = false;
   let touched = false;
+  let wanted = false;
   const times: number[] = [];
 
   const frame = (now: number): void => {
@@ -46,24 +53,33 @@ export function createLoop(
     const seconds = last === null ? 1 / 60 : Math.min((now - last) / 1000, LONGEST);
     if (last === null) times.length = 0;
     last = now;
-    times.push(now);
-    if (times.length > REMEMBERED) times.shift();
     const moves = movers.map((mover) => mover.step(seconds)).includes(true);
-    draw({ now, moves: moves || touched, follows });
-    touched = false;
-    drawn++;
+    const goesOn = plays();
+    const drew = draw({ now, moves: moves || touched || goesOn, follows, wanted: moves || wanted });
+    touched = wanted = false;
+    if (drew) {
+      drawn++;
+      times.push(now);
+      if (times.length > REMEMBERED) times.shift();
+    }
     if (moves) request();
+    else if (goesOn) next();
     if (handle === null) {
       last = null;
       rested();
     }
   };
-  const request = (): void => {
+  const next = (): void => {
     if (!paused) handle ??= requestAnimationFrame(frame);
+  };
+  const request = (): void => {
+    wanted = true;
+    next();
   };
 
   return {
     request,
+    next,
     touch: () => {
       touched = true;
       request();

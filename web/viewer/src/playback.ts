@@ -32,8 +32,8 @@ export interface Clips extends Playback {
   stopped(): Promise<void>;
 }
 
-/** request: asks for a frame of the page. */
-export function createPlayback(session: Session, request: () => void, changed: () => void): Clips {
+/** moved: the picture is another one. changed: what is said of the clip. */
+export function createPlayback(session: Session, moved: () => void, changed: () => void): Clips {
   const player = (): Player | null => session.scene?.field?.player ?? null;
   let goesOn: Player | null = null; // played when somebody began to drag
   return {
@@ -76,7 +76,7 @@ export function createPlayback(session: Session, request: () => void, changed: (
     },
     opened: () => {
       const own = player();
-      own?.addEventListener("frame", request);
+      own?.addEventListener("frame", moved);
       own?.addEventListener("change", changed);
       if (!reducedMotion()) own?.play();
     },

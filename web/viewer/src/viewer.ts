@@ -25,7 +25,7 @@ import { createStage, type Stage } from "./stage";
 import { createSway } from "./sway";
 import { createWireframe } from "./wireframe";
 
-export interface Viewer extends Omit<Frames, "changed" | "touch" | "rested">, Playback {
+export interface Viewer extends Omit<Frames, "changed" | "told" | "touch" | "rested">, Playback {
   readonly stage: Stage;
   readonly config: Config;
   scene(): Scene | null;
@@ -85,7 +85,11 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
   const { options } = session;
   const stage = createStage(canvas);
   const movers: Mover[] = [{ step: pushed }];
-  const frames = createFrames(session, stage, movers, (detail) => painter.draw(detail));
+  const plays = (): boolean => {
+    const players = [session.scene, session.beside?.scene].map((scene) => scene?.field?.player);
+    return players.some((player) => player?.playing || player?.waiting);
+  };
+  const frames = createFrames(session, stage, movers, plays, (detail) => painter.draw(detail));
   const { changed } = frames;
 
   const say = (text: string): void => {
@@ -110,7 +114,7 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
       return act(...given);
     };
   };
-  const beside = createBeside(session, stage, config, { changed, request: frames.request, say });
+  const beside = createBeside(session, stage, config, { ...frames, say });
   const painter = createPainter(session, stage, places, captured, beside);
 
   const edges = createWireframe();
@@ -118,7 +122,7 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
     const { scene } = session;
     edges(options.wireframe && scene ? (scene.field?.mesh ?? scene.gltf.scene) : null);
   };
-  const clips = createPlayback(session, frames.request, changed);
+  const clips = createPlayback(session, frames.touch, frames.told);
   const opening = createOpening(session, stage, config, {
     changed,
     opened: () => {

@@ -1,7 +1,7 @@
-import { BufferAttribute as e, BufferGeometry as t, Camera as n, ClampToEdgeWrapping as r, Color as i, CustomBlending as a, DataArrayTexture as o, DataUtils as s, DepthStencilFormat as c, DepthTexture as l, DoubleSide as u, EqualStencilFunc as d, EventDispatcher as f, ExternalTexture as p, FrontSide as m, GLSL3 as h, HalfFloatType as g, IncrementStencilOp as _, InstancedBufferGeometry as v, LinearFilter as y, LinearMipmapLinearFilter as b, Matrix4 as x, Mesh as S, MeshBasicMaterial as C, NearestFilter as w, NoBlending as T, OneFactor as E, OneMinusSrcAlphaFactor as ee, RGBAFormat as D, RawShaderMaterial as O, Scene as k, Sphere as te, UnsignedByteType as ne, UnsignedInt248Type as re, Vector2 as ie, Vector3 as A, Vector4 as ae, WebGLRenderTarget as oe, ZeroStencilOp as se } from "three";
-import { GLTFLoader as ce } from "three/addons/loaders/GLTFLoader.js";
+import { BufferAttribute as e, BufferGeometry as t, Camera as n, ClampToEdgeWrapping as r, Color as i, CustomBlending as a, DataArrayTexture as o, DataUtils as s, DepthStencilFormat as c, DepthTexture as l, DoubleSide as u, EqualStencilFunc as d, EventDispatcher as f, ExternalTexture as p, FrontSide as m, GLSL3 as h, HalfFloatType as g, IncrementStencilOp as _, InstancedBufferGeometry as v, LinearFilter as y, LinearMipmapLinearFilter as b, Matrix4 as x, Mesh as S, MeshBasicMaterial as C, NearestFilter as w, NoBlending as T, OneFactor as E, OneMinusSrcAlphaFactor as D, RGBAFormat as O, RawShaderMaterial as k, Scene as A, Sphere as ee, UnsignedByteType as te, UnsignedInt248Type as ne, Vector2 as re, Vector3 as j, Vector4 as ie, WebGLRenderTarget as ae, ZeroStencilOp as oe } from "three";
+import { GLTFLoader as se } from "three/addons/loaders/GLTFLoader.js";
 // eigenfield-three/src/errors.ts
-var j = class extends Error {
+var M = class extends Error {
 	code;
 	where;
 	name = "SceneError";
@@ -9,65 +9,65 @@ var j = class extends Error {
 		super(t, r), this.code = e, this.where = n;
 	}
 };
-function M(e, t) {
-	return new j("damaged", `The file is damaged (${e}: ${t}); make or download it again.`, e);
+function N(e, t) {
+	return new M("damaged", `The file is damaged (${e}: ${t}); make or download it again.`, e);
 }
-function le(e, t) {
-	return new j("truncated", `The file is cut off after ${e} of ${t} bytes; download or copy it again.`, String(e));
+function ce(e, t) {
+	return new M("truncated", `The file is cut off after ${e} of ${t} bytes; download or copy it again.`, String(e));
 }
-function ue(e) {
-	return new j("truncated", `The file is cut off (${e}); download or copy it again.`, e);
+function le(e) {
+	return new M("truncated", `The file is cut off (${e}); download or copy it again.`, e);
 }
-function de(e, t = "") {
-	return e instanceof j ? e : new j("damaged", `The file cannot be read (${(e instanceof Error ? e.message : String(e)).replace(/^THREE\.GLTFLoader: /, "")}); make or download it again.`, t, { cause: e });
+function ue(e, t = "") {
+	return e instanceof M ? e : new M("damaged", `The file cannot be read (${(e instanceof Error ? e.message : String(e)).replace(/^THREE\.GLTFLoader: /, "")}); make or download it again.`, t, { cause: e });
 }
 // eigenfield-three/src/addresses.ts
-var fe = 60;
-function pe(e) {
+var de = 60;
+function fe(e) {
 	return {
 		name: "EIGENFIELD_addresses",
-		beforeRoot: async () => me(e.json)
+		beforeRoot: async () => pe(e.json)
 	};
 }
-function me(e) {
+function pe(e) {
 	let t = [["", e]];
 	for (let e = t.pop(); e; e = t.pop()) {
 		let [n, r] = e;
 		if (typeof r == "object" && r) for (let [e, i] of Object.entries(r)) {
 			if (e === "extras" && !Array.isArray(r)) continue;
 			let a = `${n}/${e}`;
-			if (e === "uri" && !(typeof i == "string" && /^data:/i.test(i))) throw he(a, JSON.stringify(i));
+			if (e === "uri" && !(typeof i == "string" && /^data:/i.test(i))) throw me(a, JSON.stringify(i));
 			t.push([a, i]);
 		}
 	}
 }
-function he(e, t) {
-	return new j("address", `The file names another one (${e}: ${t.length > fe ? `${t.slice(0, fe)}…` : t}), which is not fetched; export all of it as one .glb.`, e);
+function me(e, t) {
+	return new M("address", `The file names another one (${e}: ${t.length > de ? `${t.slice(0, de)}…` : t}), which is not fetched; export all of it as one .glb.`, e);
 }
 // eigenfield-three/src/av1-picture.ts
-var ge = 1, _e = 7;
-function ve(e, t) {
-	let { level: n, tier: r, width: i, height: a } = ye(new Uint8Array(e), t), o = r << 7 | 76, s = N("ipco", [
-		...N("ispe", [
-			...P(0),
-			...P(i),
-			...P(a)
+var he = 1, ge = 7;
+function _e(e, t) {
+	let { level: n, tier: r, width: i, height: a } = ve(new Uint8Array(e), t), o = r << 7 | 76, s = P("ipco", [
+		...P("ispe", [
+			...F(0),
+			...F(i),
+			...F(a)
 		]),
-		...N("pixi", [
-			...P(0),
+		...P("pixi", [
+			...F(0),
 			3,
 			10,
 			10,
 			10
 		]),
-		...N("av1C", [
+		...P("av1C", [
 			129,
 			n,
 			o,
 			0
 		]),
-		...N("colr", [
-			...F("nclx"),
+		...P("colr", [
+			...ye("nclx"),
 			0,
 			2,
 			0,
@@ -76,25 +76,25 @@ function ve(e, t) {
 			2,
 			128
 		])
-	]), c = N("ftyp", [
-		...F("avif"),
-		...P(0),
-		...F("avifmif1miafMA1B")
-	]), l = (t) => N("meta", [
-		...P(0),
-		...N("hdlr", [
-			...P(0),
-			...P(0),
-			...F("pict"),
+	]), c = P("ftyp", [
+		...ye("avif"),
+		...F(0),
+		...ye("avifmif1miafMA1B")
+	]), l = (t) => P("meta", [
+		...F(0),
+		...P("hdlr", [
+			...F(0),
+			...F(0),
+			...ye("pict"),
 			...Array(13).fill(0)
 		]),
-		...N("pitm", [
-			...P(0),
+		...P("pitm", [
+			...F(0),
 			0,
 			1
 		]),
-		...N("iloc", [
-			...P(0),
+		...P("iloc", [
+			...F(0),
 			68,
 			0,
 			0,
@@ -105,14 +105,14 @@ function ve(e, t) {
 			0,
 			0,
 			1,
-			...P(t),
-			...P(e.byteLength)
+			...F(t),
+			...F(e.byteLength)
 		]),
-		...N("iinf", [
-			...P(0),
+		...P("iinf", [
+			...F(0),
 			0,
 			1,
-			...N("infe", [
+			...P("infe", [
 				2,
 				0,
 				0,
@@ -121,13 +121,13 @@ function ve(e, t) {
 				1,
 				0,
 				0,
-				...F("av01"),
+				...ye("av01"),
 				0
 			])
 		]),
-		...N("iprp", [...s, ...N("ipma", [
-			...P(0),
-			...P(1),
+		...P("iprp", [...s, ...P("ipma", [
+			...F(0),
+			...F(1),
 			0,
 			1,
 			4,
@@ -139,12 +139,12 @@ function ve(e, t) {
 	]), u = c.length + l(0).length + 8, d = [
 		...c,
 		...l(u),
-		...P(8 + e.byteLength),
-		...F("mdat")
+		...F(8 + e.byteLength),
+		...ye("mdat")
 	], f = new Uint8Array(u + e.byteLength);
 	return f.set(d), f.set(new Uint8Array(e), u), f.buffer;
 }
-function ye(e, t) {
+function ve(e, t) {
 	let n = e[0] ?? 0, r = 8 * (1 + (n >> 2 & 1) + (n >> 1 & 1)), i = (t) => {
 		let n = 0;
 		for (let i = r + t; r < i; r++) n = 2 * n + ((e[r >> 3] ?? 0) >> 7 - (r & 7) & 1);
@@ -153,8 +153,8 @@ function ye(e, t) {
 	i(4);
 	let a = i(1) === 1, o = !a && i(7) !== 0;
 	a || i(12);
-	let s = i(5), c = !a && s > _e ? i(1) : 0, [l, u] = [i(4) + 1, i(4) + 1], [d, f] = [i(l) + 1, i(u) + 1];
-	if (n >> 3 !== ge || o || r > 8 * e.length) throw M(t, "no AV1 sequence header");
+	let s = i(5), c = !a && s > ge ? i(1) : 0, [l, u] = [i(4) + 1, i(4) + 1], [d, f] = [i(l) + 1, i(u) + 1];
+	if (n >> 3 !== he || o || r > 8 * e.length) throw N(t, "no AV1 sequence header");
 	return {
 		level: s,
 		tier: c,
@@ -162,14 +162,14 @@ function ye(e, t) {
 		height: f
 	};
 }
-function N(e, t) {
+function P(e, t) {
 	return [
-		...P(8 + t.length),
-		...F(e),
+		...F(8 + t.length),
+		...ye(e),
 		...t
 	];
 }
-function P(e) {
+function F(e) {
 	return [
 		24,
 		16,
@@ -177,7 +177,7 @@ function P(e) {
 		0
 	].map((t) => e >>> t & 255);
 }
-function F(e) {
+function ye(e) {
 	return Array.from(e, (e) => e.charCodeAt(0));
 }
 // eigenfield-three/src/inflate.ts
@@ -186,19 +186,19 @@ async function be(e, t, n, r) {
 	try {
 		for (let e = await o.read(); !e.done && a <= n; e = await o.read()) i.push(e.value), a += e.value.length;
 	} catch {
-		throw M(r, "it does not inflate");
+		throw N(r, "it does not inflate");
 	}
-	if (a > n) throw await o.cancel(), M(r, `more than ${n} bytes`);
+	if (a > n) throw await o.cancel(), N(r, `more than ${n} bytes`);
 	let s = new Uint8Array(a), c = 0;
 	for (let e of i) s.set(e, c), c += e.length;
 	return s;
 }
 // eigenfield-three/src/limits.ts
-var xe = "EIGENFIELD_eigen_textures", Se = 64 * 2 ** 20, I = 16384, Ce = 16384, we = 1024, Te = 2 ** 27, Ee = 4096, De = 8 * 2 ** 30, L = 1e5, Oe = 65535, ke = 2 ** 29, R = 1024, Ae = 2 ** 25, je = 2 ** 26, Me = 2 ** 27, Ne = 8192, Pe = 2 ** 24, Fe = 2 ** 25, Ie = 2 ** 20, Le = 2 ** 16, Re = 2 ** 30, ze = 1024, Be = 2 ** 22, Ve = 2 ** 28, He = 2 ** 31 - 1, Ue = 2 ** 28, We = 1e30, z = 65536, Ge = 126, Ke = 64, qe = 0, Je = 1, Ye = 2, Xe = 24, Ze = 44, Qe = 21, $e = 26214, et = 4, tt = Float64Array.from({ length: 4095 }, (e, t) => Math.round(z / (1 + Math.exp((2047 - t) / 256)))), nt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), rt = Float64Array.from({ length: 127 }, (e, t) => Math.round(z / (t + 1.5)));
-function B(e) {
-	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + B(Math.floor(e / 4294967296));
+var xe = "EIGENFIELD_eigen_textures", Se = 64 * 2 ** 20, Ce = 16384, we = 16384, Te = 1024, Ee = 2 ** 27, De = 4096, Oe = 8 * 2 ** 30, ke = 1e5, Ae = 65535, je = 2 ** 29, I = 1024, Me = 2 ** 25, Ne = 2 ** 26, Pe = 2 ** 27, Fe = 8192, Ie = 2 ** 24, Le = 2 ** 25, Re = 2 ** 20, ze = 2 ** 16, Be = 2 ** 30, Ve = 1024, He = 2 ** 22, Ue = 2 ** 28, We = 2 ** 31 - 1, Ge = 2 ** 28, Ke = 1e30, L = 65536, qe = 126, R = 64, Je = 0, Ye = 1, Xe = 2, Ze = 24, Qe = 44, $e = 21, et = 26214, tt = 4, nt = Float64Array.from({ length: 4095 }, (e, t) => Math.round(L / (1 + Math.exp((2047 - t) / 256)))), rt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), it = Float64Array.from({ length: 127 }, (e, t) => Math.round(L / (t + 1.5)));
+function z(e) {
+	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + z(Math.floor(e / 4294967296));
 }
-var it = class {
+var at = class {
 	bytes;
 	low = 0;
 	high = 4294967295;
@@ -208,49 +208,49 @@ var it = class {
 	seen;
 	weights;
 	constructor(e, t, n) {
-		this.bytes = e, this.probability = new Uint16Array(t * Ke).fill(z / 2), this.seen = new Uint8Array(t * Ke), this.weights = new Float64Array(n * Ke * 3).fill($e);
-		for (let e = 0; e < et; e++) this.code = this.code * 256 + this.next();
+		this.bytes = e, this.probability = new Uint16Array(t * R).fill(L / 2), this.seen = new Uint8Array(t * R), this.weights = new Float64Array(n * R * 3).fill(et);
+		for (let e = 0; e < tt; e++) this.code = this.code * 256 + this.next();
 	}
 	checkEnd(e) {
-		if (this.at > this.bytes.length + et) throw ue(e);
+		if (this.at > this.bytes.length + tt) throw le(e);
 	}
 	flag(e, t, n, r) {
 		return this.node(e, t, n, r, 0) === 1;
 	}
 	raw(e) {
 		let t = 0;
-		for (let n = 0; n < e; n++) t = t * 2 + this.split(z / 2);
+		for (let n = 0; n < e; n++) t = t * 2 + this.split(L / 2);
 		return t;
 	}
 	integer(e, t, n, r) {
 		let i = this.magnitude(e, t, n, r);
-		return i === 0 ? 0 : this.node(e, t, n, r, Je) ? -i : i;
+		return i === 0 ? 0 : this.node(e, t, n, r, Ye) ? -i : i;
 	}
 	magnitude(e, t, n, r) {
-		if (!this.node(e, t, n, r, qe)) return 0;
+		if (!this.node(e, t, n, r, Je)) return 0;
 		let i = 0;
-		for (; i < Qe && this.node(e, t, n, r, Ye + i);) i += 1;
+		for (; i < $e && this.node(e, t, n, r, Xe + i);) i += 1;
 		if (i < 2) return i + 1;
 		let a = 1;
 		for (let o = i - 2; o >= 0; o--) {
 			let s;
-			s = o === i - 2 ? this.node(e, t, n, r, Xe + i) : o === i - 3 ? this.node(e, t, n, r, Ze + 2 * Math.min(i, 9) + (a & 1)) : this.split(z / 2), a = a * 2 + s;
+			s = o === i - 2 ? this.node(e, t, n, r, Ze + i) : o === i - 3 ? this.node(e, t, n, r, Qe + 2 * Math.min(i, 9) + (a & 1)) : this.split(L / 2), a = a * 2 + s;
 		}
 		return a + 1;
 	}
 	node(e, t, n, r, i) {
-		return this.bit(e * Ke + i, t * Ke + i, n * Ke + i, (r * Ke + i) * 3);
+		return this.bit(e * R + i, t * R + i, n * R + i, (r * R + i) * 3);
 	}
 	bit(e, t, n, r) {
-		let { probability: i, weights: a } = this, o = nt[i[e] >> 4], s = nt[i[t] >> 4], c = nt[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / z), u = tt[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? z - u : -u;
+		let { probability: i, weights: a } = this, o = rt[i[e] >> 4], s = rt[i[t] >> 4], c = rt[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / L), u = nt[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? L - u : -u;
 		return a[r] += o * f >> 14, a[r + 1] += s * f >> 14, a[r + 2] += c * f >> 14, this.learn(e, d), this.learn(t, d), this.learn(n, d), d;
 	}
 	learn(e, t) {
 		let [n, r] = [this.probability[e], this.seen[e]];
-		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * rt[r] / z), r < Ge && (this.seen[e] = r + 1);
+		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * it[r] / L), r < qe && (this.seen[e] = r + 1);
 	}
 	split(e) {
-		let t = this.low + Math.floor((this.high - this.low) * e / z), n = +(this.code <= t);
+		let t = this.low + Math.floor((this.high - this.low) * e / L), n = +(this.code <= t);
 		for (n ? this.high = t : this.low = t + 1; !((this.low ^ this.high) >>> 24);) this.low = this.low << 8 >>> 0, this.high = (this.high << 8 | 255) >>> 0, this.code = (this.code << 8 | this.next()) >>> 0;
 		return n;
 	}
@@ -258,26 +258,26 @@ var it = class {
 		return this.bytes[this.at++] ?? 0;
 	}
 };
-function V(e, t, n, r = 1) {
-	if (e.length < t) throw ue(n);
-	if (e[0] !== r) throw M(n, `coded numbers of version ${e[0]}`);
+function B(e, t, n, r = 1) {
+	if (e.length < t) throw le(n);
+	if (e[0] !== r) throw N(n, `coded numbers of version ${e[0]}`);
 	return new DataView(e.buffer, e.byteOffset, e.byteLength);
 }
-function at(e, t, n, r) {
-	if (t > n || t > 16 * e.length + 1024) throw M(r, `${t} numbers announced`);
+function ot(e, t, n, r) {
+	if (t > n || t > 16 * e.length + 1024) throw N(r, `${t} numbers announced`);
 }
 // eigenfield-three/src/table-decoder.ts
-var ot = 12, st = 1, ct = 3, lt = 312, ut = ct * lt, dt = 938, ft = 24, pt = 16, mt = 1722, ht = 1726, gt = 4, _t = 5;
-function vt(e) {
-	return new it(e, ht, 21);
-}
+var st = 12, ct = 1, lt = 3, ut = 312, dt = lt * ut, ft = 938, pt = 24, mt = 16, ht = 1722, gt = 1726, _t = 4, vt = 5;
 function yt(e) {
-	return e.flag(ut, ut, ut, ct) ? 2 : e.flag(937, 937, 937, ct) ? st : 0;
+	return new at(e, gt, 21);
 }
 function bt(e) {
-	return Math.min(B(e), 11);
+	return e.flag(dt, dt, dt, lt) ? 2 : e.flag(937, 937, 937, lt) ? ct : 0;
 }
-function xt(e, t, n, r) {
+function xt(e) {
+	return Math.min(z(e), 11);
+}
+function St(e, t, n, r) {
 	let i = new Float64Array(n.length), a = n.length / t, o = (e, n, r) => n < 0 || r < 0 || r >= t ? 0 : e[n * t + r], s = 0;
 	for (let c = 0; c < a; c++) for (let a = 0; a < t; a++) {
 		let [l, u] = [o(i, c, a - 1), o(i, c - 1, a)], [d, f] = [o(i, c - 1, a - 1), o(i, c - 1, a + 1)], [p, m, h] = [
@@ -285,53 +285,53 @@ function xt(e, t, n, r) {
 			0,
 			s
 		];
-		r === st ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
-		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * lt, y = e.integer(v + bt(m) * ot + bt(g), v + 144 + bt(m + h), v + 144 + 24 + _ * ot + bt(g + Math.abs(l)), r);
+		r === ct ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
+		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * ut, y = e.integer(v + xt(m) * st + xt(g), v + 144 + xt(m + h), v + 144 + 24 + _ * st + xt(g + Math.abs(l)), r);
 		i[c * t + a] = p + y, s = Math.abs(y);
 	}
 	return i;
 }
-function St(e, t, n, r) {
+function Ct(e, t, n, r) {
 	let i = new Float64Array(t * n), a = new Float64Array(n);
 	for (let o = 0; o < t; o++) {
 		let t = 0;
 		for (let s = 0; s < n; s++) {
-			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(B(a[s]), 23), d = Math.min(B(t), 23), f = e.integer(dt + l * ft + u, dt + (pt + l) * ft + d, 1706 + l, _t + l);
+			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(z(a[s]), 23), d = Math.min(z(t), 23), f = e.integer(ft + l * pt + u, ft + (mt + l) * pt + d, 1706 + l, vt + l);
 			i[o * n + s] = c + f, t = Math.abs(f), a[s] = Math.floor((a[s] + t + 1) / 2);
 		}
 	}
 	return i;
 }
-function Ct(e, t, n, r) {
+function wt(e, t, n, r) {
 	let i = new Float64Array(t).fill(-1), a = new Uint8Array(n), [o, s, c] = [
 		0,
 		1,
 		0
 	];
 	for (let l = 0; l < t; l++) {
-		if (s = +!!e.flag(mt + s, mt + s, 1724, gt), !s) continue;
-		let t = o + e.integer(1725, 1725, 1725, gt);
-		if (!(t >= 0 && t < n) || a[t]) throw M(r, "a grid with a camera out of place");
+		if (s = +!!e.flag(ht + s, ht + s, 1724, _t), !s) continue;
+		let t = o + e.integer(1725, 1725, 1725, _t);
+		if (!(t >= 0 && t < n) || a[t]) throw N(r, "a grid with a camera out of place");
 		a[t] = 1, i[l] = t, o = t + 1, c += 1;
 	}
-	if (c !== n) throw M(r, "a grid without all cameras");
+	if (c !== n) throw N(r, "a grid without all cameras");
 	return i;
 }
 // eigenfield-three/src/camera-decoder.ts
-var wt = 130, Tt = 11, Et = 1, Dt = 2, Ot = 2, kt = 44 * L + 1024;
+var Tt = 130, V = 11, Et = 1, Dt = 2, Ot = 2, kt = 44 * ke + 1024;
 async function At(e, t) {
-	if (e[0] !== Ot) throw M(t, `version ${e[0]}`);
+	if (e[0] !== Ot) throw N(t, `version ${e[0]}`);
 	let n = await be(Uint8Array.from(e.subarray(1)), "deflate-raw", kt, t);
 	return jt(Uint8Array.from([1, ...n]), t);
 }
 function jt(e, t) {
-	let n = V(e, wt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Et) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
-	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw M(t, "cameras that cannot be");
-	if (i > 1e5 || a && o * s < i) throw M(t, `${i} cameras`);
-	at(e, Math.max(Tt * i, o * s), Tt * L, t);
-	let l = wt + (a ? 132 : 0);
-	V(e, l, t);
-	let u = (e, t) => a ? n.getFloat32(wt + 4 * (e * Tt + t), !0) : 0, d = vt(e.subarray(l)), f = a ? Ct(d, o * s, i, t) : null, p = St(d, i, Tt, (r & Dt) !== 0);
+	let n = B(e, Tt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Et) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
+	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw N(t, "cameras that cannot be");
+	if (i > 1e5 || a && o * s < i) throw N(t, `${i} cameras`);
+	ot(e, Math.max(V * i, o * s), V * ke, t);
+	let l = Tt + (a ? 132 : 0);
+	B(e, l, t);
+	let u = (e, t) => a ? n.getFloat32(Tt + 4 * (e * V + t), !0) : 0, d = yt(e.subarray(l)), f = a ? wt(d, o * s, i, t) : null, p = Ct(d, i, V, (r & Dt) !== 0);
 	d.checkEnd(t);
 	let m = {
 		intrinsics: new Float32Array(5 * i),
@@ -342,18 +342,18 @@ function jt(e, t) {
 		0,
 		0,
 		...c.subarray(12)
-	], g = Nt(c[3], c[4], c[5], c[6]), _ = new Float64Array(Tt), v = 0;
+	], g = Nt(c[3], c[4], c[5], c[6]), _ = new Float64Array(V), v = 0;
 	for (let e = 0; e < (f ? f.length : i); e++) {
 		let t = f ? f[e] : e;
 		if (t < 0) continue;
 		let [n, r] = f ? [Math.floor(e / s), e % s] : [0, 0];
-		for (let e = 0; e < Tt; e++) {
+		for (let e = 0; e < V; e++) {
 			let t = c[e < 5 ? 0 : e < 8 ? 1 : 2], i = u(0, e) + u(1, e) * n + u(2, e) * r;
-			_[e] = p[v * Tt + e] * t + h[e] + i;
+			_[e] = p[v * V + e] * t + h[e] + i;
 		}
 		Mt(_, g, m, t), v += 1;
 	}
-	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw M(t, "cameras that are not finite");
+	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw N(t, "cameras that are not finite");
 	return m;
 }
 function Mt(e, t, n, r) {
@@ -417,7 +417,7 @@ async function Vt(e, t, n = !1) {
 	if (!Pt.has(r) && !Ft.has(r) && !It.has(r)) {
 		let t = Ut(e, [i, a]);
 		if (t) return Wt(t, 4 * i, 4, [i, a], Ht(e, n));
-		throw new j("unsupported", `This browser does not hand out its frames (${r || "no format"}).`, "");
+		throw new M("unsupported", `This browser does not hand out its frames (${r || "no format"}).`, "");
 	}
 	let o = e.allocationSize(), s = t && t.length >= o ? t : new Uint8Array(o), [c] = await e.copyTo(s), { offset: l, stride: u } = c ?? {
 		offset: 0,
@@ -483,8 +483,8 @@ var Kt = 4, qt = ["prefer-software", "no-preference"], Jt = class {
 		return this.onTheWay < Kt || this.decoder?.state === "closed";
 	}
 	async start(e) {
-		let { level: t, tier: n, width: r, height: i } = ye(e, this.where);
-		if (r !== this.size[0] || i !== this.size[1]) throw M(this.where, `frames of ${r} x ${i}`);
+		let { level: t, tier: n, width: r, height: i } = ve(e, this.where);
+		if (r !== this.size[0] || i !== this.size[1]) throw N(this.where, `frames of ${r} x ${i}`);
 		let a = `av01.0.${String(t).padStart(2, "0")}${n ? "H" : "M"}.10`, { turn: o } = this, s = this.config?.codec === a, c = s ? this.config : await Yt(a, this.size, this.where);
 		o === this.turn && c && (s && this.decoder?.state === "configured" || (this.config = c, this.decoder && this.decoder.state !== "closed" || (this.decoder = this.made()), this.decoder.configure(c)));
 	}
@@ -509,7 +509,7 @@ var Kt = 4, qt = ["prefer-software", "no-preference"], Jt = class {
 		let e = new VideoDecoder({
 			output: (e) => void this.receive(e),
 			error: (t) => {
-				this.decoder === e && (t.name === "QuotaExceededError" ? this.user.lost() : t.name === "NotSupportedError" ? this.fail(this.turn, Xt(this.where)) : this.fail(this.turn, M(this.where, t.message)));
+				this.decoder === e && (t.name === "QuotaExceededError" ? this.user.lost() : t.name === "NotSupportedError" ? this.fail(this.turn, Xt(this.where)) : this.fail(this.turn, N(this.where, t.message)));
 			}
 		});
 		return e;
@@ -543,7 +543,7 @@ async function Yt(e, [t, n], r) {
 	throw Xt(r);
 }
 function Xt(e) {
-	return new j("codec", `This browser ${globalThis.isSecureContext ? "decodes no AV1 of 10 bits" : "plays clips from https and localhost only"}; ${globalThis.isSecureContext ? "use a newer browser" : "open the page from there"}. The first frame is shown.`, e);
+	return new M("codec", `This browser ${globalThis.isSecureContext ? "decodes no AV1 of 10 bits" : "plays clips from https and localhost only"}; ${globalThis.isSecureContext ? "use a newer browser" : "open the page from there"}. The first frame is shown.`, e);
 }
 // eigenfield-three/src/mesh-front.ts
 var Zt = 0, Qt = 2 ** 24, $t = class {
@@ -644,18 +644,18 @@ function gn(e, t, n, r, i) {
 		t[3 * a + 1],
 		t[3 * o],
 		t[3 * o + 1]
-	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? tn : -.8, _ = 1 << i >> 1, v = pn((l + d) * .5 + g * m) + _ >> i, y = pn((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(B(Math.floor((p * p + m * m) / b)), 23), S = Math.min(B(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, cn), T = Math.min(B(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(rn + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, ln);
-	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + O << i, i === 0) return;
-	let k = mn(t, a, i) + 4 * mn(t, o, i);
-	if (e.flag(an + k, 913 + mn(t, s, i), 917 + c, fn)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
+	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? tn : -.8, _ = 1 << i >> 1, v = pn((l + d) * .5 + g * m) + _ >> i, y = pn((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(z(Math.floor((p * p + m * m) / b)), 23), S = Math.min(z(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, cn), T = Math.min(z(Math.abs(w)), 7), [E, D] = [577, 705], O = T * 2 + +(w > 0), k = e.integer(rn + x * 8 + C, E + O * 8 + C, D + S * 8 + T, ln);
+	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + k << i, i === 0) return;
+	let A = mn(t, a, i) + 4 * mn(t, o, i);
+	if (e.flag(an + A, 913 + mn(t, s, i), 917 + c, fn)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
 }
 function _n(e, t, n, { a: r, b: i, o: a }) {
 	let o = 0;
 	for (let e = 0; e < 3; e++) o += (t[3 * i + e] - t[3 * r + e]) ** 2;
-	let s = Math.min(B(o), 43), c = 0;
+	let s = Math.min(z(o), 43), c = 0;
 	for (let o = 0; o < 3; o++) {
 		let l = pn(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, nn + o * 24 + c, 116 + o * nn + s, un);
-		t[3 * n + o] = l + u, c = Math.min(B(Math.abs(u)), 23);
+		t[3 * n + o] = l + u, c = Math.min(z(Math.abs(u)), 23);
 	}
 }
 function vn(e, t, n, r, i) {
@@ -699,11 +699,11 @@ function Fn(e, t, n, r, i) {
 			n
 		]) s[r] += 1;
 	}, f = () => {
-		if (l >= t) throw M(i, "more places than announced");
+		if (l >= t) throw N(i, "more places than announced");
 		return l++;
 	}, p = () => {
-		let t = e.raw(B(l - 1));
-		if (t >= l) throw M(i, "a place that is not there yet");
+		let t = e.raw(z(l - 1));
+		if (t >= l) throw N(i, "a place that is not there yet");
 		return t;
 	}, m = () => {
 		let t = [
@@ -717,7 +717,7 @@ function Fn(e, t, n, r, i) {
 			vn(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
 		}
 		let [n, o, s] = t;
-		if (n === o || o === s || s === n) throw M(i, "a face of two corners");
+		if (n === o || o === s || s === n) throw N(i, "a face of two corners");
 		d(n, o, s), c.seed(t);
 	}, h = (e, t, n, i) => c.status[t] === 2 ? xn : c.status[t] !== 1 || n === i || t === e ? bn : In(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
 	for (; u < n;) {
@@ -735,29 +735,29 @@ function Fn(e, t, n, r, i) {
 			d(l, n, v), c.closeRight(t);
 			continue;
 		}
-		let T = +(y === xn) + (b === xn ? 2 : 0), E = mn(a, n, r.fine) + 4 * mn(a, l, r.fine), ee = Tn + 64 + S * Sn + C;
-		if (e.flag(Tn + T * 16 + E, ee, Tn + 64 + 64 + x, jn)) {
+		let T = +(y === xn) + (b === xn ? 2 : 0), E = mn(a, n, r.fine) + 4 * mn(a, l, r.fine), D = Tn + 64 + S * Sn + C;
+		if (e.flag(Tn + T * 16 + E, D, Tn + 64 + 64 + x, jn)) {
 			c.status[t] = 2;
 			continue;
 		}
-		let D;
+		let O;
 		if (e.flag(En + x, En + H + T, En + H + 4, Mn)) {
-			D = f();
+			O = f();
 			let i = c.opposite[t];
 			o.parents.set([
 				n,
 				l,
 				i
-			], 3 * D), hn(e, a, D, {
+			], 3 * O), hn(e, a, O, {
 				a: n,
 				b: l,
 				o: i,
 				pair: x
 			}, r);
-		} else if (D = p(), D === n || D === l) throw M(i, "a face of two corners");
-		d(l, n, D), c.openOut(t, D);
+		} else if (O = p(), O === n || O === l) throw N(i, "a face of two corners");
+		d(l, n, O), c.openOut(t, O);
 	}
-	if (l !== t) throw M(i, "fewer places than announced");
+	if (l !== t) throw N(i, "fewer places than announced");
 	return o;
 }
 function In(e, t, n, r, i, a) {
@@ -855,7 +855,7 @@ function Xn(e, t, n, r, i, a, o) {
 		}
 		if (c < 0) {
 			if (e.flag(Wn + s, Wn + s, Wn + Rn, qn)) return -1;
-			if (c = e.raw(B(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
+			if (c = e.raw(z(g - 1)), c >= g || l.place[c] !== i) throw N(o, "a corner that is elsewhere");
 		}
 		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? Bn : Vn);
 		return c;
@@ -865,8 +865,8 @@ function Xn(e, t, n, r, i, a, o) {
 		l.kinds[t] = 1;
 		let n = v;
 		if (v = t, n >= 0 && e.flag(U + 2, U + 2, U + 2, Jn)) {
-			let n = e.raw(B(t - 1));
-			if (n >= t || l.kinds[n] !== 1) throw M(o, "a map that is not there");
+			let n = e.raw(z(t - 1));
+			if (n >= t || l.kinds[n] !== 1) throw N(o, "a map that is not there");
 			return l.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
 		}
 		let r = n >= 0 && e.flag(U + 3, U + 3, U + 3, Jn);
@@ -881,7 +881,7 @@ function Xn(e, t, n, r, i, a, o) {
 			let s = S(e, a);
 			if (s >= 0) r = l.chart[s];
 			else {
-				if (g >= n) throw M(o, "more vertices than announced");
+				if (g >= n) throw N(o, "more vertices than announced");
 				s = g++;
 				let r = t.faces[3 * e + a];
 				l.place[s] = r, d[s] = u[r], u[r] = s, i.push(s);
@@ -891,7 +891,7 @@ function Xn(e, t, n, r, i, a, o) {
 		r < 0 && (r = C());
 		for (let e of i) l.chart[e] = r;
 	}
-	if (g !== n) throw M(o, "fewer vertices than announced");
+	if (g !== n) throw N(o, "fewer vertices than announced");
 	return l;
 }
 // eigenfield-three/src/mesh-values.ts
@@ -942,7 +942,7 @@ function ur(e, t, n, r) {
 			}
 		}
 		let y = 13, b = t > 0 ? u(t - 1) : 0, x = b;
-		g > 0 && (y = Math.min(B(v - _), 12), b = h / g, x = Math.min(Math.max(fr(s), p), m));
+		g > 0 && (y = Math.min(z(v - _), 12), b = h / g, x = Math.min(Math.max(fr(s), p), m));
 		let S = b, [C, w, T] = [
 			o[3 * t],
 			o[3 * t + 1],
@@ -960,8 +960,8 @@ function ur(e, t, n, r) {
 				S = Math.min(Math.max(u(C) + t * (u(w) - u(C)) + c * (u(T) - u(C)), p), m);
 			}
 		}
-		let E = cr(x, b), [ee, D] = [lr(S - E), lr(b - E)], O = e.integer(nr + ee * $n + D, nr + 169 + y * tr + f, nr + 169 + 280 + ee * er + y, ar), k = E + O;
-		i[3 * t + 2] = k, f = Math.min(B(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
+		let E = cr(x, b), [D, O] = [lr(S - E), lr(b - E)], k = e.integer(nr + D * $n + O, nr + 169 + y * tr + f, nr + 169 + 280 + D * er + y, ar), A = E + k;
+		i[3 * t + 2] = A, f = Math.min(z(Math.abs(k)), 19), p = t === 0 ? A : Math.min(p, A), m = t === 0 ? A : Math.max(m, A);
 	}
 }
 function dr(e, t, n) {
@@ -1007,13 +1007,13 @@ function pr(e, t, n, r, i) {
 			if (!Number.isFinite(u) || !Number.isFinite(d)) continue;
 			p += u, m += d, h += 1;
 			let v = Math.abs(l[2 * r] - l[2 * s]) + Math.abs(l[2 * r + 1] - l[2 * s + 1]);
-			_ = Math.max(_, B(v));
+			_ = Math.max(_, z(v));
 		}
 		g < 0 && (g = d), d = t;
 		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = rr + 144;
 		for (let n = 0; n < 2; n++) {
 			let r = e.integer(rr + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], or + n);
-			l[2 * t + n] = cr(y[n], 0) + r, u[n] = Math.min(B(Math.abs(r)), 23);
+			l[2 * t + n] = cr(y[n], 0) + r, u[n] = Math.min(z(Math.abs(r)), 23);
 		}
 	}
 	return l;
@@ -1040,7 +1040,7 @@ function xr(e, t) {
 	return Sr(e, t, gr);
 }
 function Sr(e, t, n) {
-	let r = V(e, hr, t, n), [i, a, o] = [
+	let r = B(e, hr, t, n), [i, a, o] = [
 		r.getUint8(1),
 		r.getUint8(2),
 		r.getUint8(3)
@@ -1049,9 +1049,9 @@ function Sr(e, t, n) {
 		8,
 		12
 	].map((e) => r.getUint32(e, !0)), u = Float64Array.from({ length: 16 }, (e, t) => r.getFloat64(16 + 8 * t, !0));
-	if (s > je || l > je || c > Me) throw M(t, `${l} vertices and ${c} faces`);
-	if (at(e, Math.max(s, c, l), Me, t), i > 1 || o > yr * i || a < 1 || a > vr || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
-	let d = new it(e.subarray(hr), ir, 16), f = Fn(d, s, c, {
+	if (s > Ne || l > Ne || c > Pe) throw N(t, `${l} vertices and ${c} faces`);
+	if (ot(e, Math.max(s, c, l), Pe, t), i > 1 || o > yr * i || a < 1 || a > vr || !u.every(Number.isFinite)) throw N(t, "a lattice that cannot be");
+	let d = new at(e.subarray(hr), ir, 16), f = Fn(d, s, c, {
 		flat: i === 1,
 		fine: o
 	}, t);
@@ -1091,8 +1091,8 @@ function wr(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) 
 	};
 }
 function Tr(e, t) {
-	let n = (e) => Math.abs(e) <= We;
-	if (!e.positions.every(n) || !e.uv.every(n)) throw M(t, "positions or texture coordinates that are not finite");
+	let n = (e) => Math.abs(e) <= Ke;
+	if (!e.positions.every(n) || !e.uv.every(n)) throw N(t, "positions or texture coordinates that are not finite");
 	return e;
 }
 // eigenfield-three/src/mesh-motion.ts
@@ -1114,16 +1114,16 @@ var Er = 11, Dr = 2 ** 20, Or = 8, [kr, Ar] = [7, 8], jr = 12, [Mr, Nr, Pr, Fr] 
 	decoded = 0;
 	constructor(e, t, n) {
 		this.mesh = t, this.where = n;
-		let r = V(e, Er, n), i = t.places.length / 3, a = r.getUint32(5, !0);
+		let r = B(e, Er, n), i = t.places.length / 3, a = r.getUint32(5, !0);
 		this.frames = r.getUint16(9, !0);
 		let o = Er + this.frames;
-		if (r.getUint32(1, !0) !== i || a > i) throw M(n, `${a} vertices that move, of another mesh`);
-		if (this.frames < 1 || this.frames > 1024 || this.frames * a > Fe) throw M(n, `${a} vertices that move in ${this.frames} frames`);
-		if (V(e, o, n), this.flags = e.slice(Er, o), this.flags.some((e) => e > kr + Ar)) throw M(n, "frames that cannot be");
-		if (at(e, this.flags.reduce((e, t) => e + (t & 1) + (t >> 1 & 1) + (t >> 2 & 1), 0) * a, 3 * Fe, n), this.moving = new Int32Array(a), this.steps = new Int32Array(a && 3 * a * (2 + this.frames)), this.off = new Int32Array(3 * a), this.around = Kr(t.places, t.indices), !a) return;
-		this.decoder = new it(e.subarray(o), zr, Vr);
+		if (r.getUint32(1, !0) !== i || a > i) throw N(n, `${a} vertices that move, of another mesh`);
+		if (this.frames < 1 || this.frames > 1024 || this.frames * a > Le) throw N(n, `${a} vertices that move in ${this.frames} frames`);
+		if (B(e, o, n), this.flags = e.slice(Er, o), this.flags.some((e) => e > kr + Ar)) throw N(n, "frames that cannot be");
+		if (ot(e, this.flags.reduce((e, t) => e + (t & 1) + (t >> 1 & 1) + (t >> 2 & 1), 0) * a, 3 * Le, n), this.moving = new Int32Array(a), this.steps = new Int32Array(a && 3 * a * (2 + this.frames)), this.off = new Int32Array(3 * a), this.around = Kr(t.places, t.indices), !a) return;
+		this.decoder = new at(e.subarray(o), zr, Vr);
 		let s = Gr(this.decoder, i, this.around);
-		if (s.reduce((e, t) => e + t, 0) !== a) throw M(n, "other vertices that move");
+		if (s.reduce((e, t) => e + t, 0) !== a) throw N(n, "other vertices that move");
 		this.around = this.start(s);
 	}
 	read(e) {
@@ -1179,7 +1179,7 @@ var Er = 11, Dr = 2 ** 20, Or = 8, [kr, Ar] = [7, 8], jr = 12, [Mr, Nr, Pr, Fr] 
 		this.off = m, e.checkEnd(this.where), this.check(u, c);
 	}
 	check(e, t) {
-		for (let n = e; n < e + t; n += 3) if (!Ur(this.steps, n, this.mesh.matrix).every((e) => Math.abs(e) <= 1e30)) throw M(this.where, "positions that are not finite");
+		for (let n = e; n < e + t; n += 3) if (!Ur(this.steps, n, this.mesh.matrix).every((e) => Math.abs(e) <= 1e30)) throw N(this.where, "positions that are not finite");
 	}
 };
 function Ur(e, t, n) {
@@ -1195,7 +1195,7 @@ function Ur(e, t, n) {
 	];
 }
 function Wr(e) {
-	return Math.min(B(e), 11);
+	return Math.min(z(e), 11);
 }
 function Gr(e, t, { near: n, starts: r }) {
 	let i = new Uint8Array(t), a = 0;
@@ -1230,10 +1230,10 @@ function Kr(e, t) {
 	};
 }
 // eigenfield-three/src/name-decoder.ts
-var qr = 4 * R;
+var qr = 4 * I;
 async function Jr(e, t, n) {
-	let r = Math.min(Ae, qr * t), i = await be(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
-	if (a === 0 || !Number.isInteger(a)) throw M(n, `${i.length} bytes of ${t} names`);
+	let r = Math.min(Me, qr * t), i = await be(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
+	if (a === 0 || !Number.isInteger(a)) throw N(n, `${i.length} bytes of ${t} names`);
 	let o = new TextDecoder("utf-8", {
 		fatal: !0,
 		ignoreBOM: !0
@@ -1245,7 +1245,7 @@ async function Jr(e, t, n) {
 		try {
 			c.push(o.decode(s.subarray(0, r)));
 		} catch {
-			throw M(n, "names that are not UTF-8");
+			throw N(n, "names that are not UTF-8");
 		}
 	}
 	return c;
@@ -1360,12 +1360,12 @@ var ti = {
 };
 function ri(e, t, n) {
 	let r = Yr(e);
-	if (!r) throw M(t.where, "no picture");
+	if (!r) throw N(t.where, "no picture");
 	let { width: i, height: a, bits: o } = r;
-	if (n && (i !== n[0] || a !== n[1])) throw M(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
-	if (t.codec.bits !== 8 && t.codec.bits !== o) throw M(t.where, `no picture of ${t.codec.bits} bits`);
+	if (n && (i !== n[0] || a !== n[1])) throw N(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
+	if (t.codec.bits !== 8 && t.codec.bits !== o) throw N(t.where, `no picture of ${t.codec.bits} bits`);
 	let s = i * a;
-	if (!s || i > 16384 || a > 32768 || s > Te) throw M(t.where, `a picture of ${i} x ${a}`);
+	if (!s || i > 16384 || a > 32768 || s > Ee) throw N(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
 var ii = async (e, t, n) => {
@@ -1373,9 +1373,9 @@ var ii = async (e, t, n) => {
 	try {
 		s = await createImageBitmap(new Blob([e], { type: o }), ti);
 	} catch (e) {
-		throw await ai(o) ? M(t.where, "it cannot be decoded") : oi(o, t, e);
+		throw await ai(o) ? N(t.where, "it cannot be decoded") : oi(o, t, e);
 	}
-	if (s.width !== i || s.height !== a) throw s.close(), M(t.where, `decoded to ${s.width} x ${s.height}, not to ${i} x ${a}`);
+	if (s.width !== i || s.height !== a) throw s.close(), N(t.where, `decoded to ${s.width} x ${s.height}, not to ${i} x ${a}`);
 	let c = a / r;
 	return Array.from({ length: r }, (e, t) => ({
 		picture: s,
@@ -1394,7 +1394,7 @@ async function ai(e) {
 	}
 }
 function oi(e, t, n) {
-	return new j("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
+	return new M("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
 }
 // eigenfield-three/src/pictures-10bit.ts
 var si = /* @__PURE__ */ new Set([
@@ -1437,32 +1437,32 @@ async function li(e, t, n) {
 // eigenfield-three/src/triangle-decoder.ts
 var ui = 5;
 function di(e, t) {
-	let n = V(e, ui, t).getUint32(1, !0);
-	at(e, 3 * n, 6 * L, t);
-	let r = vt(e.subarray(ui)), i = St(r, n, 3, !0);
+	let n = B(e, ui, t).getUint32(1, !0);
+	ot(e, 3 * n, 6 * ke, t);
+	let r = yt(e.subarray(ui)), i = Ct(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
-	if (!a.every((e) => e >= 0 && e < 1e5)) throw M(t, "triangles of cameras that there cannot be");
+	if (!a.every((e) => e >= 0 && e < 1e5)) throw N(t, "triangles of cameras that there cannot be");
 	return { corners: Uint32Array.from(a) };
 }
 // eigenfield-three/src/weight-decoder.ts
 var fi = 14, pi = 2 ** 20;
 function mi(e, t) {
-	let n = V(e, fi, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
-	if (n.getUint8(1) > 1 || i === 0) throw M(t, "weights of no camera, or of an unknown kind");
-	at(e, o * s * Math.max(a, 1), Ue, t), V(e, fi + 4 * a, t);
+	let n = B(e, fi, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
+	if (n.getUint8(1) > 1 || i === 0) throw N(t, "weights of no camera, or of an unknown kind");
+	ot(e, o * s * Math.max(a, 1), Ge, t), B(e, fi + 4 * a, t);
 	let c = o * s;
-	if (c < i) throw M(t, "a grid with too few cells");
-	let l = vt(e.subarray(fi + 4 * a)), u = r ? Ct(l, c, i, t) : null, d = u !== null && i === c, f = [
+	if (c < i) throw N(t, "a grid with too few cells");
+	let l = yt(e.subarray(fi + 4 * a)), u = r ? wt(l, c, i, t) : null, d = u !== null && i === c, f = [
 		0,
 		1,
 		2
 	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * pi * Math.max(o, s);
 	for (let e = 0; e < a; e++) {
 		let r = n.getFloat32(fi + 4 * e, !0);
-		if (!(r > 0 && r < Infinity)) throw M(t, "a step that is not positive");
-		let i = yt(l), h = xt(l, s, f[i], i);
-		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw M(t, `numbers of component ${e} that cannot be`);
+		if (!(r > 0 && r < Infinity)) throw N(t, "a step that is not positive");
+		let i = bt(l), h = St(l, s, f[i], i);
+		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw N(t, `numbers of component ${e} that cannot be`);
 		f[i] = h;
 		let g = i === 2 ? hi(h, o, s) : h;
 		for (let t = 0; t < c; t++) {
@@ -1471,7 +1471,7 @@ function mi(e, t) {
 		}
 		l.checkEnd(t);
 	}
-	if (!p.every(Number.isFinite)) throw M(t, "weights that are not finite");
+	if (!p.every(Number.isFinite)) throw N(t, "weights that are not finite");
 	return {
 		cameras: i,
 		components: a,
@@ -1582,8 +1582,8 @@ var W = {
 	"av1-10bit-2": {
 		..._i("video/AV1"),
 		bits: 10,
-		decode: (e, t, n) => ci(ve(e, t.where), t, n),
-		bitmaps: (e, t, n) => ii(ve(e, t.where), t, n),
+		decode: (e, t, n) => ci(_e(e, t.where), t, n),
+		bitmaps: (e, t, n) => ii(_e(e, t.where), t, n),
 		needs: "av1-10bit-2"
 	}
 }, vi = {
@@ -1594,9 +1594,9 @@ var W = {
 	weights: "weights-1"
 };
 function yi(e, t, n) {
-	let r = t.exists ? t.text(R) : n, i = Object.hasOwn(W, r) ? W[r] : null;
+	let r = t.exists ? t.text(I) : n, i = Object.hasOwn(W, r) ? W[r] : null;
 	if (i?.kind === e) return i;
-	throw new j("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
+	throw new M("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
 }
 function bi(e, t) {
 	return Object.keys(W).find((n) => {
@@ -1636,7 +1636,7 @@ var G = class e {
 		if (this.raw.length > e) throw this.wrong(`longer than ${e} characters`);
 		return this.raw;
 	}
-	number(e = -We, t = We) {
+	number(e = -Ke, t = Ke) {
 		if (typeof this.raw != "number") throw this.wrong("no number");
 		if (!(this.raw >= e && this.raw <= t)) throw this.wrong(`${this.raw} is not in ${e}..${t}`);
 		return this.raw;
@@ -1646,7 +1646,7 @@ var G = class e {
 		if (!Number.isInteger(n)) throw this.wrong(`${n} is no whole number`);
 		return n;
 	}
-	numbers(e, t = -We, n = We) {
+	numbers(e, t = -Ke, n = Ke) {
 		let r = this.items(e);
 		if (r.length !== e) throw this.wrong(`${e} numbers are needed`);
 		return r.map((e) => e.number(t, n));
@@ -1660,7 +1660,7 @@ var G = class e {
 		];
 	}
 	wrong(e) {
-		return M(this.where || "/", this.exists ? e : "missing");
+		return N(this.where || "/", this.exists ? e : "missing");
 	}
 }, xi = 5121, Si = 5123, Ci = 5125, wi = 5126, Ti = {
 	[xi]: 1,
@@ -1680,7 +1680,7 @@ function Oi(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
-	return e.key("bufferViews").items(I).map((e) => {
+	return e.key("bufferViews").items(Ce).map((e) => {
 		let t = e.key("byteOffset"), r = e.key("byteStride");
 		e.key("buffer").integer(0, 0);
 		let i = {
@@ -1696,7 +1696,7 @@ function ki(e) {
 	return (t) => t.integer(0, e.length - 1);
 }
 function Ai(e, t) {
-	let n = e.key("accessors"), r = n.exists ? n.items(I) : [];
+	let n = e.key("accessors"), r = n.exists ? n.items(Ce) : [];
 	return (e, n, i, a) => {
 		let o = r[e.integer(0, r.length - 1)];
 		if (!o) throw e.wrong("no such accessor");
@@ -1706,7 +1706,7 @@ function Ai(e, t) {
 		if (o.key("sparse").exists) throw o.wrong("sparse");
 		let c = o.key("normalized");
 		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = Di[n] ?? 1, u = o.key("count").integer(1, Ue);
+		let l = Di[n] ?? 1, u = o.key("count").integer(1, Ge);
 		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
 		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
 		if (!f) throw o.wrong("no such buffer view");
@@ -1734,23 +1734,23 @@ function ji(e, t, n) {
 }
 async function Mi(e, t, n) {
 	let r = await n(e.view), i = t[e.view]?.length ?? Infinity;
-	if (r.byteLength < i) throw ue(e.where);
+	if (r.byteLength < i) throw le(e.where);
 	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + Ti[c] * o * s);
 	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : Ni(new Float32Array(l), e.where);
 }
 function Ni(e, t) {
-	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw M(t, `${n} among its numbers`);
+	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw N(t, `${n} among its numbers`);
 	return e;
 }
 // eigenfield-three/src/planes.ts
 var Pi = 8, Fi = 16, Ii = "av1-10bit-2";
 function Li(e, t) {
-	return new j("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
+	return new M("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function Ri(e, t = Ce) {
+function Ri(e, t = we) {
 	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
 	if (!n || !r) throw e.wrong("two numbers are needed");
-	if (n * r > Te) throw e.wrong(`more than ${Te} texels`);
+	if (n * r > Ee) throw e.wrong(`more than ${Ee} texels`);
 	return [n, r];
 }
 function zi(e, t, n, r, i) {
@@ -1771,8 +1771,8 @@ function zi(e, t, n, r, i) {
 			s += t[0] * t[1] * e * n, c += r;
 		}
 	}
-	if (c > 4096) throw e.key("planes").wrong(`more than ${Ee} textures`);
-	if (s > De) throw e.key("planes").wrong("too large when it is decoded");
+	if (c > 4096) throw e.key("planes").wrong(`more than ${De} textures`);
+	if (s > Oe) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
 function Bi(e, t) {
@@ -1830,7 +1830,7 @@ function Vi(e, t, n, r, i, a = !1) {
 	};
 }
 function Hi(e) {
-	let t = e.key("mimeType").text(R);
+	let t = e.key("mimeType").text(I);
 	if (!bi(t)) throw e.key("mimeType").wrong("an unknown type");
 	let n = e.key("bits"), r = n.exists ? n.integer(1, Fi) : Pi, i = bi(t, r);
 	if (!i) throw n.wrong(`${r} bits of ${t}`);
@@ -1839,8 +1839,8 @@ function Hi(e) {
 	return o;
 }
 function Ui(e, t, n) {
-	let r = e.key("at").items(Ee * t).map((e) => {
-		let [t = 0, n = 0] = e.numbers(2, 0, Ne);
+	let r = e.key("at").items(De * t).map((e) => {
+		let [t = 0, n = 0] = e.numbers(2, 0, Fe);
 		if (!Number.isInteger(t) || !Number.isInteger(n)) throw e.wrong("no whole numbers");
 		return [t, n];
 	});
@@ -1947,7 +1947,7 @@ function Zi(e, t) {
 function Qi(e, t, n) {
 	if (!e.exists) return null;
 	if (t.codec.bits === Pi) throw e.wrong(`of a mean of ${Pi} bits`);
-	let r = Ri(e.key("size"), we), i = yi("picture", e.key("codec"), "png");
+	let r = Ri(e.key("size"), Te), i = yi("picture", e.key("codec"), "png");
 	if (i !== W.png) throw e.key("codec").wrong("no PNG");
 	return {
 		view: n(e.key("bufferView")),
@@ -1959,13 +1959,13 @@ function Qi(e, t, n) {
 	};
 }
 function $i(e, t, n, r, i) {
-	let a = Ri(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Ri(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, Ce) : [];
+	let a = Ri(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Ri(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, we) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
 	let d = e.where;
 	if (e.key("film").exists) {
 		let n = Ui(e, t, a), { textures: r } = n;
-		if (r > 4096) throw e.wrong(`more than ${Ee} textures`);
+		if (r > 4096) throw e.wrong(`more than ${De} textures`);
 		return {
 			size: a,
 			grid: c,
@@ -1976,14 +1976,14 @@ function $i(e, t, n, r, i) {
 			where: d
 		};
 	}
-	let f = 0, p = e.key("picture"), m = p.exists ? p.object() : {}, h = e.key("textures").items(Ee).map((e) => {
+	let f = 0, p = e.key("picture"), m = p.exists ? p.object() : {}, h = e.key("textures").items(De).map((e) => {
 		let n = new G({
 			...m,
 			...e.object()
-		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, Ee) : 1;
+		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, De) : 1;
 		return f += o, Vi(n, t, o, a, i);
 	});
-	if (f > 4096) throw e.wrong(`more than ${Ee} textures`);
+	if (f > 4096) throw e.wrong(`more than ${De} textures`);
 	let g = e.key("codedWeights"), _ = f ? g.exists ? ji("weights", g, i) : r(e.key("weights"), "SCALAR", [wi], n * f) : null;
 	return {
 		size: a,
@@ -1998,7 +1998,7 @@ function $i(e, t, n, r, i) {
 function ea(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
-	if (n * i > Te) throw e.wrong(`more than ${Te} texels`);
+	if (n * i > Ee) throw e.wrong(`more than ${Ee} texels`);
 }
 // eigenfield-three/src/rights.ts
 var ta = "KHR_xmp_json_ld", na = /[\p{Cc}\p{Cs}\p{Zl}\p{Zp}\u202a-\u202e\u2066-\u2069]/u;
@@ -2030,7 +2030,7 @@ function aa(e, ...t) {
 // eigenfield-three/src/sheets.ts
 function oa(e, t) {
 	if (!e.exists) return null;
-	let n = e.key("faces").items(32).map((e) => e.integer(1, Me));
+	let n = e.key("faces").items(32).map((e) => e.integer(1, Pe));
 	if (!n.length) throw e.key("faces").wrong("no sheet");
 	return {
 		faces: n,
@@ -2040,12 +2040,12 @@ function oa(e, t) {
 }
 function sa({ faces: e, where: t }, { index: n, attributes: r }) {
 	let i = e.reduce((e, t) => e + t, 0), a = (n?.count ?? 0) / 3;
-	if (i !== a) throw M(`${t}/faces`, `the sheets have ${i} triangles, the mesh has ${a}`);
+	if (i !== a) throw N(`${t}/faces`, `the sheets have ${i} triangles, the mesh has ${a}`);
 	let o = new Uint8Array(r.position?.count ?? 0), s = 0;
 	e.forEach((e, r) => {
 		for (let i = s + 3 * e; s < i; s++) {
 			let e = n?.getX(s) ?? 0, i = o[e] || r + 1, a = `sheets ${i - 1} and ${r} share vertex ${e}`;
-			if (i !== r + 1) throw M(`${t}/faces`, a);
+			if (i !== r + 1) throw N(`${t}/faces`, a);
 			o[e] = i;
 		}
 	});
@@ -2056,12 +2056,12 @@ function fa(e, t, n) {
 	let r = [..._a(t), ...n ? [n] : []];
 	if (!e.exists) {
 		let e = r.find(({ part: e }) => e);
-		if (e) throw M(e.where, "a texture in a film, and no timeline");
+		if (e) throw N(e.where, "a texture in a film, and no timeline");
 		return null;
 	}
-	let [i = 1, a = 1] = e.key("rate").numbers(2, 1, He), o = i / a;
+	let [i = 1, a = 1] = e.key("rate").numbers(2, 1, We), o = i / a;
 	if (!(Number.isInteger(i) && Number.isInteger(a)) || o > 1e3 || o < 1 / 1e3) throw e.key("rate").wrong("no rate");
-	let s = e.key("first"), c = e.key("films").items(4).map(ma), l = e.key("frames").integer(1, Ie);
+	let s = e.key("first"), c = e.key("films").items(4).map(ma), l = e.key("frames").integer(1, Re);
 	va(r, c);
 	let u = new Set([...t.map(({ mean: e }) => e), n].map((e) => c[e?.part?.film ?? -1]));
 	for (let e of c) e.opacity = e === c[n?.part?.film ?? -1], e.detail = !u.has(e);
@@ -2079,7 +2079,7 @@ function pa(e, t) {
 	let n = e.key("audio");
 	if (!n.exists) return null;
 	if (n.key("mimeType").text(64) !== la) throw n.key("mimeType").wrong(`no ${la}`);
-	let r = t.at(-1), i = r.file === null ? null : ua, a = i ? 0 : ha(n.key("offset"), r.offset + r.length), o = n.key("first"), s = n.key("length").integer(1, Ve);
+	let r = t.at(-1), i = r.file === null ? null : ua, a = i ? 0 : ha(n.key("offset"), r.offset + r.length), o = n.key("first"), s = n.key("length").integer(1, Ue);
 	return {
 		mimeType: la,
 		first: o.exists ? o.number() : 0,
@@ -2089,8 +2089,8 @@ function pa(e, t) {
 	};
 }
 function ma(e) {
-	let t = yi("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, ca, Ne);
-	if (n % ca || r % ca || n * r > Pe) throw e.key("size").wrong(`a film of ${n} x ${r}`);
+	let t = yi("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, ca, Fe);
+	if (n % ca || r % ca || n * r > Ie) throw e.key("size").wrong(`a film of ${n} x ${r}`);
 	return {
 		codec: t,
 		size: [n, r],
@@ -2107,8 +2107,8 @@ function ha(e, t) {
 function ga(e, t) {
 	let [n, r] = [0, 0], i = e.key("groupFiles");
 	if (i.exists && i.raw !== !0) throw i.wrong("not true");
-	let a = e.key("groups").items(Le).map((e, t) => {
-		let a = i.exists ? `groups/${String(t).padStart(5, "0")}.eftg` : null, o = e.key("frames").integer(1, ze), s = e.key("length").integer(1, Re), c = a ? 0 : ha(e.key("offset"), r), l = e.key("sha256").text(64);
+	let a = e.key("groups").items(ze).map((e, t) => {
+		let a = i.exists ? `groups/${String(t).padStart(5, "0")}.eftg` : null, o = e.key("frames").integer(1, Ve), s = e.key("length").integer(1, Be), c = a ? 0 : ha(e.key("offset"), r), l = e.key("sha256").text(64);
 		if (!da.test(l)) throw e.key("sha256").wrong("no SHA-256");
 		return [n, r] = [n + o, c + s], {
 			first: n - o,
@@ -2130,14 +2130,14 @@ function va(e, t) {
 	let n = t.map(({ size: e }) => new Uint8Array(e[0] * e[1] / K ** 2));
 	for (let { part: r, where: i } of e) {
 		let e = r && t[r.film];
-		if (!r || !e) throw M(i, "it lies in no film");
+		if (!r || !e) throw N(i, "it lies in no film");
 		let [a, o] = [e.size[0] / K, n[r.film]], [s, c] = r.size.map((e) => Math.ceil(e / K));
 		for (let [t, n] of r.at) {
 			let l = t + r.size[0] <= e.size[0] && n + r.size[1] <= e.size[1];
-			if (t % K || n % K || !l) throw M(i, `a texture at ${t}, ${n} of its film`);
+			if (t % K || n % K || !l) throw N(i, `a texture at ${t}, ${n} of its film`);
 			for (let e = n / K; e < n / K + c; e++) {
 				let r = o.subarray(e * a + t / K, e * a + t / K + s);
-				if (r.includes(1)) throw M(i, `two textures at ${t}, ${n} of a film`);
+				if (r.includes(1)) throw N(i, `two textures at ${t}, ${n} of a film`);
 				r.fill(1);
 			}
 		}
@@ -2187,7 +2187,7 @@ function Oa(e) {
 	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), [x, S] = [n.key("mesh"), n.key("timeline")], C = oa(n.key("sheets"), o);
 	return {
 		version: r,
-		generator: b.exists ? b.text(R) : "",
+		generator: b.exists ? b.text(I) : "",
 		rights: ra(e),
 		planes: p,
 		colours: m,
@@ -2198,7 +2198,7 @@ function Oa(e) {
 		sizes: Va(c, l, a),
 		colour: g.exists ? ji("weights", g, o) : h.exists ? a(h, "SCALAR", [wi], 6 * l) : null,
 		...Ha(_),
-		triangles: y.exists ? ji("triangles", y, o) : v.exists ? Pa(a(v, "SCALAR", [Si, Ci], null), 2 * L) : null,
+		triangles: y.exists ? ji("triangles", y, o) : v.exists ? Pa(a(v, "SCALAR", [Si, Ci], null), 2 * ke) : null,
 		settings: Ua(n.key("settings")),
 		scores: Ua(n.key("scores")),
 		views: i,
@@ -2214,30 +2214,30 @@ function ka(e, t) {
 	if (r.exists && r.integer(0, 6) !== 4) throw r.wrong("no triangles");
 	let [i, a] = [n.key("attributes"), n.key("indices")];
 	return {
-		position: Na(t(i.key("POSITION"), "VEC3", [wi], null), je),
-		uv: Na(t(i.key("TEXCOORD_0"), "VEC2", [wi], null), je),
+		position: Na(t(i.key("POSITION"), "VEC3", [wi], null), Ne),
+		uv: Na(t(i.key("TEXCOORD_0"), "VEC2", [wi], null), Ne),
 		indices: Pa(t(a, "SCALAR", [
 			xi,
 			Si,
 			Ci
-		], null), Me)
+		], null), Pe)
 	};
 }
 function Aa({ planes: e, sheets: t }) {
 	return t ? [...e, t.opacity] : e;
 }
 function ja(e) {
-	let t = e.key("version").text(R);
-	if (!/^1\.\d+$/.test(t)) throw new j("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
+	let t = e.key("version").text(I);
+	if (!/^1\.\d+$/.test(t)) throw new M("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
-	for (let e of n.exists ? n.items(I) : []) {
-		let t = e.text(R);
-		if (!Ca.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
+	for (let e of n.exists ? n.items(Ce) : []) {
+		let t = e.text(I);
+		if (!Ca.has(t)) throw new M("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
 function Ma(e) {
-	let t = e.key("nodes").items(I), n = Array(t.length).fill(!1);
+	let t = e.key("nodes").items(Ce), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
 		for (let e of r.exists ? r.items(t.length) : []) {
@@ -2246,17 +2246,17 @@ function Ma(e) {
 			n[r] = !0;
 		}
 	}
-	for (let r of e.key("scenes").items(I)) {
+	for (let r of e.key("scenes").items(Ce)) {
 		let e = r.key("nodes");
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
 function Na(e, t) {
-	if (e.count > t) throw M(e.where, `more than ${t}`);
+	if (e.count > t) throw N(e.where, `more than ${t}`);
 	return e;
 }
 function Pa(e, t) {
-	if (e.count % 3) throw M(e.where, "torn triangles");
+	if (e.count % 3) throw N(e.where, "torn triangles");
 	return Na(e, 3 * t);
 }
 function Fa(e, t) {
@@ -2268,10 +2268,10 @@ function Fa(e, t) {
 function Ia(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
-		count: n.key("count").integer(1, L),
+		count: n.key("count").integer(1, ke),
 		names: ji("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? Ra(r) : i.items(L).map((e) => e.text(R));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? Ra(r) : i.items(ke).map((e) => e.text(I));
 	if (!a.length) throw i.wrong("no cameras");
 	let o = La(a);
 	if (o) throw i.wrong(o);
@@ -2284,13 +2284,13 @@ function La(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
 function Ra(e) {
-	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, L));
+	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, ke));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
 	let r = e.key("parts").items(wa).map((e) => {
-		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(R))];
+		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(I))];
 		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
 		if (a.exists) {
-			let e = a.items(i).map((e) => e.text(R));
+			let e = a.items(i).map((e) => e.text(I));
 			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
 			return [r, e];
 		}
@@ -2299,7 +2299,7 @@ function Ra(e) {
 	});
 	return Array.from({ length: t * n }, (t, i) => {
 		let a = [Math.floor(i / n), i % n], o = r.map(([e, t]) => t[a[e] ?? 0]).join("");
-		if (o.length > 1024) throw e.wrong(`names of more than ${R} characters`);
+		if (o.length > 1024) throw e.wrong(`names of more than ${I} characters`);
 		return o;
 	});
 }
@@ -2324,7 +2324,7 @@ function Ba(e, t, n, r) {
 function Va(e, t, n) {
 	let r = e.key("size");
 	if (!r.exists) return n(e.key("sizes"), "SCALAR", [Ci], 2 * t);
-	let [i = 0, a = 0] = r.numbers(2, 1, Oe);
+	let [i = 0, a = 0] = r.numbers(2, 1, Ae);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
@@ -2357,9 +2357,9 @@ async function Ga(e, t) {
 	]);
 	return n.map((t, n) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
-		if (!(s > Wa && c > Wa)) throw M(r.where, `focal lengths of "${t}"`);
+		if (!(s > Wa && c > Wa)) throw N(r.where, `focal lengths of "${t}"`);
 		let { R: f, t: p } = Za([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
-		if (!m || !h || Math.max(m, h) > 65535 || m * h > ke) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
+		if (!m || !h || Math.max(m, h) > 65535 || m * h > je) throw N(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
 				s,
@@ -2393,7 +2393,7 @@ async function Ga(e, t) {
 async function Ka({ colour: e, heldOut: t, views: n }, r) {
 	if (!e || "type" in e) return e && Mi(e, n, r);
 	let { cameras: i, components: a, values: o } = await e.codec.decode(new Uint8Array(await r(e.view)), e.where);
-	if (a !== 6 || i !== t.filter((e) => !e).length) throw M(e.where, `${i} x ${a} colours`);
+	if (a !== 6 || i !== t.filter((e) => !e).length) throw N(e.where, `${i} x ${a} colours`);
 	let s = 0;
 	return Float32Array.from(t.flatMap((e) => e ? [
 		1,
@@ -2407,7 +2407,7 @@ async function Ka({ colour: e, heldOut: t, views: n }, r) {
 async function qa({ names: e, heldOut: t }, n) {
 	if (Array.isArray(e)) return e;
 	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : La(r);
-	if (i) throw M(e.where, i);
+	if (i) throw N(e.where, i);
 	return r;
 }
 async function Ja(e, t, n) {
@@ -2426,7 +2426,7 @@ async function Ya(e, t) {
 		};
 	}
 	let { view: i, codec: a, where: o } = n, s = await a.decode(new Uint8Array(await t(i)), o), c = s.poses.length / 12;
-	if (c !== r.length) throw M(o, `${c} cameras in it, and ${r.length} names`);
+	if (c !== r.length) throw N(o, `${c} cameras in it, and ${r.length} names`);
 	let l = (e) => ({
 		numbers: Ni(e, o),
 		where: o
@@ -2460,9 +2460,9 @@ function Za(e, t, n) {
 	];
 	for (let e = 0; e < 3; e++) for (let r = e; r < 3; r++) {
 		let a = Y(i[e], i[r]) - +(e === r);
-		if (!(Math.abs(a) <= 2e-4)) throw M(t, `the pose of "${n}" is no rotation`);
+		if (!(Math.abs(a) <= 2e-4)) throw N(t, `the pose of "${n}" is no rotation`);
 	}
-	if (!(Y(fo(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
+	if (!(Y(fo(i[0], i[1]), i[2]) > 0)) throw N(t, `the pose of "${n}" is mirrored`);
 	return {
 		R: i,
 		t: a
@@ -2470,7 +2470,7 @@ function Za(e, t, n) {
 }
 function Qa(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
-	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw M(t.colour?.where ?? "", `gain or offset of "${n}"`);
+	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw N(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
 async function $a(e, t) {
@@ -2494,7 +2494,7 @@ async function to({ weights: e, count: t }, n, r, i) {
 }
 function no({ cameras: e, components: t, values: n }, r, i, a) {
 	if (e === r && t === i) return Ni(n, a);
-	throw M(a, `${e} x ${t} weights, and ${r} encoded cameras x ${i} textures`);
+	throw N(a, `${e} x ${t} weights, and ${r} encoded cameras x ${i} textures`);
 }
 function J(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
@@ -2511,8 +2511,8 @@ async function ao(e, t) {
 	let { where: n } = e.triangles, r = await oo(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
-		if (Math.max(t, a, o) >= i) throw M(n, `no encoded camera ${Math.max(t, a, o)}`);
-		if (t === a || a === o || o === t) throw M(n, "a triangle with one camera twice");
+		if (Math.max(t, a, o) >= i) throw N(n, `no encoded camera ${Math.max(t, a, o)}`);
+		if (t === a || a === o || o === t) throw N(n, "a triangle with one camera twice");
 	}
 	return r;
 }
@@ -2733,7 +2733,7 @@ function _o(e, t, n, r, i = 1) {
 }
 function vo(e, t, n) {
 	let { R: r, centre: i } = n, a = new x().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
-	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new A()), t.updateMatrixWorld(!0);
+	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new j()), t.updateMatrixWorld(!0);
 }
 function yo(e, t, n, r) {
 	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = bo(e, n);
@@ -2743,9 +2743,9 @@ function bo(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
-		center: new A(),
+		center: new j(),
 		radius: 1
-	}, o = r.getMaxScaleOnAxis(), s = i.distanceTo(new A(...t.centre)) * o, c = 1.01 * (s + a * o);
+	}, o = r.getMaxScaleOnAxis(), s = i.distanceTo(new j(...t.centre)) * o, c = 1.01 * (s + a * o);
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
 // eigenfield-three/src/exposure.ts
@@ -2951,12 +2951,12 @@ void main() {
 }
 `, ns = "sumTextures", rs = "finerValue", is = "finerOpacity";
 function as(n, r, i) {
-	let o = new O({
+	let o = new k({
 		glslVersion: h,
 		vertexShader: $o,
 		fragmentShader: `${Qo}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
 		uniforms: {
-			rectangle: { value: new ae(...r) },
+			rectangle: { value: new ie(...r) },
 			...i
 		},
 		side: u,
@@ -2986,12 +2986,12 @@ function as(n, r, i) {
 		2,
 		1,
 		3
-	]), s.boundingSphere = new te();
+	]), s.boundingSphere = new ee();
 	let c = new S(s, o);
 	return c.frustumCulled = !1, c;
 }
 function os([e, t], n) {
-	return new oe(e, t, {
+	return new ae(e, t, {
 		type: g,
 		depthBuffer: !1,
 		generateMipmaps: n,
@@ -3007,52 +3007,47 @@ function ss(e, t) {
 	];
 	return [...lo(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
 }
-function cs(t, n, r) {
+var cs = Array.from({ length: 5 }, (e, t) => t - Zo), ls = cs.flatMap((e) => cs.map((t) => new re(t, e))).sort((e, t) => t.lengthSq() - e.lengthSq());
+function us(e) {
+	return new k({
+		glslVersion: h,
+		vertexShader: es.replace("SHIFTS", String(ls.length)),
+		fragmentShader: ts,
+		uniforms: {
+			texel: { value: new re(2 / e.width, 2 / e.height) },
+			shifts: { value: ls }
+		},
+		side: u,
+		blending: T,
+		depthTest: !1,
+		depthWrite: !1
+	});
+}
+function ds(t, n, r) {
 	let { index: i } = t, a = t.getAttribute("position"), o = t.getAttribute("uv"), s = new Float32Array(3 * a.count), c = new Float32Array(2 * a.count);
 	for (let e = 0; e < a.count; e++) s.set(ss(n, [
 		a.getX(e),
 		a.getY(e),
 		a.getZ(e)
 	]), 3 * e), c.set([o.getX(e), o.getY(e)], 2 * e);
-	let l = Array.from({ length: 5 }, (e, t) => t - Zo), d = l.flatMap((e) => l.map((t) => new ie(t, e)));
-	d.sort((e, t) => t.lengthSq() - e.lengthSq());
-	let f = new v();
-	f.setAttribute("position", new e(c, 2)), f.setAttribute("onPlane", new e(s, 3)), f.setIndex(i && new e(i.array, 1)), f.instanceCount = d.length, f.boundingSphere = new te();
-	let p = new O({
-		glslVersion: h,
-		vertexShader: es.replace("SHIFTS", String(d.length)),
-		fragmentShader: ts,
-		uniforms: {
-			texel: { value: new ie(2 / r.width, 2 / r.height) },
-			shifts: { value: d }
-		},
-		side: u,
-		blending: T,
-		depthTest: !1,
-		depthWrite: !1
-	}), m = new S(f, p);
-	m.frustumCulled = !1;
-	let g = new k();
-	return g.add(m), {
-		scene: g,
-		free: () => {
-			f.dispose(), p.dispose();
-		}
-	};
+	let l = new v();
+	l.setAttribute("position", new e(c, 2)), l.setAttribute("onPlane", new e(s, 3)), l.setIndex(i && new e(i.array, 1)), l.instanceCount = ls.length, l.boundingSphere = new ee();
+	let u = new S(l, r);
+	return u.frustumCulled = !1, u;
 }
-var ls = new i(0), us = new i();
-function ds(e, t, n) {
+var fs = new i(0), ps = new i();
+function ms(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(us), e.setClearColor(ls, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(us, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(ps), e.setClearColor(fs, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(ps, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/composer.ts
-var fs = {
+var hs = {
 	version: 0,
 	mean: !0,
 	opacity: 0,
@@ -3062,7 +3057,7 @@ var fs = {
 	eye: null,
 	places: 0,
 	maps: null
-}, ps = class {
+}, gs = class {
 	snaps;
 	surface;
 	plane;
@@ -3078,7 +3073,7 @@ var fs = {
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), l = (e, n) => {
-			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => gs(t, i ? X(e, r) : null)), o = new k();
+			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => ys(t, i ? X(e, r) : null)), o = new A();
 			return a.forEach(({ quad: e }, t) => o.add(Object.assign(e, { renderOrder: t }))), {
 				target: os(X(e, r), n),
 				scene: o,
@@ -3096,35 +3091,36 @@ var fs = {
 			], { coarse: { value: e.texture } });
 			u.scene.add(Object.assign(t, { renderOrder: u.scene.children.length }));
 		}
-		this.grids.push(u), this.opacity = n && ms(n, r);
+		this.grids.push(u), this.opacity = n && _s(n, r);
 	}
 	get texture() {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && ys(this.composed, n) || (this.composed = n, ds(e, t, () => {
+		this.composed && Ss(this.composed, n) || (this.composed = n, ms(e, t, () => {
 			n.opacity > this.opacityDrawn && this.drawOpacity(e, n.opacity);
 			for (let t of this.grids) {
 				(n.eye !== null && t.steps.some(({ part: e }) => e.basis) || this.snaps) && this.findPlaces(e, t, n.places);
-				for (let e of t.steps) _s(e, t.places?.target.texture ?? null, n);
+				for (let e of t.steps) bs(e, t.places?.target.texture ?? null, n);
 				this.draw(e, t.scene, t.target, this.opacityDrawn > 0 && t === this.grids.at(-1));
 			}
 		}));
 	}
 	dispose() {
-		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), hs(n);
-		this.opacity?.target.dispose(), this.opacity && [this.opacity.sum, this.opacity.finer].forEach(hs);
+		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), t?.material.dispose(), vs(n);
+		this.opacity?.target.dispose(), this.opacity && [this.opacity.sum, this.opacity.finer].forEach(vs);
 	}
 	drawOpacity(e, t) {
 		let [n, r] = [this.grids.at(-1), this.opacity];
 		r && n && (this.draw(e, r.sum, r.target), this.draw(e, r.finer, n.target), this.opacityDrawn = t);
 	}
 	findPlaces(e, t, n) {
-		if (t.places?.version === n) return;
-		let r = t.places?.target ?? os([t.target.width, t.target.height], !1), { scene: i, free: a } = cs(this.surface.geometry, this.plane, r);
-		this.draw(e, i, r), a(), t.places = {
+		if (t.places && t.places.version >= n) return;
+		let r = t.places?.target ?? os([t.target.width, t.target.height], !1), i = t.places?.material ?? us(r), a = ds(this.surface.geometry, this.plane, i);
+		this.draw(e, new A().add(a), r), a.geometry.dispose(), t.places = {
 			target: r,
-			version: n
+			material: i,
+			version: this.surface.version
 		};
 	}
 	draw(e, t, n, r = !1) {
@@ -3133,10 +3129,10 @@ var fs = {
 		r && i.colorMask(!0, !0, !0, !1), e.clear(!0, !1, !1), r && i.colorMask(!0, !0, !0, !0), e.render(t, this.camera);
 	}
 };
-function ms(e, t) {
-	let n = os(X(e.grid, t), !1), r = gs(e, null);
-	for (let e of r) _s(e, null, fs);
-	let [i, a] = [new k(), new k()];
+function _s(e, t) {
+	let n = os(X(e.grid, t), !1), r = ys(e, null);
+	for (let e of r) bs(e, null, hs);
+	let [i, a] = [new A(), new A()];
 	return i.add(...r.map(({ quad: e }) => e)), a.add(as(is, [
 		0,
 		0,
@@ -3148,13 +3144,13 @@ function ms(e, t) {
 		finer: a
 	};
 }
-function hs(e) {
+function vs(e) {
 	for (let { geometry: t, material: n } of e.children) t.dispose(), n.dispose();
 }
-function gs(e, t) {
-	let [n, r, i, a] = e.rectangle, o = t && new ie(1 / ((i - n) * t[0]), 1 / ((a - r) * t[1])), s = e.colours.length, [c, l] = [e.scale.length / (4 * s), Math.floor(64 / s)], u = [];
+function ys(e, t) {
+	let [n, r, i, a] = e.rectangle, o = t && new re(1 / ((i - n) * t[0]), 1 / ((a - r) * t[1])), s = e.colours.length, [c, l] = [e.scale.length / (4 * s), Math.floor(64 / s)], u = [];
 	for (let t = 0; t < c; t += l) {
-		let n = Array.from({ length: 64 }, (t, n) => new A(...e.colours[n] ?? [
+		let n = Array.from({ length: 64 }, (t, n) => new j(...e.colours[n] ?? [
 			0,
 			0,
 			0
@@ -3171,8 +3167,8 @@ function gs(e, t) {
 			weightMaps: { value: null },
 			firstGroup: { value: (e.basis?.group ?? 0) + t },
 			places: { value: null },
-			beside: { value: o ?? new ie() },
-			eye: { value: new A() }
+			beside: { value: o ?? new re() },
+			eye: { value: new j() }
 		});
 		u.push({
 			part: e,
@@ -3183,26 +3179,26 @@ function gs(e, t) {
 	}
 	return u;
 }
-function _s({ part: e, first: t, groups: n, quad: r }, i, a) {
+function bs({ part: e, first: t, groups: n, quad: r }, i, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => vs(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => xs(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
 	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", i), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function vs(e, t, n, r) {
+function xs(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function ys(e, t) {
+function Ss(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
 // eigenfield-three/src/maps.ts
-function bs(e, t, n, i, a) {
+function Cs(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
@@ -3223,10 +3219,10 @@ function bs(e, t, n, i, a) {
 		}
 	}
 	let p = new o(f, 129, 129, Math.max(1, d));
-	return p.format = D, p.type = g, p.minFilter = p.magFilter = y, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
+	return p.format = O, p.type = g, p.minFilter = p.magFilter = y, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
 }
 // eigenfield-three/src/eigen-weights.ts
-var xs = class {
+var ws = class {
 	info;
 	counts;
 	omega;
@@ -3263,7 +3259,7 @@ var xs = class {
 	maps(e, t) {
 		if (this.made?.mixing === e && this.made.usable === t) return this.made.texture;
 		this.dispose();
-		let n = bs(this.views, e, this.omega, this.counts, t);
+		let n = Cs(this.views, e, this.omega, this.counts, t);
 		return this.made = {
 			texture: n,
 			mixing: e,
@@ -3273,20 +3269,20 @@ var xs = class {
 	dispose() {
 		this.made?.texture.dispose();
 	}
-}, Ss = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", Cs = {
+}, Ts = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", Es = {
 	bilinear: 0,
 	bicubic: 1
-}, ws = {
+}, Ds = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, Ts = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Es = Ts.replace("void main", "invariant gl_Position;\nvoid main"), Ds = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", Os = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", ks = `${Ds}
-${Xo}${Ss}
+}, Os = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", ks = Os.replace("void main", "invariant gl_Position;\nvoid main"), As = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", js = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", Ms = `${As}
+${Xo}${Ts}
 uniform float shownGain;       // of the eigen texture around mid grey
 in vec2 surfaceUv;
 vec3 eigenColour(vec3 value) { return clamp(0.5 + shownGain * value, 0.0, 1.0); }
-`, As = `${ks}${Os}
+`, Ns = `${Ms}${js}
 in vec3 surfacePlace;
 out vec4 fragment;
 void main() {
@@ -3296,7 +3292,7 @@ void main() {
   if (shown == 3) colour = errorColour(colour, surfacePlace);
   fragment = vec4(colour, 1.0);
 }
-`, js = `${ks}
+`, Ps = `${Ms}
 layout(location = 0) out vec4 fragment;
 layout(location = 1) out vec4 solid;
 vec3 threeBytes(float depth) {
@@ -3310,76 +3306,76 @@ void main() {
   float depth = (gl_FragCoord.z - gl_DepthRange.near) / gl_DepthRange.diff;
   solid = colour.a < 0.5 ? vec4(0.0) : vec4(threeBytes(depth), 1.0);
 }
-`, Ms = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", Ns = {
+`, Fs = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", Is = {
 	blending: a,
 	blendSrc: E,
-	blendDst: ee
-}, Ps = {
+	blendDst: D
+}, Ls = {
 	depthWrite: !1,
 	stencilWrite: !0,
 	stencilFunc: d,
 	stencilZPass: _
 };
-function Fs(e, t) {
+function Rs(e, t) {
 	let n = {
 		composed: { value: null },
 		finest: { value: 1 },
-		exposureScale: { value: new A(1, 1, 1) },
-		exposureBias: { value: new A() },
-		shown: { value: ws.picture },
+		exposureScale: { value: new j(1, 1, 1) },
+		exposureBias: { value: new j() },
+		shown: { value: Ds.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new x() }
-	}, r = new O({
+	}, r = new k({
 		glslVersion: h,
-		vertexShader: t ? Es : Ts,
-		fragmentShader: t ? js : As,
+		vertexShader: t ? ks : Os,
+		fragmentShader: t ? Ps : Ns,
 		uniforms: n,
-		defines: { BICUBIC: Cs.bicubic },
+		defines: { BICUBIC: Es.bicubic },
 		side: e ? u : m,
 		...t ? {
-			...Ns,
-			...Ps
+			...Is,
+			...Ls
 		} : {}
 	});
 	return r.name = "eigen textures", r;
 }
-function Is(e) {
+function zs(e) {
 	let { side: t } = e;
-	return new O({
+	return new k({
 		name: "depth of sheets",
 		glslVersion: h,
-		vertexShader: Es,
-		fragmentShader: Ms,
+		vertexShader: ks,
+		fragmentShader: Fs,
 		colorWrite: !1,
 		side: t,
 		stencilWrite: !0,
-		stencilZPass: se
+		stencilZPass: oe
 	});
 }
-function Ls(e, t, n) {
-	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !Rs(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
+function Bs(e, t, n) {
+	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !Vs(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
 	u && (d.elements[13] = 1), e.toPhotograph.value.multiplyMatrices(d, l.multiply(c)), e.photograph.value = n;
 }
-function Rs(e) {
+function Vs(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
 // eigenfield-three/src/pieces.ts
-function zs(e) {
+function Hs(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
 // eigenfield-three/src/strength.ts
-var Bs = 128, Vs = .98;
-async function Hs(e, t, n, r) {
+var Us = 128, Ws = .98;
+async function Gs(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = qi(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Bs, Bs).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = qi(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Us, Us).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	return u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, Bs, Bs);
-		let { data: u } = d.getImageData(0, 0, Bs, Bs);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, Us, Us);
+		let { data: u } = d.getImageData(0, 0, Us, Us);
 		(l ? [
 			0,
 			1,
@@ -3388,15 +3384,15 @@ async function Hs(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), zs(u), Us(f);
+	}), Hs(u), Ks(f);
 }
-function Us(e) {
+function Ks(e) {
 	e.sort((e, t) => e - t);
-	let t = e[Math.floor(Vs * e.length)] ?? 0;
+	let t = e[Math.floor(Ws * e.length)] ?? 0;
 	return t > 0 ? .45 / t : 1;
 }
 // eigenfield-three/src/film-textures.ts
-var Ws = class {
+var qs = class {
 	scene;
 	films;
 	filling = null;
@@ -3441,69 +3437,69 @@ var Ws = class {
 	}
 	gainOf({ part: e, pieces: t, scale: n, zero: r }, i, a) {
 		let o = e && this.films[e.film];
-		return o ? Us(Gt(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
+		return o ? Ks(Gt(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
 			let s = t * i + o, c = Math.max(...(a[o] ?? [0]).map(Math.abs)) * (n[s] ?? 0);
-			return Ks(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
+			return Ys(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
 		})) : 1;
 	}
-}, Gs = 8;
-function Ks({ data: e, width: t, height: n, stride: r }) {
+}, Js = 8;
+function Ys({ data: e, width: t, height: n, stride: r }) {
 	let i = [];
-	for (let a = 0; a < n; a += Gs) for (let n = 0; n < t; n += Gs) {
+	for (let a = 0; a < n; a += Js) for (let n = 0; n < t; n += Js) {
 		let t = a * r + 2 * n;
 		i.push(e[t] + 256 * e[t + 1]);
 	}
 	return i;
 }
 // eigenfield-three/src/container.ts
-var qs = 1179937895, Js = 1313821514, Ys = 5130562, Xs = 1280591429;
-async function Zs(e) {
+var Xs = 1179937895, Zs = 1313821514, Qs = 5130562, $s = 1280591429;
+async function ec(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof j && t.code === "truncated" ? nc(e.received === 0) : t;
+		throw t instanceof M && t.code === "truncated" ? ac(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== qs) throw nc(!1);
+	if (new DataView(t).getUint32(0, !0) !== Xs) throw ac(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
-	if (r !== 2) throw new j("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
-	if (i < 20) throw M("8", "a length of no file");
+	if (r !== 2) throw new M("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
+	if (i < 20) throw N("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== Js) throw M("16", "it does not begin with JSON");
-	if (o > Se) throw M("12", `${o} bytes of JSON`);
-	if (20 + o > i) throw M("12", "a chunk longer than the file");
-	let s = $s(await e.read(20, 20 + o)), c = (t, n) => () => Qs(e, 20 + o, i, t, n);
+	if (a.getUint32(4, !0) !== Zs) throw N("16", "it does not begin with JSON");
+	if (o > Se) throw N("12", `${o} bytes of JSON`);
+	if (20 + o > i) throw N("12", "a chunk longer than the file");
+	let s = nc(await e.read(20, 20 + o)), c = (t, n) => () => tc(e, 20 + o, i, t, n);
 	return {
 		length: i,
 		text: s,
-		json: ec(s, "20"),
-		binary: c(Ys, "binary chunk"),
-		groups: c(Xs, "chunk of groups")
+		json: rc(s, "20"),
+		binary: c(Qs, "binary chunk"),
+		groups: c($s, "chunk of groups")
 	};
 }
-async function Qs(e, t, n, r, i) {
+async function tc(e, t, n, r, i) {
 	let a = t;
 	for (let t = 1; t < 64 && a + 8 <= n; t++) {
 		let t = new DataView(await e.read(a, a + 8)), i = t.getUint32(0, !0);
-		if (a + 8 + i > n) throw M(String(a), "a chunk longer than the file");
+		if (a + 8 + i > n) throw N(String(a), "a chunk longer than the file");
 		if (t.getUint32(4, !0) === r) return a + 8;
 		a += 8 + i;
 	}
-	throw M(String(t), `no ${i}`);
+	throw N(String(t), `no ${i}`);
 }
-function $s(e) {
+function nc(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
-		throw M("20", "its JSON is not UTF-8");
+		throw N("20", "its JSON is not UTF-8");
 	}
 }
-function ec(e, t) {
-	if (tc(e) > 64) throw M(t, "its JSON is nested too deep");
+function rc(e, t) {
+	if (ic(e) > 64) throw N(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
-		throw M(t, "its JSON cannot be read");
+		throw N(t, "its JSON cannot be read");
 	}
 }
-function tc(e) {
+function ic(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3514,11 +3510,11 @@ function tc(e) {
 	}
 	return n;
 }
-function nc(e) {
-	return new j("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
+function ac(e) {
+	return new M("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/groups.ts
-var rc = 3, ic = 4, ac = class {
+var oc = 3, sc = 4, cc = class {
 	scene;
 	timeline;
 	mesh;
@@ -3530,16 +3526,16 @@ var rc = 3, ic = 4, ac = class {
 	open(e) {
 		let t = this.kept.get(e) ?? this.opened(e);
 		t.catch(() => this.kept.get(e) === t && this.kept.delete(e)), this.kept.delete(e), this.kept.set(e, t);
-		for (let [e] of this.kept) this.kept.size > rc && this.kept.delete(e);
+		for (let [e] of this.kept) this.kept.size > oc && this.kept.delete(e);
 		return t;
 	}
 	async begin() {
-		let e = this.placeOf(0), t = async (t) => new Uint8Array(await this.read(e, Math.min(t, e.length))), { head: n, at: r } = await uc(await t(ic + cc(await t(ic), e)), e), i = [
+		let e = this.placeOf(0), t = async (t) => new Uint8Array(await this.read(e, Math.min(t, e.length))), { head: n, at: r } = await pc(await t(sc + dc(await t(sc), e)), e), i = [
 			n.key("weights"),
 			n.key("mesh"),
 			n.key("motion"),
 			n.key("frames").at(0)
-		].reduce((e, { raw: t }) => e + lc(t), r);
+		].reduce((e, { raw: t }) => e + fc(t), r);
 		return this.build(0, await t(i), n, r, 1);
 	}
 	placeOf(e) {
@@ -3549,12 +3545,12 @@ var rc = 3, ic = 4, ac = class {
 	}
 	async opened(e) {
 		let t = this.placeOf(e), n = new Uint8Array(await this.read(t, t.length));
-		await sc(n, t);
-		let { head: r, at: i } = await uc(n, t);
+		await uc(n, t);
+		let { head: r, at: i } = await pc(n, t);
 		return this.build(e, n, r, i, t.frames);
 	}
 	build(e, t, n, r, i) {
-		let a = this.placeOf(e), o = dc(t, r, a), s = this.weightsOf(n, o), c = this.meshOf(n, o), l = fc(n, o, c, a), { first: u, frames: d } = a, f = pc(n, a, this.timeline.films.length, o, i);
+		let a = this.placeOf(e), o = mc(t, r, a), s = this.weightsOf(n, o), c = this.meshOf(n, o), l = hc(n, o, c, a), { first: u, frames: d } = a, f = gc(n, a, this.timeline.films.length, o, i);
 		return {
 			index: e,
 			first: u,
@@ -3571,13 +3567,13 @@ var rc = 3, ic = 4, ac = class {
 		if (!n.exists) return this.mesh;
 		if (this.scene.sheets) throw n.wrong("a mesh of its own, in a clip with sheets");
 		let r = W["mesh-2"].decode(t(n), n.where);
-		if (!r.indices.length) throw M(n.where, "a mesh without faces");
+		if (!r.indices.length) throw N(n.where, "a mesh without faces");
 		return r;
 	}
 	weightsOf(e, t) {
-		let n = this.scene.heldOut.filter((e) => !e).length, r = hc(e.key("weights"), this.scene.planes.length);
+		let n = this.scene.heldOut.filter((e) => !e).length, r = vc(e.key("weights"), this.scene.planes.length);
 		return eo(n, this.scene.planes.flatMap(({ bases: e }, i) => {
-			let a = r[i] && hc(r[i], e.length);
+			let a = r[i] && vc(r[i], e.length);
 			return e.map(({ count: e }, r) => {
 				let i = a[r];
 				return no(W["weights-1"].decode(t(i), i.where), n, e, i.where);
@@ -3587,40 +3583,40 @@ var rc = 3, ic = 4, ac = class {
 	scalesOf(e) {
 		let { planes: t } = this.scene;
 		return {
-			means: hc(e.key("means"), t.length).map((e, n) => mc(e, t[n].mean)),
-			bases: hc(e.key("bases"), t.length).flatMap((e, n) => {
+			means: vc(e.key("means"), t.length).map((e, n) => _c(e, t[n].mean)),
+			bases: vc(e.key("bases"), t.length).flatMap((e, n) => {
 				let { bases: r } = t[n];
-				return hc(e, r.length).map((e, t) => mc(e, r[t].pictures[0]));
+				return vc(e, r.length).map((e, t) => _c(e, r[t].pictures[0]));
 			})
 		};
 	}
 };
-function oc(e, { means: t, bases: n }) {
+function lc(e, { means: t, bases: n }) {
 	e.planes.forEach(({ mean: e }, n) => Object.assign(e, t[n])), J(e).forEach(({ pictures: [e] }, t) => e && Object.assign(e, n[t]));
 }
-async function sc(e, { sha256: t, file: n, where: r }) {
+async function uc(e, { sha256: t, file: n, where: r }) {
 	let i = globalThis.crypto?.subtle;
 	if (!i) return;
 	let a = new Uint8Array(await i.digest("SHA-256", e));
-	if (Array.from(a, (e) => e.toString(16).padStart(2, "0")).join("") !== t) throw M(n ?? r, "other bytes than its SHA-256 says");
+	if (Array.from(a, (e) => e.toString(16).padStart(2, "0")).join("") !== t) throw N(n ?? r, "other bytes than its SHA-256 says");
 }
-function cc(e, { where: t }) {
-	if (e.length < ic) throw M(t, "no head");
+function dc(e, { where: t }) {
+	if (e.length < sc) throw N(t, "no head");
 	return new DataView(e.buffer).getUint32(0, !0);
 }
-function lc(e) {
-	return typeof e == "number" ? e : Array.isArray(e) ? e.reduce((e, t) => e + lc(t), 0) : 0;
+function fc(e) {
+	return typeof e == "number" ? e : Array.isArray(e) ? e.reduce((e, t) => e + fc(t), 0) : 0;
 }
-async function uc(e, { where: t }) {
-	let n = ic + cc(e, { where: t });
-	if (n > e.length) throw M(t, "a head longer than the group");
-	let r = await be(e.subarray(ic, n), "deflate-raw", Be, t);
+async function pc(e, { where: t }) {
+	let n = sc + dc(e, { where: t });
+	if (n > e.length) throw N(t, "a head longer than the group");
+	let r = await be(e.subarray(sc, n), "deflate-raw", He, t);
 	return {
-		head: new G(ec(new TextDecoder("utf-8").decode(r), t), t),
+		head: new G(rc(new TextDecoder("utf-8").decode(r), t), t),
 		at: n
 	};
 }
-function dc(e, t, n) {
+function mc(e, t, n) {
 	let r = t;
 	return (t) => {
 		let i = r;
@@ -3628,29 +3624,29 @@ function dc(e, t, n) {
 		return e.subarray(i, r);
 	};
 }
-function fc(e, t, n, { frames: r }) {
+function hc(e, t, n, { frames: r }) {
 	let i = e.key("motion");
 	if (!i.exists) return null;
 	let a = W["motion-1"].decode(t(i), n, i.where);
 	if (a.frames !== r) throw i.wrong(`${a.frames} frames of ${r}`);
 	return a;
 }
-function pc(e, t, n, r, i) {
-	return hc(e.key("frames"), t.frames).slice(0, i).map((e) => hc(e, n).map((e) => r(e)));
+function gc(e, t, n, r, i) {
+	return vc(e.key("frames"), t.frames).slice(0, i).map((e) => vc(e, n).map((e) => r(e)));
 }
-function mc(e, { pieces: t, textures: n }) {
+function _c(e, { pieces: t, textures: n }) {
 	let r = e;
 	return {
 		scale: Yi(r.key("scale"), t, n),
 		zero: Yi(r.key("zero"), t, n)
 	};
 }
-function hc(e, t) {
+function vc(e, t) {
 	let n = e.items(t);
 	if (n.length !== t) throw e.wrong(`${t} entries are needed`);
 	return n;
 }
-var gc = 3, _c = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", vc = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform int first; // row of the picture with which the texture begins\nout vec4 stored;\nvoid main() {\n  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));\n}\n", yc = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", bc = `#version 300 es
+var yc = 3, bc = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", xc = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform int first; // row of the picture with which the texture begins\nout vec4 stored;\nvoid main() {\n  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));\n}\n", Sc = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", Cc = `#version 300 es
 precision highp float;
 precision highp int;
 uniform highp sampler2D picture; // values, and whether they are of a chart
@@ -3660,7 +3656,7 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec2 own = texelFetch(picture, at, 0).rg;
   vec2 sum = vec2(own.r * own.g, own.g);
-  for (int far = 1; far <= ${gc} && sum.y == 0.0; far++) {
+  for (int far = 1; far <= ${yc} && sum.y == 0.0; far++) {
     for (int y = -far; y <= far; y++) {
       for (int x = -far; x <= far; x++) {
         vec2 near = texelFetch(picture, clamp(at + ivec2(x, y), ivec2(0), size - 1), 0).rg;
@@ -3670,9 +3666,9 @@ void main() {
   }
   stored = vec4(sum.y > 0.0 ? sum.x / sum.y : own.r);
 }
-`, xc = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
+`, wc = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
 // eigenfield-three/src/parts.ts
-function Sc(e, t, n) {
+function Tc(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -3682,7 +3678,7 @@ function Sc(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = Tc(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = Oc(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -3710,7 +3706,7 @@ function Sc(e, t, n) {
 						a + e[1] / i[1]
 					],
 					colours: f,
-					...Ec(l, u, h, n.halves && Ki(l)),
+					...kc(l, u, h, n.halves && Ki(l)),
 					basis: {
 						ready: m,
 						column: o,
@@ -3722,13 +3718,13 @@ function Sc(e, t, n) {
 		}
 	}), r;
 }
-function Cc(e, t, n, r) {
-	Sc(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
+function Ec(e, t, n, r) {
+	Tc(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
 		scale: t,
 		bias: n
 	}));
 }
-function wc({ planes: e, sheets: t }, { means: n, needs: r }) {
+function Dc({ planes: e, sheets: t }, { means: n, needs: r }) {
 	let i = n[e.length], a = r.means[e.length]?.size;
 	return !t || !i || !a ? null : {
 		stored: i,
@@ -3744,11 +3740,11 @@ function wc({ planes: e, sheets: t }, { means: n, needs: r }) {
 			0,
 			0
 		]],
-		...Tc(t.opacity),
+		...Oc(t.opacity),
 		basis: null
 	};
 }
-function Tc({ mean: e, channels: t, precision: n }) {
+function Oc({ mean: e, channels: t, precision: n }) {
 	let { scale: r, zero: i } = e, a = n ? 4 : 1 / Ji(e, Ki([e])), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
@@ -3759,7 +3755,7 @@ function Tc({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function Ec(e, t, n, r) {
+function kc(e, t, n, r) {
 	let i = e.flatMap((e) => Array(e.textures).fill(Ji(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * Io(n), c = {
 		scale: new Float32Array(s),
 		bias: new Float32Array(s)
@@ -3771,7 +3767,7 @@ function Ec(e, t, n, r) {
 	return c;
 }
 // eigenfield-three/src/player.ts
-var Dc = .25, Oc = 100, kc = 2, Ac = .25, jc = .1, Mc = class extends f {
+var Ac = .25, jc = 100, Mc = 2, Nc = .25, Pc = .1, Fc = class extends f {
 	timeline;
 	user;
 	first;
@@ -3870,7 +3866,7 @@ var Dc = .25, Oc = 100, kc = 2, Ac = .25, jc = .1, Mc = class extends f {
 	}
 	update(e = performance.now()) {
 		if (this.disposed) return;
-		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, Dc);
+		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, Ac);
 		if (this.last = this.plays && this.goal === null ? e : null, this.goal === null && !this.plays) return;
 		this.goal === null ? (this.advance(t), this.sound?.follow(this.first + this.clock % this.frames / this.rate, this.pace)) : this.sound?.rest();
 		let n = this.ring.take(this.goal ?? Math.floor(this.clock));
@@ -3887,9 +3883,9 @@ var Dc = .25, Oc = 100, kc = 2, Ac = .25, jc = .1, Mc = class extends f {
 	}
 	advance(e) {
 		let [t, n] = [this.clock, e * this.pace * this.rate], r = this.loop ? this.ring.reach : Math.min(this.ring.reach, this.end);
-		if (this.clock = Math.max(t, Math.min(t + n, r)), e > jc) return;
+		if (this.clock = Math.max(t, Math.min(t + n, r)), e > Pc) return;
 		let { watched: i } = this;
-		i.seconds += e, i.due += n, this.ring.busy && (i.short += n - (this.clock - t)), i.seconds < kc || (i.short > Ac * i.due && this.ring.leaveOut(), this.watch());
+		i.seconds += e, i.due += n, this.ring.busy && (i.short += n - (this.clock - t)), i.seconds < Mc || (i.short > Nc * i.due && this.ring.leaveOut(), this.watch());
 	}
 	watch() {
 		this.watched = {
@@ -3919,7 +3915,7 @@ var Dc = .25, Oc = 100, kc = 2, Ac = .25, jc = .1, Mc = class extends f {
 		}, this.user.show(e), this.note(e), this.goal !== null && t !== this.goal && this.following === null ? this.preview() : this.goal !== null && (this.goal = null, this.clock = t, this.following === null ? this.settle() : this.begin(this.following)), this.dispatchEvent({ type: "frame" });
 	}
 	preview() {
-		this.ring.previewsFrom = this.goal === null ? Infinity : performance.now() + Oc;
+		this.ring.previewsFrom = this.goal === null ? Infinity : performance.now() + jc;
 	}
 	note({ films: e }) {
 		let t = [];
@@ -3944,48 +3940,48 @@ var Dc = .25, Oc = 100, kc = 2, Ac = .25, jc = .1, Mc = class extends f {
 		let n = this.goal !== null && q(this.timeline, this.goal % this.frames);
 		n === !1 || t !== null && n !== t || (this.goal !== null && (this.clock = this.goal), this.goal = this.following = null, this.settle());
 	}
-}, Nc = 65535;
-function Pc(e, t) {
+}, Ic = 65535;
+function Lc(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
-	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
-	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
+	if (!i) throw new M("damaged", "The proxy mesh has no triangles; make or download the file again.");
+	if (r.count !== n.count) throw N(t.uv.where, `${r.count} for ${n.count} vertices`);
 	for (let e = 0; e < n.count; e++) {
-		if (!(Math.max(Math.abs(n.getX(e)), Math.abs(n.getY(e)), Math.abs(n.getZ(e))) <= 1e30)) throw M(t.position.where, `vertex ${e} is not finite`);
-		if (!(Math.max(Math.abs(r.getX(e)), Math.abs(r.getY(e))) <= 1e30)) throw M(t.uv.where, `texture coordinates of vertex ${e} are not finite`);
+		if (!(Math.max(Math.abs(n.getX(e)), Math.abs(n.getY(e)), Math.abs(n.getZ(e))) <= 1e30)) throw N(t.position.where, `vertex ${e} is not finite`);
+		if (!(Math.max(Math.abs(r.getX(e)), Math.abs(r.getY(e))) <= 1e30)) throw N(t.uv.where, `texture coordinates of vertex ${e} are not finite`);
 	}
-	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
+	for (let e of i.array) if (e >= n.count) throw N(t.indices.where, `no vertex ${e}`);
 }
-async function Fc({ view: e, codec: t, where: n }, r) {
+async function Rc({ view: e, codec: t, where: n }, r) {
 	let i = t.decode(new Uint8Array(await r(e)), n);
-	if (!i.indices.length) throw M(n, "a mesh without faces");
+	if (!i.indices.length) throw N(n, "a mesh without faces");
 	return i;
 }
-function Ic({ positions: n, uv: r, indices: i }) {
+function zc({ positions: n, uv: r, indices: i }) {
 	let a = new t();
 	a.setAttribute("position", new e(n.slice(), 3)), a.setAttribute("uv", new e(r, 2));
-	let o = n.length / 3 <= Nc;
+	let o = n.length / 3 <= Ic;
 	return a.setIndex(new e(o ? Uint16Array.from(i) : i, 1)), a;
 }
-function Lc(e) {
+function Bc(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/footprint.ts
-var Rc = 256;
-function zc(e, t, n) {
+var Vc = 256;
+function Hc(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / Rc)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / Vc)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Bc(t, i.getX(e), i.getY(e), i.getZ(e))), l = Vc(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Uc(t, i.getX(e), i.getY(e), i.getZ(e))), l = Wc(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = Vc(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = Wc(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -3995,7 +3991,7 @@ function zc(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function Bc({ K: e, R: t, t: n }, r, i, a) {
+function Uc({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -4003,12 +3999,12 @@ function Bc({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function Vc(e) {
+function Wc(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/sheet-stack.ts
-var Hc = "sheets", Uc = 16, Wc = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Gc = `${Ds}${Os}
+var Gc = "sheets", Kc = 16, qc = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Jc = `${As}${js}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -4033,9 +4029,9 @@ void main() {
   gl_FragDepth = depth;
   fragment = colour;
 }
-`, Kc = new ae(), qc = class {
+`, Yc = new ie(), Xc = class {
 	material;
-	scene = new k();
+	scene = new A();
 	camera = new n();
 	sheets = new S();
 	depth;
@@ -4043,16 +4039,16 @@ void main() {
 	everywhere = new t();
 	target = null;
 	constructor(t) {
-		this.material = t, this.depth = Is(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
+		this.material = t, this.depth = zs(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
 			let { materialIndex: o = 0 } = a, s = this.sheets.material.length / 2, c = s - 1 - (o >> 1);
 			e.getContext().depthRange(c / s, (c + 1) / s);
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
 		let { shown: n, photograph: r, toPhotograph: i } = t.uniforms;
-		this.screen = new O({
-			name: Hc,
+		this.screen = new k({
+			name: Gc,
 			glslVersion: h,
-			vertexShader: Wc,
-			fragmentShader: Gc,
+			vertexShader: qc,
+			fragmentShader: Jc,
 			uniforms: {
 				shown: n,
 				photograph: r,
@@ -4061,12 +4057,12 @@ void main() {
 				solid: { value: null },
 				nearest: { value: null },
 				slices: { value: 1 },
-				corner: { value: new ie() },
-				size: { value: new ie() },
+				corner: { value: new re() },
+				size: { value: new re() },
 				toPlace: { value: new x() }
 			},
 			transparent: !0,
-			...Ns
+			...Is
 		});
 		let a = new Float32Array([
 			-1,
@@ -4082,7 +4078,7 @@ void main() {
 		this.everywhere.setAttribute("position", new e(a, 3));
 	}
 	get bytes() {
-		return this.target ? Uc * this.target.width * this.target.height : 0;
+		return this.target ? Kc * this.target.width * this.target.height : 0;
 	}
 	setGeometry(e, t) {
 		e.clearGroups();
@@ -4100,7 +4096,7 @@ void main() {
 	attach(e, t) {
 		for (let t of [e.material].flat()) t.visible = !1;
 		let n = new S(this.everywhere, this.screen);
-		n.name = Hc, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
+		n.name = Gc, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
 			t(n, i), this.draw(n, i, e);
 		}, e.add(n);
 	}
@@ -4111,21 +4107,21 @@ void main() {
 		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
 	}
 	draw(e, t, n) {
-		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Kc);
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Yc);
 		if (!a || !o) return;
-		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Jc(a, o));
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Zc(a, o));
 		let { target: s } = this;
-		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), ds(e, t, () => {
+		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), ms(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
 		}), e.getContext().depthRange(0, 1);
 		let { uniforms: c } = this.screen;
 		this.set("sheets", s.textures[0]), this.set("solid", s.textures[1]), this.set("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
 	}
 };
-function Jc(e, t) {
-	let n = new l(e, t, re);
+function Zc(e, t) {
+	let n = new l(e, t, ne);
 	n.format = c;
-	let r = new oe(e, t, {
+	let r = new ae(e, t, {
 		count: 2,
 		type: g,
 		stencilBuffer: !0,
@@ -4133,16 +4129,17 @@ function Jc(e, t) {
 		minFilter: w,
 		magFilter: w
 	}), [, i] = r.textures;
-	return i && (i.type = ne), r;
+	return i && (i.type = te), r;
 }
 // eigenfield-three/src/surface.ts
-var Yc = class {
+var Qc = class {
 	meshes;
 	faces;
 	reference;
 	mesh;
 	material;
 	version = 0;
+	laid = 0;
 	detail = 0;
 	stack;
 	constructor(e, t, n, r) {
@@ -4151,7 +4148,7 @@ var Yc = class {
 		if (!i) throw Error("a field needs a mesh");
 		this.mesh = i;
 		let a = [i.material].flat().some((e) => e.side !== m);
-		this.material = Fs(a, t !== null), this.stack = t && new qc(this.material);
+		this.material = Rs(a, t !== null), this.stack = t && new Xc(this.material);
 		for (let t of e) {
 			let e = (e, n) => r(e, n, t);
 			this.stack ? this.stack.attach(t, e) : (t.material = this.material, t.onBeforeRender = (t, n, r) => e(t, r));
@@ -4175,55 +4172,55 @@ var Yc = class {
 			}, e), n.dispose();
 		}
 		for (let t of this.meshes) t.geometry = e;
-		e.boundingBox = e.boundingSphere = null, this.faces = t, this.version += 1, this.show(t);
+		e.boundingBox = e.boundingSphere = null, this.faces = t, this.version += 1, n !== e && (this.laid = this.version), this.show(t);
 	}
 	show(e) {
-		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? zc(this.geometry, this.reference, [1, 1]) : 0;
+		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? Hc(this.geometry, this.reference, [1, 1]) : 0;
 	}
 	dispose() {
 		this.stack?.dispose(), this.material.dispose(), this.geometry.dispose();
 	}
 };
 // eigenfield-three/src/gpu.ts
-function Xc(e) {
+function $c(e) {
 	let t = e.getContext();
-	if (!(t instanceof WebGL2RenderingContext)) throw new j("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
+	if (!(t instanceof WebGL2RenderingContext)) throw new M("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
 	if ((t.getExtension("EXT_color_buffer_float") ?? t.getExtension("EXT_color_buffer_half_float")) || t.isContextLost()) return t;
-	throw new j("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
+	throw new M("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
 }
-function Zc(e, t) {
+function el(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function Qc(e, { components: t, halves: n }) {
+function tl(e, { components: t, halves: n }) {
 	return t > 2 ? n ? e.RGBA16F : e.RGBA8 : t > 1 ? n ? e.RG16F : e.RG8 : n ? e.R16F : e.R8;
 }
-function $c(e, [t, n], r, i, a) {
-	return nl(e, e.TEXTURE_2D_ARRAY, () => {
-		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, Qc(e, a), t, n, r);
+function nl(e, [t, n], r, i, a) {
+	return al(e, e.TEXTURE_2D_ARRAY, () => {
+		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, tl(e, a), t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function el(e, t, n, r) {
+function rl(e, t, n, r) {
 	let { width: i, height: a } = n, o = r > 2 ? e.RGBA : r > 1 ? e.RG : e.RED;
-	rl(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
+	ol(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
 }
-function tl(e, [t, n], r) {
-	return nl(e, e.TEXTURE_2D, () => {
-		e.texStorage2D(e.TEXTURE_2D, 1, Qc(e, r), t, n);
+function il(e, [t, n], r) {
+	return al(e, e.TEXTURE_2D, () => {
+		e.texStorage2D(e.TEXTURE_2D, 1, tl(e, r), t, n);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D, t, e.NEAREST);
 	});
 }
-function nl(e, t, n) {
+function al(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return rl(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return ol(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function rl(e, t, n, r) {
+function ol(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -4237,7 +4234,7 @@ function rl(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-function il(e, t, n) {
+function sl(e, t, n) {
 	let r = e.createProgram();
 	for (let [i, a] of [[e.VERTEX_SHADER, t], [e.FRAGMENT_SHADER, n]]) {
 		let t = e.createShader(i);
@@ -4245,7 +4242,7 @@ function il(e, t, n) {
 	}
 	return e.linkProgram(r), r;
 }
-function al(e, t, n, r) {
+function cl(e, t, n, r) {
 	if (!n) {
 		r();
 		return;
@@ -4253,9 +4250,9 @@ function al(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), rl(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), ol(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function ol(e, t) {
+function ll(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -4270,13 +4267,13 @@ function ol(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r && e.isProgram(r) ? r : null), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/charts.ts
-function sl(e, t) {
-	let n = il(e, ...xc), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
+function ul(e, t) {
+	let n = sl(e, ...wc), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
 		let { index: o } = t, s = t.getAttribute("uv"), c = Float32Array.from({ length: 2 * (o?.count ?? 0) }, (e, t) => {
 			let n = o?.getX(t >> 1) ?? 0;
 			return t % 2 ? s.getY(n) : s.getX(n);
 		}), [l, u] = [e.createVertexArray(), e.createBuffer()], d = e.getParameter(e.ARRAY_BUFFER_BINDING);
-		ol(e, () => {
+		ll(e, () => {
 			e.useProgram(n), e.bindVertexArray(l), e.bindBuffer(e.ARRAY_BUFFER, u), e.bufferData(e.ARRAY_BUFFER, c, e.STREAM_DRAW);
 			let t = e.getAttribLocation(n, "uv");
 			e.enableVertexAttribArray(t), e.vertexAttribPointer(t, 2, e.FLOAT, !1, 0, 0), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, a, 0), e.viewport(0, 0, ...i), e.colorMask(!0, !0, !0, !0), e.drawArrays(e.TRIANGLES, 0, c.length / 2);
@@ -4287,7 +4284,7 @@ function sl(e, t) {
 			let { geometry: r } = t;
 			if (i?.grid.join() !== n.join() || i.geometry !== r) {
 				e.deleteTexture(i?.texture ?? null);
-				let t = tl(e, n, {
+				let t = il(e, n, {
 					components: 1,
 					halves: !1
 				});
@@ -4305,7 +4302,7 @@ function sl(e, t) {
 	};
 }
 // eigenfield-three/src/packing.ts
-var cl = [
+var dl = [
 	"precisions",
 	"covered",
 	"factors",
@@ -4316,14 +4313,14 @@ var cl = [
 	"nodes",
 	"zero"
 ];
-function ll(e, t, n, r) {
+function fl(e, t, n, r) {
 	let [i, a, o] = [
-		il(e, _c, vc),
-		il(e, _c, yc),
-		il(e, _c, bc)
-	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && sl(e, r), u = !1, d = (t) => Object.fromEntries(cl.map((n) => [n, e.getUniformLocation(t, n)])), [f, p] = [d(i), d(a)], m = (t, n, r, i, a, o, s) => {
+		sl(e, bc, xc),
+		sl(e, bc, Sc),
+		sl(e, bc, Cc)
+	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && ul(e, r), u = !1, d = (t) => Object.fromEntries(dl.map((n) => [n, e.getUniformLocation(t, n)])), [f, p] = [d(i), d(a)], m = (t, n, r, i, a, o, s) => {
 		let { picture: c, rows: l } = n, { size: u, corner: d, unit: f, codes: p } = i;
-		ul(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
+		pl(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
 			0,
 			1,
 			2,
@@ -4334,34 +4331,34 @@ function ll(e, t, n, r) {
 	}, g = (t, { layer: n, component: r }) => {
 		h(t, n), e.colorMask(r === 0, r === 1, r === 2, r === 3);
 	}, _ = (r, s, d, _, v, y) => {
-		let { picture: b, row: x, rows: S } = r, [C, w] = v.size, T = C < b.width || w < S ? t.smaller : null, E = Math.max(1, Math.floor((T ? n - 2 : n) * w / S)), ee = u && s === t.codes, D = (T && l?.covered(v.grid)) ?? null;
-		al(e, 0, ee ? null : s, () => {
+		let { picture: b, row: x, rows: S } = r, [C, w] = v.size, T = C < b.width || w < S ? t.smaller : null, E = Math.max(1, Math.floor((T ? n - 2 : n) * w / S)), D = u && s === t.codes, O = (T && l?.covered(v.grid)) ?? null;
+		cl(e, 0, D ? null : s, () => {
 			for (let t = 0; t < w; t += E) {
 				let n = Math.min(E, w - t), o = Math.floor(t * S / w), s = Math.ceil((t + n) * S / w);
-				ul(b) ? fl(e, b, x + o, s - o) : dl(e, b, x + o, s - o);
+				pl(b) ? hl(e, b, x + o, s - o) : ml(e, b, x + o, s - o);
 				let l = () => {
 					let s = T || y ? p : f;
 					e.useProgram(T || y ? a : i), e.bindVertexArray(c), e.uniform1i(s.precisions, +!!y), e.uniform1i(s.covered, T ? 2 : 0), e.uniform2i(s.nodes, y?.precision.width ?? 0, y?.precision.height ?? 0), e.uniform1f(s.zero, y?.zero ?? 0), T ? (h(T, null), e.colorMask(!0, !0, !0, !0)) : g(d, _), m(s, r, _.channel, v, o, t, n);
 				};
-				al(e, 2, D, () => {
-					ee ? l() : ol(e, l);
+				cl(e, 2, O, () => {
+					D ? l() : ll(e, l);
 				});
 			}
-		}), T && al(e, 0, T, () => ol(e, () => {
+		}), T && cl(e, 0, T, () => ll(e, () => {
 			e.useProgram(o), e.bindVertexArray(c), e.uniform2i(e.getUniformLocation(o, "size"), C, w), g(d, _), e.viewport(0, 0, C, w), e.drawArrays(e.TRIANGLES, 0, 3);
 		}));
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let s = ul(n.picture) ? t.codes : t.picture;
+			let s = pl(n.picture) ? t.codes : t.picture;
 			if (!s) return;
 			let c = () => i.forEach((e) => _(n, s, r, e, a, o));
-			o ? al(e, 1, t.precision, () => {
-				dl(e, o.precision, 0, o.precision.height), c();
+			o ? cl(e, 1, t.precision, () => {
+				ml(e, o.precision, 0, o.precision.height), c();
 			}) : c();
 		},
 		together(n) {
-			al(e, 0, t.codes, () => ol(e, () => {
+			cl(e, 0, t.codes, () => ll(e, () => {
 				u = !0;
 				try {
 					n();
@@ -4381,17 +4378,17 @@ function ll(e, t, n, r) {
 		}
 	};
 }
-function ul(e) {
+function pl(e) {
 	return "data" in e;
 }
-function dl(e, t, n, r) {
+function ml(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function fl(e, { data: t, width: n, stride: r }, i, a) {
+function hl(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
 // eigenfield-three/src/textures.ts
-var pl = class {
+var gl = class {
 	parts;
 	source;
 	surface;
@@ -4435,7 +4432,7 @@ var pl = class {
 			means: c,
 			bases: s,
 			rays: a.facesPlane,
-			geometry: ml(n.geometry)
+			geometry: _l(n.geometry)
 		}, this.means = c.map(() => new p()), this.bases = s.map(() => new p()), this.ready = s.map(({ count: e }) => Array(e).fill(!1)), this.stillVersions = c.map(() => 0);
 	}
 	get hasMeans() {
@@ -4449,7 +4446,7 @@ var pl = class {
 		return Math.min(t, ...e);
 	}
 	get bytes() {
-		return this.plan ? this.plan.bytes - this.needs.geometry + ml(this.surface.geometry) : 0;
+		return this.plan ? this.plan.bytes - this.needs.geometry + _l(this.surface.geometry) : 0;
 	}
 	get attached() {
 		return this.renderer !== null || this.disposed;
@@ -4479,7 +4476,7 @@ var pl = class {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		let n = Xc(e);
+		let n = $c(e);
 		if (n.isContextLost()) return;
 		let { packer: r, plan: i } = this.makeRoom(n);
 		this.plan = i, this.packer = r, this.onPlan(i), await this.source.fill(this.filling(n, i, t)), t.aborted || this.onComplete();
@@ -4534,7 +4531,7 @@ var pl = class {
 		this.stillVersions[n] = this.version += 1;
 		let { mean: l, channels: u } = o, d = X(s, t.meanDown), [f] = r;
 		if (f && r.length === 1 && "close" in f.picture && !c && d.join() === s.join()) {
-			el(e, a, f.picture, u);
+			rl(e, a, f.picture, u);
 			return;
 		}
 		let p = {
@@ -4568,15 +4565,15 @@ var pl = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs;
-		this.needs.geometry = ml(this.surface.geometry);
+		this.needs.geometry = _l(this.surface.geometry);
 		let r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
 		for (let i = this.options.memory ?? jo();; i /= 2) {
-			let a = zo(this.needs, Zc(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => $c(e, X(t, o), Po(n), !1, {
+			let a = zo(this.needs, el(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => nl(e, X(t, o), Po(n), !1, {
 				components: n,
 				halves: r
 			})), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return $c(e, a ? X(t, s) : [1, 1], a ? Fo(a, n) : 1, u, {
+				return nl(e, a ? X(t, s) : [1, 1], a ? Fo(a, n) : 1, u, {
 					components: Math.max(1, a),
 					halves: l && i
 				});
@@ -4584,9 +4581,9 @@ var pl = class {
 				f.picture,
 				f.codes,
 				f.smaller
-			].map((t) => t ? tl(e, t.size, t.format) : null), g = tl(e, Uo(r), wo);
+			].map((t) => t ? il(e, t.size, t.format) : null), g = il(e, Uo(r), wo);
 			if (p && g && (m || !f.codes) && (h || !f.smaller) && !d.includes(null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = d[t] ?? null), {
-				packer: ll(e, {
+				packer: fl(e, {
 					picture: p,
 					codes: m ?? null,
 					precision: g,
@@ -4601,15 +4598,15 @@ var pl = class {
 				h,
 				g
 			]) e.deleteTexture(t ?? null);
-			if (!c) throw new j("unsupported", "The graphics memory is full; close other pages and try again.");
+			if (!c) throw new M("unsupported", "The graphics memory is full; close other pages and try again.");
 		}
 	}
 };
-function ml({ attributes: e, index: t }) {
+function _l({ attributes: e, index: t }) {
 	return Object.values(e).reduce((e, t) => e + t.array.byteLength, 0) + (t?.array.byteLength ?? 0);
 }
 // eigenfield-three/src/field.ts
-var hl = 1.5, gl = .001, _l = class extends f {
+var vl = 1.5, yl = .001, bl = class extends f {
 	parts;
 	source;
 	mesh;
@@ -4646,7 +4643,7 @@ var hl = 1.5, gl = .001, _l = class extends f {
 	constructor(e, t, n = {}) {
 		super(), this.parts = e, this.source = t;
 		let { scene: r, info: i } = e, a = r.sheets?.faces ?? null;
-		this.surface = new Yc(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = ro(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip && this.shape(e.clip.group, 0, e.clip.mesh, !1), this.textures = new pl(e, t, this.surface, n), this.complete = new Promise((e, t) => {
+		this.surface = new Qc(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = ro(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip && this.shape(e.clip.group, 0, e.clip.mesh, !1), this.textures = new gl(e, t, this.surface, n), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0), this.listen(), n.renderer && this.textures.attach(n.renderer);
 	}
@@ -4690,44 +4687,44 @@ var hl = 1.5, gl = .001, _l = class extends f {
 		this.textures.onPlan = (e) => {
 			let { scene: t } = this.parts;
 			this.freeComposers(), this.summed = {
-				parts: Sc(t, this.textures, e),
-				opacity: wc(t, this.textures)
+				parts: Tc(t, this.textures, e),
+				opacity: Dc(t, this.textures)
 			}, e.limitation && queueMicrotask(() => this.dispatchEvent({ type: "limited" }));
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return hl * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
+		return vl * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
 	}
 	weightsOf(e) {
 		let { scene: t, info: n, weights: r } = this.parts;
-		return new xs(n, J(t).map(({ count: e }) => e), e, r);
+		return new ws(n, J(t).map(({ count: e }) => e), e, r);
 	}
 	makePlayer({ timeline: e, ring: t, sound: n }) {
-		return new Mc(e, t, {
+		return new Fc(e, t, {
 			show: (e) => this.showFrame(e),
 			failed: (e) => this.dispatchEvent({
 				type: "error",
-				error: de(e)
+				error: ue(e)
 			})
 		}, n);
 	}
 	showFrame({ number: e, group: t, films: n }) {
-		this.group && this.shape(t, e - t.first, this.group.mesh, this.group.motion !== null), t !== this.group && this.enter(t), this.plain = n.includes(null), this.source instanceof Ws && this.source.show(n);
+		this.group && this.shape(t, e - t.first, this.group.mesh, this.group.motion !== null), t !== this.group && this.enter(t), this.plain = n.includes(null), this.source instanceof qs && this.source.show(n);
 	}
 	shape({ mesh: e, motion: t }, n, r, i) {
 		if (this.surface.geometry !== this.moved || e === r && !t && !i) return;
-		let a = e === r ? this.moved : Ic(e), o = a.getAttribute("position");
+		let a = e === r ? this.moved : zc(e), o = a.getAttribute("position");
 		t ? t.place(n, o.array) : o.copyArray(e.positions), o.needsUpdate = !0, this.moved = a, this.surface.setGeometry(a);
 	}
 	enter(e) {
 		let { scene: t } = this.parts, { plan: n } = this.textures;
-		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), oc(t, e), n && Cc(this.summed.parts, t, this.textures, n);
+		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), lc(t, e), n && Ec(this.summed.parts, t, this.textures, n);
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = bl(t, n), [i, a] = lo(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
+		let r = Cl(t, n), [i, a] = lo(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
 		this.setView(), this.setExposure(o, [i, a]);
-		let u = Cs[this.filter];
+		let u = Es[this.filter];
 		l.defines.BICUBIC !== u && (l.defines.BICUBIC = u, l.needsUpdate = !0), l.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
@@ -4736,7 +4733,7 @@ var hl = 1.5, gl = .001, _l = class extends f {
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
 		if (!s) {
 			let { parts: e, opacity: t } = this.summed;
-			s = new ps(i, e, t, o, this.coarser > 1, this.surface, a), this.composers.set(o, s);
+			s = new gs(i, e, t, o, this.coarser > 1, this.surface, a), this.composers.set(o, s);
 		}
 		s.compose(e, t, n);
 		let { composed: c, finest: l } = this.surface.material.uniforms;
@@ -4747,16 +4744,16 @@ var hl = 1.5, gl = .001, _l = class extends f {
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.surface.material.uniforms.shown.value, r = n === ws.eigen ? this.shownEigen : null;
+		let n = this.surface.material.uniforms.shown.value, r = n === Ds.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			opacity: this.textures.opacityVersion,
 			only: r,
-			count: n === ws.mean || this.plain ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === Ds.mean || this.plain ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
 			eye: t && ss(this.info.viewPlane, t),
-			places: t || this.coarser > 1 ? this.surface.version : 0,
+			places: t ? this.surface.version : this.coarser > 1 ? this.surface.laid : 0,
 			maps: t && this.weights.maps(this.mixing, this.usable)
 		};
 	}
@@ -4779,9 +4776,9 @@ var hl = 1.5, gl = .001, _l = class extends f {
 	}
 	setView() {
 		let { uniforms: e } = this.surface.material, t = this.showsErrors, n = this.view === "error" && !t ? "picture" : this.view, r = this.shownEigen;
-		e.shown.value = ws[n === "eigen" && (this.plain || r >= this.loaded) ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
+		e.shown.value = Ds[n === "eigen" && (this.plain || r >= this.loaded) ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
 		let i = t && this.info.cameras[this.camera ?? 0];
-		i && this.photograph && Ls(e, i, this.photograph);
+		i && this.photograph && Bs(e, i, this.photograph);
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -4794,29 +4791,29 @@ var hl = 1.5, gl = .001, _l = class extends f {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= gl * Math.max(...r);
+		return Math.abs(i) <= yl * Math.max(...r);
 	}
 	fail(e) {
-		if (xl(e)) return;
-		let t = de(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
+		if (wl(e)) return;
+		let t = ue(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
 		this.dispatchEvent({
 			type: "error",
-			error: new j(t.code, r, t.where)
+			error: new M(t.code, r, t.where)
 		});
 	}
-}, vl = new x(), yl = new A();
-function bl(e, t) {
-	return yl.setFromMatrixPosition(e.matrixWorld).applyMatrix4(vl.copy(t.matrixWorld).invert()), [
-		yl.x,
-		yl.y,
-		yl.z
+}, xl = new x(), Sl = new j();
+function Cl(e, t) {
+	return Sl.setFromMatrixPosition(e.matrixWorld).applyMatrix4(xl.copy(t.matrixWorld).invert()), [
+		Sl.x,
+		Sl.y,
+		Sl.z
 	];
 }
-function xl(e) {
+function wl(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var Sl = class {
+var Tl = class {
 	received = 0;
 	onPush = () => void 0;
 	chunks = [];
@@ -4848,7 +4845,7 @@ var Sl = class {
 	}
 	settle() {
 		let e = [];
-		for (let t of this.waiters) t.to <= this.received ? t.resolve(this.copy(t.from, t.to)) : this.broken ? t.reject(this.broken.reason) : this.ended ? t.reject(le(this.received, t.to)) : e.push(t);
+		for (let t of this.waiters) t.to <= this.received ? t.resolve(this.copy(t.from, t.to)) : this.broken ? t.reject(this.broken.reason) : this.ended ? t.reject(ce(this.received, t.to)) : e.push(t);
 		this.waiters = e;
 	}
 	copy(e, t) {
@@ -4861,7 +4858,7 @@ var Sl = class {
 		return n.buffer;
 	}
 };
-async function Cl(e, t, n) {
+async function El(e, t, n) {
 	let r = e.getReader();
 	for (n.addEventListener("abort", () => void r.cancel().catch(() => void 0));;) {
 		let { done: e, value: n } = await r.read();
@@ -4871,7 +4868,7 @@ async function Cl(e, t, n) {
 	n.throwIfAborted(), t.end();
 }
 // eigenfield-three/src/ranges.ts
-var wl = 2 ** 20, Tl = 2 ** 25, El = 3, Dl = 500, Ol = class {
+var Dl = 2 ** 20, Ol = 2 ** 25, kl = 3, Al = 500, jl = class {
 	source;
 	arrival;
 	length;
@@ -4885,20 +4882,20 @@ var wl = 2 ** 20, Tl = 2 ** 25, El = 3, Dl = 500, Ol = class {
 	}
 	async read(e, t) {
 		let { arrival: n } = this;
-		if (t <= n.received || !this.begun || !this.parted && e <= n.received + wl) {
+		if (t <= n.received || !this.begun || !this.parted && e <= n.received + Dl) {
 			let r = await n.read(e, t).catch((e) => {
-				if (this.signal.aborted || !(this.parted || this.begun && Al(e))) throw e;
+				if (this.signal.aborted || !(this.parted || this.begun && Nl(e))) throw e;
 			});
 			if (this.begun || this.limit(), r) return r;
 		}
 		if (this.giveUp(), this.source instanceof Blob) return this.slice(this.source, e, t);
 		let r = this.source;
-		return kl(this.signal, () => this.whole?.read(e, t) ?? this.fetch(r, e, t), () => this.whole === null);
+		return Ml(this.signal, () => this.whole?.read(e, t) ?? this.fetch(r, e, t), () => this.whole === null);
 	}
 	limit() {
 		let { arrival: e } = this;
 		this.begun = !0, e.onPush = () => {
-			e.received >= Tl && e.received < this.length && this.giveUp();
+			e.received >= Ol && e.received < this.length && this.giveUp();
 		}, e.onPush();
 	}
 	giveUp() {
@@ -4906,7 +4903,7 @@ var wl = 2 ** 20, Tl = 2 ** 25, El = 3, Dl = 500, Ol = class {
 	}
 	async slice(e, t, n) {
 		let r = await e.slice(t, n).arrayBuffer();
-		if (r.byteLength < n - t) throw le(t + r.byteLength, n);
+		if (r.byteLength < n - t) throw ce(t + r.byteLength, n);
 		return r;
 	}
 	async fetch(e, t, n) {
@@ -4925,34 +4922,34 @@ var wl = 2 ** 20, Tl = 2 ** 25, El = 3, Dl = 500, Ol = class {
 		return a;
 	}
 	receive(e) {
-		let t = this.whole = new Sl();
-		return Cl(e, t, this.signal).catch((e) => t.fail(this.signal.aborted ? e : this.broken(t.received, e))), t;
+		let t = this.whole = new Tl();
+		return El(e, t, this.signal).catch((e) => t.fail(this.signal.aborted ? e : this.broken(t.received, e))), t;
 	}
 	broken(e, t) {
-		return new j("network", `The connection broke at byte ${e} of ${this.length} of the clip; it is tried again when it plays on.`, String(e), { cause: t });
+		return new M("network", `The connection broke at byte ${e} of ${this.length} of the clip; it is tried again when it plays on.`, String(e), { cause: t });
 	}
 };
-async function kl(e, t, n = () => !0) {
+async function Ml(e, t, n = () => !0) {
 	for (let r = 1;; r++) try {
 		return await t();
 	} catch (t) {
-		if (e.throwIfAborted(), r === El || !Al(t) || !n()) throw t;
-		await new Promise((e) => setTimeout(e, Dl * 2 ** (r - 1))), e.throwIfAborted();
+		if (e.throwIfAborted(), r === kl || !Nl(t) || !n()) throw t;
+		await new Promise((e) => setTimeout(e, Al * 2 ** (r - 1))), e.throwIfAborted();
 	}
 }
-function Al(e) {
-	return e instanceof j && e.code === "network";
+function Nl(e) {
+	return e instanceof M && e.code === "network";
 }
 // eigenfield-three/src/beside.ts
-function jl(e) {
+function Pl(e) {
 	return { read: async (t, n, r) => {
 		let i = e.get(t);
-		if (!i) throw new j("damaged", `The folder has no file ${t}; copy the clip's whole folder.`, t);
-		if (i.size !== n) throw M(t, `${i.size} bytes of ${n}`);
+		if (!i) throw new M("damaged", `The folder has no file ${t}; copy the clip's whole folder.`, t);
+		if (i.size !== n) throw N(t, `${i.size} bytes of ${n}`);
 		return i.slice(0, r).arrayBuffer();
 	} };
 }
-var Ml = class {
+var Fl = class {
 	scene;
 	signal;
 	arriving = /* @__PURE__ */ new Map();
@@ -4960,7 +4957,7 @@ var Ml = class {
 		this.scene = e, this.signal = t;
 	}
 	read(e, t, n) {
-		return kl(this.signal, async () => {
+		return Ml(this.signal, async () => {
 			let r = this.arriving.get(e) ?? this.fetch(e, t);
 			try {
 				let i = await r.read(0, n);
@@ -4971,38 +4968,38 @@ var Ml = class {
 		});
 	}
 	fetch(e, t) {
-		let n = new Sl();
+		let n = new Tl();
 		return this.arriving.set(e, n), this.receive(e, t, n).catch((t) => {
-			n.fail(this.signal.aborted || t instanceof j ? t : Nl(e, t));
+			n.fail(this.signal.aborted || t instanceof M ? t : Il(e, t));
 		}), n;
 	}
 	async receive(e, t, n) {
 		let r = new URL(e, new URL(this.scene, document.baseURI)), { ok: i, status: a, headers: o, body: s } = await fetch(r, { signal: this.signal }), c = o.get("Content-Encoding") ? null : o.get("Content-Length"), l = i && c !== null && Number(c) !== t;
-		if (i && s && !l) return Cl(s, n, this.signal);
-		throw await s?.cancel(), l ? M(e, `${c} bytes of ${t}`) : Nl(e, `The server answered ${a}`);
+		if (i && s && !l) return El(s, n, this.signal);
+		throw await s?.cancel(), l ? N(e, `${c} bytes of ${t}`) : Il(e, `The server answered ${a}`);
 	}
 };
-function Nl(e, t) {
-	return new j("network", `The clip's file ${e} cannot be fetched; put it beside the clip's own. It is tried again when it plays on.`, e, { cause: t });
+function Il(e, t) {
+	return new M("network", `The clip's file ${e} cannot be fetched; put it beside the clip's own. It is tried again when it plays on.`, e, { cause: t });
 }
 // eigenfield-three/src/film-pictures.ts
-var Pl = {
+var Ll = {
 	mimeType: "video/AV1",
 	bits: 10
 };
-async function Fl(e, t, n) {
+async function Rl(e, t, n) {
 	let r = {
 		view: -1,
-		codec: Pl,
+		codec: Ll,
 		textures: 1,
 		pieces: 1,
 		where: n
-	}, i = await ci(ve(e.slice().buffer, n), r, t), a = i[0].picture;
+	}, i = await ci(_e(e.slice().buffer, n), r, t), a = i[0].picture;
 	if ("data" in a) return a;
 	let o = Ut(a, t);
-	return zs(i), Wt(o, 4 * t[0], 4, t);
+	return Hs(i), Wt(o, 4 * t[0], 4, t);
 }
-var Il = class {
+var zl = class {
 	size;
 	where;
 	user;
@@ -5023,7 +5020,7 @@ var Il = class {
 	}
 	decode(e, t, n) {
 		if (!n) return;
-		let { turn: r } = this, i = Fl(e, this.size, this.where).then((e) => r === this.turn ? this.user.take(t, () => Promise.resolve(e)) : void 0).catch((e) => {
+		let { turn: r } = this, i = Rl(e, this.size, this.where).then((e) => r === this.turn ? this.user.take(t, () => Promise.resolve(e)) : void 0).catch((e) => {
 			r === this.turn && this.user.failed(e);
 		}).finally(() => {
 			this.decoding.delete(i), this.user.closed();
@@ -5039,11 +5036,11 @@ var Il = class {
 	dispose() {
 		this.reset();
 	}
-}, Ll = 8, Rl = 2, zl = 2 / 3, Bl = /* @__PURE__ */ new Set([
+}, Bl = 8, Vl = 2, Hl = 2 / 3, Ul = /* @__PURE__ */ new Set([
 	"damaged",
 	"truncated",
 	"network"
-]), Vl = class {
+]), Wl = class {
 	timeline;
 	groups;
 	user;
@@ -5075,7 +5072,7 @@ var Il = class {
 		return this.decoders.reduce((e, t) => e + t.open, 0);
 	}
 	get reach() {
-		return Math.max(this.newestEnd, this.from) + Ll / 2;
+		return Math.max(this.newestEnd, this.from) + Bl / 2;
 	}
 	get busy() {
 		return this.decoders.some(({ busy: e }) => e);
@@ -5171,7 +5168,7 @@ var Il = class {
 		return e.every((e, t) => e !== null || !this.needs(t));
 	}
 	get hasRoom() {
-		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = this.keysAlone ? this.slots.size < Rl ? Infinity : 0 : Math.max(this.from, this.wanted) + Ll;
+		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = this.keysAlone ? this.slots.size < Vl ? Infinity : 0 : Math.max(this.from, this.wanted) + Bl;
 		return this.next < Math.min(n, t) && this.decoders.every(({ ready: e }, t) => e || !this.needs(t));
 	}
 	async feedAll() {
@@ -5187,7 +5184,7 @@ var Il = class {
 			}
 			this.fed = r;
 			let i = this.given?.index === r ? this.given : await this.groups.open(r), a = n - i.first, o = i.units[a] ?? [];
-			a >= i.frames * zl && this.prepare((r + 1) % this.timeline.groups.length), i.motion?.read(a);
+			a >= i.frames * Hl && this.prepare((r + 1) % this.timeline.groups.length), i.motion?.read(a);
 			let s = () => this.decoders.map((e, t) => [e, o[t]]).filter((e, t) => this.needs(t));
 			if (a === 0 && await Promise.all(s().map(([e, t]) => e.start(t))), e !== this.turn) return;
 			this.given = i, this.next = this.keysAlone ? t + i.frames : t + 1;
@@ -5219,9 +5216,9 @@ var Il = class {
 		return this.slots.set(e, r), r;
 	}
 	fail(e) {
-		let t = e instanceof j && e.code === "codec" ? e : null;
+		let t = e instanceof M && e.code === "codec" ? e : null;
 		if (t && !this.keysAlone) return this.thin(t);
-		if (!(e instanceof j) || !Bl.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(t ? this.keysAlone : e, null);
+		if (!(e instanceof M) || !Ul.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(t ? this.keysAlone : e, null);
 		let n = e.code === "damaged" && this.given?.index === this.fed && !this.tried.has(this.fed), r = this.startOf(Math.max(this.next - 1, 0));
 		this.halt();
 		for (let [e, t] of this.slots) this.isWhole(t.films) || this.forget(e, t);
@@ -5229,7 +5226,7 @@ var Il = class {
 	}
 	thin(e) {
 		for (let e of this.decoders) e.dispose();
-		this.keysAlone = e, this.meansAlone = !1, this.decoders = this.timeline.films.map(({ size: e, where: t }, n) => new Il(e, t, this.userOf(n))), this.stop(), this.next = this.startOf(this.from), this.user.thinned(), this.feed();
+		this.keysAlone = e, this.meansAlone = !1, this.decoders = this.timeline.films.map(({ size: e, where: t }, n) => new zl(e, t, this.userOf(n))), this.stop(), this.next = this.startOf(this.from), this.user.thinned(), this.feed();
 	}
 	rest() {
 		this.stop(), this.next = Infinity;
@@ -5255,7 +5252,7 @@ var Il = class {
 	reuseOne(e, { room: t }) {
 		t && this.rooms[e]?.push(t);
 	}
-}, Hl = .3, Ul = .2, Wl = 2, Gl = class {
+}, Gl = .3, Kl = .2, ql = 2, Jl = class {
 	place;
 	read;
 	changed;
@@ -5286,7 +5283,7 @@ var Il = class {
 		let r = e - this.place.first;
 		if (r < 0 || r >= n.duration) return n.pause();
 		let i = r - n.currentTime;
-		Math.abs(i) > Hl * Math.max(t, 1) ? n.seeking || (n.currentTime = r) : n.playbackRate = t * (1 + Math.min(Math.max(Wl * i, -.2), Ul)), n.paused && !this.starting && this.start(n);
+		Math.abs(i) > Gl * Math.max(t, 1) ? n.seeking || (n.currentTime = r) : n.playbackRate = t * (1 + Math.min(Math.max(ql * i, -.2), Kl)), n.paused && !this.starting && this.start(n);
 	}
 	rest() {
 		this.audio?.pause();
@@ -5311,51 +5308,51 @@ var Il = class {
 	}
 };
 // eigenfield-three/src/clip.ts
-async function Kl(e, t, n, r) {
-	let i = new ac(e, t, n, r), a = await i.begin();
-	a.motion?.read(0), oc(e, a);
-	let o = await Promise.all(t.films.map(({ size: e, where: t }, n) => Fl(a.units[0][n], e, t))), { sound: s } = t;
+async function Yl(e, t, n, r) {
+	let i = new cc(e, t, n, r), a = await i.begin();
+	a.motion?.read(0), lc(e, a);
+	let o = await Promise.all(t.films.map(({ size: e, where: t }, n) => Rl(a.units[0][n], e, t))), { sound: s } = t;
 	return {
 		timeline: t,
 		group: a,
 		films: o,
 		mesh: n,
-		ring: (e) => new Vl(t, i, e),
-		sound: s && ((e) => new Gl(s, () => r(s, s.length), e))
+		ring: (e) => new Wl(t, i, e),
+		sound: s && ((e) => new Jl(s, () => r(s, s.length), e))
 	};
 }
 // eigenfield-three/src/means.ts
-async function ql(e, t) {
-	let { mean: n, meanSize: r } = e, i = e.precision && await Jl(await t(e.precision.view), e.precision);
+async function Xl(e, t) {
+	let { mean: n, meanSize: r } = e, i = e.precision && await Zl(await t(e.precision.view), e.precision);
 	return {
 		pieces: await n.codec.decode(await t(n.view), n, r),
 		precision: i
 	};
 }
-async function Jl(e, t) {
+async function Zl(e, t) {
 	let { type: n } = Yr(e) ?? {}, { mimeType: r } = t.codec;
-	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
+	if (n && n !== r) throw N(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
-	if (!i) throw M(t.where, "no picture");
+	if (!i) throw N(t.where, "no picture");
 	return i.picture;
 }
-function Yl({ pieces: e, precision: t }) {
-	zs(e), t?.close();
+function Ql({ pieces: e, precision: t }) {
+	Hs(e), t?.close();
 }
 // eigenfield-three/src/packed.ts
-var Xl = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Zl = 4;
-async function Ql(e, t) {
+var $l = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", eu = 4;
+async function tu(e, t) {
 	let n = new G(e, ""), r = n.key("extensions").key(xe), i = r.key("packed");
 	if (!i.exists) return e;
 	ja(r);
 	let a = Oi(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < Zl) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, Zl)).getUint32(0, !0);
-	if (Zl + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new G(ec(await eu(await t(o.offset + Zl, s), i.where), i.where), i.where).object(), u = $l(new G(c, `${i.where}/lengths`), o, Zl + s), { packed: d, ...f } = r.object();
+	if (!o || o.length < eu) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, eu)).getUint32(0, !0);
+	if (eu + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new G(rc(await ru(await t(o.offset + eu, s), i.where), i.where), i.where).object(), u = nu(new G(c, `${i.where}/lengths`), o, eu + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
-		bufferViews: [...n.key("bufferViews").items(I).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
+		bufferViews: [...n.key("bufferViews").items(Ce).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
 		extensions: {
 			...n.key("extensions").object(),
 			[xe]: {
@@ -5365,8 +5362,8 @@ async function Ql(e, t) {
 		}
 	};
 }
-function $l(e, t, n) {
-	let r = n, i = e.items(I).map((e) => {
+function nu(e, t, n) {
+	let r = n, i = e.items(Ce).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
 			buffer: 0,
@@ -5377,8 +5374,8 @@ function $l(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function eu(e, t) {
-	let n = new TextEncoder().encode(Xl), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function ru(e, t) {
+	let n = new TextEncoder().encode($l), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -5393,12 +5390,12 @@ async function eu(e, t) {
 			ignoreBOM: !0
 		}).decode(o.subarray(n.length));
 	} catch {
-		throw M(t, "its JSON is not UTF-8");
+		throw N(t, "its JSON is not UTF-8");
 	}
 }
 // eigenfield-three/src/still-textures.ts
-var tu = 3;
-function nu(e) {
+var iu = 3;
+function au(e) {
 	return J(e).flatMap((e, t) => {
 		let n = 0;
 		return e.pictures.map((r) => {
@@ -5412,27 +5409,27 @@ function nu(e) {
 		});
 	}).sort((e, t) => e.first - t.first || e.number - t.number);
 }
-function ru(e, t, n) {
-	let r = nu(e), i = n, a = ({ basis: e, picture: n }) => {
+function ou(e, t, n) {
+	let r = au(e), i = n, a = ({ basis: e, picture: n }) => {
 		let r = t(n.view).then((t) => n.codec.decode(t, n, e.size));
 		return r.catch(() => void 0), r;
 	};
 	return {
 		async fill(n) {
-			let { plan: o, signal: s } = n, c = i ?? await Promise.all(Aa(e).map((e) => ql(e, t)));
+			let { plan: o, signal: s } = n, c = i ?? await Promise.all(Aa(e).map((e) => Xl(e, t)));
 			i = null, c.forEach((e, t) => {
-				n.putMean(t, e), Yl(e);
+				n.putMean(t, e), Ql(e);
 			});
 			let l = r.filter(({ first: e }) => e < o.usable), u = [], d = 0;
 			try {
 				for (let { number: e, first: t, picture: r } of l) {
 					if (s.aborted) return;
-					for (let e of l.slice(d, d + tu - u.length)) u.push(a(e)), d += 1;
+					for (let e of l.slice(d, d + iu - u.length)) u.push(a(e)), d += 1;
 					let i = await u[0] ?? [];
-					u.shift(), n.putTextures(e, t, i, r), zs(i), n.announce();
+					u.shift(), n.putTextures(e, t, i, r), Hs(i), n.announce();
 				}
 			} finally {
-				for (let e of u) e.then(zs).catch(() => void 0);
+				for (let e of u) e.then(Hs).catch(() => void 0);
 			}
 			n.end();
 		},
@@ -5440,41 +5437,41 @@ function ru(e, t, n) {
 			let r = 0;
 			for (let { channels: i, bases: a } of e.planes) {
 				let o = e.colours.slice(r, r += i), s = a.find(({ count: e }) => e > n);
-				if (s) return Hs(s, n, o, t);
+				if (s) return Gs(s, n, o, t);
 			}
 			return Promise.resolve(1);
 		},
 		dispose() {
-			i?.forEach(Yl), i = null;
+			i?.forEach(Ql), i = null;
 		}
 	};
 }
 // eigenfield-three/src/grid.ts
-function iu(e) {
+function su(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = au(e, n, r) ?? (n === r ? null : au(e, r, n));
+		let r = t / n, i = cu(e, n, r) ?? (n === r ? null : cu(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function au(e, t, n) {
-	let [r, i] = [su(e, 0), su(e, 1)];
-	if (t === 1 && cu(i) > 0 || n === 1 && cu(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => lu(i, e) - lu(i, t));
+function cu(e, t, n) {
+	let [r, i] = [uu(e, 0), uu(e, 1)];
+	if (t === 1 && du(i) > 0 || n === 1 && du(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => fu(i, e) - fu(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => lu(r, e) - lu(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => fu(r, e) - fu(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return ou(n, t, (e, t) => lu(r, o(t, e))) && ou(t, n, (e, t) => lu(i, o(e, t))) ? {
+	return lu(n, t, (e, t) => fu(r, o(t, e))) && lu(t, n, (e, t) => fu(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function ou(e, t, n) {
+function lu(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -5484,33 +5481,33 @@ function ou(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function su(e, t) {
+function uu(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function cu(e) {
+function du(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var lu = (e, t) => e[t] ?? 0, uu = 1e-6, du = 32, fu = class {
+var fu = (e, t) => e[t] ?? 0, pu = 1e-6, mu = 32, hu = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = iu(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = su(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(pu(e), this.isLine ? 0 : pu(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(gu(e), this.isLine ? 0 : gu(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => Cu(e, t, this.places) : e === "bilinear" && this.grid ? Tu(this.places, this.grid) : gu(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => Eu(e, t, this.places) : e === "bilinear" && this.grid ? Ou(this.places, this.grid) : yu(this.places, this.triangles);
 	}
 };
-function pu(e) {
+function gu(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function mu(e) {
+function _u(e) {
 	let t = {
 		camera: [
 			0,
@@ -5530,7 +5527,7 @@ function mu(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function hu(e, t, n, r, i, a) {
+function vu(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -5538,49 +5535,49 @@ function hu(e, t, n, r, i, a) {
 		m
 	];
 }
-function gu(e, t) {
+function yu(e, t) {
 	if (!t.length) {
-		let t = Su(e, xu(e));
-		return (n, r) => bu(n, r, e, t);
+		let t = Tu(e, wu(e));
+		return (n, r) => Cu(n, r, e, t);
 	}
-	let n = vu(e, t, 3), r = yu(t);
+	let n = xu(e, t, 3), r = Su(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * du + $(i)] ?? []) {
+		for (let r of n[$(a) * mu + $(i)] ?? []) {
 			let [n, l, u] = [
-				_u(t, r, 0),
-				_u(t, r, 1),
-				_u(t, r, 2)
-			], d = hu(i, a, e, n, l, u), f = Math.min(...d);
+				bu(t, r, 0),
+				bu(t, r, 1),
+				bu(t, r, 2)
+			], d = vu(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? bu(i, a, e, r) : mu(c.map((e, n) => [_u(t, o, n), e]));
+		return s < -1e-9 ? Cu(i, a, e, r) : _u(c.map((e, n) => [bu(t, o, n), e]));
 	};
 }
-var _u = (e, t, n) => e[3 * t + n] ?? 0;
+var bu = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * du)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * mu)));
 }
-function vu(e, t, n) {
+function xu(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * du + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * mu + t]?.push(i);
 	}
 	return r;
 }
-function yu(e) {
+function Su(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [_u(e, n, r), _u(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [bu(e, n, r), bu(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -5589,7 +5586,7 @@ function yu(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function bu(e, t, n, r) {
+function Cu(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -5604,12 +5601,12 @@ function bu(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return mu([[o, 1 - c], [s, c]]);
+	return _u([[o, 1 - c], [s, c]]);
 }
-function xu(e) {
+function wu(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function Su(e, t) {
+function Tu(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -5630,7 +5627,7 @@ function Su(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function Cu(e, t, n) {
+function Eu(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -5644,12 +5641,12 @@ function Cu(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || wu(n, r, i, a) <= uu) return bu(e, t, n, Su(n, [
+	if (a < 0 || Du(n, r, i, a) <= pu) return Cu(e, t, n, Tu(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = hu(e, t, n, r, i, a);
+	let [l, u, d] = vu(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -5665,15 +5662,15 @@ function Cu(e, t, n) {
 		]
 	};
 }
-function wu(e, t, n, r) {
+function Du(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function Tu(e, t) {
+function Ou(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = Su(e, xu(e));
-		return (n, r) => bu(n, r, e, t);
+		let t = Tu(e, wu(e));
+		return (n, r) => Cu(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -5682,7 +5679,7 @@ function Tu(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = vu(e, o.flat(), 4), c = [];
+	let s = xu(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -5690,12 +5687,12 @@ function Tu(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * du + $(t)] ?? []) {
-			let s = o[a], c = s ? Eu(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * mu + $(t)] ?? []) {
+			let s = o[a], c = s ? ku(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return bu(t, n, e, l);
-		let [a, c] = Du(t, n, e, r);
+		if (!r || i < -1e-9) return Cu(t, n, e, l);
+		let [a, c] = Au(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -5707,7 +5704,7 @@ function Tu(e, t) {
 		};
 	};
 }
-function Eu(e, t, n, r) {
+function ku(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -5715,7 +5712,7 @@ function Eu(e, t, n, r) {
 	}
 	return i;
 }
-function Du(e, t, n, r) {
+function Au(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -5733,14 +5730,14 @@ function Du(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Ou(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [Ou(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = ju(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [ju(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function Ou(e) {
+function ju(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var ku = class {
+var Mu = class {
 	parser;
 	options;
 	name = xe;
@@ -5753,16 +5750,16 @@ var ku = class {
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
-		this.options.renderer && Xc(this.options.renderer);
+		this.options.renderer && $c(this.options.renderer);
 		let { json: e } = this.parser;
-		me(e), Object.assign(e, await Ql(e, (e, t) => this.read(e, t)));
+		pe(e), Object.assign(e, await tu(e, (e, t) => this.read(e, t)));
 		let t = Oa(e), { stream: n } = this.options, r = t.timeline?.groups[0]?.file ? n?.readFile : n?.readGroups;
-		(!t.timeline || r) && (this.views = t.views, t.timeline && t.shown && !await ai("image/avif") ? this.lacks = new j("codec", "This browser decodes no AV1; use a newer browser. The first frame is shown.", "") : (this.scene = t, this.scene.shown || Au(e)));
+		(!t.timeline || r) && (this.views = t.views, t.timeline && t.shown && !await ai("image/avif") ? this.lacks = new M("codec", "This browser decodes no AV1; use a newer browser. The first frame is shown.", "") : (this.scene = t, this.scene.shown || Nu(e)));
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
 		let n = (await this.parser.getDependency("buffer", 0)).slice(e, e + t);
-		if (n.byteLength < t) throw ue("/buffers/0");
+		if (n.byteLength < t) throw le("/buffers/0");
 		return n;
 	}
 	loadMaterial(e) {
@@ -5778,39 +5775,39 @@ var ku = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (this.lacks && (e.userData.eigenfieldError = this.lacks), !t) return;
-		let n = ju(e, this.parser), [r] = n;
-		if (!r) throw M("/meshes/0", "no node shows it");
-		t.shown && Pc(r.geometry, t.shown);
+		let n = Pu(e, this.parser), [r] = n;
+		if (!r) throw N("/meshes/0", "no node shows it");
+		t.shown && Lc(r.geometry, t.shown);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
-			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ue(`/bufferViews/${e}`);
+			if (n.byteLength < (t.views[e]?.length ?? 0)) throw le(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await Fc(t.mesh, i), o = t.timeline && a && await this.openClip(t, t.timeline, a);
+		}, a = t.mesh && await Rc(t.mesh, i), o = t.timeline && a && await this.openClip(t, t.timeline, a);
 		if (a) {
-			let e = Ic(a);
+			let e = zc(a);
 			r.geometry.dispose();
 			for (let t of n) t.geometry = e;
 		}
 		t.sheets && sa(t.sheets, r.geometry);
 		let [s, c, l, u] = await Promise.all([
-			Promise.all(o ? [] : Aa(t).map((e) => ql(e, i))),
+			Promise.all(o ? [] : Aa(t).map((e) => Xl(e, i))),
 			Ga(t, i),
 			o ? o.group.omega : $a(t, i),
 			ao(t, i)
-		]), d = c.filter((e, n) => !t.heldOut[n]), f = new fu(Float64Array.from(d.flatMap((e) => lo(t, e.centre))), u, t.extent[1] === 0), p = o ? Aa(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
+		]), d = c.filter((e, n) => !t.heldOut[n]), f = new hu(Float64Array.from(d.flatMap((e) => lo(t, e.centre))), u, t.extent[1] === 0), p = o ? Aa(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
 			scene: t,
-			info: so(t, c, p, f.grid, this.fileBytes(), Lc(r.geometry)),
+			info: so(t, c, p, f.grid, this.fileBytes(), Bc(r.geometry)),
 			meshes: n,
 			meanSizes: p,
 			omega: l,
 			weights: f,
 			clip: o
-		}, h = o ? new Ws(t, o.films) : ru(t, i, s);
-		e.userData.eigenfield = new _l(m, h, this.options);
+		}, h = o ? new qs(t, o.films) : ou(t, i, s);
+		e.userData.eigenfield = new bl(m, h, this.options);
 	}
 	openClip(e, t, n) {
 		let r = this.options.stream;
-		return Kl(e, t, n, ({ offset: e, length: t, file: n }, i) => n === null ? r.readGroups(e, i) : r.readFile(n, t, i));
+		return Yl(e, t, n, ({ offset: e, length: t, file: n }, i) => n === null ? r.readGroups(e, i) : r.readFile(n, t, i));
 	}
 	fileBytes() {
 		let { groups: e = [], sound: t = null } = this.scene?.timeline ?? {}, n = [...e, ...t ? [t] : []].reduce((e, t) => e + (t.file ? t.length : 0), 0);
@@ -5819,53 +5816,53 @@ var ku = class {
 		return r.KHR_binary_glTF?.header?.length ?? i.buffers[0]?.byteLength ?? 0;
 	}
 };
-function Au(e) {
+function Nu(e) {
 	let [t] = e.nodes;
 	t && (t.mesh = 0), e.meshes = [{ primitives: [{
 		attributes: {},
 		material: 0
 	}] }], e.materials = [{ doubleSided: !0 }];
 }
-function ju(e, t) {
+function Pu(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		Mu(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		Fu(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function Mu(e) {
+function Fu(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function Nu(e, t = {}) {
+async function Iu(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new Sl(), [i, a] = [new AbortController(), new AbortController()], o = () => {
+	let r = new Tl(), [i, a] = [new AbortController(), new AbortController()], o = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", o), i.signal.addEventListener("abort", () => a.abort());
-	let s = Lu(e, r, a.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", o));
+	let s = Bu(e, r, a.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", o));
 	try {
-		let o = await Zs(r);
+		let o = await ec(r);
 		if (!Da(o.json)) return {
-			gltf: await Iu(r, o, s),
+			gltf: await zu(r, o, s),
 			field: null,
 			error: null
 		};
-		let c = e instanceof ArrayBuffer ? r : ((e) => new Ol(e, r, o.length, () => a.abort(), i.signal))(e), l = t.files ? jl(t.files) : null, u = await Pu(r, o, c, typeof e == "string" ? new Ml(e, i.signal) : l, t);
+		let c = e instanceof ArrayBuffer ? r : ((e) => new jl(e, r, o.length, () => a.abort(), i.signal))(e), l = t.files ? Pl(t.files) : null, u = await Lu(r, o, c, typeof e == "string" ? new Fl(e, i.signal) : l, t);
 		n?.throwIfAborted();
 		let { eigenfield: d, eigenfieldError: f } = u.userData;
 		return {
 			gltf: u,
-			field: d instanceof _l ? d : null,
-			error: f instanceof j ? f : null
+			field: d instanceof bl ? d : null,
+			error: f instanceof M ? f : null
 		};
 	} catch (e) {
-		throw i.abort(), n?.throwIfAborted(), de(e);
+		throw i.abort(), n?.throwIfAborted(), ue(e);
 	}
 }
-async function Pu(e, t, n, r, i) {
-	let a = new ce(), o = (e, t = n) => async (n, r) => {
+async function Lu(e, t, n, r, i) {
+	let a = new se(), o = (e, t = n) => async (n, r) => {
 		let i = await e + n;
 		return t.read(i, i + r);
 	}, s = t.binary();
@@ -5874,58 +5871,58 @@ async function Pu(e, t, n, r, i) {
 		total: t.length,
 		read: o(s, e),
 		readGroups: (...e) => o(t.groups())(...e),
-		readFile: (...e) => r?.read(...e) ?? Promise.reject(Fu(e[0]))
+		readFile: (...e) => r?.read(...e) ?? Promise.reject(Ru(e[0]))
 	};
-	return a.register((e) => new ku(e, {
+	return a.register((e) => new Mu(e, {
 		...i,
 		stream: c
 	})), a.parseAsync(t.text, "");
 }
-function Fu(e) {
-	return new j("unsupported", `The clip is a folder, and its file ${e} cannot be found from here; make one file of it, with \`eigenfield export\`.`, e);
+function Ru(e) {
+	return new M("unsupported", `The clip is a folder, and its file ${e} cannot be found from here; make one file of it, with \`eigenfield export\`.`, e);
 }
-async function Iu(e, t, n) {
+async function zu(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
-		let e = new ce();
-		return e.register(pe), await e.parseAsync(r, "");
+		let e = new se();
+		return e.register(fe), await e.parseAsync(r, "");
 	} catch (e) {
-		if (e instanceof j) throw e;
-		let t = de(e).message;
-		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
+		if (e instanceof M) throw e;
+		let t = ue(e).message;
+		throw new M("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function Lu(e, t, n, r) {
+async function Bu(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? Ru(e) : await zu(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? Vu(e) : await Hu(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : Bu(t.received, e);
+			throw n.aborted ? e : Uu(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function Ru(e) {
+function Vu(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function zu(e, t) {
+async function Hu(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
-		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
+		throw t.aborted ? n : new M("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
-	if (!n.ok || !n.body) throw await n.body?.cancel(), new j("network", `The server answered ${n.status} for the scene; check its address.`, e);
+	if (!n.ok || !n.body) throw await n.body?.cancel(), new M("network", `The server answered ${n.status} for the scene; check its address.`, e);
 	let r = n.headers.get("Content-Encoding") ? null : n.headers.get("Content-Length");
 	return {
 		body: n.body,
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function Bu(e, t) {
-	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
+function Uu(e, t) {
+	return new M("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { _l as EigenField, ku as EigenfieldPlugin, Mc as Player, Hc as SHEETS, j as SceneError, jo as defaultMemory, Nu as loadEigenfield, po as novelCamera, _o as placeCamera, pe as refuseAddresses };
+export { bl as EigenField, Mu as EigenfieldPlugin, Fc as Player, Gc as SHEETS, M as SceneError, jo as defaultMemory, Iu as loadEigenfield, po as novelCamera, _o as placeCamera, fe as refuseAddresses };
