@@ -100,3 +100,39 @@ test("a machine that was slow for a while is asked again", async () => {
   assert.ok(again.scale > slow.scale || !again.linear, `${JSON.stringify(slow)}, then ${JSON.stringify(again)}`);
   await close();
 });
+
+test("a clip is drawn coarser where frames are slow, and in full once it stands still", async () => {
+  const { page, close } = await openViewer(browser, "clip.glb", { init: paced, glide: true });
+  await page.waitForFunction(() => window.eigenfield.field?.player.playing && window.eigenfield.state().detail.scale < 1);
+  await page.evaluate(() => window.eigenfield.field.player.pause());
+  await page.waitForFunction(() => window.eigenfield.state().detail.scale === 1);
+  const sought = await page.evaluate(async () => {
+    await window.eigenfield.field.player.toFrame(20);
+    await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+    return window.eigenfield.state();
+  });
+  assert.ok(sought.detail.scale < 1 && sought.detail.linear, JSON.stringify(sought.detail));
+  await page.waitForFunction(() => window.eigenfield.state().detail.scale === 1);
+  assert.equal(await page.evaluate(() => window.eigenfield.field.player.frame), 20);
+  await close();
+});
+
+test("a clip is drawn when it shows another frame, in full where frames are fast", async () => {
+  const init = `(${paced})(); window.interval = 10;`;
+  const { page, close } = await openViewer(browser, "clip.glb", { init });
+  await page.waitForFunction(() => window.eigenfield.state().status === "ready");
+  const seen = await page.evaluate(async () => {
+    const { field, state } = window.eigenfield;
+    await field.player.toFrame(3);
+    let shown = 0;
+    field.player.addEventListener("frame", () => shown++);
+    const { frames } = state();
+    field.player.play();
+    let passed = 0;
+    while (shown < 12) await new Promise((done) => requestAnimationFrame(() => done(passed++)));
+    return { shown, passed, drawn: state().frames - frames, detail: state().detail };
+  });
+  assert.deepEqual(seen.detail, { scale: 1, linear: false });
+  assert.ok(seen.drawn <= seen.shown + 3 && seen.passed > 3 * seen.shown, JSON.stringify(seen));
+  await close();
+});
