@@ -500,6 +500,47 @@ for (const name of ["clip.glb", "clip-sheets.glb"]) {
   });
 }
 
+/** A graphics chip of so few layers that four textures share a texel. */
+function ofFewLayers() {
+  const { getParameter } = WebGL2RenderingContext.prototype;
+  WebGL2RenderingContext.prototype.getParameter = function (name) {
+    return name === this.MAX_ARRAY_TEXTURE_LAYERS ? 1 : getParameter.call(this, name);
+  };
+}
+
+test("codes are drawn as they are, as where they are packed, on the view plane and by rays", async () => {
+  const pictures = [];
+  for (const init of [null, ofFewLayers]) {
+    const { page, close } = await openClip("clip-sheets.glb", { init });
+    const { words } = await page.evaluate(() => window.field.textures.plan);
+    assert.equal(words, init === null);
+    const drawn = [];
+    for (const away of [0, 0.3]) {
+      await page.evaluate(async (away) => {
+        const { field, lab } = window;
+        await field.player.toFrame(14);
+        field.camera = null;
+        lab.renderer.setSize(240, 240);
+        lab.placeCamera(field, lab.camera, field.info.cameras.at(-1), 1);
+        lab.camera.translateX(away / 3);
+        lab.camera.translateZ(away);
+        lab.camera.updateMatrixWorld(true);
+        lab.draw();
+      }, away);
+      drawn.push(await canvasPixels(page));
+      assert.equal(await page.evaluate(() => window.field.lastByRay), away > 0);
+    }
+    pictures.push(drawn);
+    await close();
+  }
+  const [words, packed] = pictures;
+  words.forEach((picture, i) => {
+    const { largest, mean, pixels } = difference(picture, packed[i]);
+    assert.ok(largest <= 1 && mean < 0.05 && pixels > 10_000, `${i}: ${largest}, ${mean} of ${pixels} pixels`);
+  });
+  assert.ok(difference(words[0], words[1]).mean > 1);
+});
+
 test("the opacity of sheets after a lost context, and where frames have eight bits in the range of videos", async () => {
   const { page, close } = await openClip("clip-sheets.glb", { allowed: /Context (Lost|Restored)/, init: ofEightBits });
   assert.deepEqual(await page.evaluate(() => window.field.player.fallbacks), []);

@@ -199,15 +199,17 @@ function stepsOf(part: Part, target: Size | null): Step[] {
   const [left, top, right, bottom] = part.rectangle;
   const beside = target && new Vector2(1 / ((right - left) * target[0]), 1 / ((bottom - top) * target[1]));
   const channels = part.colours.length;
-  const [all, most] = [part.scale.length / (4 * channels), Math.floor(LAYERS / channels)];
+  const [all, fitting] = [part.scale.length / (4 * channels), Math.floor(LAYERS / channels)];
+  const most = part.words ? 4 * Math.floor(fitting / 4) : fitting; // maps of weights have four to a layer
   const steps: Step[] = [];
   for (let first = 0; first < all; first += most) {
     const colours = Array.from({ length: LAYERS }, (_, i) => new Vector3(...(part.colours[i] ?? [0, 0, 0])));
-    const sharing = part.basis ? 1 : 4;
+    const sharing = part.basis || part.words ? 1 : 4;
     const quad = makeQuad(SUM, part.rectangle, {
       stored: { value: part.stored },
       firstLayer: { value: Math.floor((first * channels) / sharing) },
       sharing: { value: sharing },
+      words: { value: part.words },
       channels: { value: channels },
       entries: { value: 0 },
       scale: { value: new Float32Array(4 * LAYERS) },
@@ -215,7 +217,7 @@ function stepsOf(part: Part, target: Size | null): Step[] {
       colours: { value: colours },
       rayWeights: { value: false },
       weightMaps: { value: null },
-      firstGroup: { value: (part.basis?.group ?? 0) + first },
+      firstGroup: { value: (part.basis?.group ?? 0) + (part.words ? first / 4 : first) },
       places: { value: null },
       beside: { value: beside ?? new Vector2() },
       eye: { value: new Vector3() },
@@ -227,19 +229,20 @@ function stepsOf(part: Part, target: Size | null): Step[] {
 
 /** Gives a step the numbers of what is to be summed; those of other textures are zero. */
 function setStep({ part, first, groups, quad }: Step, places: Texture | null, recipe: Recipe): void {
-  const { basis, colours } = part;
+  const { basis, colours, words } = part;
   const { uniforms } = quad.material;
   const set = (name: string, value: unknown): void => {
     const uniform = uniforms[name];
     if (uniform) uniform.value = value;
   };
   const rays = basis !== null && recipe.eye !== null && recipe.only === null;
-  const factors = Array.from({ length: 4 * groups }, (_, i) => factorOf(basis, 4 * first + i, recipe, rays));
-  const used = Math.ceil((factors.findLastIndex((factor) => factor !== 0) + 1) / 4);
+  const each = words ? 1 : 4; // textures of a group
+  const factors = Array.from({ length: each * groups }, (_, i) => factorOf(basis, each * first + i, recipe, rays));
+  const used = Math.ceil((factors.findLastIndex((factor) => factor !== 0) + 1) / each);
   const [scale, bias] = [uniforms["scale"]?.value as Float32Array, uniforms["bias"]?.value as Float32Array];
   const channels = colours.length;
   for (let i = 0; i < 4 * channels * used; i++) {
-    const factor = factors[4 * Math.floor(i / (4 * channels)) + (i % 4)] ?? 0;
+    const factor = factors[each * Math.floor(i / (4 * channels)) + (i % each)] ?? 0;
     scale[i] = factor * (part.scale[4 * channels * first + i] ?? 0);
     bias[i] = factor * (part.bias[4 * channels * first + i] ?? 0);
   }

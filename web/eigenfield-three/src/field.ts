@@ -192,7 +192,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     this.textures.onPlan = (plan) => {
       const { scene } = this.parts;
       this.freeComposers();
-      this.summed = { parts: partsOf(scene, this.textures, plan), opacity: opacityPart(scene, this.textures) };
+      this.summed = { parts: partsOf(scene, this.textures, plan), opacity: opacityPart(scene, this.textures, plan) };
       if (plan.limitation) queueMicrotask(() => this.dispatchEvent({ type: "limited" })); // not within a draw
     };
     this.textures.onTexture = () => this.dispatchEvent({ type: "texture" });

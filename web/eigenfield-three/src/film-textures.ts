@@ -46,12 +46,10 @@ export class FilmTextures implements TextureSource {
   }
 
   private put(filling: Filling): void {
-    filling.together(() => {
-      stillsOf(this.scene).forEach(({ mean }, i) => filling.putMean(i, { pieces: this.piecesOf(mean), precision: null }));
-      basesOf(this.scene).forEach(({ pictures: [picture] }, i) => {
-        const pieces = picture ? this.piecesOf(picture) : [];
-        if (picture && pieces.length) filling.putTextures(i, 0, pieces, picture);
-      });
+    stillsOf(this.scene).forEach(({ mean }, i) => filling.putMean(i, { pieces: this.piecesOf(mean), precision: null }));
+    basesOf(this.scene).forEach(({ pictures: [picture] }, i) => {
+      const pieces = picture ? this.piecesOf(picture) : [];
+      if (picture && pieces.length) filling.putTextures(i, 0, pieces, picture);
     });
   }
 

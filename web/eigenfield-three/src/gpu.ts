@@ -4,6 +4,7 @@
 import type { WebGLRenderer } from "three";
 import { SceneError } from "./errors.js";
 import type { DeviceLimits, Format } from "./memory.js";
+import type { Codes } from "./pieces.js";
 
 type GL = WebGL2RenderingContext;
 
@@ -59,6 +60,17 @@ export function putPicture(gl: GL, array: WebGLTexture, picture: ImageBitmap, ch
   bound(gl, gl.TEXTURE_2D_ARRAY, array, () =>
     gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, 0, 0, 0, width, height, 1, format, gl.UNSIGNED_BYTE, picture),
   );
+}
+
+/** Codes of an array's size into its layers from `first` on, their two bytes as R and G. */
+export function putWords(gl: GL, array: WebGLTexture, first: number, pictures: Codes[]): void {
+  bound(gl, gl.TEXTURE_2D_ARRAY, array, () => {
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+    pictures.forEach(({ data, width, height, stride }, i) => {
+      gl.pixelStorei(gl.UNPACK_ROW_LENGTH, stride / 2);
+      gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, 0, 0, first + i, width, height, 1, gl.RG, gl.UNSIGNED_BYTE, data);
+    });
+  });
 }
 
 /** A texture to be read texel by texel; null if there is no memory. */

@@ -3,7 +3,7 @@
 const MIPS = 4 / 3; // a texture with all its mips, relative to its largest level
 const COMPOSED = bytesOf({ components: 4, halves: true }); // of a texel
 export const PICTURE: Format = { components: 4, halves: false }; // as browsers decode it
-const WORDS: Format = { components: 2, halves: false }; // the two bytes of a code of more than 8 bits
+export const WORDS: Format = { components: 2, halves: false }; // the two bytes of a code of more than 8 bits
 const REDUCED: Format = { components: 2, halves: true }; // a value, and whether it is of a chart
 export const MAP_SIDE = 129; // nodes of a weight map along X and Y
 const MIB = 2 ** 20;
@@ -23,6 +23,7 @@ export interface Needs {
   // of planes, and of the opacity; pieces: pictures one below the other
   means: { size: Size; channels: number; pieces: number; tenBits: boolean; opacity?: boolean }[];
   bases: { size: Size; grid: Size; channels: number; count: number; tenBits: boolean }[]; // codes of 10 bits
+  films: boolean; // each frame puts all of them anew, as codes of 10 bits
   rays: boolean; // weights may be looked up texel by texel
   geometry: number; // bytes
 }
@@ -31,6 +32,7 @@ export interface Plan {
   meanDown: number; // the mean and what is composed have their side over this
   scaleDown: number; // eigen textures
   halves: boolean; // codes of eigen textures have all their bits, else 8
+  words: boolean; // each channel of each texture has a layer of its own, with the two bytes of its codes
   usable: number; // of each basis
   bytes: number;
   reductions: Reduction[];
@@ -99,15 +101,16 @@ export function gridsOf(needs: { atlas: Size; means: { size: Size }[]; bases: { 
   return [...new Map(sizes.map((size) => [size.join(), size])).values()];
 }
 
-type Choice = Pick<Plan, "meanDown" | "scaleDown" | "halves">;
+type Choice = Pick<Plan, "meanDown" | "scaleDown" | "halves" | "words">;
 
 // In the order of what they cost a picture (decision 42). What is composed holds no more of eigen textures than its own
 // texels, so that larger ones would be in vain.
 const DOWNS = [1, 1.5, 2, 3, 4, 6, 8, 12, 16];
+const WHOLE: Choice = { meanDown: 1, scaleDown: 1, halves: true, words: false };
 const CHOICES: Choice[] = [
-  { meanDown: 1, scaleDown: 1, halves: true },
+  WHOLE,
   ...DOWNS.flatMap((meanDown) =>
-    [1, 1.5, 2].map((further) => ({ meanDown, scaleDown: further * meanDown, halves: false })),
+    [1, 1.5, 2].map((further) => ({ meanDown, scaleDown: further * meanDown, halves: false, words: false })),
   ),
 ];
 
@@ -121,7 +124,8 @@ export function makePlan(needs: Needs, limits: DeviceLimits): Plan {
   const hasRoom = (choice: Choice, count: number): boolean =>
     bytes(choice, count) + onTheWay(needs, choice, limits.memory) <= limits.memory;
   const largest = Math.max(1, ...needs.atlas, ...needs.bases.flatMap(({ size }) => size));
-  const possible = CHOICES.filter(({ meanDown }) => largest / meanDown <= limits.side);
+  const inWords = needs.films && total * channels <= limits.layers ? [{ ...WHOLE, words: true }] : [];
+  const possible = [...inWords, ...CHOICES].filter(({ meanDown }) => largest / meanDown <= limits.side);
   let usable = possible.length ? most : 0;
   let choice = possible.find((one) => hasRoom(one, usable));
   for (; !choice && usable > 0; usable--) choice = possible.find((one) => hasRoom(one, usable - 1));
@@ -191,6 +195,7 @@ export function covering(sizes: Size[]): Size {
 
 /** Bytes while textures arrive: the rooms, and which texels of a grid lie in charts. */
 function onTheWay(needs: Needs, choice: Choice, memory: number): number {
+  if (choice.words) return 0;
   const rooms = Object.values(roomsOf(needs, choice, memory)) as (Room | null)[];
   const bytes = rooms.map((room) => (room ? bytesOf(room.format) * texels(room.size, 1) : 0));
   const charts = choice.scaleDown > 1 ? Math.max(...gridsOf(needs).map((size) => texels(size, 1))) : 0;
@@ -215,8 +220,7 @@ function sentence(reductions: Reduction[], needs: Needs, limits: DeviceLimits): 
     const what = one.kind === "mean" ? "the mean texture has" : "eigen textures have";
     return `${what} ${one.percent} % of ${one.kind === "mean" ? "its" : "their"} width and height`;
   });
-  const whole = { meanDown: 1, scaleDown: 1, halves: true };
-  const all = composing(needs, 1) + stored(needs, whole, Infinity) + onTheWay(needs, whole, limits.memory) + needs.geometry;
+  const all = composing(needs, 1) + stored(needs, WHOLE, Infinity) + onTheWay(needs, WHOLE, limits.memory) + needs.geometry;
   const why =
     all > limits.memory
       ? `the scene needs ${megabytes(all)} MB of graphics memory and ${megabytes(limits.memory)} MB may be used`

@@ -44,9 +44,6 @@ export interface Fineness {
 export interface Packer {
   /** Codes are stored as they are, without `fine`. */
   put(piece: Piece, array: WebGLTexture, slots: Slot[], aim: Aim, fine?: Fineness | null): void;
-  /** Calls `work`, which puts many codes: what others have set is asked for and put back once, as each question waits
-   * for the GPU. */
-  together(work: () => void): void;
   free(): void;
 }
 
@@ -61,7 +58,6 @@ export function makePacker(gl: GL, rooms: Rooms, fitting: number, surface: Surfa
   const [copying, packing, spreading] = [link(gl, TRIANGLE, COPY), link(gl, TRIANGLE, PACK), link(gl, TRIANGLE, SPREAD)];
   const [frame, vertices] = [gl.createFramebuffer(), gl.createVertexArray()];
   const charts = rooms.smaller && makeCharts(gl, surface);
-  let ours = false; // within `together`: the room of codes is bound, and all is set for drawing
   const placesOf = (program: WebGLProgram): Places =>
     Object.fromEntries(UNIFORMS.map((name) => [name, gl.getUniformLocation(program, name)])) as Places;
   const [ofCopying, ofPacking] = [placesOf(copying), placesOf(packing)];
@@ -97,16 +93,15 @@ export function makePacker(gl: GL, rooms: Rooms, fitting: number, surface: Surfa
     const [width, height] = aim.size;
     const smaller = width < picture.width || height < rows ? rooms.smaller : null;
     const step = Math.max(1, Math.floor(((smaller ? fitting - 2 : fitting) * height) / rows));
-    const set = ours && room === rooms.codes;
     const covered = (smaller && charts?.covered(aim.grid)) ?? null;
-    onUnit(gl, 0, set ? null : room, () => {
+    onUnit(gl, 0, room, () => {
       for (let top = 0; top < height; top += step) {
         const count = Math.min(step, height - top);
         const first = Math.floor((top * rows) / height);
         const last = Math.ceil(((top + count) * rows) / height);
         if (isCodes(picture)) putCodes(gl, picture, row + first, last - first);
         else putRows(gl, picture, row + first, last - first);
-        const pack = (): void => {
+        onUnit(gl, 2, covered, () => untouched(gl, () => {
           const as = smaller || fine ? ofPacking : ofCopying;
           gl.useProgram(smaller || fine ? packing : copying); // its sampler `picture` reads unit 0
           gl.bindVertexArray(vertices);
@@ -119,11 +114,7 @@ export function makePacker(gl: GL, rooms: Rooms, fitting: number, surface: Surfa
             gl.colorMask(true, true, true, true);
           } else toSlot(array, slot);
           draw(as, piece, slot.channel, aim, first, top, count);
-        };
-        onUnit(gl, 2, covered, () => {
-          if (set) pack();
-          else untouched(gl, pack);
-        });
+        }));
       }
     });
     if (!smaller) return;
@@ -151,18 +142,6 @@ export function makePacker(gl: GL, rooms: Rooms, fitting: number, surface: Surfa
           pack();
         });
       }
-    },
-    together(work) {
-      onUnit(gl, 0, rooms.codes, () =>
-        untouched(gl, () => {
-          ours = true;
-          try {
-            work();
-          } finally {
-            ours = false;
-          }
-        }),
-      );
     },
     free() {
       for (const texture of Object.values(rooms) as (WebGLTexture | null)[]) gl.deleteTexture(texture);

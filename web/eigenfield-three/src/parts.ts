@@ -15,8 +15,10 @@ export interface Part {
   colours: [number, number, number][]; // of the value 1 of each channel
   // Four numbers for each channel of each group of textures: value = stored * scale + bias. Stored are codes over
   // the largest, or as half-floats the codes, or of a mean with a precision what packing.ts makes of them.
+  // In words a texture makes a group of its own, and its code's bytes are the first two of the four.
   scale: Float32Array;
   bias: Float32Array;
+  words: boolean;
   basis: BasisPart | null; // null: a mean
 }
 
@@ -30,14 +32,15 @@ interface BasisPart {
 export function partsOf(scene: SceneDocument, textures: Textures, plan: Plan): Part[] {
   const parts: Part[] = [];
   let [channel, number, column, group] = [0, 0, 0, 0];
+  const { words } = plan;
   scene.planes.forEach((plane, i) => {
     const { channels, bases } = plane;
     const colours = scene.colours.slice(channel, channel + channels);
     channel += channels;
     const grid = textures.needs.means[i]?.size ?? [1, 1];
     const stored = textures.means[i];
-    const numbers = meanNumbers(plane);
-    if (stored) parts.push({ stored, grid, rectangle: [0, 0, 1, 1], colours, ...numbers, basis: null });
+    const numbers = words ? wordNumbers([plane.mean]) : meanNumbers(plane);
+    if (stored) parts.push({ stored, grid, rectangle: [0, 0, 1, 1], colours, ...numbers, words, basis: null });
     for (const { size, grid, corner, pictures, count } of bases) {
       const stored = textures.bases[number];
       const ready = textures.ready[number++] ?? [];
@@ -49,7 +52,8 @@ export function partsOf(scene: SceneDocument, textures: Textures, plan: Plan): P
           grid,
           rectangle: [left, top, left + size[0] / grid[0], top + size[1] / grid[1]],
           colours,
-          ...basisNumbers(pictures, channels, used, plan.halves && hasTenBits(pictures)),
+          ...(words ? wordNumbers(pictures) : basisNumbers(pictures, channels, used, plan.halves && hasTenBits(pictures))),
+          words,
           basis: { ready, column, group },
         });
       }
@@ -66,12 +70,12 @@ export function rescale(parts: Part[], scene: SceneDocument, textures: Textures,
 }
 
 /** The opacity of sheets, as a mean whose only channel is R. */
-export function opacityPart({ planes, sheets }: SceneDocument, { means, needs }: Textures): Part | null {
+export function opacityPart({ planes, sheets }: SceneDocument, { means, needs }: Textures, { words }: Plan): Part | null {
   const stored = means[planes.length];
   const grid = needs.means[planes.length]?.size;
   if (!sheets || !stored || !grid) return null;
-  const numbers = meanNumbers(sheets.opacity);
-  return { stored, grid, rectangle: [0, 0, 1, 1], colours: [[1, 0, 0]], ...numbers, basis: null };
+  const numbers = words ? wordNumbers([sheets.opacity.mean]) : meanNumbers(sheets.opacity);
+  return { stored, grid, rectangle: [0, 0, 1, 1], colours: [[1, 0, 0]], ...numbers, words, basis: null };
 }
 
 type Numbers = Pick<Part, "scale" | "bias">;
@@ -87,6 +91,16 @@ function meanNumbers({ mean, channels, precision }: Still): Numbers {
     numbers.bias[at] = precision ? 0 : -(zero[channel] ?? 0) * (scale[channel] ?? 0);
   }
   return numbers;
+}
+
+/** Of each channel of each texture; stored are bytes / 255. */
+function wordNumbers(pictures: Picture[]): Numbers {
+  const scale = pictures.flatMap((picture) => picture.scale);
+  const zero = pictures.flatMap((picture) => picture.zero);
+  return {
+    scale: Float32Array.from(scale.flatMap((own) => [255 * own, 255 * 256 * own, 0, 0])),
+    bias: Float32Array.from(scale.flatMap((own, i) => [-(zero[i] ?? 0) * own, 0, 0, 0])),
+  };
 }
 
 function basisNumbers(pictures: Picture[], channels: number, used: number, halves: boolean): Numbers {

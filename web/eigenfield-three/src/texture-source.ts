@@ -15,8 +15,6 @@ export interface Filling {
   putMean(index: number, mean: Mean): void;
   /** The textures of a picture, from `first` of basis `basis`, counted over all planes. Whoever calls closes them. */
   putTextures(basis: number, first: number, pieces: Piece[], picture: Picture): void;
-  /** Calls `work`, which puts many. */
-  together(work: () => void): void;
   /** Tells whoever draws on demand that there is more to draw. */
   announce(): void;
   /** Nothing more will be put: frees what that takes. */

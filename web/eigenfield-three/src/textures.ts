@@ -7,7 +7,7 @@ import type { Mean } from "./means.js";
 import * as memory from "./memory.js";
 import type { EigenfieldOptions } from "./options.js";
 import { makePacker, type Aim, type Fineness, type Packer, type Slot } from "./packing.js";
-import type { Piece } from "./pieces.js";
+import type { Codes, Piece } from "./pieces.js";
 import { codeStep, hasTenBits, unitOf, type Basis, type Picture } from "./planes.js";
 import type { Surface } from "./surface.js";
 import type { Filling, TextureSource } from "./texture-source.js";
@@ -56,7 +56,9 @@ export class Textures {
       const opacity = i === scene.planes.length;
       return { size: meanSizes[i] ?? [1, 1], channels, pieces: mean.pieces, tenBits: hasTenBits([mean]), opacity };
     });
-    this.needs = { atlas: info.size, means, bases, rays: info.facesPlane, geometry: geometryBytes(surface.geometry) };
+    const films = stillsOf(scene).some(({ mean }) => mean.part);
+    const geometry = geometryBytes(surface.geometry);
+    this.needs = { atlas: info.size, means, bases, films, rays: info.facesPlane, geometry };
     this.means = means.map(() => new ExternalTexture());
     this.bases = bases.map(() => new ExternalTexture());
     this.ready = bases.map(({ count }) => Array<boolean>(count).fill(false));
@@ -154,10 +156,7 @@ export class Textures {
         if (!signal.aborted) this.putMean(gl, plan, index, mean);
       },
       putTextures: (basis, first, pieces, picture) => {
-        if (!signal.aborted) this.putTextures(plan, basis, first, pieces, picture);
-      },
-      together: (work) => {
-        if (!signal.aborted) this.packer?.together(work);
+        if (!signal.aborted) this.putTextures(gl, plan, basis, first, pieces, picture);
       },
       announce: () => {
         if (!signal.aborted) this.onTexture();
@@ -170,17 +169,25 @@ export class Textures {
     };
   }
 
-  private putTextures(plan: memory.Plan, number: number, first: number, pieces: Piece[], picture: Picture): void {
-    const { usable, scaleDown, halves } = plan;
+  private putTextures(
+    gl: WebGL2RenderingContext,
+    plan: memory.Plan,
+    number: number,
+    first: number,
+    pieces: Piece[],
+    picture: Picture,
+  ): void {
+    const { usable, scaleDown, halves, words } = plan;
     const [array, ready, basis] = [this.bases[number]?.sourceTexture, this.ready[number], this.layout[number]];
     if (!(array instanceof WebGLTexture) || !ready || !basis) return;
     const { size, grid, corner, channels, tenBits } = basis;
+    if (words) gpu.putWords(gl, array, channels * first, codesOf(pieces.slice(0, channels * (usable - first))));
     const unit = unitOf(picture, halves && tenBits);
     const aim = { size: memory.smaller(size, scaleDown), grid, corner, unit, codes: 255 * codeStep(picture) };
     for (let j = first; j < Math.min(first + picture.textures, usable); j++) {
       const own = pieces.slice((j - first) * picture.pieces, (j - first + 1) * picture.pieces);
       const layer = channels * Math.floor(j / 4);
-      this.put(own, array, channels, aim, (channel) => ({ layer: layer + channel, component: j % 4 }));
+      if (!words) this.put(own, array, channels, aim, (channel) => ({ layer: layer + channel, component: j % 4 }));
       ready[j] = true;
     }
     this.version += 1;
@@ -191,6 +198,7 @@ export class Textures {
     const { size: grid, tenBits } = this.needs.means[index] ?? {};
     if (!(array instanceof WebGLTexture) || !still || !grid) return;
     this.stillVersions[index] = this.version += 1;
+    if (plan.words) return gpu.putWords(gl, array, 0, codesOf(pieces));
     const { mean, channels } = still;
     const size = memory.smaller(grid, plan.meanDown);
     const [first] = pieces;
@@ -223,23 +231,23 @@ export class Textures {
   }
 
   /** Room for all textures, within the memory that may be used and that there is. */
-  private makeRoom(gl: WebGL2RenderingContext): { packer: Packer; plan: memory.Plan } {
+  private makeRoom(gl: WebGL2RenderingContext): { packer: Packer | null; plan: memory.Plan } {
     const { means, bases } = this.needs;
     this.needs.geometry = geometryBytes(this.surface.geometry);
     const precisions = this.parts.scene.planes.flatMap(({ precision }) => (precision ? [precision.size] : []));
     for (let allowed = this.options.memory ?? memory.defaultMemory(); ; allowed /= 2) {
       const plan = memory.makePlan(this.needs, gpu.deviceLimits(gl, allowed));
-      const { meanDown, scaleDown, usable, halves } = plan;
+      const { meanDown, scaleDown, usable, halves, words } = plan;
       const between = meanDown !== scaleDown; // texels of what is composed are none of what is stored
       const made = [
-        ...means.map(({ size, channels, tenBits }) =>
-          gpu.makeArray(gl, memory.smaller(size, meanDown), memory.meanLayers(channels), false, {
-            components: channels,
-            halves: tenBits,
-          }),
-        ),
+        ...means.map(({ size, channels, tenBits }) => {
+          if (words) return gpu.makeArray(gl, size, channels, false, memory.WORDS);
+          const format = { components: channels, halves: tenBits };
+          return gpu.makeArray(gl, memory.smaller(size, meanDown), memory.meanLayers(channels), false, format);
+        }),
         ...bases.map(({ size, channels, count, tenBits }) => {
           const used = Math.min(count, usable);
+          if (words && used) return gpu.makeArray(gl, size, channels * used, false, memory.WORDS);
           return gpu.makeArray(
             gl,
             used ? memory.smaller(size, scaleDown) : [1, 1],
@@ -249,13 +257,20 @@ export class Textures {
           );
         }),
       ];
+      const store = (): void => {
+        [...this.means, ...this.bases].forEach((texture, i) => (texture.sourceTexture = made[i] ?? null));
+      };
+      if (words && !made.includes(null)) {
+        store();
+        return { packer: null, plan };
+      }
       const rooms = memory.roomsOf(this.needs, plan, allowed);
       const [picture, codes, smaller] = [rooms.picture, rooms.codes, rooms.smaller].map((room) =>
         room ? gpu.makeRoom(gl, room.size, room.format) : null,
       );
       const precision = gpu.makeRoom(gl, memory.covering(precisions), memory.PICTURE);
       if (picture && precision && (codes || !rooms.codes) && (smaller || !rooms.smaller) && !made.includes(null)) {
-        [...this.means, ...this.bases].forEach((texture, i) => (texture.sourceTexture = made[i] ?? null));
+        store();
         const own = { picture, codes: codes ?? null, precision, smaller: smaller ?? null };
         return { packer: makePacker(gl, own, rooms.picture.size[1], this.surface), plan };
       }
@@ -265,6 +280,11 @@ export class Textures {
       }
     }
   }
+}
+
+/** What films give. */
+function codesOf(pieces: Piece[]): Codes[] {
+  return pieces.map(({ picture }) => picture as Codes);
 }
 
 function geometryBytes({ attributes, index }: BufferGeometry): number {

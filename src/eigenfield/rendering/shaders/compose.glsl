@@ -10,7 +10,7 @@
 //   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there
 //   finerOpacity  in a scene with sheets, once for all of the atlas: the opacity of the sheets
 // Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a
-// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.
+// mean. In `words` a layer is one channel of one texture, and has the two bytes of its codes. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.
 
 #define LAYERS 64  // most that one draw sums
 #define LEVEL 1e-4 // a height of no more than this is as good as none
@@ -20,8 +20,9 @@
 uniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)
 uniform int firstLayer;
 uniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one
+uniform bool words;
 uniform int channels;
-uniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS
+uniform int entries;           // entry e is channel e % channels, of group (in words: texture) e / channels; at most LAYERS
 uniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed
 uniform vec4 bias[LAYERS];
 uniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel
@@ -67,8 +68,10 @@ vec4 sumTextures(vec2 own) {
   vec4 weights = vec4(1.0);
   vec3 sum = vec3(0.0);
   int entry = 0;
-  for (int group = firstGroup; entry < entries; group++) {
-    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);
+  for (int group = 0; entry < entries; group++) {
+    int layer = words ? group / 4 : group;
+    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(firstGroup + layer)), 0.0);
+    if (rayWeights && words) weights = vec4(weights[group % 4]);
     for (int channel = 0; channel < channels; channel++) {
       vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];
       sum += colours[channel] * dot(weights, four);

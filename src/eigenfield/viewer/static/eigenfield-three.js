@@ -1,7 +1,7 @@
-import { BufferAttribute as e, BufferGeometry as t, Camera as n, ClampToEdgeWrapping as r, Color as i, CustomBlending as a, DataArrayTexture as o, DataUtils as s, DepthStencilFormat as c, DepthTexture as l, DoubleSide as u, EqualStencilFunc as d, EventDispatcher as f, ExternalTexture as p, FrontSide as m, GLSL3 as h, HalfFloatType as g, IncrementStencilOp as _, InstancedBufferGeometry as v, LinearFilter as y, LinearMipmapLinearFilter as b, Matrix4 as x, Mesh as S, MeshBasicMaterial as C, NearestFilter as w, NoBlending as T, OneFactor as E, OneMinusSrcAlphaFactor as D, RGBAFormat as O, RawShaderMaterial as k, Scene as A, Sphere as ee, UnsignedByteType as te, UnsignedInt248Type as ne, Vector2 as re, Vector3 as j, Vector4 as ie, WebGLRenderTarget as ae, ZeroStencilOp as oe } from "three";
-import { GLTFLoader as se } from "three/addons/loaders/GLTFLoader.js";
+import { BufferAttribute as e, BufferGeometry as t, Camera as n, ClampToEdgeWrapping as r, Color as i, CustomBlending as a, DataArrayTexture as o, DataUtils as s, DepthStencilFormat as c, DepthTexture as l, DoubleSide as u, EqualStencilFunc as d, EventDispatcher as f, ExternalTexture as p, FrontSide as m, GLSL3 as h, HalfFloatType as g, IncrementStencilOp as _, InstancedBufferGeometry as v, LinearFilter as y, LinearMipmapLinearFilter as b, Matrix4 as x, Mesh as S, MeshBasicMaterial as C, NearestFilter as w, NoBlending as T, OneFactor as E, OneMinusSrcAlphaFactor as ee, RGBAFormat as D, RawShaderMaterial as O, Scene as k, Sphere as te, UnsignedByteType as ne, UnsignedInt248Type as re, Vector2 as ie, Vector3 as A, Vector4 as ae, WebGLRenderTarget as oe, ZeroStencilOp as se } from "three";
+import { GLTFLoader as ce } from "three/addons/loaders/GLTFLoader.js";
 // eigenfield-three/src/errors.ts
-var M = class extends Error {
+var j = class extends Error {
 	code;
 	where;
 	name = "SceneError";
@@ -9,65 +9,65 @@ var M = class extends Error {
 		super(t, r), this.code = e, this.where = n;
 	}
 };
-function N(e, t) {
-	return new M("damaged", `The file is damaged (${e}: ${t}); make or download it again.`, e);
+function M(e, t) {
+	return new j("damaged", `The file is damaged (${e}: ${t}); make or download it again.`, e);
 }
-function ce(e, t) {
-	return new M("truncated", `The file is cut off after ${e} of ${t} bytes; download or copy it again.`, String(e));
+function le(e, t) {
+	return new j("truncated", `The file is cut off after ${e} of ${t} bytes; download or copy it again.`, String(e));
 }
-function le(e) {
-	return new M("truncated", `The file is cut off (${e}); download or copy it again.`, e);
+function ue(e) {
+	return new j("truncated", `The file is cut off (${e}); download or copy it again.`, e);
 }
-function ue(e, t = "") {
-	return e instanceof M ? e : new M("damaged", `The file cannot be read (${(e instanceof Error ? e.message : String(e)).replace(/^THREE\.GLTFLoader: /, "")}); make or download it again.`, t, { cause: e });
+function de(e, t = "") {
+	return e instanceof j ? e : new j("damaged", `The file cannot be read (${(e instanceof Error ? e.message : String(e)).replace(/^THREE\.GLTFLoader: /, "")}); make or download it again.`, t, { cause: e });
 }
 // eigenfield-three/src/addresses.ts
-var de = 60;
-function fe(e) {
+var fe = 60;
+function pe(e) {
 	return {
 		name: "EIGENFIELD_addresses",
-		beforeRoot: async () => pe(e.json)
+		beforeRoot: async () => me(e.json)
 	};
 }
-function pe(e) {
+function me(e) {
 	let t = [["", e]];
 	for (let e = t.pop(); e; e = t.pop()) {
 		let [n, r] = e;
 		if (typeof r == "object" && r) for (let [e, i] of Object.entries(r)) {
 			if (e === "extras" && !Array.isArray(r)) continue;
 			let a = `${n}/${e}`;
-			if (e === "uri" && !(typeof i == "string" && /^data:/i.test(i))) throw me(a, JSON.stringify(i));
+			if (e === "uri" && !(typeof i == "string" && /^data:/i.test(i))) throw he(a, JSON.stringify(i));
 			t.push([a, i]);
 		}
 	}
 }
-function me(e, t) {
-	return new M("address", `The file names another one (${e}: ${t.length > de ? `${t.slice(0, de)}…` : t}), which is not fetched; export all of it as one .glb.`, e);
+function he(e, t) {
+	return new j("address", `The file names another one (${e}: ${t.length > fe ? `${t.slice(0, fe)}…` : t}), which is not fetched; export all of it as one .glb.`, e);
 }
 // eigenfield-three/src/av1-picture.ts
-var he = 1, ge = 7;
-function _e(e, t) {
-	let { level: n, tier: r, width: i, height: a } = ve(new Uint8Array(e), t), o = r << 7 | 76, s = P("ipco", [
-		...P("ispe", [
-			...F(0),
-			...F(i),
-			...F(a)
+var ge = 1, _e = 7;
+function ve(e, t) {
+	let { level: n, tier: r, width: i, height: a } = ye(new Uint8Array(e), t), o = r << 7 | 76, s = N("ipco", [
+		...N("ispe", [
+			...P(0),
+			...P(i),
+			...P(a)
 		]),
-		...P("pixi", [
-			...F(0),
+		...N("pixi", [
+			...P(0),
 			3,
 			10,
 			10,
 			10
 		]),
-		...P("av1C", [
+		...N("av1C", [
 			129,
 			n,
 			o,
 			0
 		]),
-		...P("colr", [
-			...ye("nclx"),
+		...N("colr", [
+			...be("nclx"),
 			0,
 			2,
 			0,
@@ -76,25 +76,25 @@ function _e(e, t) {
 			2,
 			128
 		])
-	]), c = P("ftyp", [
-		...ye("avif"),
-		...F(0),
-		...ye("avifmif1miafMA1B")
-	]), l = (t) => P("meta", [
-		...F(0),
-		...P("hdlr", [
-			...F(0),
-			...F(0),
-			...ye("pict"),
+	]), c = N("ftyp", [
+		...be("avif"),
+		...P(0),
+		...be("avifmif1miafMA1B")
+	]), l = (t) => N("meta", [
+		...P(0),
+		...N("hdlr", [
+			...P(0),
+			...P(0),
+			...be("pict"),
 			...Array(13).fill(0)
 		]),
-		...P("pitm", [
-			...F(0),
+		...N("pitm", [
+			...P(0),
 			0,
 			1
 		]),
-		...P("iloc", [
-			...F(0),
+		...N("iloc", [
+			...P(0),
 			68,
 			0,
 			0,
@@ -105,14 +105,14 @@ function _e(e, t) {
 			0,
 			0,
 			1,
-			...F(t),
-			...F(e.byteLength)
+			...P(t),
+			...P(e.byteLength)
 		]),
-		...P("iinf", [
-			...F(0),
+		...N("iinf", [
+			...P(0),
 			0,
 			1,
-			...P("infe", [
+			...N("infe", [
 				2,
 				0,
 				0,
@@ -121,13 +121,13 @@ function _e(e, t) {
 				1,
 				0,
 				0,
-				...ye("av01"),
+				...be("av01"),
 				0
 			])
 		]),
-		...P("iprp", [...s, ...P("ipma", [
-			...F(0),
-			...F(1),
+		...N("iprp", [...s, ...N("ipma", [
+			...P(0),
+			...P(1),
 			0,
 			1,
 			4,
@@ -139,12 +139,12 @@ function _e(e, t) {
 	]), u = c.length + l(0).length + 8, d = [
 		...c,
 		...l(u),
-		...F(8 + e.byteLength),
-		...ye("mdat")
+		...P(8 + e.byteLength),
+		...be("mdat")
 	], f = new Uint8Array(u + e.byteLength);
 	return f.set(d), f.set(new Uint8Array(e), u), f.buffer;
 }
-function ve(e, t) {
+function ye(e, t) {
 	let n = e[0] ?? 0, r = 8 * (1 + (n >> 2 & 1) + (n >> 1 & 1)), i = (t) => {
 		let n = 0;
 		for (let i = r + t; r < i; r++) n = 2 * n + ((e[r >> 3] ?? 0) >> 7 - (r & 7) & 1);
@@ -153,8 +153,8 @@ function ve(e, t) {
 	i(4);
 	let a = i(1) === 1, o = !a && i(7) !== 0;
 	a || i(12);
-	let s = i(5), c = !a && s > ge ? i(1) : 0, [l, u] = [i(4) + 1, i(4) + 1], [d, f] = [i(l) + 1, i(u) + 1];
-	if (n >> 3 !== he || o || r > 8 * e.length) throw N(t, "no AV1 sequence header");
+	let s = i(5), c = !a && s > _e ? i(1) : 0, [l, u] = [i(4) + 1, i(4) + 1], [d, f] = [i(l) + 1, i(u) + 1];
+	if (n >> 3 !== ge || o || r > 8 * e.length) throw M(t, "no AV1 sequence header");
 	return {
 		level: s,
 		tier: c,
@@ -162,14 +162,14 @@ function ve(e, t) {
 		height: f
 	};
 }
-function P(e, t) {
+function N(e, t) {
 	return [
-		...F(8 + t.length),
-		...ye(e),
+		...P(8 + t.length),
+		...be(e),
 		...t
 	];
 }
-function F(e) {
+function P(e) {
 	return [
 		24,
 		16,
@@ -177,24 +177,24 @@ function F(e) {
 		0
 	].map((t) => e >>> t & 255);
 }
-function ye(e) {
+function be(e) {
 	return Array.from(e, (e) => e.charCodeAt(0));
 }
 // eigenfield-three/src/inflate.ts
-async function be(e, t, n, r) {
+async function xe(e, t, n, r) {
 	let i = [], a = 0, o = new Blob([e]).stream().pipeThrough(new DecompressionStream(t)).getReader();
 	try {
 		for (let e = await o.read(); !e.done && a <= n; e = await o.read()) i.push(e.value), a += e.value.length;
 	} catch {
-		throw N(r, "it does not inflate");
+		throw M(r, "it does not inflate");
 	}
-	if (a > n) throw await o.cancel(), N(r, `more than ${n} bytes`);
+	if (a > n) throw await o.cancel(), M(r, `more than ${n} bytes`);
 	let s = new Uint8Array(a), c = 0;
 	for (let e of i) s.set(e, c), c += e.length;
 	return s;
 }
 // eigenfield-three/src/limits.ts
-var xe = "EIGENFIELD_eigen_textures", Se = 64 * 2 ** 20, Ce = 16384, we = 16384, Te = 1024, Ee = 2 ** 27, De = 4096, Oe = 8 * 2 ** 30, ke = 1e5, Ae = 65535, je = 2 ** 29, I = 1024, Me = 2 ** 25, Ne = 2 ** 26, Pe = 2 ** 27, Fe = 8192, Ie = 2 ** 24, Le = 2 ** 25, Re = 2 ** 20, ze = 2 ** 16, Be = 2 ** 30, Ve = 1024, He = 2 ** 22, Ue = 2 ** 28, We = 2 ** 31 - 1, Ge = 2 ** 28, Ke = 1e30, L = 65536, qe = 126, R = 64, Je = 0, Ye = 1, Xe = 2, Ze = 24, Qe = 44, $e = 21, et = 26214, tt = 4, nt = Float64Array.from({ length: 4095 }, (e, t) => Math.round(L / (1 + Math.exp((2047 - t) / 256)))), rt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), it = Float64Array.from({ length: 127 }, (e, t) => Math.round(L / (t + 1.5)));
+var Se = "EIGENFIELD_eigen_textures", Ce = 64 * 2 ** 20, F = 16384, we = 16384, Te = 1024, Ee = 2 ** 27, De = 4096, Oe = 8 * 2 ** 30, I = 1e5, ke = 65535, Ae = 2 ** 29, L = 1024, je = 2 ** 25, Me = 2 ** 26, Ne = 2 ** 27, Pe = 8192, Fe = 2 ** 24, Ie = 2 ** 25, Le = 2 ** 20, Re = 2 ** 16, ze = 2 ** 30, Be = 1024, Ve = 2 ** 22, He = 2 ** 28, Ue = 2 ** 31 - 1, We = 2 ** 28, Ge = 1e30, R = 65536, Ke = 126, qe = 64, Je = 0, Ye = 1, Xe = 2, Ze = 24, Qe = 44, $e = 21, et = 26214, tt = 4, nt = Float64Array.from({ length: 4095 }, (e, t) => Math.round(R / (1 + Math.exp((2047 - t) / 256)))), rt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), it = Float64Array.from({ length: 127 }, (e, t) => Math.round(R / (t + 1.5)));
 function z(e) {
 	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + z(Math.floor(e / 4294967296));
 }
@@ -208,18 +208,18 @@ var at = class {
 	seen;
 	weights;
 	constructor(e, t, n) {
-		this.bytes = e, this.probability = new Uint16Array(t * R).fill(L / 2), this.seen = new Uint8Array(t * R), this.weights = new Float64Array(n * R * 3).fill(et);
+		this.bytes = e, this.probability = new Uint16Array(t * qe).fill(R / 2), this.seen = new Uint8Array(t * qe), this.weights = new Float64Array(n * qe * 3).fill(et);
 		for (let e = 0; e < tt; e++) this.code = this.code * 256 + this.next();
 	}
 	checkEnd(e) {
-		if (this.at > this.bytes.length + tt) throw le(e);
+		if (this.at > this.bytes.length + tt) throw ue(e);
 	}
 	flag(e, t, n, r) {
 		return this.node(e, t, n, r, 0) === 1;
 	}
 	raw(e) {
 		let t = 0;
-		for (let n = 0; n < e; n++) t = t * 2 + this.split(L / 2);
+		for (let n = 0; n < e; n++) t = t * 2 + this.split(R / 2);
 		return t;
 	}
 	integer(e, t, n, r) {
@@ -234,23 +234,23 @@ var at = class {
 		let a = 1;
 		for (let o = i - 2; o >= 0; o--) {
 			let s;
-			s = o === i - 2 ? this.node(e, t, n, r, Ze + i) : o === i - 3 ? this.node(e, t, n, r, Qe + 2 * Math.min(i, 9) + (a & 1)) : this.split(L / 2), a = a * 2 + s;
+			s = o === i - 2 ? this.node(e, t, n, r, Ze + i) : o === i - 3 ? this.node(e, t, n, r, Qe + 2 * Math.min(i, 9) + (a & 1)) : this.split(R / 2), a = a * 2 + s;
 		}
 		return a + 1;
 	}
 	node(e, t, n, r, i) {
-		return this.bit(e * R + i, t * R + i, n * R + i, (r * R + i) * 3);
+		return this.bit(e * qe + i, t * qe + i, n * qe + i, (r * qe + i) * 3);
 	}
 	bit(e, t, n, r) {
-		let { probability: i, weights: a } = this, o = rt[i[e] >> 4], s = rt[i[t] >> 4], c = rt[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / L), u = nt[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? L - u : -u;
+		let { probability: i, weights: a } = this, o = rt[i[e] >> 4], s = rt[i[t] >> 4], c = rt[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / R), u = nt[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? R - u : -u;
 		return a[r] += o * f >> 14, a[r + 1] += s * f >> 14, a[r + 2] += c * f >> 14, this.learn(e, d), this.learn(t, d), this.learn(n, d), d;
 	}
 	learn(e, t) {
 		let [n, r] = [this.probability[e], this.seen[e]];
-		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * it[r] / L), r < qe && (this.seen[e] = r + 1);
+		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * it[r] / R), r < Ke && (this.seen[e] = r + 1);
 	}
 	split(e) {
-		let t = this.low + Math.floor((this.high - this.low) * e / L), n = +(this.code <= t);
+		let t = this.low + Math.floor((this.high - this.low) * e / R), n = +(this.code <= t);
 		for (n ? this.high = t : this.low = t + 1; !((this.low ^ this.high) >>> 24);) this.low = this.low << 8 >>> 0, this.high = (this.high << 8 | 255) >>> 0, this.code = (this.code << 8 | this.next()) >>> 0;
 		return n;
 	}
@@ -259,12 +259,12 @@ var at = class {
 	}
 };
 function B(e, t, n, r = 1) {
-	if (e.length < t) throw le(n);
-	if (e[0] !== r) throw N(n, `coded numbers of version ${e[0]}`);
+	if (e.length < t) throw ue(n);
+	if (e[0] !== r) throw M(n, `coded numbers of version ${e[0]}`);
 	return new DataView(e.buffer, e.byteOffset, e.byteLength);
 }
 function ot(e, t, n, r) {
-	if (t > n || t > 16 * e.length + 1024) throw N(r, `${t} numbers announced`);
+	if (t > n || t > 16 * e.length + 1024) throw M(r, `${t} numbers announced`);
 }
 // eigenfield-three/src/table-decoder.ts
 var st = 12, ct = 1, lt = 3, ut = 312, dt = lt * ut, ft = 938, pt = 24, mt = 16, ht = 1722, gt = 1726, _t = 4, vt = 5;
@@ -311,24 +311,24 @@ function wt(e, t, n, r) {
 	for (let l = 0; l < t; l++) {
 		if (s = +!!e.flag(ht + s, ht + s, 1724, _t), !s) continue;
 		let t = o + e.integer(1725, 1725, 1725, _t);
-		if (!(t >= 0 && t < n) || a[t]) throw N(r, "a grid with a camera out of place");
+		if (!(t >= 0 && t < n) || a[t]) throw M(r, "a grid with a camera out of place");
 		a[t] = 1, i[l] = t, o = t + 1, c += 1;
 	}
-	if (c !== n) throw N(r, "a grid without all cameras");
+	if (c !== n) throw M(r, "a grid without all cameras");
 	return i;
 }
 // eigenfield-three/src/camera-decoder.ts
-var Tt = 130, V = 11, Et = 1, Dt = 2, Ot = 2, kt = 44 * ke + 1024;
+var Tt = 130, V = 11, Et = 1, Dt = 2, Ot = 2, kt = 44 * I + 1024;
 async function At(e, t) {
-	if (e[0] !== Ot) throw N(t, `version ${e[0]}`);
-	let n = await be(Uint8Array.from(e.subarray(1)), "deflate-raw", kt, t);
+	if (e[0] !== Ot) throw M(t, `version ${e[0]}`);
+	let n = await xe(Uint8Array.from(e.subarray(1)), "deflate-raw", kt, t);
 	return jt(Uint8Array.from([1, ...n]), t);
 }
 function jt(e, t) {
 	let n = B(e, Tt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Et) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
-	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw N(t, "cameras that cannot be");
-	if (i > 1e5 || a && o * s < i) throw N(t, `${i} cameras`);
-	ot(e, Math.max(V * i, o * s), V * ke, t);
+	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw M(t, "cameras that cannot be");
+	if (i > 1e5 || a && o * s < i) throw M(t, `${i} cameras`);
+	ot(e, Math.max(V * i, o * s), V * I, t);
 	let l = Tt + (a ? 132 : 0);
 	B(e, l, t);
 	let u = (e, t) => a ? n.getFloat32(Tt + 4 * (e * V + t), !0) : 0, d = yt(e.subarray(l)), f = a ? wt(d, o * s, i, t) : null, p = Ct(d, i, V, (r & Dt) !== 0);
@@ -353,7 +353,7 @@ function jt(e, t) {
 		}
 		Mt(_, g, m, t), v += 1;
 	}
-	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw N(t, "cameras that are not finite");
+	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw M(t, "cameras that are not finite");
 	return m;
 }
 function Mt(e, t, n, r) {
@@ -417,7 +417,7 @@ async function Vt(e, t, n = !1) {
 	if (!Pt.has(r) && !Ft.has(r) && !It.has(r)) {
 		let t = Ut(e, [i, a]);
 		if (t) return Wt(t, 4 * i, 4, [i, a], Ht(e, n));
-		throw new M("unsupported", `This browser does not hand out its frames (${r || "no format"}).`, "");
+		throw new j("unsupported", `This browser does not hand out its frames (${r || "no format"}).`, "");
 	}
 	let o = e.allocationSize(), s = t && t.length >= o ? t : new Uint8Array(o), [c] = await e.copyTo(s), { offset: l, stride: u } = c ?? {
 		offset: 0,
@@ -483,8 +483,8 @@ var Kt = 4, qt = ["prefer-software", "no-preference"], Jt = class {
 		return this.onTheWay < Kt || this.decoder?.state === "closed";
 	}
 	async start(e) {
-		let { level: t, tier: n, width: r, height: i } = ve(e, this.where);
-		if (r !== this.size[0] || i !== this.size[1]) throw N(this.where, `frames of ${r} x ${i}`);
+		let { level: t, tier: n, width: r, height: i } = ye(e, this.where);
+		if (r !== this.size[0] || i !== this.size[1]) throw M(this.where, `frames of ${r} x ${i}`);
 		let a = `av01.0.${String(t).padStart(2, "0")}${n ? "H" : "M"}.10`, { turn: o } = this, s = this.config?.codec === a, c = s ? this.config : await Yt(a, this.size, this.where);
 		o === this.turn && c && (s && this.decoder?.state === "configured" || (this.config = c, this.decoder && this.decoder.state !== "closed" || (this.decoder = this.made()), this.decoder.configure(c)));
 	}
@@ -509,7 +509,7 @@ var Kt = 4, qt = ["prefer-software", "no-preference"], Jt = class {
 		let e = new VideoDecoder({
 			output: (e) => void this.receive(e),
 			error: (t) => {
-				this.decoder === e && (t.name === "QuotaExceededError" ? this.user.lost() : t.name === "NotSupportedError" ? this.fail(this.turn, Xt(this.where)) : this.fail(this.turn, N(this.where, t.message)));
+				this.decoder === e && (t.name === "QuotaExceededError" ? this.user.lost() : t.name === "NotSupportedError" ? this.fail(this.turn, Xt(this.where)) : this.fail(this.turn, M(this.where, t.message)));
 			}
 		});
 		return e;
@@ -543,7 +543,7 @@ async function Yt(e, [t, n], r) {
 	throw Xt(r);
 }
 function Xt(e) {
-	return new M("codec", `This browser ${globalThis.isSecureContext ? "decodes no AV1 of 10 bits" : "plays clips from https and localhost only"}; ${globalThis.isSecureContext ? "use a newer browser" : "open the page from there"}. The first frame is shown.`, e);
+	return new j("codec", `This browser ${globalThis.isSecureContext ? "decodes no AV1 of 10 bits" : "plays clips from https and localhost only"}; ${globalThis.isSecureContext ? "use a newer browser" : "open the page from there"}. The first frame is shown.`, e);
 }
 // eigenfield-three/src/mesh-front.ts
 var Zt = 0, Qt = 2 ** 24, $t = class {
@@ -644,10 +644,10 @@ function gn(e, t, n, r, i) {
 		t[3 * a + 1],
 		t[3 * o],
 		t[3 * o + 1]
-	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? tn : -.8, _ = 1 << i >> 1, v = pn((l + d) * .5 + g * m) + _ >> i, y = pn((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(z(Math.floor((p * p + m * m) / b)), 23), S = Math.min(z(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, cn), T = Math.min(z(Math.abs(w)), 7), [E, D] = [577, 705], O = T * 2 + +(w > 0), k = e.integer(rn + x * 8 + C, E + O * 8 + C, D + S * 8 + T, ln);
-	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + k << i, i === 0) return;
-	let A = mn(t, a, i) + 4 * mn(t, o, i);
-	if (e.flag(an + A, 913 + mn(t, s, i), 917 + c, fn)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
+	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? tn : -.8, _ = 1 << i >> 1, v = pn((l + d) * .5 + g * m) + _ >> i, y = pn((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(z(Math.floor((p * p + m * m) / b)), 23), S = Math.min(z(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, cn), T = Math.min(z(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(rn + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, ln);
+	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + O << i, i === 0) return;
+	let k = mn(t, a, i) + 4 * mn(t, o, i);
+	if (e.flag(an + k, 913 + mn(t, s, i), 917 + c, fn)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
 }
 function _n(e, t, n, { a: r, b: i, o: a }) {
 	let o = 0;
@@ -699,11 +699,11 @@ function Fn(e, t, n, r, i) {
 			n
 		]) s[r] += 1;
 	}, f = () => {
-		if (l >= t) throw N(i, "more places than announced");
+		if (l >= t) throw M(i, "more places than announced");
 		return l++;
 	}, p = () => {
 		let t = e.raw(z(l - 1));
-		if (t >= l) throw N(i, "a place that is not there yet");
+		if (t >= l) throw M(i, "a place that is not there yet");
 		return t;
 	}, m = () => {
 		let t = [
@@ -717,7 +717,7 @@ function Fn(e, t, n, r, i) {
 			vn(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
 		}
 		let [n, o, s] = t;
-		if (n === o || o === s || s === n) throw N(i, "a face of two corners");
+		if (n === o || o === s || s === n) throw M(i, "a face of two corners");
 		d(n, o, s), c.seed(t);
 	}, h = (e, t, n, i) => c.status[t] === 2 ? xn : c.status[t] !== 1 || n === i || t === e ? bn : In(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
 	for (; u < n;) {
@@ -735,29 +735,29 @@ function Fn(e, t, n, r, i) {
 			d(l, n, v), c.closeRight(t);
 			continue;
 		}
-		let T = +(y === xn) + (b === xn ? 2 : 0), E = mn(a, n, r.fine) + 4 * mn(a, l, r.fine), D = Tn + 64 + S * Sn + C;
-		if (e.flag(Tn + T * 16 + E, D, Tn + 64 + 64 + x, jn)) {
+		let T = +(y === xn) + (b === xn ? 2 : 0), E = mn(a, n, r.fine) + 4 * mn(a, l, r.fine), ee = Tn + 64 + S * Sn + C;
+		if (e.flag(Tn + T * 16 + E, ee, Tn + 64 + 64 + x, jn)) {
 			c.status[t] = 2;
 			continue;
 		}
-		let O;
+		let D;
 		if (e.flag(En + x, En + H + T, En + H + 4, Mn)) {
-			O = f();
+			D = f();
 			let i = c.opposite[t];
 			o.parents.set([
 				n,
 				l,
 				i
-			], 3 * O), hn(e, a, O, {
+			], 3 * D), hn(e, a, D, {
 				a: n,
 				b: l,
 				o: i,
 				pair: x
 			}, r);
-		} else if (O = p(), O === n || O === l) throw N(i, "a face of two corners");
-		d(l, n, O), c.openOut(t, O);
+		} else if (D = p(), D === n || D === l) throw M(i, "a face of two corners");
+		d(l, n, D), c.openOut(t, D);
 	}
-	if (l !== t) throw N(i, "fewer places than announced");
+	if (l !== t) throw M(i, "fewer places than announced");
 	return o;
 }
 function In(e, t, n, r, i, a) {
@@ -855,7 +855,7 @@ function Xn(e, t, n, r, i, a, o) {
 		}
 		if (c < 0) {
 			if (e.flag(Wn + s, Wn + s, Wn + Rn, qn)) return -1;
-			if (c = e.raw(z(g - 1)), c >= g || l.place[c] !== i) throw N(o, "a corner that is elsewhere");
+			if (c = e.raw(z(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
 		}
 		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? Bn : Vn);
 		return c;
@@ -866,7 +866,7 @@ function Xn(e, t, n, r, i, a, o) {
 		let n = v;
 		if (v = t, n >= 0 && e.flag(U + 2, U + 2, U + 2, Jn)) {
 			let n = e.raw(z(t - 1));
-			if (n >= t || l.kinds[n] !== 1) throw N(o, "a map that is not there");
+			if (n >= t || l.kinds[n] !== 1) throw M(o, "a map that is not there");
 			return l.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
 		}
 		let r = n >= 0 && e.flag(U + 3, U + 3, U + 3, Jn);
@@ -881,7 +881,7 @@ function Xn(e, t, n, r, i, a, o) {
 			let s = S(e, a);
 			if (s >= 0) r = l.chart[s];
 			else {
-				if (g >= n) throw N(o, "more vertices than announced");
+				if (g >= n) throw M(o, "more vertices than announced");
 				s = g++;
 				let r = t.faces[3 * e + a];
 				l.place[s] = r, d[s] = u[r], u[r] = s, i.push(s);
@@ -891,7 +891,7 @@ function Xn(e, t, n, r, i, a, o) {
 		r < 0 && (r = C());
 		for (let e of i) l.chart[e] = r;
 	}
-	if (g !== n) throw N(o, "fewer vertices than announced");
+	if (g !== n) throw M(o, "fewer vertices than announced");
 	return l;
 }
 // eigenfield-three/src/mesh-values.ts
@@ -960,8 +960,8 @@ function ur(e, t, n, r) {
 				S = Math.min(Math.max(u(C) + t * (u(w) - u(C)) + c * (u(T) - u(C)), p), m);
 			}
 		}
-		let E = cr(x, b), [D, O] = [lr(S - E), lr(b - E)], k = e.integer(nr + D * $n + O, nr + 169 + y * tr + f, nr + 169 + 280 + D * er + y, ar), A = E + k;
-		i[3 * t + 2] = A, f = Math.min(z(Math.abs(k)), 19), p = t === 0 ? A : Math.min(p, A), m = t === 0 ? A : Math.max(m, A);
+		let E = cr(x, b), [ee, D] = [lr(S - E), lr(b - E)], O = e.integer(nr + ee * $n + D, nr + 169 + y * tr + f, nr + 169 + 280 + ee * er + y, ar), k = E + O;
+		i[3 * t + 2] = k, f = Math.min(z(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
 	}
 }
 function dr(e, t, n) {
@@ -1049,8 +1049,8 @@ function Sr(e, t, n) {
 		8,
 		12
 	].map((e) => r.getUint32(e, !0)), u = Float64Array.from({ length: 16 }, (e, t) => r.getFloat64(16 + 8 * t, !0));
-	if (s > Ne || l > Ne || c > Pe) throw N(t, `${l} vertices and ${c} faces`);
-	if (ot(e, Math.max(s, c, l), Pe, t), i > 1 || o > yr * i || a < 1 || a > vr || !u.every(Number.isFinite)) throw N(t, "a lattice that cannot be");
+	if (s > Me || l > Me || c > Ne) throw M(t, `${l} vertices and ${c} faces`);
+	if (ot(e, Math.max(s, c, l), Ne, t), i > 1 || o > yr * i || a < 1 || a > vr || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
 	let d = new at(e.subarray(hr), ir, 16), f = Fn(d, s, c, {
 		flat: i === 1,
 		fine: o
@@ -1091,8 +1091,8 @@ function wr(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) 
 	};
 }
 function Tr(e, t) {
-	let n = (e) => Math.abs(e) <= Ke;
-	if (!e.positions.every(n) || !e.uv.every(n)) throw N(t, "positions or texture coordinates that are not finite");
+	let n = (e) => Math.abs(e) <= Ge;
+	if (!e.positions.every(n) || !e.uv.every(n)) throw M(t, "positions or texture coordinates that are not finite");
 	return e;
 }
 // eigenfield-three/src/mesh-motion.ts
@@ -1117,13 +1117,13 @@ var Er = 11, Dr = 2 ** 20, Or = 8, [kr, Ar] = [7, 8], jr = 12, [Mr, Nr, Pr, Fr] 
 		let r = B(e, Er, n), i = t.places.length / 3, a = r.getUint32(5, !0);
 		this.frames = r.getUint16(9, !0);
 		let o = Er + this.frames;
-		if (r.getUint32(1, !0) !== i || a > i) throw N(n, `${a} vertices that move, of another mesh`);
-		if (this.frames < 1 || this.frames > 1024 || this.frames * a > Le) throw N(n, `${a} vertices that move in ${this.frames} frames`);
-		if (B(e, o, n), this.flags = e.slice(Er, o), this.flags.some((e) => e > kr + Ar)) throw N(n, "frames that cannot be");
-		if (ot(e, this.flags.reduce((e, t) => e + (t & 1) + (t >> 1 & 1) + (t >> 2 & 1), 0) * a, 3 * Le, n), this.moving = new Int32Array(a), this.steps = new Int32Array(a && 3 * a * (2 + this.frames)), this.off = new Int32Array(3 * a), this.around = Kr(t.places, t.indices), !a) return;
+		if (r.getUint32(1, !0) !== i || a > i) throw M(n, `${a} vertices that move, of another mesh`);
+		if (this.frames < 1 || this.frames > 1024 || this.frames * a > Ie) throw M(n, `${a} vertices that move in ${this.frames} frames`);
+		if (B(e, o, n), this.flags = e.slice(Er, o), this.flags.some((e) => e > kr + Ar)) throw M(n, "frames that cannot be");
+		if (ot(e, this.flags.reduce((e, t) => e + (t & 1) + (t >> 1 & 1) + (t >> 2 & 1), 0) * a, 3 * Ie, n), this.moving = new Int32Array(a), this.steps = new Int32Array(a && 3 * a * (2 + this.frames)), this.off = new Int32Array(3 * a), this.around = Kr(t.places, t.indices), !a) return;
 		this.decoder = new at(e.subarray(o), zr, Vr);
 		let s = Gr(this.decoder, i, this.around);
-		if (s.reduce((e, t) => e + t, 0) !== a) throw N(n, "other vertices that move");
+		if (s.reduce((e, t) => e + t, 0) !== a) throw M(n, "other vertices that move");
 		this.around = this.start(s);
 	}
 	read(e) {
@@ -1179,7 +1179,7 @@ var Er = 11, Dr = 2 ** 20, Or = 8, [kr, Ar] = [7, 8], jr = 12, [Mr, Nr, Pr, Fr] 
 		this.off = m, e.checkEnd(this.where), this.check(u, c);
 	}
 	check(e, t) {
-		for (let n = e; n < e + t; n += 3) if (!Ur(this.steps, n, this.mesh.matrix).every((e) => Math.abs(e) <= 1e30)) throw N(this.where, "positions that are not finite");
+		for (let n = e; n < e + t; n += 3) if (!Ur(this.steps, n, this.mesh.matrix).every((e) => Math.abs(e) <= 1e30)) throw M(this.where, "positions that are not finite");
 	}
 };
 function Ur(e, t, n) {
@@ -1230,10 +1230,10 @@ function Kr(e, t) {
 	};
 }
 // eigenfield-three/src/name-decoder.ts
-var qr = 4 * I;
+var qr = 4 * L;
 async function Jr(e, t, n) {
-	let r = Math.min(Me, qr * t), i = await be(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
-	if (a === 0 || !Number.isInteger(a)) throw N(n, `${i.length} bytes of ${t} names`);
+	let r = Math.min(je, qr * t), i = await xe(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
+	if (a === 0 || !Number.isInteger(a)) throw M(n, `${i.length} bytes of ${t} names`);
 	let o = new TextDecoder("utf-8", {
 		fatal: !0,
 		ignoreBOM: !0
@@ -1245,7 +1245,7 @@ async function Jr(e, t, n) {
 		try {
 			c.push(o.decode(s.subarray(0, r)));
 		} catch {
-			throw N(n, "names that are not UTF-8");
+			throw M(n, "names that are not UTF-8");
 		}
 	}
 	return c;
@@ -1360,12 +1360,12 @@ var ti = {
 };
 function ri(e, t, n) {
 	let r = Yr(e);
-	if (!r) throw N(t.where, "no picture");
+	if (!r) throw M(t.where, "no picture");
 	let { width: i, height: a, bits: o } = r;
-	if (n && (i !== n[0] || a !== n[1])) throw N(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
-	if (t.codec.bits !== 8 && t.codec.bits !== o) throw N(t.where, `no picture of ${t.codec.bits} bits`);
+	if (n && (i !== n[0] || a !== n[1])) throw M(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
+	if (t.codec.bits !== 8 && t.codec.bits !== o) throw M(t.where, `no picture of ${t.codec.bits} bits`);
 	let s = i * a;
-	if (!s || i > 16384 || a > 32768 || s > Ee) throw N(t.where, `a picture of ${i} x ${a}`);
+	if (!s || i > 16384 || a > 32768 || s > Ee) throw M(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
 var ii = async (e, t, n) => {
@@ -1373,9 +1373,9 @@ var ii = async (e, t, n) => {
 	try {
 		s = await createImageBitmap(new Blob([e], { type: o }), ti);
 	} catch (e) {
-		throw await ai(o) ? N(t.where, "it cannot be decoded") : oi(o, t, e);
+		throw await ai(o) ? M(t.where, "it cannot be decoded") : oi(o, t, e);
 	}
-	if (s.width !== i || s.height !== a) throw s.close(), N(t.where, `decoded to ${s.width} x ${s.height}, not to ${i} x ${a}`);
+	if (s.width !== i || s.height !== a) throw s.close(), M(t.where, `decoded to ${s.width} x ${s.height}, not to ${i} x ${a}`);
 	let c = a / r;
 	return Array.from({ length: r }, (e, t) => ({
 		picture: s,
@@ -1394,7 +1394,7 @@ async function ai(e) {
 	}
 }
 function oi(e, t, n) {
-	return new M("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
+	return new j("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
 }
 // eigenfield-three/src/pictures-10bit.ts
 var si = /* @__PURE__ */ new Set([
@@ -1438,21 +1438,21 @@ async function li(e, t, n) {
 var ui = 5;
 function di(e, t) {
 	let n = B(e, ui, t).getUint32(1, !0);
-	ot(e, 3 * n, 6 * ke, t);
+	ot(e, 3 * n, 6 * I, t);
 	let r = yt(e.subarray(ui)), i = Ct(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
-	if (!a.every((e) => e >= 0 && e < 1e5)) throw N(t, "triangles of cameras that there cannot be");
+	if (!a.every((e) => e >= 0 && e < 1e5)) throw M(t, "triangles of cameras that there cannot be");
 	return { corners: Uint32Array.from(a) };
 }
 // eigenfield-three/src/weight-decoder.ts
 var fi = 14, pi = 2 ** 20;
 function mi(e, t) {
 	let n = B(e, fi, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
-	if (n.getUint8(1) > 1 || i === 0) throw N(t, "weights of no camera, or of an unknown kind");
-	ot(e, o * s * Math.max(a, 1), Ge, t), B(e, fi + 4 * a, t);
+	if (n.getUint8(1) > 1 || i === 0) throw M(t, "weights of no camera, or of an unknown kind");
+	ot(e, o * s * Math.max(a, 1), We, t), B(e, fi + 4 * a, t);
 	let c = o * s;
-	if (c < i) throw N(t, "a grid with too few cells");
+	if (c < i) throw M(t, "a grid with too few cells");
 	let l = yt(e.subarray(fi + 4 * a)), u = r ? wt(l, c, i, t) : null, d = u !== null && i === c, f = [
 		0,
 		1,
@@ -1460,9 +1460,9 @@ function mi(e, t) {
 	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * pi * Math.max(o, s);
 	for (let e = 0; e < a; e++) {
 		let r = n.getFloat32(fi + 4 * e, !0);
-		if (!(r > 0 && r < Infinity)) throw N(t, "a step that is not positive");
+		if (!(r > 0 && r < Infinity)) throw M(t, "a step that is not positive");
 		let i = bt(l), h = St(l, s, f[i], i);
-		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw N(t, `numbers of component ${e} that cannot be`);
+		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw M(t, `numbers of component ${e} that cannot be`);
 		f[i] = h;
 		let g = i === 2 ? hi(h, o, s) : h;
 		for (let t = 0; t < c; t++) {
@@ -1471,7 +1471,7 @@ function mi(e, t) {
 		}
 		l.checkEnd(t);
 	}
-	if (!p.every(Number.isFinite)) throw N(t, "weights that are not finite");
+	if (!p.every(Number.isFinite)) throw M(t, "weights that are not finite");
 	return {
 		cameras: i,
 		components: a,
@@ -1582,8 +1582,8 @@ var W = {
 	"av1-10bit-2": {
 		..._i("video/AV1"),
 		bits: 10,
-		decode: (e, t, n) => ci(_e(e, t.where), t, n),
-		bitmaps: (e, t, n) => ii(_e(e, t.where), t, n),
+		decode: (e, t, n) => ci(ve(e, t.where), t, n),
+		bitmaps: (e, t, n) => ii(ve(e, t.where), t, n),
 		needs: "av1-10bit-2"
 	}
 }, vi = {
@@ -1594,9 +1594,9 @@ var W = {
 	weights: "weights-1"
 };
 function yi(e, t, n) {
-	let r = t.exists ? t.text(I) : n, i = Object.hasOwn(W, r) ? W[r] : null;
+	let r = t.exists ? t.text(L) : n, i = Object.hasOwn(W, r) ? W[r] : null;
 	if (i?.kind === e) return i;
-	throw new M("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
+	throw new j("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
 }
 function bi(e, t) {
 	return Object.keys(W).find((n) => {
@@ -1636,7 +1636,7 @@ var G = class e {
 		if (this.raw.length > e) throw this.wrong(`longer than ${e} characters`);
 		return this.raw;
 	}
-	number(e = -Ke, t = Ke) {
+	number(e = -Ge, t = Ge) {
 		if (typeof this.raw != "number") throw this.wrong("no number");
 		if (!(this.raw >= e && this.raw <= t)) throw this.wrong(`${this.raw} is not in ${e}..${t}`);
 		return this.raw;
@@ -1646,7 +1646,7 @@ var G = class e {
 		if (!Number.isInteger(n)) throw this.wrong(`${n} is no whole number`);
 		return n;
 	}
-	numbers(e, t = -Ke, n = Ke) {
+	numbers(e, t = -Ge, n = Ge) {
 		let r = this.items(e);
 		if (r.length !== e) throw this.wrong(`${e} numbers are needed`);
 		return r.map((e) => e.number(t, n));
@@ -1660,7 +1660,7 @@ var G = class e {
 		];
 	}
 	wrong(e) {
-		return N(this.where || "/", this.exists ? e : "missing");
+		return M(this.where || "/", this.exists ? e : "missing");
 	}
 }, xi = 5121, Si = 5123, Ci = 5125, wi = 5126, Ti = {
 	[xi]: 1,
@@ -1680,7 +1680,7 @@ function Oi(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
-	return e.key("bufferViews").items(Ce).map((e) => {
+	return e.key("bufferViews").items(F).map((e) => {
 		let t = e.key("byteOffset"), r = e.key("byteStride");
 		e.key("buffer").integer(0, 0);
 		let i = {
@@ -1696,7 +1696,7 @@ function ki(e) {
 	return (t) => t.integer(0, e.length - 1);
 }
 function Ai(e, t) {
-	let n = e.key("accessors"), r = n.exists ? n.items(Ce) : [];
+	let n = e.key("accessors"), r = n.exists ? n.items(F) : [];
 	return (e, n, i, a) => {
 		let o = r[e.integer(0, r.length - 1)];
 		if (!o) throw e.wrong("no such accessor");
@@ -1706,7 +1706,7 @@ function Ai(e, t) {
 		if (o.key("sparse").exists) throw o.wrong("sparse");
 		let c = o.key("normalized");
 		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = Di[n] ?? 1, u = o.key("count").integer(1, Ge);
+		let l = Di[n] ?? 1, u = o.key("count").integer(1, We);
 		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
 		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
 		if (!f) throw o.wrong("no such buffer view");
@@ -1734,18 +1734,18 @@ function ji(e, t, n) {
 }
 async function Mi(e, t, n) {
 	let r = await n(e.view), i = t[e.view]?.length ?? Infinity;
-	if (r.byteLength < i) throw le(e.where);
+	if (r.byteLength < i) throw ue(e.where);
 	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + Ti[c] * o * s);
 	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : Ni(new Float32Array(l), e.where);
 }
 function Ni(e, t) {
-	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw N(t, `${n} among its numbers`);
+	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw M(t, `${n} among its numbers`);
 	return e;
 }
 // eigenfield-three/src/planes.ts
 var Pi = 8, Fi = 16, Ii = "av1-10bit-2";
 function Li(e, t) {
-	return new M("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
+	return new j("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
 function Ri(e, t = we) {
 	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
@@ -1830,7 +1830,7 @@ function Vi(e, t, n, r, i, a = !1) {
 	};
 }
 function Hi(e) {
-	let t = e.key("mimeType").text(I);
+	let t = e.key("mimeType").text(L);
 	if (!bi(t)) throw e.key("mimeType").wrong("an unknown type");
 	let n = e.key("bits"), r = n.exists ? n.integer(1, Fi) : Pi, i = bi(t, r);
 	if (!i) throw n.wrong(`${r} bits of ${t}`);
@@ -1840,7 +1840,7 @@ function Hi(e) {
 }
 function Ui(e, t, n) {
 	let r = e.key("at").items(De * t).map((e) => {
-		let [t = 0, n = 0] = e.numbers(2, 0, Fe);
+		let [t = 0, n = 0] = e.numbers(2, 0, Pe);
 		if (!Number.isInteger(t) || !Number.isInteger(n)) throw e.wrong("no whole numbers");
 		return [t, n];
 	});
@@ -2030,7 +2030,7 @@ function aa(e, ...t) {
 // eigenfield-three/src/sheets.ts
 function oa(e, t) {
 	if (!e.exists) return null;
-	let n = e.key("faces").items(32).map((e) => e.integer(1, Pe));
+	let n = e.key("faces").items(32).map((e) => e.integer(1, Ne));
 	if (!n.length) throw e.key("faces").wrong("no sheet");
 	return {
 		faces: n,
@@ -2040,12 +2040,12 @@ function oa(e, t) {
 }
 function sa({ faces: e, where: t }, { index: n, attributes: r }) {
 	let i = e.reduce((e, t) => e + t, 0), a = (n?.count ?? 0) / 3;
-	if (i !== a) throw N(`${t}/faces`, `the sheets have ${i} triangles, the mesh has ${a}`);
+	if (i !== a) throw M(`${t}/faces`, `the sheets have ${i} triangles, the mesh has ${a}`);
 	let o = new Uint8Array(r.position?.count ?? 0), s = 0;
 	e.forEach((e, r) => {
 		for (let i = s + 3 * e; s < i; s++) {
 			let e = n?.getX(s) ?? 0, i = o[e] || r + 1, a = `sheets ${i - 1} and ${r} share vertex ${e}`;
-			if (i !== r + 1) throw N(`${t}/faces`, a);
+			if (i !== r + 1) throw M(`${t}/faces`, a);
 			o[e] = i;
 		}
 	});
@@ -2056,12 +2056,12 @@ function fa(e, t, n) {
 	let r = [..._a(t), ...n ? [n] : []];
 	if (!e.exists) {
 		let e = r.find(({ part: e }) => e);
-		if (e) throw N(e.where, "a texture in a film, and no timeline");
+		if (e) throw M(e.where, "a texture in a film, and no timeline");
 		return null;
 	}
-	let [i = 1, a = 1] = e.key("rate").numbers(2, 1, We), o = i / a;
+	let [i = 1, a = 1] = e.key("rate").numbers(2, 1, Ue), o = i / a;
 	if (!(Number.isInteger(i) && Number.isInteger(a)) || o > 1e3 || o < 1 / 1e3) throw e.key("rate").wrong("no rate");
-	let s = e.key("first"), c = e.key("films").items(4).map(ma), l = e.key("frames").integer(1, Re);
+	let s = e.key("first"), c = e.key("films").items(4).map(ma), l = e.key("frames").integer(1, Le);
 	va(r, c);
 	let u = new Set([...t.map(({ mean: e }) => e), n].map((e) => c[e?.part?.film ?? -1]));
 	for (let e of c) e.opacity = e === c[n?.part?.film ?? -1], e.detail = !u.has(e);
@@ -2079,7 +2079,7 @@ function pa(e, t) {
 	let n = e.key("audio");
 	if (!n.exists) return null;
 	if (n.key("mimeType").text(64) !== la) throw n.key("mimeType").wrong(`no ${la}`);
-	let r = t.at(-1), i = r.file === null ? null : ua, a = i ? 0 : ha(n.key("offset"), r.offset + r.length), o = n.key("first"), s = n.key("length").integer(1, Ue);
+	let r = t.at(-1), i = r.file === null ? null : ua, a = i ? 0 : ha(n.key("offset"), r.offset + r.length), o = n.key("first"), s = n.key("length").integer(1, He);
 	return {
 		mimeType: la,
 		first: o.exists ? o.number() : 0,
@@ -2089,8 +2089,8 @@ function pa(e, t) {
 	};
 }
 function ma(e) {
-	let t = yi("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, ca, Fe);
-	if (n % ca || r % ca || n * r > Ie) throw e.key("size").wrong(`a film of ${n} x ${r}`);
+	let t = yi("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, ca, Pe);
+	if (n % ca || r % ca || n * r > Fe) throw e.key("size").wrong(`a film of ${n} x ${r}`);
 	return {
 		codec: t,
 		size: [n, r],
@@ -2107,8 +2107,8 @@ function ha(e, t) {
 function ga(e, t) {
 	let [n, r] = [0, 0], i = e.key("groupFiles");
 	if (i.exists && i.raw !== !0) throw i.wrong("not true");
-	let a = e.key("groups").items(ze).map((e, t) => {
-		let a = i.exists ? `groups/${String(t).padStart(5, "0")}.eftg` : null, o = e.key("frames").integer(1, Ve), s = e.key("length").integer(1, Be), c = a ? 0 : ha(e.key("offset"), r), l = e.key("sha256").text(64);
+	let a = e.key("groups").items(Re).map((e, t) => {
+		let a = i.exists ? `groups/${String(t).padStart(5, "0")}.eftg` : null, o = e.key("frames").integer(1, Be), s = e.key("length").integer(1, ze), c = a ? 0 : ha(e.key("offset"), r), l = e.key("sha256").text(64);
 		if (!da.test(l)) throw e.key("sha256").wrong("no SHA-256");
 		return [n, r] = [n + o, c + s], {
 			first: n - o,
@@ -2130,14 +2130,14 @@ function va(e, t) {
 	let n = t.map(({ size: e }) => new Uint8Array(e[0] * e[1] / K ** 2));
 	for (let { part: r, where: i } of e) {
 		let e = r && t[r.film];
-		if (!r || !e) throw N(i, "it lies in no film");
+		if (!r || !e) throw M(i, "it lies in no film");
 		let [a, o] = [e.size[0] / K, n[r.film]], [s, c] = r.size.map((e) => Math.ceil(e / K));
 		for (let [t, n] of r.at) {
 			let l = t + r.size[0] <= e.size[0] && n + r.size[1] <= e.size[1];
-			if (t % K || n % K || !l) throw N(i, `a texture at ${t}, ${n} of its film`);
+			if (t % K || n % K || !l) throw M(i, `a texture at ${t}, ${n} of its film`);
 			for (let e = n / K; e < n / K + c; e++) {
 				let r = o.subarray(e * a + t / K, e * a + t / K + s);
-				if (r.includes(1)) throw N(i, `two textures at ${t}, ${n} of a film`);
+				if (r.includes(1)) throw M(i, `two textures at ${t}, ${n} of a film`);
 				r.fill(1);
 			}
 		}
@@ -2174,20 +2174,20 @@ var xa = [
 function Da(e) {
 	let t = new G(e, "");
 	try {
-		return t.key("extensions").key(xe).exists;
+		return t.key("extensions").key(Se).exists;
 	} catch {
 		return !1;
 	}
 }
 function Oa(e) {
-	let t = new G(e, ""), n = t.key("extensions").key(xe), r = ja(n), i = Oi(t), a = Ai(t, i), o = ki(i);
+	let t = new G(e, ""), n = t.key("extensions").key(Se), r = ja(n), i = Oi(t), a = Ai(t, i), o = ki(i);
 	Ma(t);
 	let s = Fa(t, o), c = n.key("cameras"), { count: l, names: u } = Ia(c, o), d = za(c, l), f = d.filter((e) => !e).length, p = zi(n, f, s, a, o), m = Bi(n, p), h = c.key("colour"), g = c.key("codedColour");
 	if ((h.exists || g.exists) && m.length < 3) throw h.wrong("needs three channels");
 	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), [x, S] = [n.key("mesh"), n.key("timeline")], C = oa(n.key("sheets"), o);
 	return {
 		version: r,
-		generator: b.exists ? b.text(I) : "",
+		generator: b.exists ? b.text(L) : "",
 		rights: ra(e),
 		planes: p,
 		colours: m,
@@ -2198,7 +2198,7 @@ function Oa(e) {
 		sizes: Va(c, l, a),
 		colour: g.exists ? ji("weights", g, o) : h.exists ? a(h, "SCALAR", [wi], 6 * l) : null,
 		...Ha(_),
-		triangles: y.exists ? ji("triangles", y, o) : v.exists ? Pa(a(v, "SCALAR", [Si, Ci], null), 2 * ke) : null,
+		triangles: y.exists ? ji("triangles", y, o) : v.exists ? Pa(a(v, "SCALAR", [Si, Ci], null), 2 * I) : null,
 		settings: Ua(n.key("settings")),
 		scores: Ua(n.key("scores")),
 		views: i,
@@ -2214,30 +2214,30 @@ function ka(e, t) {
 	if (r.exists && r.integer(0, 6) !== 4) throw r.wrong("no triangles");
 	let [i, a] = [n.key("attributes"), n.key("indices")];
 	return {
-		position: Na(t(i.key("POSITION"), "VEC3", [wi], null), Ne),
-		uv: Na(t(i.key("TEXCOORD_0"), "VEC2", [wi], null), Ne),
+		position: Na(t(i.key("POSITION"), "VEC3", [wi], null), Me),
+		uv: Na(t(i.key("TEXCOORD_0"), "VEC2", [wi], null), Me),
 		indices: Pa(t(a, "SCALAR", [
 			xi,
 			Si,
 			Ci
-		], null), Pe)
+		], null), Ne)
 	};
 }
 function Aa({ planes: e, sheets: t }) {
 	return t ? [...e, t.opacity] : e;
 }
 function ja(e) {
-	let t = e.key("version").text(I);
-	if (!/^1\.\d+$/.test(t)) throw new M("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
+	let t = e.key("version").text(L);
+	if (!/^1\.\d+$/.test(t)) throw new j("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
-	for (let e of n.exists ? n.items(Ce) : []) {
-		let t = e.text(I);
-		if (!Ca.has(t)) throw new M("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
+	for (let e of n.exists ? n.items(F) : []) {
+		let t = e.text(L);
+		if (!Ca.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
 function Ma(e) {
-	let t = e.key("nodes").items(Ce), n = Array(t.length).fill(!1);
+	let t = e.key("nodes").items(F), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
 		for (let e of r.exists ? r.items(t.length) : []) {
@@ -2246,17 +2246,17 @@ function Ma(e) {
 			n[r] = !0;
 		}
 	}
-	for (let r of e.key("scenes").items(Ce)) {
+	for (let r of e.key("scenes").items(F)) {
 		let e = r.key("nodes");
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
 function Na(e, t) {
-	if (e.count > t) throw N(e.where, `more than ${t}`);
+	if (e.count > t) throw M(e.where, `more than ${t}`);
 	return e;
 }
 function Pa(e, t) {
-	if (e.count % 3) throw N(e.where, "torn triangles");
+	if (e.count % 3) throw M(e.where, "torn triangles");
 	return Na(e, 3 * t);
 }
 function Fa(e, t) {
@@ -2268,10 +2268,10 @@ function Fa(e, t) {
 function Ia(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
-		count: n.key("count").integer(1, ke),
+		count: n.key("count").integer(1, I),
 		names: ji("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? Ra(r) : i.items(ke).map((e) => e.text(I));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? Ra(r) : i.items(I).map((e) => e.text(L));
 	if (!a.length) throw i.wrong("no cameras");
 	let o = La(a);
 	if (o) throw i.wrong(o);
@@ -2284,13 +2284,13 @@ function La(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
 function Ra(e) {
-	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, ke));
+	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, I));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
 	let r = e.key("parts").items(wa).map((e) => {
-		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(I))];
+		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(L))];
 		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
 		if (a.exists) {
-			let e = a.items(i).map((e) => e.text(I));
+			let e = a.items(i).map((e) => e.text(L));
 			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
 			return [r, e];
 		}
@@ -2299,7 +2299,7 @@ function Ra(e) {
 	});
 	return Array.from({ length: t * n }, (t, i) => {
 		let a = [Math.floor(i / n), i % n], o = r.map(([e, t]) => t[a[e] ?? 0]).join("");
-		if (o.length > 1024) throw e.wrong(`names of more than ${I} characters`);
+		if (o.length > 1024) throw e.wrong(`names of more than ${L} characters`);
 		return o;
 	});
 }
@@ -2324,7 +2324,7 @@ function Ba(e, t, n, r) {
 function Va(e, t, n) {
 	let r = e.key("size");
 	if (!r.exists) return n(e.key("sizes"), "SCALAR", [Ci], 2 * t);
-	let [i = 0, a = 0] = r.numbers(2, 1, Ae);
+	let [i = 0, a = 0] = r.numbers(2, 1, ke);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
@@ -2357,9 +2357,9 @@ async function Ga(e, t) {
 	]);
 	return n.map((t, n) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
-		if (!(s > Wa && c > Wa)) throw N(r.where, `focal lengths of "${t}"`);
+		if (!(s > Wa && c > Wa)) throw M(r.where, `focal lengths of "${t}"`);
 		let { R: f, t: p } = Za([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
-		if (!m || !h || Math.max(m, h) > 65535 || m * h > je) throw N(a.where, `"${t}" is ${m} x ${h} pixels`);
+		if (!m || !h || Math.max(m, h) > 65535 || m * h > Ae) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
 				s,
@@ -2393,7 +2393,7 @@ async function Ga(e, t) {
 async function Ka({ colour: e, heldOut: t, views: n }, r) {
 	if (!e || "type" in e) return e && Mi(e, n, r);
 	let { cameras: i, components: a, values: o } = await e.codec.decode(new Uint8Array(await r(e.view)), e.where);
-	if (a !== 6 || i !== t.filter((e) => !e).length) throw N(e.where, `${i} x ${a} colours`);
+	if (a !== 6 || i !== t.filter((e) => !e).length) throw M(e.where, `${i} x ${a} colours`);
 	let s = 0;
 	return Float32Array.from(t.flatMap((e) => e ? [
 		1,
@@ -2407,7 +2407,7 @@ async function Ka({ colour: e, heldOut: t, views: n }, r) {
 async function qa({ names: e, heldOut: t }, n) {
 	if (Array.isArray(e)) return e;
 	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : La(r);
-	if (i) throw N(e.where, i);
+	if (i) throw M(e.where, i);
 	return r;
 }
 async function Ja(e, t, n) {
@@ -2426,7 +2426,7 @@ async function Ya(e, t) {
 		};
 	}
 	let { view: i, codec: a, where: o } = n, s = await a.decode(new Uint8Array(await t(i)), o), c = s.poses.length / 12;
-	if (c !== r.length) throw N(o, `${c} cameras in it, and ${r.length} names`);
+	if (c !== r.length) throw M(o, `${c} cameras in it, and ${r.length} names`);
 	let l = (e) => ({
 		numbers: Ni(e, o),
 		where: o
@@ -2460,9 +2460,9 @@ function Za(e, t, n) {
 	];
 	for (let e = 0; e < 3; e++) for (let r = e; r < 3; r++) {
 		let a = Y(i[e], i[r]) - +(e === r);
-		if (!(Math.abs(a) <= 2e-4)) throw N(t, `the pose of "${n}" is no rotation`);
+		if (!(Math.abs(a) <= 2e-4)) throw M(t, `the pose of "${n}" is no rotation`);
 	}
-	if (!(Y(fo(i[0], i[1]), i[2]) > 0)) throw N(t, `the pose of "${n}" is mirrored`);
+	if (!(Y(fo(i[0], i[1]), i[2]) > 0)) throw M(t, `the pose of "${n}" is mirrored`);
 	return {
 		R: i,
 		t: a
@@ -2470,7 +2470,7 @@ function Za(e, t, n) {
 }
 function Qa(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
-	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw N(t.colour?.where ?? "", `gain or offset of "${n}"`);
+	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw M(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
 async function $a(e, t) {
@@ -2494,7 +2494,7 @@ async function to({ weights: e, count: t }, n, r, i) {
 }
 function no({ cameras: e, components: t, values: n }, r, i, a) {
 	if (e === r && t === i) return Ni(n, a);
-	throw N(a, `${e} x ${t} weights, and ${r} encoded cameras x ${i} textures`);
+	throw M(a, `${e} x ${t} weights, and ${r} encoded cameras x ${i} textures`);
 }
 function J(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
@@ -2511,8 +2511,8 @@ async function ao(e, t) {
 	let { where: n } = e.triangles, r = await oo(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
-		if (Math.max(t, a, o) >= i) throw N(n, `no encoded camera ${Math.max(t, a, o)}`);
-		if (t === a || a === o || o === t) throw N(n, "a triangle with one camera twice");
+		if (Math.max(t, a, o) >= i) throw M(n, `no encoded camera ${Math.max(t, a, o)}`);
+		if (t === a || a === o || o === t) throw M(n, "a triangle with one camera twice");
 	}
 	return r;
 }
@@ -2733,7 +2733,7 @@ function _o(e, t, n, r, i = 1) {
 }
 function vo(e, t, n) {
 	let { R: r, centre: i } = n, a = new x().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
-	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new j()), t.updateMatrixWorld(!0);
+	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new A()), t.updateMatrixWorld(!0);
 }
 function yo(e, t, n, r) {
 	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = bo(e, n);
@@ -2743,9 +2743,9 @@ function bo(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
-		center: new j(),
+		center: new A(),
 		radius: 1
-	}, o = r.getMaxScaleOnAxis(), s = i.distanceTo(new j(...t.centre)) * o, c = 1.01 * (s + a * o);
+	}, o = r.getMaxScaleOnAxis(), s = i.distanceTo(new A(...t.centre)) * o, c = 1.01 * (s + a * o);
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
 // eigenfield-three/src/exposure.ts
@@ -2816,11 +2816,7 @@ function Lo(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-var Ro = [{
-	meanDown: 1,
-	scaleDown: 1,
-	halves: !0
-}, ...[
+var Ro = [
 	1,
 	1.5,
 	2,
@@ -2830,23 +2826,32 @@ var Ro = [{
 	8,
 	12,
 	16
-].flatMap((e) => [
+], zo = {
+	meanDown: 1,
+	scaleDown: 1,
+	halves: !0,
+	words: !1
+}, Bo = [zo, ...Ro.flatMap((e) => [
 	1,
 	1.5,
 	2
 ].map((t) => ({
 	meanDown: e,
 	scaleDown: t * e,
-	halves: !1
+	halves: !1,
+	words: !1
 })))];
-function zo(e, t) {
-	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => Bo(e, t.meanDown) + e.geometry + Vo(e, t, n), o = (n, r) => a(n, r) + Wo(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = Ro.filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
+function Vo(e, t) {
+	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => Ho(e, t.meanDown) + e.geometry + Uo(e, t, n), o = (n, r) => a(n, r) + Ko(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = [...e.films && n * r <= t.layers ? [{
+		...zo,
+		words: !0
+	}] : [], ...Bo].filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
 	for (; !u && l > 0; l--) u = c.find((e) => o(e, l - 1));
-	u ??= Ro.at(-1);
-	let d = Go({
+	u ??= Bo.at(-1);
+	let d = qo({
 		...u,
 		usable: l
-	}, e), f = Ko(d, e, t);
+	}, e), f = Jo(d, e, t);
 	return {
 		...u,
 		usable: l,
@@ -2855,7 +2860,7 @@ function zo(e, t) {
 		limitation: f
 	};
 }
-function Bo(e, t) {
+function Ho(e, t) {
 	let n = e.means.map(({ size: e, channels: n, tenBits: r, opacity: i }) => {
 		let a = i ? Co : 0;
 		return (Ao({
@@ -2871,7 +2876,7 @@ function Bo(e, t) {
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function Vo({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
+function Uo({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
 	return e.reduce((e, a) => {
 		let o = Math.min(i, a.count);
 		if (!o) return e;
@@ -2882,8 +2887,8 @@ function Vo({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
 		}) * Fo(o, a.channels) * No(a.size, n) + s;
 	}, 0);
 }
-function Ho({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
-	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = Uo([...a, ...o].map(({ size: e }) => e)), l = Math.floor(Oo * i / (Ao(wo) * s)), u = [s, Math.min(c, Math.max(ko, l))], d = [...n > 1 ? a.map((e) => X(e.size, n)) : [], ...r > 1 ? o.map((e) => X(e.size, r)) : []];
+function Wo({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
+	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = Go([...a, ...o].map(({ size: e }) => e)), l = Math.floor(Oo * i / (Ao(wo) * s)), u = [s, Math.min(c, Math.max(ko, l))], d = [...n > 1 ? a.map((e) => X(e.size, n)) : [], ...r > 1 ? o.map((e) => X(e.size, r)) : []];
 	return {
 		picture: {
 			size: u,
@@ -2894,19 +2899,20 @@ function Ho({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
 			format: To
 		} : null,
 		smaller: d.length ? {
-			size: Uo(d),
+			size: Go(d),
 			format: Eo
 		} : null
 	};
 }
-function Uo(e) {
+function Go(e) {
 	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
 }
-function Wo(e, t, n) {
-	let r = Object.values(Ho(e, t, n)).map((e) => e ? Ao(e.format) * No(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(...Lo(e).map((e) => No(e, 1))) : 0;
+function Ko(e, t, n) {
+	if (t.words) return 0;
+	let r = Object.values(Wo(e, t, n)).map((e) => e ? Ao(e.format) * No(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(...Lo(e).map((e) => No(e, 1))) : 0;
 	return [...r, i].reduce((e, t) => e + t, 0);
 }
-function Go({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
+function qo({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 	let a = Math.max(0, ...i.bases.map(({ count: e }) => e)), o = [];
 	return e < a && o.push({
 		kind: "count",
@@ -2920,28 +2926,24 @@ function Go({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 		percent: Math.round(100 / t)
 	}), o;
 }
-function Ko(e, t, n) {
+function Jo(e, t, n) {
 	if (!e.length) return null;
-	let r = e.map((e) => e.kind === "count" ? `${e.part} of ${e.whole} eigen textures are drawn` : e.kind === "bits" ? "eigen textures have 8 bits" : `${e.kind === "mean" ? "the mean texture has" : "eigen textures have"} ${e.percent} % of ${e.kind === "mean" ? "its" : "their"} width and height`), i = {
-		meanDown: 1,
-		scaleDown: 1,
-		halves: !0
-	}, a = Bo(t, 1) + Vo(t, i, Infinity) + Wo(t, i, n.memory) + t.geometry, o = a > n.memory ? `the scene needs ${qo(a)} MB of graphics memory and ${qo(n.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${Jo(r.join(", "))}: ${o}.`;
+	let r = e.map((e) => e.kind === "count" ? `${e.part} of ${e.whole} eigen textures are drawn` : e.kind === "bits" ? "eigen textures have 8 bits" : `${e.kind === "mean" ? "the mean texture has" : "eigen textures have"} ${e.percent} % of ${e.kind === "mean" ? "its" : "their"} width and height`), i = Ho(t, 1) + Uo(t, zo, Infinity) + Ko(t, zo, n.memory) + t.geometry, a = i > n.memory ? `the scene needs ${Yo(i)} MB of graphics memory and ${Yo(n.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${Xo(r.join(", "))}: ${a}.`;
 }
-function qo(e) {
+function Yo(e) {
 	return (e / 1e6).toFixed(+(e < 1e7));
 }
-function Jo(e) {
+function Xo(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var Yo = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\n#define REACH 2\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec2 beside;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nfloat codeOf(vec2 shift) { return shift.x + float(REACH) + float(2 * REACH + 1) * (shift.y + float(REACH)); }\nvec2 shiftOf(vec4 place) {\n  int code = int(place.w + 0.5) - 1;\n  return code < 0 ? vec2(0.0) : vec2(code % (2 * REACH + 1) - REACH, code / (2 * REACH + 1) - REACH);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec4 place = rayWeights || beside.x > 0.0 ? texelFetch(places, ivec2(gl_FragCoord.xy), 0) : vec4(0.0);\n  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);\n  own -= beside * shiftOf(place);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Xo = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", Zo = 2, Qo = `
+var Zo = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\n#define REACH 2\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform bool words;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec2 beside;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nfloat codeOf(vec2 shift) { return shift.x + float(REACH) + float(2 * REACH + 1) * (shift.y + float(REACH)); }\nvec2 shiftOf(vec4 place) {\n  int code = int(place.w + 0.5) - 1;\n  return code < 0 ? vec2(0.0) : vec2(code % (2 * REACH + 1) - REACH, code / (2 * REACH + 1) - REACH);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec4 place = rayWeights || beside.x > 0.0 ? texelFetch(places, ivec2(gl_FragCoord.xy), 0) : vec4(0.0);\n  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);\n  own -= beside * shiftOf(place);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = 0; entry < entries; group++) {\n    int layer = words ? group / 4 : group;\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(firstGroup + layer)), 0.0);\n    if (rayWeights && words) weights = vec4(weights[group % 4]);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Qo = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", $o = 2, es = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${Xo}${Yo}`, $o = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", es = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nflat out vec2 shift;\nvoid main() {\n  point = onPlane;\n  shift = shifts[gl_InstanceID];\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shift, 0.0, 1.0);\n}\n", ts = `${Qo}
+${Qo}${Zo}`, ts = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", ns = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nflat out vec2 shift;\nvoid main() {\n  point = onPlane;\n  shift = shifts[gl_InstanceID];\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shift, 0.0, 1.0);\n}\n", rs = `${es}
 in vec3 point;
 flat in vec2 shift;
 out vec4 place;
@@ -2949,14 +2951,14 @@ void main() {
   place = placeOf(point);
   place.w += codeOf(shift);
 }
-`, ns = "sumTextures", rs = "finerValue", is = "finerOpacity";
-function as(n, r, i) {
-	let o = new k({
+`, is = "sumTextures", as = "finerValue", os = "finerOpacity";
+function ss(n, r, i) {
+	let o = new O({
 		glslVersion: h,
-		vertexShader: $o,
-		fragmentShader: `${Qo}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
+		vertexShader: ts,
+		fragmentShader: `${es}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
 		uniforms: {
-			rectangle: { value: new ie(...r) },
+			rectangle: { value: new ae(...r) },
 			...i
 		},
 		side: u,
@@ -2986,12 +2988,12 @@ function as(n, r, i) {
 		2,
 		1,
 		3
-	]), s.boundingSphere = new ee();
+	]), s.boundingSphere = new te();
 	let c = new S(s, o);
 	return c.frustumCulled = !1, c;
 }
-function os([e, t], n) {
-	return new ae(e, t, {
+function cs([e, t], n) {
+	return new oe(e, t, {
 		type: g,
 		depthBuffer: !1,
 		generateMipmaps: n,
@@ -2999,7 +3001,7 @@ function os([e, t], n) {
 		magFilter: n ? y : w
 	});
 }
-function ss(e, t) {
+function ls(e, t) {
 	let n = fo(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
@@ -3007,15 +3009,15 @@ function ss(e, t) {
 	];
 	return [...lo(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
 }
-var cs = Array.from({ length: 5 }, (e, t) => t - Zo), ls = cs.flatMap((e) => cs.map((t) => new re(t, e))).sort((e, t) => t.lengthSq() - e.lengthSq());
-function us(e) {
-	return new k({
+var us = Array.from({ length: 5 }, (e, t) => t - $o), ds = us.flatMap((e) => us.map((t) => new ie(t, e))).sort((e, t) => t.lengthSq() - e.lengthSq());
+function fs(e) {
+	return new O({
 		glslVersion: h,
-		vertexShader: es.replace("SHIFTS", String(ls.length)),
-		fragmentShader: ts,
+		vertexShader: ns.replace("SHIFTS", String(ds.length)),
+		fragmentShader: rs,
 		uniforms: {
-			texel: { value: new re(2 / e.width, 2 / e.height) },
-			shifts: { value: ls }
+			texel: { value: new ie(2 / e.width, 2 / e.height) },
+			shifts: { value: ds }
 		},
 		side: u,
 		blending: T,
@@ -3023,31 +3025,31 @@ function us(e) {
 		depthWrite: !1
 	});
 }
-function ds(t, n, r) {
+function ps(t, n, r) {
 	let { index: i } = t, a = t.getAttribute("position"), o = t.getAttribute("uv"), s = new Float32Array(3 * a.count), c = new Float32Array(2 * a.count);
-	for (let e = 0; e < a.count; e++) s.set(ss(n, [
+	for (let e = 0; e < a.count; e++) s.set(ls(n, [
 		a.getX(e),
 		a.getY(e),
 		a.getZ(e)
 	]), 3 * e), c.set([o.getX(e), o.getY(e)], 2 * e);
 	let l = new v();
-	l.setAttribute("position", new e(c, 2)), l.setAttribute("onPlane", new e(s, 3)), l.setIndex(i && new e(i.array, 1)), l.instanceCount = ls.length, l.boundingSphere = new ee();
+	l.setAttribute("position", new e(c, 2)), l.setAttribute("onPlane", new e(s, 3)), l.setIndex(i && new e(i.array, 1)), l.instanceCount = ds.length, l.boundingSphere = new te();
 	let u = new S(l, r);
 	return u.frustumCulled = !1, u;
 }
-var fs = new i(0), ps = new i();
-function ms(e, t, n) {
+var ms = new i(0), hs = new i();
+function gs(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(ps), e.setClearColor(fs, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(ps, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(hs), e.setClearColor(ms, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(hs, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/composer.ts
-var hs = {
+var _s = {
 	version: 0,
 	mean: !0,
 	opacity: 0,
@@ -3057,7 +3059,7 @@ var hs = {
 	eye: null,
 	places: 0,
 	maps: null
-}, gs = class {
+}, vs = class {
 	snaps;
 	surface;
 	plane;
@@ -3073,9 +3075,9 @@ var hs = {
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), l = (e, n) => {
-			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => ys(t, i ? X(e, r) : null)), o = new A();
+			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => xs(t, i ? X(e, r) : null)), o = new k();
 			return a.forEach(({ quad: e }, t) => o.add(Object.assign(e, { renderOrder: t }))), {
-				target: os(X(e, r), n),
+				target: cs(X(e, r), n),
 				scene: o,
 				steps: a,
 				places: null
@@ -3083,7 +3085,7 @@ var hs = {
 		}, u = l(s ?? e, !0);
 		this.grids = c.map((e) => l(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = as(rs, [
+			let t = ss(as, [
 				0,
 				0,
 				1,
@@ -3091,24 +3093,24 @@ var hs = {
 			], { coarse: { value: e.texture } });
 			u.scene.add(Object.assign(t, { renderOrder: u.scene.children.length }));
 		}
-		this.grids.push(u), this.opacity = n && _s(n, r);
+		this.grids.push(u), this.opacity = n && ys(n, r);
 	}
 	get texture() {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && Ss(this.composed, n) || (this.composed = n, ms(e, t, () => {
+		this.composed && ws(this.composed, n) || (this.composed = n, gs(e, t, () => {
 			n.opacity > this.opacityDrawn && this.drawOpacity(e, n.opacity);
 			for (let t of this.grids) {
 				(n.eye !== null && t.steps.some(({ part: e }) => e.basis) || this.snaps) && this.findPlaces(e, t, n.places);
-				for (let e of t.steps) bs(e, t.places?.target.texture ?? null, n);
+				for (let e of t.steps) Ss(e, t.places?.target.texture ?? null, n);
 				this.draw(e, t.scene, t.target, this.opacityDrawn > 0 && t === this.grids.at(-1));
 			}
 		}));
 	}
 	dispose() {
-		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), t?.material.dispose(), vs(n);
-		this.opacity?.target.dispose(), this.opacity && [this.opacity.sum, this.opacity.finer].forEach(vs);
+		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), t?.material.dispose(), bs(n);
+		this.opacity?.target.dispose(), this.opacity && [this.opacity.sum, this.opacity.finer].forEach(bs);
 	}
 	drawOpacity(e, t) {
 		let [n, r] = [this.grids.at(-1), this.opacity];
@@ -3116,8 +3118,8 @@ var hs = {
 	}
 	findPlaces(e, t, n) {
 		if (t.places && t.places.version >= n) return;
-		let r = t.places?.target ?? os([t.target.width, t.target.height], !1), i = t.places?.material ?? us(r), a = ds(this.surface.geometry, this.plane, i);
-		this.draw(e, new A().add(a), r), a.geometry.dispose(), t.places = {
+		let r = t.places?.target ?? cs([t.target.width, t.target.height], !1), i = t.places?.material ?? fs(r), a = ps(this.surface.geometry, this.plane, i);
+		this.draw(e, new k().add(a), r), a.geometry.dispose(), t.places = {
 			target: r,
 			material: i,
 			version: this.surface.version
@@ -3129,11 +3131,11 @@ var hs = {
 		r && i.colorMask(!0, !0, !0, !1), e.clear(!0, !1, !1), r && i.colorMask(!0, !0, !0, !0), e.render(t, this.camera);
 	}
 };
-function _s(e, t) {
-	let n = os(X(e.grid, t), !1), r = ys(e, null);
-	for (let e of r) bs(e, null, hs);
-	let [i, a] = [new A(), new A()];
-	return i.add(...r.map(({ quad: e }) => e)), a.add(as(is, [
+function ys(e, t) {
+	let n = cs(X(e.grid, t), !1), r = xs(e, null);
+	for (let e of r) Ss(e, null, _s);
+	let [i, a] = [new k(), new k()];
+	return i.add(...r.map(({ quad: e }) => e)), a.add(ss(os, [
 		0,
 		0,
 		1,
@@ -3144,20 +3146,21 @@ function _s(e, t) {
 		finer: a
 	};
 }
-function vs(e) {
+function bs(e) {
 	for (let { geometry: t, material: n } of e.children) t.dispose(), n.dispose();
 }
-function ys(e, t) {
-	let [n, r, i, a] = e.rectangle, o = t && new re(1 / ((i - n) * t[0]), 1 / ((a - r) * t[1])), s = e.colours.length, [c, l] = [e.scale.length / (4 * s), Math.floor(64 / s)], u = [];
-	for (let t = 0; t < c; t += l) {
-		let n = Array.from({ length: 64 }, (t, n) => new j(...e.colours[n] ?? [
+function xs(e, t) {
+	let [n, r, i, a] = e.rectangle, o = t && new ie(1 / ((i - n) * t[0]), 1 / ((a - r) * t[1])), s = e.colours.length, [c, l] = [e.scale.length / (4 * s), Math.floor(64 / s)], u = e.words ? 4 * Math.floor(l / 4) : l, d = [];
+	for (let t = 0; t < c; t += u) {
+		let n = Array.from({ length: 64 }, (t, n) => new A(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), r = e.basis ? 1 : 4, i = as(ns, e.rectangle, {
+		])), r = e.basis || e.words ? 1 : 4, i = ss(is, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(t * s / r) },
 			sharing: { value: r },
+			words: { value: e.words },
 			channels: { value: s },
 			entries: { value: 0 },
 			scale: { value: /* @__PURE__ */ new Float32Array(256) },
@@ -3165,40 +3168,40 @@ function ys(e, t) {
 			colours: { value: n },
 			rayWeights: { value: !1 },
 			weightMaps: { value: null },
-			firstGroup: { value: (e.basis?.group ?? 0) + t },
+			firstGroup: { value: (e.basis?.group ?? 0) + (e.words ? t / 4 : t) },
 			places: { value: null },
-			beside: { value: o ?? new re() },
-			eye: { value: new j() }
+			beside: { value: o ?? new ie() },
+			eye: { value: new A() }
 		});
-		u.push({
+		d.push({
 			part: e,
 			first: t,
-			groups: Math.min(l, c - t),
+			groups: Math.min(u, c - t),
 			quad: i
 		});
 	}
-	return u;
+	return d;
 }
-function bs({ part: e, first: t, groups: n, quad: r }, i, a) {
-	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
-		let n = c[e];
+function Ss({ part: e, first: t, groups: n, quad: r }, i, a) {
+	let { basis: o, colours: s, words: c } = e, { uniforms: l } = r.material, u = (e, t) => {
+		let n = l[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => xs(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
-	for (let n = 0; n < 4 * h * f; n++) {
-		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
-		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
+	}, d = o !== null && a.eye !== null && a.only === null, f = c ? 1 : 4, p = Array.from({ length: f * n }, (e, n) => Cs(o, f * t + n, a, d)), m = Math.ceil((p.findLastIndex((e) => e !== 0) + 1) / f), [h, g] = [l.scale?.value, l.bias?.value], _ = s.length;
+	for (let n = 0; n < 4 * _ * m; n++) {
+		let r = p[f * Math.floor(n / (4 * _)) + n % f] ?? 0;
+		h[n] = r * (e.scale[4 * _ * t + n] ?? 0), g[n] = r * (e.bias[4 * _ * t + n] ?? 0);
 	}
-	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", i), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
+	u("entries", _ * m), u("rayWeights", d), u("weightMaps", d ? a.maps : null), u("places", i), a.eye && (l.eye?.value).set(...a.eye), r.visible = m > 0, r.material.uniformsNeedUpdate = !0;
 }
-function xs(e, t, n, r) {
+function Cs(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function Ss(e, t) {
+function ws(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
 // eigenfield-three/src/maps.ts
-function Cs(e, t, n, i, a) {
+function Ts(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
@@ -3219,10 +3222,10 @@ function Cs(e, t, n, i, a) {
 		}
 	}
 	let p = new o(f, 129, 129, Math.max(1, d));
-	return p.format = O, p.type = g, p.minFilter = p.magFilter = y, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
+	return p.format = D, p.type = g, p.minFilter = p.magFilter = y, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
 }
 // eigenfield-three/src/eigen-weights.ts
-var ws = class {
+var Es = class {
 	info;
 	counts;
 	omega;
@@ -3259,7 +3262,7 @@ var ws = class {
 	maps(e, t) {
 		if (this.made?.mixing === e && this.made.usable === t) return this.made.texture;
 		this.dispose();
-		let n = Cs(this.views, e, this.omega, this.counts, t);
+		let n = Ts(this.views, e, this.omega, this.counts, t);
 		return this.made = {
 			texture: n,
 			mixing: e,
@@ -3269,20 +3272,20 @@ var ws = class {
 	dispose() {
 		this.made?.texture.dispose();
 	}
-}, Ts = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", Es = {
+}, Ds = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", Os = {
 	bilinear: 0,
 	bicubic: 1
-}, Ds = {
+}, ks = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, Os = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", ks = Os.replace("void main", "invariant gl_Position;\nvoid main"), As = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", js = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", Ms = `${As}
-${Xo}${Ts}
+}, As = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", js = As.replace("void main", "invariant gl_Position;\nvoid main"), Ms = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", Ns = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", Ps = `${Ms}
+${Qo}${Ds}
 uniform float shownGain;       // of the eigen texture around mid grey
 in vec2 surfaceUv;
 vec3 eigenColour(vec3 value) { return clamp(0.5 + shownGain * value, 0.0, 1.0); }
-`, Ns = `${Ms}${js}
+`, Fs = `${Ps}${Ns}
 in vec3 surfacePlace;
 out vec4 fragment;
 void main() {
@@ -3292,7 +3295,7 @@ void main() {
   if (shown == 3) colour = errorColour(colour, surfacePlace);
   fragment = vec4(colour, 1.0);
 }
-`, Ps = `${Ms}
+`, Is = `${Ps}
 layout(location = 0) out vec4 fragment;
 layout(location = 1) out vec4 solid;
 vec3 threeBytes(float depth) {
@@ -3306,76 +3309,76 @@ void main() {
   float depth = (gl_FragCoord.z - gl_DepthRange.near) / gl_DepthRange.diff;
   solid = colour.a < 0.5 ? vec4(0.0) : vec4(threeBytes(depth), 1.0);
 }
-`, Fs = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", Is = {
+`, Ls = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", Rs = {
 	blending: a,
 	blendSrc: E,
-	blendDst: D
-}, Ls = {
+	blendDst: ee
+}, zs = {
 	depthWrite: !1,
 	stencilWrite: !0,
 	stencilFunc: d,
 	stencilZPass: _
 };
-function Rs(e, t) {
+function Bs(e, t) {
 	let n = {
 		composed: { value: null },
 		finest: { value: 1 },
-		exposureScale: { value: new j(1, 1, 1) },
-		exposureBias: { value: new j() },
-		shown: { value: Ds.picture },
+		exposureScale: { value: new A(1, 1, 1) },
+		exposureBias: { value: new A() },
+		shown: { value: ks.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new x() }
-	}, r = new k({
+	}, r = new O({
 		glslVersion: h,
-		vertexShader: t ? ks : Os,
-		fragmentShader: t ? Ps : Ns,
+		vertexShader: t ? js : As,
+		fragmentShader: t ? Is : Fs,
 		uniforms: n,
-		defines: { BICUBIC: Es.bicubic },
+		defines: { BICUBIC: Os.bicubic },
 		side: e ? u : m,
 		...t ? {
-			...Is,
-			...Ls
+			...Rs,
+			...zs
 		} : {}
 	});
 	return r.name = "eigen textures", r;
 }
-function zs(e) {
+function Vs(e) {
 	let { side: t } = e;
-	return new k({
+	return new O({
 		name: "depth of sheets",
 		glslVersion: h,
-		vertexShader: ks,
-		fragmentShader: Fs,
+		vertexShader: js,
+		fragmentShader: Ls,
 		colorWrite: !1,
 		side: t,
 		stencilWrite: !0,
-		stencilZPass: oe
+		stencilZPass: se
 	});
 }
-function Bs(e, t, n) {
-	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !Vs(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
+function Hs(e, t, n) {
+	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !Us(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
 	u && (d.elements[13] = 1), e.toPhotograph.value.multiplyMatrices(d, l.multiply(c)), e.photograph.value = n;
 }
-function Vs(e) {
+function Us(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
 // eigenfield-three/src/pieces.ts
-function Hs(e) {
+function Ws(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
 // eigenfield-three/src/strength.ts
-var Us = 128, Ws = .98;
-async function Gs(e, t, n, r) {
+var Gs = 128, Ks = .98;
+async function qs(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = qi(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Us, Us).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = qi(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Gs, Gs).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	return u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, Us, Us);
-		let { data: u } = d.getImageData(0, 0, Us, Us);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, Gs, Gs);
+		let { data: u } = d.getImageData(0, 0, Gs, Gs);
 		(l ? [
 			0,
 			1,
@@ -3384,15 +3387,15 @@ async function Gs(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), Hs(u), Ks(f);
+	}), Ws(u), Js(f);
 }
-function Ks(e) {
+function Js(e) {
 	e.sort((e, t) => e - t);
-	let t = e[Math.floor(Ws * e.length)] ?? 0;
+	let t = e[Math.floor(Ks * e.length)] ?? 0;
 	return t > 0 ? .45 / t : 1;
 }
 // eigenfield-three/src/film-textures.ts
-var qs = class {
+var Ys = class {
 	scene;
 	films;
 	filling = null;
@@ -3417,14 +3420,12 @@ var qs = class {
 		this.filling = null;
 	}
 	put(e) {
-		e.together(() => {
-			Aa(this.scene).forEach(({ mean: t }, n) => e.putMean(n, {
-				pieces: this.piecesOf(t),
-				precision: null
-			})), J(this.scene).forEach(({ pictures: [t] }, n) => {
-				let r = t ? this.piecesOf(t) : [];
-				t && r.length && e.putTextures(n, 0, r, t);
-			});
+		Aa(this.scene).forEach(({ mean: t }, n) => e.putMean(n, {
+			pieces: this.piecesOf(t),
+			precision: null
+		})), J(this.scene).forEach(({ pictures: [t] }, n) => {
+			let r = t ? this.piecesOf(t) : [];
+			t && r.length && e.putTextures(n, 0, r, t);
 		});
 	}
 	piecesOf({ part: e }) {
@@ -3437,69 +3438,69 @@ var qs = class {
 	}
 	gainOf({ part: e, pieces: t, scale: n, zero: r }, i, a) {
 		let o = e && this.films[e.film];
-		return o ? Ks(Gt(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
+		return o ? Js(Gt(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
 			let s = t * i + o, c = Math.max(...(a[o] ?? [0]).map(Math.abs)) * (n[s] ?? 0);
-			return Ys(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
+			return Zs(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
 		})) : 1;
 	}
-}, Js = 8;
-function Ys({ data: e, width: t, height: n, stride: r }) {
+}, Xs = 8;
+function Zs({ data: e, width: t, height: n, stride: r }) {
 	let i = [];
-	for (let a = 0; a < n; a += Js) for (let n = 0; n < t; n += Js) {
+	for (let a = 0; a < n; a += Xs) for (let n = 0; n < t; n += Xs) {
 		let t = a * r + 2 * n;
 		i.push(e[t] + 256 * e[t + 1]);
 	}
 	return i;
 }
 // eigenfield-three/src/container.ts
-var Xs = 1179937895, Zs = 1313821514, Qs = 5130562, $s = 1280591429;
-async function ec(e) {
+var Qs = 1179937895, $s = 1313821514, ec = 5130562, tc = 1280591429;
+async function nc(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof M && t.code === "truncated" ? ac(e.received === 0) : t;
+		throw t instanceof j && t.code === "truncated" ? sc(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== Xs) throw ac(!1);
+	if (new DataView(t).getUint32(0, !0) !== Qs) throw sc(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
-	if (r !== 2) throw new M("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
-	if (i < 20) throw N("8", "a length of no file");
+	if (r !== 2) throw new j("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
+	if (i < 20) throw M("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== Zs) throw N("16", "it does not begin with JSON");
-	if (o > Se) throw N("12", `${o} bytes of JSON`);
-	if (20 + o > i) throw N("12", "a chunk longer than the file");
-	let s = nc(await e.read(20, 20 + o)), c = (t, n) => () => tc(e, 20 + o, i, t, n);
+	if (a.getUint32(4, !0) !== $s) throw M("16", "it does not begin with JSON");
+	if (o > Ce) throw M("12", `${o} bytes of JSON`);
+	if (20 + o > i) throw M("12", "a chunk longer than the file");
+	let s = ic(await e.read(20, 20 + o)), c = (t, n) => () => rc(e, 20 + o, i, t, n);
 	return {
 		length: i,
 		text: s,
-		json: rc(s, "20"),
-		binary: c(Qs, "binary chunk"),
-		groups: c($s, "chunk of groups")
+		json: ac(s, "20"),
+		binary: c(ec, "binary chunk"),
+		groups: c(tc, "chunk of groups")
 	};
 }
-async function tc(e, t, n, r, i) {
+async function rc(e, t, n, r, i) {
 	let a = t;
 	for (let t = 1; t < 64 && a + 8 <= n; t++) {
 		let t = new DataView(await e.read(a, a + 8)), i = t.getUint32(0, !0);
-		if (a + 8 + i > n) throw N(String(a), "a chunk longer than the file");
+		if (a + 8 + i > n) throw M(String(a), "a chunk longer than the file");
 		if (t.getUint32(4, !0) === r) return a + 8;
 		a += 8 + i;
 	}
-	throw N(String(t), `no ${i}`);
+	throw M(String(t), `no ${i}`);
 }
-function nc(e) {
+function ic(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
-		throw N("20", "its JSON is not UTF-8");
+		throw M("20", "its JSON is not UTF-8");
 	}
 }
-function rc(e, t) {
-	if (ic(e) > 64) throw N(t, "its JSON is nested too deep");
+function ac(e, t) {
+	if (oc(e) > 64) throw M(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
-		throw N(t, "its JSON cannot be read");
+		throw M(t, "its JSON cannot be read");
 	}
 }
-function ic(e) {
+function oc(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3510,11 +3511,11 @@ function ic(e) {
 	}
 	return n;
 }
-function ac(e) {
-	return new M("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
+function sc(e) {
+	return new j("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/groups.ts
-var oc = 3, sc = 4, cc = class {
+var cc = 3, lc = 4, uc = class {
 	scene;
 	timeline;
 	mesh;
@@ -3526,16 +3527,16 @@ var oc = 3, sc = 4, cc = class {
 	open(e) {
 		let t = this.kept.get(e) ?? this.opened(e);
 		t.catch(() => this.kept.get(e) === t && this.kept.delete(e)), this.kept.delete(e), this.kept.set(e, t);
-		for (let [e] of this.kept) this.kept.size > oc && this.kept.delete(e);
+		for (let [e] of this.kept) this.kept.size > cc && this.kept.delete(e);
 		return t;
 	}
 	async begin() {
-		let e = this.placeOf(0), t = async (t) => new Uint8Array(await this.read(e, Math.min(t, e.length))), { head: n, at: r } = await pc(await t(sc + dc(await t(sc), e)), e), i = [
+		let e = this.placeOf(0), t = async (t) => new Uint8Array(await this.read(e, Math.min(t, e.length))), { head: n, at: r } = await hc(await t(lc + pc(await t(lc), e)), e), i = [
 			n.key("weights"),
 			n.key("mesh"),
 			n.key("motion"),
 			n.key("frames").at(0)
-		].reduce((e, { raw: t }) => e + fc(t), r);
+		].reduce((e, { raw: t }) => e + mc(t), r);
 		return this.build(0, await t(i), n, r, 1);
 	}
 	placeOf(e) {
@@ -3545,12 +3546,12 @@ var oc = 3, sc = 4, cc = class {
 	}
 	async opened(e) {
 		let t = this.placeOf(e), n = new Uint8Array(await this.read(t, t.length));
-		await uc(n, t);
-		let { head: r, at: i } = await pc(n, t);
+		await fc(n, t);
+		let { head: r, at: i } = await hc(n, t);
 		return this.build(e, n, r, i, t.frames);
 	}
 	build(e, t, n, r, i) {
-		let a = this.placeOf(e), o = mc(t, r, a), s = this.weightsOf(n, o), c = this.meshOf(n, o), l = hc(n, o, c, a), { first: u, frames: d } = a, f = gc(n, a, this.timeline.films.length, o, i);
+		let a = this.placeOf(e), o = gc(t, r, a), s = this.weightsOf(n, o), c = this.meshOf(n, o), l = _c(n, o, c, a), { first: u, frames: d } = a, f = vc(n, a, this.timeline.films.length, o, i);
 		return {
 			index: e,
 			first: u,
@@ -3567,13 +3568,13 @@ var oc = 3, sc = 4, cc = class {
 		if (!n.exists) return this.mesh;
 		if (this.scene.sheets) throw n.wrong("a mesh of its own, in a clip with sheets");
 		let r = W["mesh-2"].decode(t(n), n.where);
-		if (!r.indices.length) throw N(n.where, "a mesh without faces");
+		if (!r.indices.length) throw M(n.where, "a mesh without faces");
 		return r;
 	}
 	weightsOf(e, t) {
-		let n = this.scene.heldOut.filter((e) => !e).length, r = vc(e.key("weights"), this.scene.planes.length);
+		let n = this.scene.heldOut.filter((e) => !e).length, r = bc(e.key("weights"), this.scene.planes.length);
 		return eo(n, this.scene.planes.flatMap(({ bases: e }, i) => {
-			let a = r[i] && vc(r[i], e.length);
+			let a = r[i] && bc(r[i], e.length);
 			return e.map(({ count: e }, r) => {
 				let i = a[r];
 				return no(W["weights-1"].decode(t(i), i.where), n, e, i.where);
@@ -3583,40 +3584,40 @@ var oc = 3, sc = 4, cc = class {
 	scalesOf(e) {
 		let { planes: t } = this.scene;
 		return {
-			means: vc(e.key("means"), t.length).map((e, n) => _c(e, t[n].mean)),
-			bases: vc(e.key("bases"), t.length).flatMap((e, n) => {
+			means: bc(e.key("means"), t.length).map((e, n) => yc(e, t[n].mean)),
+			bases: bc(e.key("bases"), t.length).flatMap((e, n) => {
 				let { bases: r } = t[n];
-				return vc(e, r.length).map((e, t) => _c(e, r[t].pictures[0]));
+				return bc(e, r.length).map((e, t) => yc(e, r[t].pictures[0]));
 			})
 		};
 	}
 };
-function lc(e, { means: t, bases: n }) {
+function dc(e, { means: t, bases: n }) {
 	e.planes.forEach(({ mean: e }, n) => Object.assign(e, t[n])), J(e).forEach(({ pictures: [e] }, t) => e && Object.assign(e, n[t]));
 }
-async function uc(e, { sha256: t, file: n, where: r }) {
+async function fc(e, { sha256: t, file: n, where: r }) {
 	let i = globalThis.crypto?.subtle;
 	if (!i) return;
 	let a = new Uint8Array(await i.digest("SHA-256", e));
-	if (Array.from(a, (e) => e.toString(16).padStart(2, "0")).join("") !== t) throw N(n ?? r, "other bytes than its SHA-256 says");
+	if (Array.from(a, (e) => e.toString(16).padStart(2, "0")).join("") !== t) throw M(n ?? r, "other bytes than its SHA-256 says");
 }
-function dc(e, { where: t }) {
-	if (e.length < sc) throw N(t, "no head");
+function pc(e, { where: t }) {
+	if (e.length < lc) throw M(t, "no head");
 	return new DataView(e.buffer).getUint32(0, !0);
 }
-function fc(e) {
-	return typeof e == "number" ? e : Array.isArray(e) ? e.reduce((e, t) => e + fc(t), 0) : 0;
+function mc(e) {
+	return typeof e == "number" ? e : Array.isArray(e) ? e.reduce((e, t) => e + mc(t), 0) : 0;
 }
-async function pc(e, { where: t }) {
-	let n = sc + dc(e, { where: t });
-	if (n > e.length) throw N(t, "a head longer than the group");
-	let r = await be(e.subarray(sc, n), "deflate-raw", He, t);
+async function hc(e, { where: t }) {
+	let n = lc + pc(e, { where: t });
+	if (n > e.length) throw M(t, "a head longer than the group");
+	let r = await xe(e.subarray(lc, n), "deflate-raw", Ve, t);
 	return {
-		head: new G(rc(new TextDecoder("utf-8").decode(r), t), t),
+		head: new G(ac(new TextDecoder("utf-8").decode(r), t), t),
 		at: n
 	};
 }
-function mc(e, t, n) {
+function gc(e, t, n) {
 	let r = t;
 	return (t) => {
 		let i = r;
@@ -3624,29 +3625,29 @@ function mc(e, t, n) {
 		return e.subarray(i, r);
 	};
 }
-function hc(e, t, n, { frames: r }) {
+function _c(e, t, n, { frames: r }) {
 	let i = e.key("motion");
 	if (!i.exists) return null;
 	let a = W["motion-1"].decode(t(i), n, i.where);
 	if (a.frames !== r) throw i.wrong(`${a.frames} frames of ${r}`);
 	return a;
 }
-function gc(e, t, n, r, i) {
-	return vc(e.key("frames"), t.frames).slice(0, i).map((e) => vc(e, n).map((e) => r(e)));
+function vc(e, t, n, r, i) {
+	return bc(e.key("frames"), t.frames).slice(0, i).map((e) => bc(e, n).map((e) => r(e)));
 }
-function _c(e, { pieces: t, textures: n }) {
+function yc(e, { pieces: t, textures: n }) {
 	let r = e;
 	return {
 		scale: Yi(r.key("scale"), t, n),
 		zero: Yi(r.key("zero"), t, n)
 	};
 }
-function vc(e, t) {
+function bc(e, t) {
 	let n = e.items(t);
 	if (n.length !== t) throw e.wrong(`${t} entries are needed`);
 	return n;
 }
-var yc = 3, bc = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", xc = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform int first; // row of the picture with which the texture begins\nout vec4 stored;\nvoid main() {\n  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));\n}\n", Sc = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", Cc = `#version 300 es
+var xc = 3, Sc = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", Cc = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform int first; // row of the picture with which the texture begins\nout vec4 stored;\nvoid main() {\n  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));\n}\n", wc = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", Tc = `#version 300 es
 precision highp float;
 precision highp int;
 uniform highp sampler2D picture; // values, and whether they are of a chart
@@ -3656,7 +3657,7 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec2 own = texelFetch(picture, at, 0).rg;
   vec2 sum = vec2(own.r * own.g, own.g);
-  for (int far = 1; far <= ${yc} && sum.y == 0.0; far++) {
+  for (int far = 1; far <= ${xc} && sum.y == 0.0; far++) {
     for (int y = -far; y <= far; y++) {
       for (int x = -far; x <= far; x++) {
         vec2 near = texelFetch(picture, clamp(at + ivec2(x, y), ivec2(0), size - 1), 0).rg;
@@ -3666,38 +3667,39 @@ void main() {
   }
   stored = vec4(sum.y > 0.0 ? sum.x / sum.y : own.r);
 }
-`, wc = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
+`, Ec = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
 // eigenfield-three/src/parts.ts
-function Tc(e, t, n) {
+function Dc(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
 		0,
 		0
-	];
-	return e.planes.forEach((c, l) => {
-		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
-		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = Oc(c);
-		m && r.push({
-			stored: m,
-			grid: p,
+	], { words: c } = n;
+	return e.planes.forEach((l, u) => {
+		let { channels: d, bases: f } = l, p = e.colours.slice(i, i + d);
+		i += d;
+		let m = t.needs.means[u]?.size ?? [1, 1], h = t.means[u], g = c ? jc([l.mean]) : Ac(l);
+		h && r.push({
+			stored: h,
+			grid: m,
 			rectangle: [
 				0,
 				0,
 				1,
 				1
 			],
-			colours: f,
-			...h,
+			colours: p,
+			...g,
+			words: c,
 			basis: null
 		});
-		for (let { size: e, grid: i, corner: c, pictures: l, count: p } of d) {
-			let d = t.bases[a], m = t.ready[a++] ?? [], h = Math.min(p, n.usable);
-			if (h && d) {
-				let [t, a] = [c[0] / i[0], c[1] / i[1]];
+		for (let { size: e, grid: i, corner: l, pictures: u, count: m } of f) {
+			let f = t.bases[a], h = t.ready[a++] ?? [], g = Math.min(m, n.usable);
+			if (g && f) {
+				let [t, a] = [l[0] / i[0], l[1] / i[1]];
 				r.push({
-					stored: d,
+					stored: f,
 					grid: i,
 					rectangle: [
 						t,
@@ -3705,30 +3707,31 @@ function Tc(e, t, n) {
 						t + e[0] / i[0],
 						a + e[1] / i[1]
 					],
-					colours: f,
-					...kc(l, u, h, n.halves && Ki(l)),
+					colours: p,
+					...c ? jc(u) : Mc(u, d, g, n.halves && Ki(u)),
+					words: c,
 					basis: {
-						ready: m,
+						ready: h,
 						column: o,
 						group: s
 					}
 				});
 			}
-			o += p, s += h ? Io(h) : 0;
+			o += m, s += g ? Io(g) : 0;
 		}
 	}), r;
 }
-function Ec(e, t, n, r) {
-	Tc(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
+function Oc(e, t, n, r) {
+	Dc(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
 		scale: t,
 		bias: n
 	}));
 }
-function Dc({ planes: e, sheets: t }, { means: n, needs: r }) {
-	let i = n[e.length], a = r.means[e.length]?.size;
-	return !t || !i || !a ? null : {
-		stored: i,
-		grid: a,
+function kc({ planes: e, sheets: t }, { means: n, needs: r }, { words: i }) {
+	let a = n[e.length], o = r.means[e.length]?.size;
+	return !t || !a || !o ? null : {
+		stored: a,
+		grid: o,
 		rectangle: [
 			0,
 			0,
@@ -3740,11 +3743,12 @@ function Dc({ planes: e, sheets: t }, { means: n, needs: r }) {
 			0,
 			0
 		]],
-		...Oc(t.opacity),
+		...i ? jc([t.opacity.mean]) : Ac(t.opacity),
+		words: i,
 		basis: null
 	};
 }
-function Oc({ mean: e, channels: t, precision: n }) {
+function Ac({ mean: e, channels: t, precision: n }) {
 	let { scale: r, zero: i } = e, a = n ? 4 : 1 / Ji(e, Ki([e])), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
@@ -3755,7 +3759,24 @@ function Oc({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function kc(e, t, n, r) {
+function jc(e) {
+	let t = e.flatMap((e) => e.scale), n = e.flatMap((e) => e.zero);
+	return {
+		scale: Float32Array.from(t.flatMap((e) => [
+			255 * e,
+			65280 * e,
+			0,
+			0
+		])),
+		bias: Float32Array.from(t.flatMap((e, t) => [
+			-(n[t] ?? 0) * e,
+			0,
+			0,
+			0
+		]))
+	};
+}
+function Mc(e, t, n, r) {
 	let i = e.flatMap((e) => Array(e.textures).fill(Ji(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * Io(n), c = {
 		scale: new Float32Array(s),
 		bias: new Float32Array(s)
@@ -3767,7 +3788,7 @@ function kc(e, t, n, r) {
 	return c;
 }
 // eigenfield-three/src/player.ts
-var Ac = .25, jc = 100, Mc = 2, Nc = .25, Pc = .1, Fc = class extends f {
+var Nc = .25, Pc = 100, Fc = 2, Ic = .25, Lc = .1, Rc = class extends f {
 	timeline;
 	user;
 	first;
@@ -3866,7 +3887,7 @@ var Ac = .25, jc = 100, Mc = 2, Nc = .25, Pc = .1, Fc = class extends f {
 	}
 	update(e = performance.now()) {
 		if (this.disposed) return;
-		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, Ac);
+		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, Nc);
 		if (this.last = this.plays && this.goal === null ? e : null, this.goal === null && !this.plays) return;
 		this.goal === null ? (this.advance(t), this.sound?.follow(this.first + this.clock % this.frames / this.rate, this.pace)) : this.sound?.rest();
 		let n = this.ring.take(this.goal ?? Math.floor(this.clock));
@@ -3883,9 +3904,9 @@ var Ac = .25, jc = 100, Mc = 2, Nc = .25, Pc = .1, Fc = class extends f {
 	}
 	advance(e) {
 		let [t, n] = [this.clock, e * this.pace * this.rate], r = this.loop ? this.ring.reach : Math.min(this.ring.reach, this.end);
-		if (this.clock = Math.max(t, Math.min(t + n, r)), e > Pc) return;
+		if (this.clock = Math.max(t, Math.min(t + n, r)), e > Lc) return;
 		let { watched: i } = this;
-		i.seconds += e, i.due += n, this.ring.busy && (i.short += n - (this.clock - t)), i.seconds < Mc || (i.short > Nc * i.due && this.ring.leaveOut(), this.watch());
+		i.seconds += e, i.due += n, this.ring.busy && (i.short += n - (this.clock - t)), i.seconds < Fc || (i.short > Ic * i.due && this.ring.leaveOut(), this.watch());
 	}
 	watch() {
 		this.watched = {
@@ -3915,7 +3936,7 @@ var Ac = .25, jc = 100, Mc = 2, Nc = .25, Pc = .1, Fc = class extends f {
 		}, this.user.show(e), this.note(e), this.goal !== null && t !== this.goal && this.following === null ? this.preview() : this.goal !== null && (this.goal = null, this.clock = t, this.following === null ? this.settle() : this.begin(this.following)), this.dispatchEvent({ type: "frame" });
 	}
 	preview() {
-		this.ring.previewsFrom = this.goal === null ? Infinity : performance.now() + jc;
+		this.ring.previewsFrom = this.goal === null ? Infinity : performance.now() + Pc;
 	}
 	note({ films: e }) {
 		let t = [];
@@ -3940,48 +3961,48 @@ var Ac = .25, jc = 100, Mc = 2, Nc = .25, Pc = .1, Fc = class extends f {
 		let n = this.goal !== null && q(this.timeline, this.goal % this.frames);
 		n === !1 || t !== null && n !== t || (this.goal !== null && (this.clock = this.goal), this.goal = this.following = null, this.settle());
 	}
-}, Ic = 65535;
-function Lc(e, t) {
+}, zc = 65535;
+function Bc(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
-	if (!i) throw new M("damaged", "The proxy mesh has no triangles; make or download the file again.");
-	if (r.count !== n.count) throw N(t.uv.where, `${r.count} for ${n.count} vertices`);
+	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
+	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
 	for (let e = 0; e < n.count; e++) {
-		if (!(Math.max(Math.abs(n.getX(e)), Math.abs(n.getY(e)), Math.abs(n.getZ(e))) <= 1e30)) throw N(t.position.where, `vertex ${e} is not finite`);
-		if (!(Math.max(Math.abs(r.getX(e)), Math.abs(r.getY(e))) <= 1e30)) throw N(t.uv.where, `texture coordinates of vertex ${e} are not finite`);
+		if (!(Math.max(Math.abs(n.getX(e)), Math.abs(n.getY(e)), Math.abs(n.getZ(e))) <= 1e30)) throw M(t.position.where, `vertex ${e} is not finite`);
+		if (!(Math.max(Math.abs(r.getX(e)), Math.abs(r.getY(e))) <= 1e30)) throw M(t.uv.where, `texture coordinates of vertex ${e} are not finite`);
 	}
-	for (let e of i.array) if (e >= n.count) throw N(t.indices.where, `no vertex ${e}`);
+	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
 }
-async function Rc({ view: e, codec: t, where: n }, r) {
+async function Vc({ view: e, codec: t, where: n }, r) {
 	let i = t.decode(new Uint8Array(await r(e)), n);
-	if (!i.indices.length) throw N(n, "a mesh without faces");
+	if (!i.indices.length) throw M(n, "a mesh without faces");
 	return i;
 }
-function zc({ positions: n, uv: r, indices: i }) {
+function Hc({ positions: n, uv: r, indices: i }) {
 	let a = new t();
 	a.setAttribute("position", new e(n.slice(), 3)), a.setAttribute("uv", new e(r, 2));
-	let o = n.length / 3 <= Ic;
+	let o = n.length / 3 <= zc;
 	return a.setIndex(new e(o ? Uint16Array.from(i) : i, 1)), a;
 }
-function Bc(e) {
+function Uc(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/footprint.ts
-var Vc = 256;
-function Hc(e, t, n) {
+var Wc = 256;
+function Gc(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / Vc)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / Wc)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Uc(t, i.getX(e), i.getY(e), i.getZ(e))), l = Wc(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Kc(t, i.getX(e), i.getY(e), i.getZ(e))), l = qc(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = Wc(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = qc(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -3991,7 +4012,7 @@ function Hc(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function Uc({ K: e, R: t, t: n }, r, i, a) {
+function Kc({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -3999,12 +4020,12 @@ function Uc({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function Wc(e) {
+function qc(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/sheet-stack.ts
-var Gc = "sheets", Kc = 16, qc = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Jc = `${As}${js}
+var Jc = "sheets", Yc = 16, Xc = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Zc = `${Ms}${Ns}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -4029,9 +4050,9 @@ void main() {
   gl_FragDepth = depth;
   fragment = colour;
 }
-`, Yc = new ie(), Xc = class {
+`, Qc = new ae(), $c = class {
 	material;
-	scene = new A();
+	scene = new k();
 	camera = new n();
 	sheets = new S();
 	depth;
@@ -4039,16 +4060,16 @@ void main() {
 	everywhere = new t();
 	target = null;
 	constructor(t) {
-		this.material = t, this.depth = zs(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
+		this.material = t, this.depth = Vs(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
 			let { materialIndex: o = 0 } = a, s = this.sheets.material.length / 2, c = s - 1 - (o >> 1);
 			e.getContext().depthRange(c / s, (c + 1) / s);
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
 		let { shown: n, photograph: r, toPhotograph: i } = t.uniforms;
-		this.screen = new k({
-			name: Gc,
+		this.screen = new O({
+			name: Jc,
 			glslVersion: h,
-			vertexShader: qc,
-			fragmentShader: Jc,
+			vertexShader: Xc,
+			fragmentShader: Zc,
 			uniforms: {
 				shown: n,
 				photograph: r,
@@ -4057,12 +4078,12 @@ void main() {
 				solid: { value: null },
 				nearest: { value: null },
 				slices: { value: 1 },
-				corner: { value: new re() },
-				size: { value: new re() },
+				corner: { value: new ie() },
+				size: { value: new ie() },
 				toPlace: { value: new x() }
 			},
 			transparent: !0,
-			...Is
+			...Rs
 		});
 		let a = new Float32Array([
 			-1,
@@ -4078,7 +4099,7 @@ void main() {
 		this.everywhere.setAttribute("position", new e(a, 3));
 	}
 	get bytes() {
-		return this.target ? Kc * this.target.width * this.target.height : 0;
+		return this.target ? Yc * this.target.width * this.target.height : 0;
 	}
 	setGeometry(e, t) {
 		e.clearGroups();
@@ -4096,7 +4117,7 @@ void main() {
 	attach(e, t) {
 		for (let t of [e.material].flat()) t.visible = !1;
 		let n = new S(this.everywhere, this.screen);
-		n.name = Gc, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
+		n.name = Jc, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
 			t(n, i), this.draw(n, i, e);
 		}, e.add(n);
 	}
@@ -4107,21 +4128,21 @@ void main() {
 		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
 	}
 	draw(e, t, n) {
-		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Yc);
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Qc);
 		if (!a || !o) return;
-		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Zc(a, o));
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = el(a, o));
 		let { target: s } = this;
-		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), ms(e, t, () => {
+		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), gs(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
 		}), e.getContext().depthRange(0, 1);
 		let { uniforms: c } = this.screen;
 		this.set("sheets", s.textures[0]), this.set("solid", s.textures[1]), this.set("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
 	}
 };
-function Zc(e, t) {
-	let n = new l(e, t, ne);
+function el(e, t) {
+	let n = new l(e, t, re);
 	n.format = c;
-	let r = new ae(e, t, {
+	let r = new oe(e, t, {
 		count: 2,
 		type: g,
 		stencilBuffer: !0,
@@ -4129,10 +4150,10 @@ function Zc(e, t) {
 		minFilter: w,
 		magFilter: w
 	}), [, i] = r.textures;
-	return i && (i.type = te), r;
+	return i && (i.type = ne), r;
 }
 // eigenfield-three/src/surface.ts
-var Qc = class {
+var tl = class {
 	meshes;
 	faces;
 	reference;
@@ -4148,7 +4169,7 @@ var Qc = class {
 		if (!i) throw Error("a field needs a mesh");
 		this.mesh = i;
 		let a = [i.material].flat().some((e) => e.side !== m);
-		this.material = Rs(a, t !== null), this.stack = t && new Xc(this.material);
+		this.material = Bs(a, t !== null), this.stack = t && new $c(this.material);
 		for (let t of e) {
 			let e = (e, n) => r(e, n, t);
 			this.stack ? this.stack.attach(t, e) : (t.material = this.material, t.onBeforeRender = (t, n, r) => e(t, r));
@@ -4175,52 +4196,59 @@ var Qc = class {
 		e.boundingBox = e.boundingSphere = null, this.faces = t, this.version += 1, n !== e && (this.laid = this.version), this.show(t);
 	}
 	show(e) {
-		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? Hc(this.geometry, this.reference, [1, 1]) : 0;
+		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? Gc(this.geometry, this.reference, [1, 1]) : 0;
 	}
 	dispose() {
 		this.stack?.dispose(), this.material.dispose(), this.geometry.dispose();
 	}
 };
 // eigenfield-three/src/gpu.ts
-function $c(e) {
+function nl(e) {
 	let t = e.getContext();
-	if (!(t instanceof WebGL2RenderingContext)) throw new M("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
+	if (!(t instanceof WebGL2RenderingContext)) throw new j("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
 	if ((t.getExtension("EXT_color_buffer_float") ?? t.getExtension("EXT_color_buffer_half_float")) || t.isContextLost()) return t;
-	throw new M("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
+	throw new j("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
 }
-function el(e, t) {
+function rl(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function tl(e, { components: t, halves: n }) {
+function il(e, { components: t, halves: n }) {
 	return t > 2 ? n ? e.RGBA16F : e.RGBA8 : t > 1 ? n ? e.RG16F : e.RG8 : n ? e.R16F : e.R8;
 }
-function nl(e, [t, n], r, i, a) {
-	return al(e, e.TEXTURE_2D_ARRAY, () => {
-		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, tl(e, a), t, n, r);
+function al(e, [t, n], r, i, a) {
+	return ll(e, e.TEXTURE_2D_ARRAY, () => {
+		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, il(e, a), t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function rl(e, t, n, r) {
+function ol(e, t, n, r) {
 	let { width: i, height: a } = n, o = r > 2 ? e.RGBA : r > 1 ? e.RG : e.RED;
-	ol(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
+	ul(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
 }
-function il(e, [t, n], r) {
-	return al(e, e.TEXTURE_2D, () => {
-		e.texStorage2D(e.TEXTURE_2D, 1, tl(e, r), t, n);
+function sl(e, t, n, r) {
+	ul(e, e.TEXTURE_2D_ARRAY, t, () => {
+		e.pixelStorei(e.UNPACK_ALIGNMENT, 1), r.forEach(({ data: t, width: r, height: i, stride: a }, o) => {
+			e.pixelStorei(e.UNPACK_ROW_LENGTH, a / 2), e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, n + o, r, i, 1, e.RG, e.UNSIGNED_BYTE, t);
+		});
+	});
+}
+function cl(e, [t, n], r) {
+	return ll(e, e.TEXTURE_2D, () => {
+		e.texStorage2D(e.TEXTURE_2D, 1, il(e, r), t, n);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D, t, e.NEAREST);
 	});
 }
-function al(e, t, n) {
+function ll(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return ol(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return ul(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function ol(e, t, n, r) {
+function ul(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -4234,7 +4262,7 @@ function ol(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-function sl(e, t, n) {
+function dl(e, t, n) {
 	let r = e.createProgram();
 	for (let [i, a] of [[e.VERTEX_SHADER, t], [e.FRAGMENT_SHADER, n]]) {
 		let t = e.createShader(i);
@@ -4242,7 +4270,7 @@ function sl(e, t, n) {
 	}
 	return e.linkProgram(r), r;
 }
-function cl(e, t, n, r) {
+function fl(e, t, n, r) {
 	if (!n) {
 		r();
 		return;
@@ -4250,9 +4278,9 @@ function cl(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), ol(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), ul(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function ll(e, t) {
+function pl(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -4267,13 +4295,13 @@ function ll(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r && e.isProgram(r) ? r : null), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/charts.ts
-function ul(e, t) {
-	let n = sl(e, ...wc), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
+function ml(e, t) {
+	let n = dl(e, ...Ec), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
 		let { index: o } = t, s = t.getAttribute("uv"), c = Float32Array.from({ length: 2 * (o?.count ?? 0) }, (e, t) => {
 			let n = o?.getX(t >> 1) ?? 0;
 			return t % 2 ? s.getY(n) : s.getX(n);
 		}), [l, u] = [e.createVertexArray(), e.createBuffer()], d = e.getParameter(e.ARRAY_BUFFER_BINDING);
-		ll(e, () => {
+		pl(e, () => {
 			e.useProgram(n), e.bindVertexArray(l), e.bindBuffer(e.ARRAY_BUFFER, u), e.bufferData(e.ARRAY_BUFFER, c, e.STREAM_DRAW);
 			let t = e.getAttribLocation(n, "uv");
 			e.enableVertexAttribArray(t), e.vertexAttribPointer(t, 2, e.FLOAT, !1, 0, 0), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, a, 0), e.viewport(0, 0, ...i), e.colorMask(!0, !0, !0, !0), e.drawArrays(e.TRIANGLES, 0, c.length / 2);
@@ -4284,7 +4312,7 @@ function ul(e, t) {
 			let { geometry: r } = t;
 			if (i?.grid.join() !== n.join() || i.geometry !== r) {
 				e.deleteTexture(i?.texture ?? null);
-				let t = il(e, n, {
+				let t = cl(e, n, {
 					components: 1,
 					halves: !1
 				});
@@ -4302,7 +4330,7 @@ function ul(e, t) {
 	};
 }
 // eigenfield-three/src/packing.ts
-var dl = [
+var hl = [
 	"precisions",
 	"covered",
 	"factors",
@@ -4313,59 +4341,45 @@ var dl = [
 	"nodes",
 	"zero"
 ];
-function fl(e, t, n, r) {
+function gl(e, t, n, r) {
 	let [i, a, o] = [
-		sl(e, bc, xc),
-		sl(e, bc, Sc),
-		sl(e, bc, Cc)
-	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && ul(e, r), u = !1, d = (t) => Object.fromEntries(dl.map((n) => [n, e.getUniformLocation(t, n)])), [f, p] = [d(i), d(a)], m = (t, n, r, i, a, o, s) => {
+		dl(e, Sc, Cc),
+		dl(e, Sc, wc),
+		dl(e, Sc, Tc)
+	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && ml(e, r), u = (t) => Object.fromEntries(hl.map((n) => [n, e.getUniformLocation(t, n)])), [d, f] = [u(i), u(a)], p = (t, n, r, i, a, o, s) => {
 		let { picture: c, rows: l } = n, { size: u, corner: d, unit: f, codes: p } = i;
-		pl(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
+		_l(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
 			0,
 			1,
 			2,
 			3
 		].map((e) => e === r ? p * f : 0)), e.uniform2i(t.size, c.width, l), e.uniform2i(t.made, ...u), e.uniform2i(t.corner, ...d), e.uniform1i(t.first, a), e.viewport(0, o, u[0], s), e.drawArrays(e.TRIANGLES, 0, 3);
-	}, h = (t, n) => {
+	}, m = (t, n) => {
 		e.bindFramebuffer(e.DRAW_FRAMEBUFFER, s), n === null ? e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, t, 0) : e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, t, 0, n);
-	}, g = (t, { layer: n, component: r }) => {
-		h(t, n), e.colorMask(r === 0, r === 1, r === 2, r === 3);
-	}, _ = (r, s, d, _, v, y) => {
-		let { picture: b, row: x, rows: S } = r, [C, w] = v.size, T = C < b.width || w < S ? t.smaller : null, E = Math.max(1, Math.floor((T ? n - 2 : n) * w / S)), D = u && s === t.codes, O = (T && l?.covered(v.grid)) ?? null;
-		cl(e, 0, D ? null : s, () => {
-			for (let t = 0; t < w; t += E) {
-				let n = Math.min(E, w - t), o = Math.floor(t * S / w), s = Math.ceil((t + n) * S / w);
-				pl(b) ? hl(e, b, x + o, s - o) : ml(e, b, x + o, s - o);
-				let l = () => {
-					let s = T || y ? p : f;
-					e.useProgram(T || y ? a : i), e.bindVertexArray(c), e.uniform1i(s.precisions, +!!y), e.uniform1i(s.covered, T ? 2 : 0), e.uniform2i(s.nodes, y?.precision.width ?? 0, y?.precision.height ?? 0), e.uniform1f(s.zero, y?.zero ?? 0), T ? (h(T, null), e.colorMask(!0, !0, !0, !0)) : g(d, _), m(s, r, _.channel, v, o, t, n);
-				};
-				cl(e, 2, O, () => {
-					D ? l() : ll(e, l);
-				});
+	}, h = (t, { layer: n, component: r }) => {
+		m(t, n), e.colorMask(r === 0, r === 1, r === 2, r === 3);
+	}, g = (r, s, u, g, _, v) => {
+		let { picture: y, row: b, rows: x } = r, [S, C] = _.size, w = S < y.width || C < x ? t.smaller : null, T = Math.max(1, Math.floor((w ? n - 2 : n) * C / x)), E = (w && l?.covered(_.grid)) ?? null;
+		fl(e, 0, s, () => {
+			for (let t = 0; t < C; t += T) {
+				let n = Math.min(T, C - t), o = Math.floor(t * x / C), s = Math.ceil((t + n) * x / C);
+				_l(y) ? yl(e, y, b + o, s - o) : vl(e, y, b + o, s - o), fl(e, 2, E, () => pl(e, () => {
+					let s = w || v ? f : d;
+					e.useProgram(w || v ? a : i), e.bindVertexArray(c), e.uniform1i(s.precisions, +!!v), e.uniform1i(s.covered, w ? 2 : 0), e.uniform2i(s.nodes, v?.precision.width ?? 0, v?.precision.height ?? 0), e.uniform1f(s.zero, v?.zero ?? 0), w ? (m(w, null), e.colorMask(!0, !0, !0, !0)) : h(u, g), p(s, r, g.channel, _, o, t, n);
+				}));
 			}
-		}), T && cl(e, 0, T, () => ll(e, () => {
-			e.useProgram(o), e.bindVertexArray(c), e.uniform2i(e.getUniformLocation(o, "size"), C, w), g(d, _), e.viewport(0, 0, C, w), e.drawArrays(e.TRIANGLES, 0, 3);
+		}), w && fl(e, 0, w, () => pl(e, () => {
+			e.useProgram(o), e.bindVertexArray(c), e.uniform2i(e.getUniformLocation(o, "size"), S, C), h(u, g), e.viewport(0, 0, S, C), e.drawArrays(e.TRIANGLES, 0, 3);
 		}));
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let s = pl(n.picture) ? t.codes : t.picture;
+			let s = _l(n.picture) ? t.codes : t.picture;
 			if (!s) return;
-			let c = () => i.forEach((e) => _(n, s, r, e, a, o));
-			o ? cl(e, 1, t.precision, () => {
-				ml(e, o.precision, 0, o.precision.height), c();
+			let c = () => i.forEach((e) => g(n, s, r, e, a, o));
+			o ? fl(e, 1, t.precision, () => {
+				vl(e, o.precision, 0, o.precision.height), c();
 			}) : c();
-		},
-		together(n) {
-			cl(e, 0, t.codes, () => ll(e, () => {
-				u = !0;
-				try {
-					n();
-				} finally {
-					u = !1;
-				}
-			}));
 		},
 		free() {
 			for (let n of Object.values(t)) e.deleteTexture(n);
@@ -4378,17 +4392,17 @@ function fl(e, t, n, r) {
 		}
 	};
 }
-function pl(e) {
+function _l(e) {
 	return "data" in e;
 }
-function ml(e, t, n, r) {
+function vl(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function hl(e, { data: t, width: n, stride: r }, i, a) {
+function yl(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
 // eigenfield-three/src/textures.ts
-var gl = class {
+var bl = class {
 	parts;
 	source;
 	surface;
@@ -4426,13 +4440,14 @@ var gl = class {
 				tenBits: Ki([t]),
 				opacity: r
 			};
-		});
+		}), l = Aa(i).some(({ mean: e }) => e.part), u = Sl(n.geometry);
 		this.needs = {
 			atlas: a.size,
 			means: c,
 			bases: s,
+			films: l,
 			rays: a.facesPlane,
-			geometry: _l(n.geometry)
+			geometry: u
 		}, this.means = c.map(() => new p()), this.bases = s.map(() => new p()), this.ready = s.map(({ count: e }) => Array(e).fill(!1)), this.stillVersions = c.map(() => 0);
 	}
 	get hasMeans() {
@@ -4446,7 +4461,7 @@ var gl = class {
 		return Math.min(t, ...e);
 	}
 	get bytes() {
-		return this.plan ? this.plan.bytes - this.needs.geometry + _l(this.surface.geometry) : 0;
+		return this.plan ? this.plan.bytes - this.needs.geometry + Sl(this.surface.geometry) : 0;
 	}
 	get attached() {
 		return this.renderer !== null || this.disposed;
@@ -4476,7 +4491,7 @@ var gl = class {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		let n = $c(e);
+		let n = nl(e);
 		if (n.isContextLost()) return;
 		let { packer: r, plan: i } = this.makeRoom(n);
 		this.plan = i, this.packer = r, this.onPlan(i), await this.source.fill(this.filling(n, i, t)), t.aborted || this.onComplete();
@@ -4488,11 +4503,8 @@ var gl = class {
 			putMean: (r, i) => {
 				n.aborted || this.putMean(e, t, r, i);
 			},
-			putTextures: (e, r, i, a) => {
-				n.aborted || this.putTextures(t, e, r, i, a);
-			},
-			together: (e) => {
-				n.aborted || this.packer?.together(e);
+			putTextures: (r, i, a, o) => {
+				n.aborted || this.putTextures(e, t, r, i, a, o);
 			},
 			announce: () => {
 				n.aborted || this.onTexture();
@@ -4502,36 +4514,38 @@ var gl = class {
 			}
 		};
 	}
-	putTextures(e, t, n, r, i) {
-		let { usable: a, scaleDown: o, halves: s } = e, [c, l, u] = [
-			this.bases[t]?.sourceTexture,
-			this.ready[t],
-			this.layout[t]
+	putTextures(e, t, n, r, i, a) {
+		let { usable: o, scaleDown: s, halves: c, words: l } = t, [u, d, f] = [
+			this.bases[n]?.sourceTexture,
+			this.ready[n],
+			this.layout[n]
 		];
-		if (!(c instanceof WebGLTexture) || !l || !u) return;
-		let { size: d, grid: f, corner: p, channels: m, tenBits: h } = u, g = Ji(i, s && h), _ = {
-			size: X(d, o),
-			grid: f,
-			corner: p,
-			unit: g,
-			codes: 255 * qi(i)
+		if (!(u instanceof WebGLTexture) || !d || !f) return;
+		let { size: p, grid: m, corner: h, channels: g, tenBits: _ } = f;
+		l && sl(e, u, g * r, xl(i.slice(0, g * (o - r))));
+		let v = Ji(a, c && _), y = {
+			size: X(p, s),
+			grid: m,
+			corner: h,
+			unit: v,
+			codes: 255 * qi(a)
 		};
-		for (let e = n; e < Math.min(n + i.textures, a); e++) {
-			let t = r.slice((e - n) * i.pieces, (e - n + 1) * i.pieces), a = m * Math.floor(e / 4);
-			this.put(t, c, m, _, (t) => ({
-				layer: a + t,
+		for (let e = r; e < Math.min(r + a.textures, o); e++) {
+			let t = i.slice((e - r) * a.pieces, (e - r + 1) * a.pieces), n = g * Math.floor(e / 4);
+			l || this.put(t, u, g, y, (t) => ({
+				layer: n + t,
 				component: e % 4
-			})), l[e] = !0;
+			})), d[e] = !0;
 		}
 		this.version += 1;
 	}
 	putMean(e, t, n, { pieces: r, precision: i }) {
 		let [a, o] = [this.means[n]?.sourceTexture, Aa(this.parts.scene)[n]], { size: s, tenBits: c } = this.needs.means[n] ?? {};
 		if (!(a instanceof WebGLTexture) || !o || !s) return;
-		this.stillVersions[n] = this.version += 1;
+		if (this.stillVersions[n] = this.version += 1, t.words) return sl(e, a, 0, xl(r));
 		let { mean: l, channels: u } = o, d = X(s, t.meanDown), [f] = r;
 		if (f && r.length === 1 && "close" in f.picture && !c && d.join() === s.join()) {
-			rl(e, a, f.picture, u);
+			ol(e, a, f.picture, u);
 			return;
 		}
 		let p = {
@@ -4565,48 +4579,62 @@ var gl = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs;
-		this.needs.geometry = _l(this.surface.geometry);
+		this.needs.geometry = Sl(this.surface.geometry);
 		let r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
 		for (let i = this.options.memory ?? jo();; i /= 2) {
-			let a = zo(this.needs, el(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l } = a, u = o !== s, d = [...t.map(({ size: t, channels: n, tenBits: r }) => nl(e, X(t, o), Po(n), !1, {
-				components: n,
-				halves: r
-			})), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
+			let a = Vo(this.needs, rl(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l, words: u } = a, d = o !== s, f = [...t.map(({ size: t, channels: n, tenBits: r }) => {
+				if (u) return al(e, t, n, !1, To);
+				let i = {
+					components: n,
+					halves: r
+				};
+				return al(e, X(t, o), Po(n), !1, i);
+			}), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return nl(e, a ? X(t, s) : [1, 1], a ? Fo(a, n) : 1, u, {
+				return u && a ? al(e, t, n * a, !1, To) : al(e, a ? X(t, s) : [1, 1], a ? Fo(a, n) : 1, d, {
 					components: Math.max(1, a),
 					halves: l && i
 				});
-			})], f = Ho(this.needs, a, i), [p, m, h] = [
-				f.picture,
-				f.codes,
-				f.smaller
-			].map((t) => t ? il(e, t.size, t.format) : null), g = il(e, Uo(r), wo);
-			if (p && g && (m || !f.codes) && (h || !f.smaller) && !d.includes(null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = d[t] ?? null), {
-				packer: fl(e, {
-					picture: p,
-					codes: m ?? null,
-					precision: g,
-					smaller: h ?? null
-				}, f.picture.size[1], this.surface),
+			})], p = () => {
+				[...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = f[t] ?? null);
+			};
+			if (u && !f.includes(null)) return p(), {
+				packer: null,
+				plan: a
+			};
+			let m = Wo(this.needs, a, i), [h, g, _] = [
+				m.picture,
+				m.codes,
+				m.smaller
+			].map((t) => t ? cl(e, t.size, t.format) : null), v = cl(e, Go(r), wo);
+			if (h && v && (g || !m.codes) && (_ || !m.smaller) && !f.includes(null)) return p(), {
+				packer: gl(e, {
+					picture: h,
+					codes: g ?? null,
+					precision: v,
+					smaller: _ ?? null
+				}, m.picture.size[1], this.surface),
 				plan: a
 			};
 			for (let t of [
-				...d,
-				p,
-				m,
+				...f,
 				h,
-				g
+				g,
+				_,
+				v
 			]) e.deleteTexture(t ?? null);
-			if (!c) throw new M("unsupported", "The graphics memory is full; close other pages and try again.");
+			if (!c) throw new j("unsupported", "The graphics memory is full; close other pages and try again.");
 		}
 	}
 };
-function _l({ attributes: e, index: t }) {
+function xl(e) {
+	return e.map(({ picture: e }) => e);
+}
+function Sl({ attributes: e, index: t }) {
 	return Object.values(e).reduce((e, t) => e + t.array.byteLength, 0) + (t?.array.byteLength ?? 0);
 }
 // eigenfield-three/src/field.ts
-var vl = 1.5, yl = .001, bl = class extends f {
+var Cl = 1.5, wl = .001, Tl = class extends f {
 	parts;
 	source;
 	mesh;
@@ -4643,7 +4671,7 @@ var vl = 1.5, yl = .001, bl = class extends f {
 	constructor(e, t, n = {}) {
 		super(), this.parts = e, this.source = t;
 		let { scene: r, info: i } = e, a = r.sheets?.faces ?? null;
-		this.surface = new Qc(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = ro(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip && this.shape(e.clip.group, 0, e.clip.mesh, !1), this.textures = new gl(e, t, this.surface, n), this.complete = new Promise((e, t) => {
+		this.surface = new tl(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = ro(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip && this.shape(e.clip.group, 0, e.clip.mesh, !1), this.textures = new bl(e, t, this.surface, n), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0), this.listen(), n.renderer && this.textures.attach(n.renderer);
 	}
@@ -4687,44 +4715,44 @@ var vl = 1.5, yl = .001, bl = class extends f {
 		this.textures.onPlan = (e) => {
 			let { scene: t } = this.parts;
 			this.freeComposers(), this.summed = {
-				parts: Tc(t, this.textures, e),
-				opacity: Dc(t, this.textures)
+				parts: Dc(t, this.textures, e),
+				opacity: kc(t, this.textures, e)
 			}, e.limitation && queueMicrotask(() => this.dispatchEvent({ type: "limited" }));
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return vl * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
+		return Cl * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
 	}
 	weightsOf(e) {
 		let { scene: t, info: n, weights: r } = this.parts;
-		return new ws(n, J(t).map(({ count: e }) => e), e, r);
+		return new Es(n, J(t).map(({ count: e }) => e), e, r);
 	}
 	makePlayer({ timeline: e, ring: t, sound: n }) {
-		return new Fc(e, t, {
+		return new Rc(e, t, {
 			show: (e) => this.showFrame(e),
 			failed: (e) => this.dispatchEvent({
 				type: "error",
-				error: ue(e)
+				error: de(e)
 			})
 		}, n);
 	}
 	showFrame({ number: e, group: t, films: n }) {
-		this.group && this.shape(t, e - t.first, this.group.mesh, this.group.motion !== null), t !== this.group && this.enter(t), this.plain = n.includes(null), this.source instanceof qs && this.source.show(n);
+		this.group && this.shape(t, e - t.first, this.group.mesh, this.group.motion !== null), t !== this.group && this.enter(t), this.plain = n.includes(null), this.source instanceof Ys && this.source.show(n);
 	}
 	shape({ mesh: e, motion: t }, n, r, i) {
 		if (this.surface.geometry !== this.moved || e === r && !t && !i) return;
-		let a = e === r ? this.moved : zc(e), o = a.getAttribute("position");
+		let a = e === r ? this.moved : Hc(e), o = a.getAttribute("position");
 		t ? t.place(n, o.array) : o.copyArray(e.positions), o.needsUpdate = !0, this.moved = a, this.surface.setGeometry(a);
 	}
 	enter(e) {
 		let { scene: t } = this.parts, { plan: n } = this.textures;
-		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), lc(t, e), n && Ec(this.summed.parts, t, this.textures, n);
+		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), dc(t, e), n && Oc(this.summed.parts, t, this.textures, n);
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = Cl(t, n), [i, a] = lo(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
+		let r = Ol(t, n), [i, a] = lo(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
 		this.setView(), this.setExposure(o, [i, a]);
-		let u = Es[this.filter];
+		let u = Os[this.filter];
 		l.defines.BICUBIC !== u && (l.defines.BICUBIC = u, l.needsUpdate = !0), l.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
@@ -4733,7 +4761,7 @@ var vl = 1.5, yl = .001, bl = class extends f {
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
 		if (!s) {
 			let { parts: e, opacity: t } = this.summed;
-			s = new gs(i, e, t, o, this.coarser > 1, this.surface, a), this.composers.set(o, s);
+			s = new vs(i, e, t, o, this.coarser > 1, this.surface, a), this.composers.set(o, s);
 		}
 		s.compose(e, t, n);
 		let { composed: c, finest: l } = this.surface.material.uniforms;
@@ -4744,15 +4772,15 @@ var vl = 1.5, yl = .001, bl = class extends f {
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.surface.material.uniforms.shown.value, r = n === Ds.eigen ? this.shownEigen : null;
+		let n = this.surface.material.uniforms.shown.value, r = n === ks.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			opacity: this.textures.opacityVersion,
 			only: r,
-			count: n === Ds.mean || this.plain ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === ks.mean || this.plain ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && ss(this.info.viewPlane, t),
+			eye: t && ls(this.info.viewPlane, t),
 			places: t ? this.surface.version : this.coarser > 1 ? this.surface.laid : 0,
 			maps: t && this.weights.maps(this.mixing, this.usable)
 		};
@@ -4776,9 +4804,9 @@ var vl = 1.5, yl = .001, bl = class extends f {
 	}
 	setView() {
 		let { uniforms: e } = this.surface.material, t = this.showsErrors, n = this.view === "error" && !t ? "picture" : this.view, r = this.shownEigen;
-		e.shown.value = Ds[n === "eigen" && (this.plain || r >= this.loaded) ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
+		e.shown.value = ks[n === "eigen" && (this.plain || r >= this.loaded) ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
 		let i = t && this.info.cameras[this.camera ?? 0];
-		i && this.photograph && Bs(e, i, this.photograph);
+		i && this.photograph && Hs(e, i, this.photograph);
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -4791,29 +4819,29 @@ var vl = 1.5, yl = .001, bl = class extends f {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= yl * Math.max(...r);
+		return Math.abs(i) <= wl * Math.max(...r);
 	}
 	fail(e) {
-		if (wl(e)) return;
-		let t = ue(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
+		if (kl(e)) return;
+		let t = de(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
 		this.dispatchEvent({
 			type: "error",
-			error: new M(t.code, r, t.where)
+			error: new j(t.code, r, t.where)
 		});
 	}
-}, xl = new x(), Sl = new j();
-function Cl(e, t) {
-	return Sl.setFromMatrixPosition(e.matrixWorld).applyMatrix4(xl.copy(t.matrixWorld).invert()), [
-		Sl.x,
-		Sl.y,
-		Sl.z
+}, El = new x(), Dl = new A();
+function Ol(e, t) {
+	return Dl.setFromMatrixPosition(e.matrixWorld).applyMatrix4(El.copy(t.matrixWorld).invert()), [
+		Dl.x,
+		Dl.y,
+		Dl.z
 	];
 }
-function wl(e) {
+function kl(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var Tl = class {
+var Al = class {
 	received = 0;
 	onPush = () => void 0;
 	chunks = [];
@@ -4845,7 +4873,7 @@ var Tl = class {
 	}
 	settle() {
 		let e = [];
-		for (let t of this.waiters) t.to <= this.received ? t.resolve(this.copy(t.from, t.to)) : this.broken ? t.reject(this.broken.reason) : this.ended ? t.reject(ce(this.received, t.to)) : e.push(t);
+		for (let t of this.waiters) t.to <= this.received ? t.resolve(this.copy(t.from, t.to)) : this.broken ? t.reject(this.broken.reason) : this.ended ? t.reject(le(this.received, t.to)) : e.push(t);
 		this.waiters = e;
 	}
 	copy(e, t) {
@@ -4858,7 +4886,7 @@ var Tl = class {
 		return n.buffer;
 	}
 };
-async function El(e, t, n) {
+async function jl(e, t, n) {
 	let r = e.getReader();
 	for (n.addEventListener("abort", () => void r.cancel().catch(() => void 0));;) {
 		let { done: e, value: n } = await r.read();
@@ -4868,7 +4896,7 @@ async function El(e, t, n) {
 	n.throwIfAborted(), t.end();
 }
 // eigenfield-three/src/ranges.ts
-var Dl = 2 ** 20, Ol = 2 ** 25, kl = 3, Al = 500, jl = class {
+var Ml = 2 ** 20, Nl = 2 ** 25, Pl = 3, Fl = 500, Il = class {
 	source;
 	arrival;
 	length;
@@ -4882,20 +4910,20 @@ var Dl = 2 ** 20, Ol = 2 ** 25, kl = 3, Al = 500, jl = class {
 	}
 	async read(e, t) {
 		let { arrival: n } = this;
-		if (t <= n.received || !this.begun || !this.parted && e <= n.received + Dl) {
+		if (t <= n.received || !this.begun || !this.parted && e <= n.received + Ml) {
 			let r = await n.read(e, t).catch((e) => {
-				if (this.signal.aborted || !(this.parted || this.begun && Nl(e))) throw e;
+				if (this.signal.aborted || !(this.parted || this.begun && Rl(e))) throw e;
 			});
 			if (this.begun || this.limit(), r) return r;
 		}
 		if (this.giveUp(), this.source instanceof Blob) return this.slice(this.source, e, t);
 		let r = this.source;
-		return Ml(this.signal, () => this.whole?.read(e, t) ?? this.fetch(r, e, t), () => this.whole === null);
+		return Ll(this.signal, () => this.whole?.read(e, t) ?? this.fetch(r, e, t), () => this.whole === null);
 	}
 	limit() {
 		let { arrival: e } = this;
 		this.begun = !0, e.onPush = () => {
-			e.received >= Ol && e.received < this.length && this.giveUp();
+			e.received >= Nl && e.received < this.length && this.giveUp();
 		}, e.onPush();
 	}
 	giveUp() {
@@ -4903,7 +4931,7 @@ var Dl = 2 ** 20, Ol = 2 ** 25, kl = 3, Al = 500, jl = class {
 	}
 	async slice(e, t, n) {
 		let r = await e.slice(t, n).arrayBuffer();
-		if (r.byteLength < n - t) throw ce(t + r.byteLength, n);
+		if (r.byteLength < n - t) throw le(t + r.byteLength, n);
 		return r;
 	}
 	async fetch(e, t, n) {
@@ -4922,34 +4950,34 @@ var Dl = 2 ** 20, Ol = 2 ** 25, kl = 3, Al = 500, jl = class {
 		return a;
 	}
 	receive(e) {
-		let t = this.whole = new Tl();
-		return El(e, t, this.signal).catch((e) => t.fail(this.signal.aborted ? e : this.broken(t.received, e))), t;
+		let t = this.whole = new Al();
+		return jl(e, t, this.signal).catch((e) => t.fail(this.signal.aborted ? e : this.broken(t.received, e))), t;
 	}
 	broken(e, t) {
-		return new M("network", `The connection broke at byte ${e} of ${this.length} of the clip; it is tried again when it plays on.`, String(e), { cause: t });
+		return new j("network", `The connection broke at byte ${e} of ${this.length} of the clip; it is tried again when it plays on.`, String(e), { cause: t });
 	}
 };
-async function Ml(e, t, n = () => !0) {
+async function Ll(e, t, n = () => !0) {
 	for (let r = 1;; r++) try {
 		return await t();
 	} catch (t) {
-		if (e.throwIfAborted(), r === kl || !Nl(t) || !n()) throw t;
-		await new Promise((e) => setTimeout(e, Al * 2 ** (r - 1))), e.throwIfAborted();
+		if (e.throwIfAborted(), r === Pl || !Rl(t) || !n()) throw t;
+		await new Promise((e) => setTimeout(e, Fl * 2 ** (r - 1))), e.throwIfAborted();
 	}
 }
-function Nl(e) {
-	return e instanceof M && e.code === "network";
+function Rl(e) {
+	return e instanceof j && e.code === "network";
 }
 // eigenfield-three/src/beside.ts
-function Pl(e) {
+function zl(e) {
 	return { read: async (t, n, r) => {
 		let i = e.get(t);
-		if (!i) throw new M("damaged", `The folder has no file ${t}; copy the clip's whole folder.`, t);
-		if (i.size !== n) throw N(t, `${i.size} bytes of ${n}`);
+		if (!i) throw new j("damaged", `The folder has no file ${t}; copy the clip's whole folder.`, t);
+		if (i.size !== n) throw M(t, `${i.size} bytes of ${n}`);
 		return i.slice(0, r).arrayBuffer();
 	} };
 }
-var Fl = class {
+var Bl = class {
 	scene;
 	signal;
 	arriving = /* @__PURE__ */ new Map();
@@ -4957,7 +4985,7 @@ var Fl = class {
 		this.scene = e, this.signal = t;
 	}
 	read(e, t, n) {
-		return Ml(this.signal, async () => {
+		return Ll(this.signal, async () => {
 			let r = this.arriving.get(e) ?? this.fetch(e, t);
 			try {
 				let i = await r.read(0, n);
@@ -4968,38 +4996,38 @@ var Fl = class {
 		});
 	}
 	fetch(e, t) {
-		let n = new Tl();
+		let n = new Al();
 		return this.arriving.set(e, n), this.receive(e, t, n).catch((t) => {
-			n.fail(this.signal.aborted || t instanceof M ? t : Il(e, t));
+			n.fail(this.signal.aborted || t instanceof j ? t : Vl(e, t));
 		}), n;
 	}
 	async receive(e, t, n) {
 		let r = new URL(e, new URL(this.scene, document.baseURI)), { ok: i, status: a, headers: o, body: s } = await fetch(r, { signal: this.signal }), c = o.get("Content-Encoding") ? null : o.get("Content-Length"), l = i && c !== null && Number(c) !== t;
-		if (i && s && !l) return El(s, n, this.signal);
-		throw await s?.cancel(), l ? N(e, `${c} bytes of ${t}`) : Il(e, `The server answered ${a}`);
+		if (i && s && !l) return jl(s, n, this.signal);
+		throw await s?.cancel(), l ? M(e, `${c} bytes of ${t}`) : Vl(e, `The server answered ${a}`);
 	}
 };
-function Il(e, t) {
-	return new M("network", `The clip's file ${e} cannot be fetched; put it beside the clip's own. It is tried again when it plays on.`, e, { cause: t });
+function Vl(e, t) {
+	return new j("network", `The clip's file ${e} cannot be fetched; put it beside the clip's own. It is tried again when it plays on.`, e, { cause: t });
 }
 // eigenfield-three/src/film-pictures.ts
-var Ll = {
+var Hl = {
 	mimeType: "video/AV1",
 	bits: 10
 };
-async function Rl(e, t, n) {
+async function Ul(e, t, n) {
 	let r = {
 		view: -1,
-		codec: Ll,
+		codec: Hl,
 		textures: 1,
 		pieces: 1,
 		where: n
-	}, i = await ci(_e(e.slice().buffer, n), r, t), a = i[0].picture;
+	}, i = await ci(ve(e.slice().buffer, n), r, t), a = i[0].picture;
 	if ("data" in a) return a;
 	let o = Ut(a, t);
-	return Hs(i), Wt(o, 4 * t[0], 4, t);
+	return Ws(i), Wt(o, 4 * t[0], 4, t);
 }
-var zl = class {
+var Wl = class {
 	size;
 	where;
 	user;
@@ -5020,7 +5048,7 @@ var zl = class {
 	}
 	decode(e, t, n) {
 		if (!n) return;
-		let { turn: r } = this, i = Rl(e, this.size, this.where).then((e) => r === this.turn ? this.user.take(t, () => Promise.resolve(e)) : void 0).catch((e) => {
+		let { turn: r } = this, i = Ul(e, this.size, this.where).then((e) => r === this.turn ? this.user.take(t, () => Promise.resolve(e)) : void 0).catch((e) => {
 			r === this.turn && this.user.failed(e);
 		}).finally(() => {
 			this.decoding.delete(i), this.user.closed();
@@ -5036,11 +5064,11 @@ var zl = class {
 	dispose() {
 		this.reset();
 	}
-}, Bl = 8, Vl = 2, Hl = 2 / 3, Ul = /* @__PURE__ */ new Set([
+}, Gl = 8, Kl = 2, ql = 2 / 3, Jl = /* @__PURE__ */ new Set([
 	"damaged",
 	"truncated",
 	"network"
-]), Wl = class {
+]), Yl = class {
 	timeline;
 	groups;
 	user;
@@ -5072,7 +5100,7 @@ var zl = class {
 		return this.decoders.reduce((e, t) => e + t.open, 0);
 	}
 	get reach() {
-		return Math.max(this.newestEnd, this.from) + Bl / 2;
+		return Math.max(this.newestEnd, this.from) + Gl / 2;
 	}
 	get busy() {
 		return this.decoders.some(({ busy: e }) => e);
@@ -5168,7 +5196,7 @@ var zl = class {
 		return e.every((e, t) => e !== null || !this.needs(t));
 	}
 	get hasRoom() {
-		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = this.keysAlone ? this.slots.size < Vl ? Infinity : 0 : Math.max(this.from, this.wanted) + Bl;
+		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = this.keysAlone ? this.slots.size < Kl ? Infinity : 0 : Math.max(this.from, this.wanted) + Gl;
 		return this.next < Math.min(n, t) && this.decoders.every(({ ready: e }, t) => e || !this.needs(t));
 	}
 	async feedAll() {
@@ -5184,7 +5212,7 @@ var zl = class {
 			}
 			this.fed = r;
 			let i = this.given?.index === r ? this.given : await this.groups.open(r), a = n - i.first, o = i.units[a] ?? [];
-			a >= i.frames * Hl && this.prepare((r + 1) % this.timeline.groups.length), i.motion?.read(a);
+			a >= i.frames * ql && this.prepare((r + 1) % this.timeline.groups.length), i.motion?.read(a);
 			let s = () => this.decoders.map((e, t) => [e, o[t]]).filter((e, t) => this.needs(t));
 			if (a === 0 && await Promise.all(s().map(([e, t]) => e.start(t))), e !== this.turn) return;
 			this.given = i, this.next = this.keysAlone ? t + i.frames : t + 1;
@@ -5216,9 +5244,9 @@ var zl = class {
 		return this.slots.set(e, r), r;
 	}
 	fail(e) {
-		let t = e instanceof M && e.code === "codec" ? e : null;
+		let t = e instanceof j && e.code === "codec" ? e : null;
 		if (t && !this.keysAlone) return this.thin(t);
-		if (!(e instanceof M) || !Ul.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(t ? this.keysAlone : e, null);
+		if (!(e instanceof j) || !Jl.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(t ? this.keysAlone : e, null);
 		let n = e.code === "damaged" && this.given?.index === this.fed && !this.tried.has(this.fed), r = this.startOf(Math.max(this.next - 1, 0));
 		this.halt();
 		for (let [e, t] of this.slots) this.isWhole(t.films) || this.forget(e, t);
@@ -5226,7 +5254,7 @@ var zl = class {
 	}
 	thin(e) {
 		for (let e of this.decoders) e.dispose();
-		this.keysAlone = e, this.meansAlone = !1, this.decoders = this.timeline.films.map(({ size: e, where: t }, n) => new zl(e, t, this.userOf(n))), this.stop(), this.next = this.startOf(this.from), this.user.thinned(), this.feed();
+		this.keysAlone = e, this.meansAlone = !1, this.decoders = this.timeline.films.map(({ size: e, where: t }, n) => new Wl(e, t, this.userOf(n))), this.stop(), this.next = this.startOf(this.from), this.user.thinned(), this.feed();
 	}
 	rest() {
 		this.stop(), this.next = Infinity;
@@ -5252,7 +5280,7 @@ var zl = class {
 	reuseOne(e, { room: t }) {
 		t && this.rooms[e]?.push(t);
 	}
-}, Gl = .3, Kl = .2, ql = 2, Jl = class {
+}, Xl = .3, Zl = .2, Ql = 2, $l = class {
 	place;
 	read;
 	changed;
@@ -5283,7 +5311,7 @@ var zl = class {
 		let r = e - this.place.first;
 		if (r < 0 || r >= n.duration) return n.pause();
 		let i = r - n.currentTime;
-		Math.abs(i) > Gl * Math.max(t, 1) ? n.seeking || (n.currentTime = r) : n.playbackRate = t * (1 + Math.min(Math.max(ql * i, -.2), Kl)), n.paused && !this.starting && this.start(n);
+		Math.abs(i) > Xl * Math.max(t, 1) ? n.seeking || (n.currentTime = r) : n.playbackRate = t * (1 + Math.min(Math.max(Ql * i, -.2), Zl)), n.paused && !this.starting && this.start(n);
 	}
 	rest() {
 		this.audio?.pause();
@@ -5308,62 +5336,62 @@ var zl = class {
 	}
 };
 // eigenfield-three/src/clip.ts
-async function Yl(e, t, n, r) {
-	let i = new cc(e, t, n, r), a = await i.begin();
-	a.motion?.read(0), lc(e, a);
-	let o = await Promise.all(t.films.map(({ size: e, where: t }, n) => Rl(a.units[0][n], e, t))), { sound: s } = t;
+async function eu(e, t, n, r) {
+	let i = new uc(e, t, n, r), a = await i.begin();
+	a.motion?.read(0), dc(e, a);
+	let o = await Promise.all(t.films.map(({ size: e, where: t }, n) => Ul(a.units[0][n], e, t))), { sound: s } = t;
 	return {
 		timeline: t,
 		group: a,
 		films: o,
 		mesh: n,
-		ring: (e) => new Wl(t, i, e),
-		sound: s && ((e) => new Jl(s, () => r(s, s.length), e))
+		ring: (e) => new Yl(t, i, e),
+		sound: s && ((e) => new $l(s, () => r(s, s.length), e))
 	};
 }
 // eigenfield-three/src/means.ts
-async function Xl(e, t) {
-	let { mean: n, meanSize: r } = e, i = e.precision && await Zl(await t(e.precision.view), e.precision);
+async function tu(e, t) {
+	let { mean: n, meanSize: r } = e, i = e.precision && await nu(await t(e.precision.view), e.precision);
 	return {
 		pieces: await n.codec.decode(await t(n.view), n, r),
 		precision: i
 	};
 }
-async function Zl(e, t) {
+async function nu(e, t) {
 	let { type: n } = Yr(e) ?? {}, { mimeType: r } = t.codec;
-	if (n && n !== r) throw N(t.where, `${n}, not ${r}`);
+	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
-	if (!i) throw N(t.where, "no picture");
+	if (!i) throw M(t.where, "no picture");
 	return i.picture;
 }
-function Ql({ pieces: e, precision: t }) {
-	Hs(e), t?.close();
+function ru({ pieces: e, precision: t }) {
+	Ws(e), t?.close();
 }
 // eigenfield-three/src/packed.ts
-var $l = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", eu = 4;
-async function tu(e, t) {
-	let n = new G(e, ""), r = n.key("extensions").key(xe), i = r.key("packed");
+var iu = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", au = 4;
+async function ou(e, t) {
+	let n = new G(e, ""), r = n.key("extensions").key(Se), i = r.key("packed");
 	if (!i.exists) return e;
 	ja(r);
 	let a = Oi(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < eu) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, eu)).getUint32(0, !0);
-	if (eu + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new G(rc(await ru(await t(o.offset + eu, s), i.where), i.where), i.where).object(), u = nu(new G(c, `${i.where}/lengths`), o, eu + s), { packed: d, ...f } = r.object();
+	if (!o || o.length < au) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, au)).getUint32(0, !0);
+	if (au + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new G(ac(await cu(await t(o.offset + au, s), i.where), i.where), i.where).object(), u = su(new G(c, `${i.where}/lengths`), o, au + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
-		bufferViews: [...n.key("bufferViews").items(Ce).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
+		bufferViews: [...n.key("bufferViews").items(F).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
 		extensions: {
 			...n.key("extensions").object(),
-			[xe]: {
+			[Se]: {
 				...f,
 				...l
 			}
 		}
 	};
 }
-function nu(e, t, n) {
-	let r = n, i = e.items(Ce).map((e) => {
+function su(e, t, n) {
+	let r = n, i = e.items(F).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
 			buffer: 0,
@@ -5374,8 +5402,8 @@ function nu(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function ru(e, t) {
-	let n = new TextEncoder().encode($l), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function cu(e, t) {
+	let n = new TextEncoder().encode(iu), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -5383,19 +5411,19 @@ async function ru(e, t) {
 		~r,
 		~i
 	]), a.set(n, 5), a.set(new Uint8Array(e), 5 + n.length);
-	let o = await be(a, "deflate-raw", n.length + Se, t);
+	let o = await xe(a, "deflate-raw", n.length + Ce, t);
 	try {
 		return new TextDecoder("utf-8", {
 			fatal: !0,
 			ignoreBOM: !0
 		}).decode(o.subarray(n.length));
 	} catch {
-		throw N(t, "its JSON is not UTF-8");
+		throw M(t, "its JSON is not UTF-8");
 	}
 }
 // eigenfield-three/src/still-textures.ts
-var iu = 3;
-function au(e) {
+var lu = 3;
+function uu(e) {
 	return J(e).flatMap((e, t) => {
 		let n = 0;
 		return e.pictures.map((r) => {
@@ -5409,27 +5437,27 @@ function au(e) {
 		});
 	}).sort((e, t) => e.first - t.first || e.number - t.number);
 }
-function ou(e, t, n) {
-	let r = au(e), i = n, a = ({ basis: e, picture: n }) => {
+function du(e, t, n) {
+	let r = uu(e), i = n, a = ({ basis: e, picture: n }) => {
 		let r = t(n.view).then((t) => n.codec.decode(t, n, e.size));
 		return r.catch(() => void 0), r;
 	};
 	return {
 		async fill(n) {
-			let { plan: o, signal: s } = n, c = i ?? await Promise.all(Aa(e).map((e) => Xl(e, t)));
+			let { plan: o, signal: s } = n, c = i ?? await Promise.all(Aa(e).map((e) => tu(e, t)));
 			i = null, c.forEach((e, t) => {
-				n.putMean(t, e), Ql(e);
+				n.putMean(t, e), ru(e);
 			});
 			let l = r.filter(({ first: e }) => e < o.usable), u = [], d = 0;
 			try {
 				for (let { number: e, first: t, picture: r } of l) {
 					if (s.aborted) return;
-					for (let e of l.slice(d, d + iu - u.length)) u.push(a(e)), d += 1;
+					for (let e of l.slice(d, d + lu - u.length)) u.push(a(e)), d += 1;
 					let i = await u[0] ?? [];
-					u.shift(), n.putTextures(e, t, i, r), Hs(i), n.announce();
+					u.shift(), n.putTextures(e, t, i, r), Ws(i), n.announce();
 				}
 			} finally {
-				for (let e of u) e.then(Hs).catch(() => void 0);
+				for (let e of u) e.then(Ws).catch(() => void 0);
 			}
 			n.end();
 		},
@@ -5437,41 +5465,41 @@ function ou(e, t, n) {
 			let r = 0;
 			for (let { channels: i, bases: a } of e.planes) {
 				let o = e.colours.slice(r, r += i), s = a.find(({ count: e }) => e > n);
-				if (s) return Gs(s, n, o, t);
+				if (s) return qs(s, n, o, t);
 			}
 			return Promise.resolve(1);
 		},
 		dispose() {
-			i?.forEach(Ql), i = null;
+			i?.forEach(ru), i = null;
 		}
 	};
 }
 // eigenfield-three/src/grid.ts
-function su(e) {
+function fu(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = cu(e, n, r) ?? (n === r ? null : cu(e, r, n));
+		let r = t / n, i = pu(e, n, r) ?? (n === r ? null : pu(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function cu(e, t, n) {
-	let [r, i] = [uu(e, 0), uu(e, 1)];
-	if (t === 1 && du(i) > 0 || n === 1 && du(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => fu(i, e) - fu(i, t));
+function pu(e, t, n) {
+	let [r, i] = [hu(e, 0), hu(e, 1)];
+	if (t === 1 && gu(i) > 0 || n === 1 && gu(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => _u(i, e) - _u(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => fu(r, e) - fu(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => _u(r, e) - _u(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return lu(n, t, (e, t) => fu(r, o(t, e))) && lu(t, n, (e, t) => fu(i, o(e, t))) ? {
+	return mu(n, t, (e, t) => _u(r, o(t, e))) && mu(t, n, (e, t) => _u(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function lu(e, t, n) {
+function mu(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -5481,33 +5509,33 @@ function lu(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function uu(e, t) {
+function hu(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function du(e) {
+function gu(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var fu = (e, t) => e[t] ?? 0, pu = 1e-6, mu = 32, hu = class {
+var _u = (e, t) => e[t] ?? 0, vu = 1e-6, yu = 32, bu = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = su(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = fu(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(gu(e), this.isLine ? 0 : gu(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(xu(e), this.isLine ? 0 : xu(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => Eu(e, t, this.places) : e === "bilinear" && this.grid ? Ou(this.places, this.grid) : yu(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => ju(e, t, this.places) : e === "bilinear" && this.grid ? Nu(this.places, this.grid) : wu(this.places, this.triangles);
 	}
 };
-function gu(e) {
+function xu(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function _u(e) {
+function Su(e) {
 	let t = {
 		camera: [
 			0,
@@ -5527,7 +5555,7 @@ function _u(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function vu(e, t, n, r, i, a) {
+function Cu(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -5535,49 +5563,49 @@ function vu(e, t, n, r, i, a) {
 		m
 	];
 }
-function yu(e, t) {
+function wu(e, t) {
 	if (!t.length) {
-		let t = Tu(e, wu(e));
-		return (n, r) => Cu(n, r, e, t);
+		let t = Au(e, ku(e));
+		return (n, r) => Ou(n, r, e, t);
 	}
-	let n = xu(e, t, 3), r = Su(t);
+	let n = Eu(e, t, 3), r = Du(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * mu + $(i)] ?? []) {
+		for (let r of n[$(a) * yu + $(i)] ?? []) {
 			let [n, l, u] = [
-				bu(t, r, 0),
-				bu(t, r, 1),
-				bu(t, r, 2)
-			], d = vu(i, a, e, n, l, u), f = Math.min(...d);
+				Tu(t, r, 0),
+				Tu(t, r, 1),
+				Tu(t, r, 2)
+			], d = Cu(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? Cu(i, a, e, r) : _u(c.map((e, n) => [bu(t, o, n), e]));
+		return s < -1e-9 ? Ou(i, a, e, r) : Su(c.map((e, n) => [Tu(t, o, n), e]));
 	};
 }
-var bu = (e, t, n) => e[3 * t + n] ?? 0;
+var Tu = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * mu)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * yu)));
 }
-function xu(e, t, n) {
+function Eu(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * mu + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * yu + t]?.push(i);
 	}
 	return r;
 }
-function Su(e) {
+function Du(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [bu(e, n, r), bu(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [Tu(e, n, r), Tu(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -5586,7 +5614,7 @@ function Su(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function Cu(e, t, n, r) {
+function Ou(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -5601,12 +5629,12 @@ function Cu(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return _u([[o, 1 - c], [s, c]]);
+	return Su([[o, 1 - c], [s, c]]);
 }
-function wu(e) {
+function ku(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function Tu(e, t) {
+function Au(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -5627,7 +5655,7 @@ function Tu(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function Eu(e, t, n) {
+function ju(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -5641,12 +5669,12 @@ function Eu(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || Du(n, r, i, a) <= pu) return Cu(e, t, n, Tu(n, [
+	if (a < 0 || Mu(n, r, i, a) <= vu) return Ou(e, t, n, Au(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = vu(e, t, n, r, i, a);
+	let [l, u, d] = Cu(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -5662,15 +5690,15 @@ function Eu(e, t, n) {
 		]
 	};
 }
-function Du(e, t, n, r) {
+function Mu(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function Ou(e, t) {
+function Nu(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = Tu(e, wu(e));
-		return (n, r) => Cu(n, r, e, t);
+		let t = Au(e, ku(e));
+		return (n, r) => Ou(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -5679,7 +5707,7 @@ function Ou(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = xu(e, o.flat(), 4), c = [];
+	let s = Eu(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -5687,12 +5715,12 @@ function Ou(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * mu + $(t)] ?? []) {
-			let s = o[a], c = s ? ku(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * yu + $(t)] ?? []) {
+			let s = o[a], c = s ? Pu(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return Cu(t, n, e, l);
-		let [a, c] = Au(t, n, e, r);
+		if (!r || i < -1e-9) return Ou(t, n, e, l);
+		let [a, c] = Fu(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -5704,7 +5732,7 @@ function Ou(e, t) {
 		};
 	};
 }
-function ku(e, t, n, r) {
+function Pu(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -5712,7 +5740,7 @@ function ku(e, t, n, r) {
 	}
 	return i;
 }
-function Au(e, t, n, r) {
+function Fu(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -5730,17 +5758,17 @@ function Au(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = ju(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [ju(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Iu(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [Iu(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function ju(e) {
+function Iu(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var Mu = class {
+var Lu = class {
 	parser;
 	options;
-	name = xe;
+	name = Se;
 	scene = null;
 	views = [];
 	lacks = null;
@@ -5750,16 +5778,16 @@ var Mu = class {
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
-		this.options.renderer && $c(this.options.renderer);
+		this.options.renderer && nl(this.options.renderer);
 		let { json: e } = this.parser;
-		pe(e), Object.assign(e, await tu(e, (e, t) => this.read(e, t)));
+		me(e), Object.assign(e, await ou(e, (e, t) => this.read(e, t)));
 		let t = Oa(e), { stream: n } = this.options, r = t.timeline?.groups[0]?.file ? n?.readFile : n?.readGroups;
-		(!t.timeline || r) && (this.views = t.views, t.timeline && t.shown && !await ai("image/avif") ? this.lacks = new M("codec", "This browser decodes no AV1; use a newer browser. The first frame is shown.", "") : (this.scene = t, this.scene.shown || Nu(e)));
+		(!t.timeline || r) && (this.views = t.views, t.timeline && t.shown && !await ai("image/avif") ? this.lacks = new j("codec", "This browser decodes no AV1; use a newer browser. The first frame is shown.", "") : (this.scene = t, this.scene.shown || Ru(e)));
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
 		let n = (await this.parser.getDependency("buffer", 0)).slice(e, e + t);
-		if (n.byteLength < t) throw le("/buffers/0");
+		if (n.byteLength < t) throw ue("/buffers/0");
 		return n;
 	}
 	loadMaterial(e) {
@@ -5775,39 +5803,39 @@ var Mu = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (this.lacks && (e.userData.eigenfieldError = this.lacks), !t) return;
-		let n = Pu(e, this.parser), [r] = n;
-		if (!r) throw N("/meshes/0", "no node shows it");
-		t.shown && Lc(r.geometry, t.shown);
+		let n = zu(e, this.parser), [r] = n;
+		if (!r) throw M("/meshes/0", "no node shows it");
+		t.shown && Bc(r.geometry, t.shown);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
-			if (n.byteLength < (t.views[e]?.length ?? 0)) throw le(`/bufferViews/${e}`);
+			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ue(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await Rc(t.mesh, i), o = t.timeline && a && await this.openClip(t, t.timeline, a);
+		}, a = t.mesh && await Vc(t.mesh, i), o = t.timeline && a && await this.openClip(t, t.timeline, a);
 		if (a) {
-			let e = zc(a);
+			let e = Hc(a);
 			r.geometry.dispose();
 			for (let t of n) t.geometry = e;
 		}
 		t.sheets && sa(t.sheets, r.geometry);
 		let [s, c, l, u] = await Promise.all([
-			Promise.all(o ? [] : Aa(t).map((e) => Xl(e, i))),
+			Promise.all(o ? [] : Aa(t).map((e) => tu(e, i))),
 			Ga(t, i),
 			o ? o.group.omega : $a(t, i),
 			ao(t, i)
-		]), d = c.filter((e, n) => !t.heldOut[n]), f = new hu(Float64Array.from(d.flatMap((e) => lo(t, e.centre))), u, t.extent[1] === 0), p = o ? Aa(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
+		]), d = c.filter((e, n) => !t.heldOut[n]), f = new bu(Float64Array.from(d.flatMap((e) => lo(t, e.centre))), u, t.extent[1] === 0), p = o ? Aa(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
 			scene: t,
-			info: so(t, c, p, f.grid, this.fileBytes(), Bc(r.geometry)),
+			info: so(t, c, p, f.grid, this.fileBytes(), Uc(r.geometry)),
 			meshes: n,
 			meanSizes: p,
 			omega: l,
 			weights: f,
 			clip: o
-		}, h = o ? new qs(t, o.films) : ou(t, i, s);
-		e.userData.eigenfield = new bl(m, h, this.options);
+		}, h = o ? new Ys(t, o.films) : du(t, i, s);
+		e.userData.eigenfield = new Tl(m, h, this.options);
 	}
 	openClip(e, t, n) {
 		let r = this.options.stream;
-		return Yl(e, t, n, ({ offset: e, length: t, file: n }, i) => n === null ? r.readGroups(e, i) : r.readFile(n, t, i));
+		return eu(e, t, n, ({ offset: e, length: t, file: n }, i) => n === null ? r.readGroups(e, i) : r.readFile(n, t, i));
 	}
 	fileBytes() {
 		let { groups: e = [], sound: t = null } = this.scene?.timeline ?? {}, n = [...e, ...t ? [t] : []].reduce((e, t) => e + (t.file ? t.length : 0), 0);
@@ -5816,53 +5844,53 @@ var Mu = class {
 		return r.KHR_binary_glTF?.header?.length ?? i.buffers[0]?.byteLength ?? 0;
 	}
 };
-function Nu(e) {
+function Ru(e) {
 	let [t] = e.nodes;
 	t && (t.mesh = 0), e.meshes = [{ primitives: [{
 		attributes: {},
 		material: 0
 	}] }], e.materials = [{ doubleSided: !0 }];
 }
-function Pu(e, t) {
+function zu(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		Fu(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		Bu(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function Fu(e) {
+function Bu(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function Iu(e, t = {}) {
+async function Vu(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new Tl(), [i, a] = [new AbortController(), new AbortController()], o = () => {
+	let r = new Al(), [i, a] = [new AbortController(), new AbortController()], o = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", o), i.signal.addEventListener("abort", () => a.abort());
-	let s = Bu(e, r, a.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", o));
+	let s = Gu(e, r, a.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", o));
 	try {
-		let o = await ec(r);
+		let o = await nc(r);
 		if (!Da(o.json)) return {
-			gltf: await zu(r, o, s),
+			gltf: await Wu(r, o, s),
 			field: null,
 			error: null
 		};
-		let c = e instanceof ArrayBuffer ? r : ((e) => new jl(e, r, o.length, () => a.abort(), i.signal))(e), l = t.files ? Pl(t.files) : null, u = await Lu(r, o, c, typeof e == "string" ? new Fl(e, i.signal) : l, t);
+		let c = e instanceof ArrayBuffer ? r : ((e) => new Il(e, r, o.length, () => a.abort(), i.signal))(e), l = t.files ? zl(t.files) : null, u = await Hu(r, o, c, typeof e == "string" ? new Bl(e, i.signal) : l, t);
 		n?.throwIfAborted();
 		let { eigenfield: d, eigenfieldError: f } = u.userData;
 		return {
 			gltf: u,
-			field: d instanceof bl ? d : null,
-			error: f instanceof M ? f : null
+			field: d instanceof Tl ? d : null,
+			error: f instanceof j ? f : null
 		};
 	} catch (e) {
-		throw i.abort(), n?.throwIfAborted(), ue(e);
+		throw i.abort(), n?.throwIfAborted(), de(e);
 	}
 }
-async function Lu(e, t, n, r, i) {
-	let a = new se(), o = (e, t = n) => async (n, r) => {
+async function Hu(e, t, n, r, i) {
+	let a = new ce(), o = (e, t = n) => async (n, r) => {
 		let i = await e + n;
 		return t.read(i, i + r);
 	}, s = t.binary();
@@ -5871,58 +5899,58 @@ async function Lu(e, t, n, r, i) {
 		total: t.length,
 		read: o(s, e),
 		readGroups: (...e) => o(t.groups())(...e),
-		readFile: (...e) => r?.read(...e) ?? Promise.reject(Ru(e[0]))
+		readFile: (...e) => r?.read(...e) ?? Promise.reject(Uu(e[0]))
 	};
-	return a.register((e) => new Mu(e, {
+	return a.register((e) => new Lu(e, {
 		...i,
 		stream: c
 	})), a.parseAsync(t.text, "");
 }
-function Ru(e) {
-	return new M("unsupported", `The clip is a folder, and its file ${e} cannot be found from here; make one file of it, with \`eigenfield export\`.`, e);
+function Uu(e) {
+	return new j("unsupported", `The clip is a folder, and its file ${e} cannot be found from here; make one file of it, with \`eigenfield export\`.`, e);
 }
-async function zu(e, t, n) {
+async function Wu(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
-		let e = new se();
-		return e.register(fe), await e.parseAsync(r, "");
+		let e = new ce();
+		return e.register(pe), await e.parseAsync(r, "");
 	} catch (e) {
-		if (e instanceof M) throw e;
-		let t = ue(e).message;
-		throw new M("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
+		if (e instanceof j) throw e;
+		let t = de(e).message;
+		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function Bu(e, t, n, r) {
+async function Gu(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? Vu(e) : await Hu(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? Ku(e) : await qu(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : Uu(t.received, e);
+			throw n.aborted ? e : Ju(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function Vu(e) {
+function Ku(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function Hu(e, t) {
+async function qu(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
-		throw t.aborted ? n : new M("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
+		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
-	if (!n.ok || !n.body) throw await n.body?.cancel(), new M("network", `The server answered ${n.status} for the scene; check its address.`, e);
+	if (!n.ok || !n.body) throw await n.body?.cancel(), new j("network", `The server answered ${n.status} for the scene; check its address.`, e);
 	let r = n.headers.get("Content-Encoding") ? null : n.headers.get("Content-Length");
 	return {
 		body: n.body,
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function Uu(e, t) {
-	return new M("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
+function Ju(e, t) {
+	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { bl as EigenField, Mu as EigenfieldPlugin, Fc as Player, Gc as SHEETS, M as SceneError, jo as defaultMemory, Iu as loadEigenfield, po as novelCamera, _o as placeCamera, fe as refuseAddresses };
+export { Tl as EigenField, Lu as EigenfieldPlugin, Rc as Player, Jc as SHEETS, j as SceneError, jo as defaultMemory, Vu as loadEigenfield, po as novelCamera, _o as placeCamera, pe as refuseAddresses };
